@@ -52,7 +52,7 @@ class LineEdges(NamedTuple):
     pairs : (k, 2) int32 array
         Vertices, in the direction of the line.
     kinds : (k,) int8 array
-        Places in ``EDGE_KINDS``.
+        Indices into ``EDGE_KINDS``.
     """
 
     pairs: NDArray[np.int32]

@@ -209,7 +209,7 @@ class Unmended(NamedTuple):
     triangles : (k,) int32 array
         Their numbers, ascending; of the mesh as refined, before any edits.
     why : (k,) int8 array
-        Places in ``UNMENDED_WHY``.
+        Indices into ``UNMENDED_WHY``.
     angles : (k,) float64 array
         Smallest angle of each in the plane, degrees.
     """
@@ -324,7 +324,7 @@ class Report(Frozen):
         Rows without a vertex, ascending. Rows are called by their place in ``TIN.vertex_of``:
         those given come first, those inserted by edits follow, and removed ones stay in the list.
     left_out_why : (k,) int8 array
-        Why, as places in ``LEFT_OUT``.
+        Why, as indices into ``LEFT_OUT``.
     n_lines : int
         Breaklines, rings and water polygons that were given.
     line_labels : tuple of str

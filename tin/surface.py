@@ -514,7 +514,7 @@ class TIN(Editable):
         >>> tin.locate([[1, 1], [3, 3]])
         array([ 0, -1], dtype=int32)
         """
-        require_crs(xy, self._crs, "places")
+        require_crs(xy, self._crs, "points")
         return self._current.triangulation.locator.locate(as_xy(xy))
 
     @overload
@@ -641,7 +641,7 @@ class TIN(Editable):
         choice("method", method, InterpolationMethod)
         if extrapolate is not None:
             choice("extrapolate", extrapolate, Extrapolation)
-        require_crs(xy, self._crs, "places")
+        require_crs(xy, self._crs, "points")
         places, is_one = as_places(xy)
         elevations = self._current.interpolator.interpolate(
             places, method, extrapolate=extrapolate is not None, threads=threads
@@ -687,7 +687,7 @@ class TIN(Editable):
         >>> tin.closest_vertex([[3, 1], [2, 2], [-9, 9]])
         array([1, 0, 2], dtype=int32)
         """
-        require_crs(xy, self._crs, "places")
+        require_crs(xy, self._crs, "points")
         return self._current.triangulation.nearest.find(as_xy(xy))
 
     # ---------------------------------------------------------------- connections

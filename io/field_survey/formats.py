@@ -1,41 +1,29 @@
 """The formats of survey instruments."""
 
+from collections.abc import Callable
+
 from ..registry.format import Format
 from .signatures import is_dc, is_gsi, is_jobxml, is_sdr
 
 __all__ = ["FORMATS"]
 
+
+def _make(name: str, description: str, suffix: str, sniff: Callable[[bytes], bool]) -> Format:
+    """Describe a format that the module of its name reads."""
+    read = f"{__package__}.instruments.{name}:read"
+    return Format(
+        name=name, description=description, suffixes=(suffix,), read=read, writes=(), sniff=sniff
+    )
+
+
 FORMATS = (
-    Format(
-        name="gsi",
-        description="Leica GSI-8 and GSI-16: points of a total station",
-        suffixes=(".gsi",),
-        read="tinsmith.io.field_survey.instruments.gsi:read",
-        writes=(),
-        sniff=is_gsi,
+    _make("gsi", "Leica GSI-8 and GSI-16: points of a total station", ".gsi", is_gsi),
+    _make(
+        "sdr",
+        "Sokkia SDR20 and SDR33, of Topcon and Nikon too: points of a total station",
+        ".sdr",
+        is_sdr,
     ),
-    Format(
-        name="sdr",
-        description="Sokkia SDR20 and SDR33, of Topcon and Nikon too: points of a total station",
-        suffixes=(".sdr",),
-        read="tinsmith.io.field_survey.instruments.sdr:read",
-        writes=(),
-        sniff=is_sdr,
-    ),
-    Format(
-        name="jobxml",
-        description="Trimble JobXML: points of a survey job",
-        suffixes=(".jxl",),
-        read="tinsmith.io.field_survey.instruments.jobxml:read",
-        writes=(),
-        sniff=is_jobxml,
-    ),
-    Format(
-        name="dc",
-        description="Trimble DC of Survey Controller and Access: points of a survey job",
-        suffixes=(".dc",),
-        read="tinsmith.io.field_survey.instruments.dc:read",
-        writes=(),
-        sniff=is_dc,
-    ),
+    _make("jobxml", "Trimble JobXML: points of a survey job", ".jxl", is_jobxml),
+    _make("dc", "Trimble DC of Survey Controller and Access: points of a survey job", ".dc", is_dc),
 )

@@ -59,31 +59,11 @@ class _Tables(NamedTuple):
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN:
-    """Read the folder of an Esri TIN.
+    """Read an Esri TIN by its folder, or any of the files in it; called as :class:`.Format` says.
 
-    Parameters
-    ----------
-    path : Path
-        The folder, or any of the files in it.
-    crs : CRS, str, int or pyproj.CRS, optional
-        Declares the CRS; default the one in ``prj.adf``.
-    z_unit : Unit or str, optional
-        Unit of the elevations, which the files do not tell.
-
-    Returns
-    -------
-    TIN
-        Without masked triangles and the nodes that only they have. Enforced edges become hard and
-        soft lines; one along the boundary of the surface becomes a line of the boundary.
-
-    Raises
-    ------
-    ReadError
-        If a file is missing or damaged, or the triangles are no TIN.
-    CrsError
-        If PROJ does not know the CRS, or the file names another.
-    OptionError
-        If the unit is unknown, or the file names another.
+    The CRS defaults to that of ``prj.adf``; the unit of the elevations the files do not tell.
+    Masked triangles, and the nodes that only they have, are left out. Enforced edges become hard
+    and soft lines; one along the boundary of the surface becomes a line of the boundary.
     """
     folder = path if path.is_dir() else path.parent
     tables = _read_tables(folder)

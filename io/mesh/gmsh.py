@@ -49,29 +49,8 @@ class _Edges(NamedTuple):
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
     """Read the triangles of a Gmsh file; line elements along their edges become constrained.
 
-    Parameters
-    ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        CRS of the coordinates, which the file cannot tell.
-    z_unit : Unit or str, optional
-        Unit of the elevations, which the file cannot tell.
-
-    Returns
-    -------
-    TIN or Survey
-        A survey where the file has no triangles.
-
-    Raises
-    ------
-    MissingExtraError
-        If meshio is not installed.
-    ReadError
-        If the file is damaged, or its triangles are no TIN.
-    CrsError
-        If PROJ does not know the CRS, or the file names another.
-    OptionError
-        If the unit is unknown, or the file names another.
+    Called as :class:`.Format` says; the file tells neither CRS nor unit. One without triangles
+    gives a survey.
     """
     _optional.require("meshio", "Reading Gmsh files")
     if not path.is_file():

@@ -50,31 +50,11 @@ _VERTEX_NUMBER = re.compile(r"([-+]?)([0-9]+)(?:/|$)")
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
-    """Read the vertices and faces of an OBJ file.
+    """Read the vertices and faces of an OBJ file; called as :class:`.Format` says.
 
-    Parameters
-    ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        Declares the CRS; default the one in a comment ``# crs: ...``.
-    z_unit : Unit or str, optional
-        Declares the unit of the elevations; default the one in a comment
-        ``# elevation unit: ...``.
-
-    Returns
-    -------
-    TIN or Survey
-        A survey where the file has no faces. Polygons are cut into triangles; texture, normals,
-        colours, groups and materials are skipped.
-
-    Raises
-    ------
-    ReadError
-        If a line cannot be understood, or the faces are no TIN.
-    CrsError
-        If PROJ does not know the CRS, or the file names another.
-    OptionError
-        If the unit is unknown, or the file names another.
+    CRS and unit default to those in the comments ``# crs: ...`` and ``# elevation unit: ...``.
+    Polygons are cut into triangles; texture, normals, colours, groups and materials are skipped. A
+    file without faces gives a survey.
     """
     lines = _split_lines(common.read_content(path))
     vertex_lines = [i for i, line in enumerate(lines) if line[:2] in ("v ", "v\t")]
@@ -201,28 +181,24 @@ def write(
 ) -> None:
     """Write a TIN as OBJ; :func:`read` gives the same vertices and triangles back.
 
+    Parameters and errors are those of every writer, see :class:`.Format`; and:
+
     Parameters
     ----------
-    surface : TIN
-    path : Path
     drape : path-like, optional
         Picture to lay over it: a GeoTIFF in any CRS, or a PNG or JPEG file with a world file beside
         it. The material (``.mtl``) and the picture are written beside the file, under its name.
     texture : path-like, optional
         The former name of ``drape``.
-    progress : callable, optional
-        Called with the fraction done.
 
     Raises
     ------
-    FormatError
-        If ``surface`` is no TIN.
     ReadError
         If the picture cannot be read, or shows nothing of the surface.
     OptionError
         If two pictures are named.
     WriteError
-        If the file cannot be written, or the texture itself would be overwritten.
+        Also if the texture itself would be overwritten.
     """
     tin = require_tin(surface, path, format_name="OBJ")
     source = choose_picture(drape, texture)

@@ -54,31 +54,11 @@ class _Counts(NamedTuple):
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
-    """Read the vertices and faces of an OFF file in text.
+    """Read the vertices and faces of an OFF file in text; called as :class:`.Format` says.
 
-    Parameters
-    ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        Declares the CRS; default the one in a comment ``# crs: ...``.
-    z_unit : Unit or str, optional
-        Declares the unit of the elevations; default the one in a comment
-        ``# elevation unit: ...``.
-
-    Returns
-    -------
-    TIN or Survey
-        A survey where the file has no faces. Polygons are cut into triangles; normals, colours
-        and texture (NOFF, COFF, STOFF) are skipped.
-
-    Raises
-    ------
-    ReadError
-        If a row cannot be understood, the file ends early, or its faces are no TIN.
-    CrsError
-        If PROJ does not know the CRS, or the file names another.
-    OptionError
-        If the unit is unknown, or the file names another.
+    CRS and unit default to those in the comments ``# crs: ...`` and ``# elevation unit: ...``.
+    Polygons are cut into triangles; normals, colours and texture (NOFF, COFF, STOFF) are skipped. A
+    file without faces gives a survey.
     """
     content = read_content(path)
     rows, lines = split_rows(content)
@@ -175,19 +155,7 @@ def _parse_faces(
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Write a TIN as OFF; :func:`read` gives the same vertices and triangles back.
 
-    Parameters
-    ----------
-    surface : TIN
-    path : Path
-    progress : callable, optional
-        Called with the fraction done.
-
-    Raises
-    ------
-    FormatError
-        If ``surface`` is no TIN.
-    WriteError
-        If the file cannot be written.
+    Parameters and errors are those of every writer, see :class:`.Format`.
     """
     tin = require_tin(surface, path, format_name="OFF")
     total = len(tin.points) + len(tin.triangles)

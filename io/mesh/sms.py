@@ -65,31 +65,16 @@ class _Rows(NamedTuple):
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
     """Read a 2DM mesh: nodes in any order with gaps, elements, node strings.
 
-    Parameters
-    ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        CRS of the coordinates, which the file cannot tell.
-    z_unit : Unit or str, optional
-        Unit of the elevations, which the file cannot tell.
-
-    Returns
-    -------
-    TIN or Survey
-        A survey where the file has no faces. Quadrilaterals (E4Q, and those within E8Q and E9Q) are
-        cut along a diagonal, which the report tells; elements with midside nodes (E6T, E8Q, E9Q)
-        are cut at these. Node strings along edges become lines: of the boundary if they lie on it,
-        else hard breaklines. Elements that are lines and materials are left out and told.
+    Called as :class:`.Format` says; the file tells neither CRS nor unit. Quadrilaterals (E4Q, and
+    those within E8Q and E9Q) are cut along a diagonal, which the report tells; elements with
+    midside nodes (E6T, E8Q, E9Q) are cut at these. Node strings along edges become lines: of the
+    boundary if they lie on it, else hard breaklines. Elements that are lines and materials are left
+    out and told. A file without faces gives a survey.
 
     Raises
     ------
     ReadError
-        If a row cannot be understood, two nodes have one number, an element names a node that is
-        not there, or the elements are no TIN.
-    CrsError
-        If PROJ does not know the CRS.
-    OptionError
-        If the unit is unknown.
+        Also if two nodes have one number, or an element names a node that is not there.
     """
     cards = _sort_cards(read_content(path), path)
     numbers, points = _parse_nodes(cards.get("ND", _Rows([], [])), path)
@@ -220,20 +205,8 @@ def _describe_losses(cards: dict[str, _Rows], n_quadrilaterals: int) -> list[str
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Write a TIN as 2DM, numbers ascending from 1; :func:`read` gives the same TIN back.
 
-    Parameters
-    ----------
-    surface : TIN
-        Its lines become node strings, as do chains of its other constrained edges.
-    path : Path
-    progress : callable, optional
-        Called with the fraction done.
-
-    Raises
-    ------
-    FormatError
-        If ``surface`` is no TIN.
-    WriteError
-        If the file cannot be written.
+    Lines of the TIN become node strings, as do chains of its other constrained edges. Parameters
+    and errors are those of every writer, see :class:`.Format`.
     """
     tin = require_tin(surface, path, format_name="2DM")
     total = len(tin.points) + len(tin.triangles)

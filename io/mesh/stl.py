@@ -58,27 +58,8 @@ _RECORD = re.compile(r"origin (\S+) (\S+) (\S+)(?: crs (\S+))?(?: z (\S+))?")
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN:
     """Read a binary STL file; corners at the same place become one vertex.
 
-    Parameters
-    ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        Declares the CRS; default the one recorded in the header.
-    z_unit : Unit or str, optional
-        Declares the unit of the elevations; default the one recorded there.
-
-    Returns
-    -------
-    TIN
-        The origin recorded in the header, if there is one, is added back.
-
-    Raises
-    ------
-    ReadError
-        If the file is text or damaged, or its facets are no TIN.
-    CrsError
-        If PROJ does not know the CRS, or the file names another.
-    OptionError
-        If the unit is unknown, or the file names another.
+    Called as :class:`.Format` says. CRS and unit default to those recorded in the header, whose
+    origin is added back, if there is one; a text STL is refused.
     """
     content = read_content(path)
     facets = _find_facets(content, path)
@@ -157,10 +138,10 @@ def write(
 ) -> None:
     """Write a TIN as binary STL, relative to an origin that the header records.
 
+    Parameters and errors are those of every writer, see :class:`.Format`; and:
+
     Parameters
     ----------
-    surface : TIN
-    path : Path
     solid : bool
         Close it with a flat base and walls, for 3D printing.
     thickness : float, optional
@@ -172,20 +153,16 @@ def write(
         Make a model whose longer side has so many millimetres.
     exaggeration : float
         Factor on the elevations of a model.
-    progress : callable, optional
-        Called with the fraction done.
 
     Raises
     ------
-    FormatError
-        If ``surface`` is no TIN.
     OptionError
         If a factor is not positive, scale and size are both given, or a thickness without a solid.
     CrsError
         If a model is asked for and coordinates are longitude and latitude; if ``scale`` is given
         and the unit of the eastings is not known.
     WriteError
-        If the file cannot be written, or the extent is beyond float32.
+        Also if the extent is beyond float32.
 
     Notes
     -----

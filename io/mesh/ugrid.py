@@ -66,35 +66,18 @@ def read(
 ) -> TIN | Survey:
     """Read a mesh of a UGRID file.
 
+    CRS and unit default to those of the grid-mapping variable and of the variable of elevations.
+    Polygons are cut into triangles, which the report tells; other variables, and fields that change
+    in time, are left out. A mesh without faces gives a survey. Parameters and errors are those of
+    every reader, see :class:`.Format`; and:
+
     Parameters
     ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        Declares the CRS; default the one of the grid-mapping variable.
-    z_unit : Unit or str, optional
-        Declares the unit of the elevations; default that of their variable.
     surface : str, optional
         Name of the mesh; needed where the file has several.
     variable : str, optional
         Name of the variable that holds the nodes' elevations; needed where its attributes do not
         tell. Depths (``positive`` is "down") change their sign, which the report tells.
-
-    Returns
-    -------
-    TIN or Survey
-        A survey where the mesh has no faces. Polygons are cut into triangles, which the report
-        tells. Other variables, and fields that change in time, are left out.
-
-    Raises
-    ------
-    MissingExtraError
-        If netCDF4 is not installed.
-    ReadError
-        If the file is damaged, has no such mesh or no elevations, or its faces are no TIN.
-    CrsError
-        If PROJ does not know the CRS, or the file names another.
-    OptionError
-        If the unit is unknown, or the file names another.
     """
     _optional.require("netCDF4", "Reading UGRID files")
     if not path.is_file():
@@ -219,21 +202,7 @@ def _find_opposite(triangles: NDArray[np.int32], edges: NDArray[np.int64]) -> ND
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Write a TIN as UGRID 1.0 in netCDF 4.
 
-    Parameters
-    ----------
-    surface : TIN
-    path : Path
-    progress : callable, optional
-        Called with 1.0 at the end.
-
-    Raises
-    ------
-    FormatError
-        If ``surface`` is no TIN.
-    MissingExtraError
-        If netCDF4 is not installed.
-    WriteError
-        If the file cannot be written.
+    Parameters and errors are those of every writer, see :class:`.Format`.
     """
     tin = require_tin(surface, path, format_name="UGRID")
     netcdf = _optional.load("netCDF4", "Writing UGRID files")

@@ -41,34 +41,12 @@ _COUNTS = re.compile(rb'NumberOf\w+="(\d+)"')
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
-    """Read a VTK XML file of faces.
+    """Read a VTK XML file of faces; called as :class:`.Format` says.
 
-    Parameters
-    ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        Declares the CRS; default the field data ``crs``.
-    z_unit : Unit or str, optional
-        Declares the unit of the elevations; default the one in the field
-        data ``elevation_unit``.
-
-    Returns
-    -------
-    TIN or Survey
-        A survey where the file has no faces, its one-column numeric point data as attributes.
-        Polygons are cut into triangles. Field data ``origin`` is added to the coordinates, and
-        ``exaggeration`` and ``elevation_scale`` taken out of the elevations first.
-
-    Raises
-    ------
-    MissingExtraError
-        If pyvista is not installed.
-    ReadError
-        If the file is damaged or holds cells that are no faces, or its faces are no TIN.
-    CrsError
-        If PROJ does not know the CRS, or the file names another.
-    OptionError
-        If the unit is unknown, or the file names another.
+    CRS and unit default to the field data ``crs`` and ``elevation_unit``. Polygons are cut into
+    triangles; cells that are no faces are refused. Field data ``origin`` is added to the
+    coordinates, and ``exaggeration`` and ``elevation_scale`` taken out of the elevations first. A
+    file without faces gives a survey, with its one-column numeric point data as attributes.
     """
     value, arrays = _read_in_child(path)
     notes = common.describe_single_precision(arrays["points"], value["dtype"])

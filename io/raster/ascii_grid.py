@@ -33,24 +33,21 @@ def write(
     band: str | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> None:
-    """Write one band of a raster as an Esri ASCII grid.
+    """Write one band of a raster as an Esri ASCII grid, and its CRS beside it, as ``.prj``.
+
+    Parameters and errors are those of every writer, see :class:`.Format`; and:
 
     Parameters
     ----------
-    raster : Raster
-    path : Path
-        The CRS is written beside it, as ``.prj``.
     band : str, optional
         Needed if there are several.
-    progress : callable, optional
-        Called with the fraction done.
 
     Raises
     ------
     OptionError
         If there is no such band, or several and none is named.
     WriteError
-        If the file cannot be written, or the value for no data is that of a cell.
+        Also if the value for no data is that of a cell.
 
     Warns
     -----

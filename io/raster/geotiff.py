@@ -49,27 +49,22 @@ def write(
 ) -> None:
     """Write a raster as a tiled GeoTIFF, compressed without loss.
 
+    Parameters and errors are those of every writer, see :class:`.Format`; and:
+
     Parameters
     ----------
-    raster : Raster
-    path : Path
     overviews : {"average", "nearest", "none"}, optional
         How the cells of smaller copies for display are found. Default the mean, but the nearest
         cell for whole numbers and if a band is an aspect, whose mean is none.
     compression : {"deflate", "none"}, optional
         Without loss, as every GIS reads it, by all cores; or none, for the fastest file.
-    progress : callable, optional
-        Called with the fraction done.
 
     Raises
     ------
-    MissingExtraError
-        If rasterio is not installed.
     OptionError
         If there are no such overviews, or no such compression.
     WriteError
-        If the file cannot be written, or the value of cells without data is none that the bands
-        can hold.
+        Also if the value of cells without data is none that the bands can hold.
 
     Notes
     -----

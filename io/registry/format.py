@@ -54,11 +54,7 @@ class Format:
         Lower case, with the dot; a writer is chosen by them, a reader where the content is silent.
         The longest that a name ends in counts: ``.city.json`` before ``.json``.
     read, write : str, optional
-        ``"module:function"``. A reader takes ``(path, *, crs=None, z_unit=None, <options>)``, a CRS
-        and a Unit or None, and returns a Survey or a TIN; a writer ``(obj, path, *, <options>)``.
-        One that takes ``progress`` calls it with the fraction done. A writer raises a FormatError
-        for what it cannot hold, a MissingExtraError without the library that it needs, and a
-        WriteError, with the old file left whole, if the new one cannot be written.
+        ``"module:function"``, of functions as the notes describe them.
     reads, writes : tuple of str
         What the reader gives, what the writer takes: "TIN", "Survey", "Features", "Raster",
         "Table". Several formats may share a suffix, if they hold different things.
@@ -82,6 +78,21 @@ class Format:
         Names of files in such a folder, small letters, any of which stands for the folder.
     distribution : str
         Name and version of the plug-in's distribution, set by the registry; else "tinsmith".
+
+    Notes
+    -----
+    A reader takes ``(path, *, crs=None, z_unit=None, <options>)`` and returns a Survey or a TIN.
+    ``crs``, a CRS, str, int or pyproj.CRS, declares the CRS of the coordinates, ``z_unit``, a Unit
+    or str, the unit of elevations; the default of both is what the file names. It raises a
+    ReadError if the file is missing or damaged, or its faces are no TIN; a CrsError if PROJ does
+    not know the CRS, or the file names another; an OptionError if the unit is unknown, or the file
+    names another, or an option has a value that it cannot have.
+
+    A writer takes ``(obj, path, *, <options>)``. It raises a FormatError for what it cannot hold,
+    and a WriteError, with the old file left whole, if the new one cannot be written.
+
+    Either raises a MissingExtraError without the library that it needs. One that takes ``progress``
+    calls it with the fraction done.
 
     Examples
     --------

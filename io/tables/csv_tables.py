@@ -30,22 +30,11 @@ _AXES = ("easting", "northing", "elevation")
 def write(
     obj: Table | Features, path: Path, *, progress: Callable[[float], None] | None = None
 ) -> None:
-    """Write a table, or points with their columns.
+    """Write a table, or points with their columns: cells parted by commas, in a ``.tsv`` by tabs.
 
-    Parameters
-    ----------
-    obj : Table or Features
-    path : Path
-        Cells are parted by commas, in a ``.tsv`` by tabs.
-    progress : callable, optional
-        Called with the fraction done.
-
-    Raises
-    ------
-    FormatError
-        If features are lines or polygons, or a column of points has the name of a coordinate.
-    WriteError
-        If the file cannot be written.
+    Parameters and errors are those of every writer, see :class:`.Format`; features that are lines
+    or polygons, and a column of points with the name of a coordinate, are refused with a
+    FormatError.
 
     Notes
     -----

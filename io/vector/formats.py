@@ -1,5 +1,7 @@
 """The formats of points, lines and polygons."""
 
+from typing import Any
+
 from ..registry import signatures
 from ..registry.format import SURFACES, Format, Loss
 from .signatures import (
@@ -14,9 +16,6 @@ from .signatures import (
 
 __all__ = ["FORMATS"]
 
-_READ = "tinsmith.io.vector.points:read"
-_WRITE = "tinsmith.io.vector.surface_layers:write_"
-_BOTH = ("Survey", "TIN")
 _EXACT = "Every coordinate is the same double."
 _LOSSES = (
     "Of a TIN what the kind that is written does not show: lines and attributes beside triangles, "
@@ -24,14 +23,20 @@ _LOSSES = (
 )
 _LOSES: tuple[Loss, ...] = ("order", "constrained", "lines", "attributes", "notes", "report")
 
+
+def _make(name: str, description: str, *suffixes: str, writer: str = "", **more: Any) -> Format:
+    """Describe a format whose points and triangles are read by GDAL or as GeoJSON."""
+    ends: dict[str, Any] = {"read": f"{__package__}.points:read", "reads": ("Survey", "TIN")}
+    if writer:
+        ends["write"] = f"{__package__}.{writer}"
+        ends["writes"] = ("Features", *SURFACES)
+    return Format(name=name, description=description, suffixes=suffixes, **(ends | more))
+
+
 FORMATS = (
-    Format(
-        name="geojson",
-        description="GeoJSON (RFC 7946)",
-        suffixes=(".geojson", ".json"),
-        read=_READ,
-        reads=_BOTH,
-        write="tinsmith.io.vector.geojson.writing:write",
+    _make(
+        *("geojson", "GeoJSON (RFC 7946)", ".geojson", ".json"),
+        writer="geojson.writing:write",
         writes=(*SURFACES, "Features"),
         precision=(
             "Longitude and latitude with 9 decimals, elevations in metres with 6; with the option "
@@ -42,14 +47,11 @@ FORMATS = (
         loses=_LOSES,
         sniff=signatures.is_geojson,
     ),
-    Format(
-        name="geojsonseq",
-        description="Sequence of GeoJSON features, a line each (RFC 8142 without its separators)",
-        suffixes=(".geojsonl", ".geojsons", ".ndjson"),
-        read=_READ,
-        reads=_BOTH,
-        write=_WRITE + "geojson_sequence",
-        writes=("Features", "TIN", "Survey"),
+    _make(
+        "geojsonseq",
+        "Sequence of GeoJSON features, a line each (RFC 8142 without its separators)",
+        *(".geojsonl", ".geojsons", ".ndjson"),
+        writer="surface_layers:write_geojson_sequence",
         precision="Longitude and latitude with 9 decimals, elevations in metres with 6.",
         rounding=2e-4,
         losses="The CRS, units and notes, which a sequence has no place for: name it on reading. "
@@ -57,41 +59,27 @@ FORMATS = (
         loses=_LOSES,
         sniff=is_geojson_sequence,
     ),
-    Format(
-        name="gpkg",
-        description="GeoPackage",
-        suffixes=(".gpkg",),
-        read=_READ,
-        reads=_BOTH,
-        write=_WRITE + "geopackage",
+    _make(
+        *("gpkg", "GeoPackage", ".gpkg"),
+        writer="surface_layers:write_geopackage",
         writes=("Features", "Survey"),
         precision=_EXACT,
         losses="Of a survey its lines.",
         extra="vector",
         sniff=is_geopackage,
     ),
-    Format(
-        name="flatgeobuf",
-        description="FlatGeobuf",
-        suffixes=(".fgb",),
-        read=_READ,
-        reads=_BOTH,
-        write=_WRITE + "flatgeobuf",
-        writes=("Features", "TIN", "Survey"),
+    _make(
+        *("flatgeobuf", "FlatGeobuf", ".fgb"),
+        writer="surface_layers:write_flatgeobuf",
         precision=_EXACT,
         losses=_LOSSES,
         loses=_LOSES,
         extra="vector",
         sniff=is_flatgeobuf,
     ),
-    Format(
-        name="shapefile",
-        description="Shapefile (with its parts .shx, .dbf, .prj, .cpg)",
-        suffixes=(".shp",),
-        read=_READ,
-        reads=_BOTH,
-        write=_WRITE + "shapefile",
-        writes=("Features", "TIN", "Survey"),
+    _make(
+        *("shapefile", "Shapefile (with its parts .shx, .dbf, .prj, .cpg)", ".shp"),
+        writer="surface_layers:write_shapefile",
         precision="Coordinates are the same doubles; other numbers have 15 decimals at most.",
         losses="Names beyond 10 bytes, texts beyond 254, units and notes. As a MultiPatch (on "
         "request) slope, aspect and area too. " + _LOSSES,
@@ -99,26 +87,19 @@ FORMATS = (
         extra="vector",
         sniff=is_shapefile,
     ),
-    Format(
-        name="geoparquet",
-        description="GeoParquet",
-        suffixes=(".parquet", ".geoparquet"),
-        read=_READ,
-        reads=_BOTH,
-        write=_WRITE + "geoparquet",
-        writes=("Features", "TIN", "Survey"),
+    _make(
+        *("geoparquet", "GeoParquet", ".parquet", ".geoparquet"),
+        writer="surface_layers:write_geoparquet",
         precision=_EXACT,
         losses=_LOSSES,
         loses=_LOSES,
         extra="interop",
         sniff=is_parquet,
     ),
-    Format(
-        name="vector",
-        description="Other vector layers that GDAL reads: KML, GML, GPX, MapInfo, geodatabases ...",
-        suffixes=(".kml", ".gml", ".gpx", ".tab", ".mif", ".gmt", ".jml", ".gdb"),
-        read=_READ,
-        reads=_BOTH,
+    _make(
+        "vector",
+        "Other vector layers that GDAL reads: KML, GML, GPX, MapInfo, geodatabases ...",
+        *(".kml", ".gml", ".gpx", ".tab", ".mif", ".gmt", ".jml", ".gdb"),
         extra="vector",
         sniff=is_vector_text,
         sniff_folder=is_geodatabase,

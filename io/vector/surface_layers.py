@@ -53,12 +53,10 @@ def write_shapefile(
 ) -> None:
     """Write a kind of parts of a surface, or features, as :func:`shapefile.write` does.
 
+    Parameters are those of :func:`write_flatgeobuf`, triangles being PolygonZ; and:
+
     Parameters
     ----------
-    surface : TIN, Survey or Features
-    path : Path
-    kind : {"triangles", "points", "edges", "lines", "hull"}, optional
-        Of a TIN; default triangles, as PolygonZ.
     multipatch : bool
         Write all triangles of a TIN as one MultiPatch, without slope, aspect and area.
 
@@ -82,12 +80,7 @@ def write_shapefile(
 def write_geoparquet(surface: Writable, path: Path, *, kind: FeatureKind | None = None) -> None:
     """Write a kind of parts of a surface, or features, as :func:`geoparquet.write` does.
 
-    Parameters
-    ----------
-    surface : TIN, Survey or Features
-    path : Path
-    kind : {"triangles", "points", "edges", "lines", "hull"}, optional
-        Of a TIN; default triangles.
+    Parameters are those of :func:`write_flatgeobuf`.
     """
     from . import geoparquet
 
@@ -99,14 +92,8 @@ def write_geojson_sequence(
 ) -> None:
     """Write a kind of parts of a surface, or features, as lines of GeoJSON, each a feature.
 
-    Parameters
-    ----------
-    surface : TIN, Survey or Features
-        Its CRS must be known: coordinates are WGS 84 longitude and latitude, elevations metres, as
-        those of a GeoJSON file.
-    path : Path
-    kind : {"triangles", "points", "edges", "lines", "hull"}, optional
-        Of a TIN; default triangles.
+    The CRS must be known: coordinates are WGS 84 longitude and latitude, elevations metres, as
+    those of a GeoJSON file. Parameters are those of :func:`write_flatgeobuf`.
     """
     from .geojson.features import write_feature_lines
 

@@ -86,9 +86,7 @@ def replacing_path(path: Path) -> Iterator[Path]:
     WriteError
         As :func:`replacing`.
     """
-    with _translate_faults(path):
-        target = _find_target(path)
-        _require_replaceable(path, target)
+    with _finding_target(path) as target:
         beside = _choose_path_beside(target)
         try:  # begins before the file is there, so that no signal can come in between
             _create(beside, target)
@@ -107,14 +105,21 @@ def require_writable(path: Path) -> None:
         If there is no such folder, it may not be written to, or what is there is a folder, a
         device or read-only.
     """
-    with _translate_faults(path):
-        target = _find_target(path)
-        _require_replaceable(path, target)
+    with _finding_target(path) as target:
         if not os.access(target.parent, os.W_OK | os.X_OK):
             raise WriteError(
                 f"Cannot write '{path}': the folder '{path.parent}' may not be written to.",
                 path=path,
             )
+
+
+@contextmanager
+def _finding_target(path: Path) -> Iterator[Path]:
+    """Yield the file that is replaced, behind links, if it may be; faults become sentences."""
+    with _translate_faults(path):
+        target = _find_target(path)
+        _require_replaceable(path, target)
+        yield target
 
 
 @contextmanager
@@ -189,9 +194,7 @@ def replacing_files(path: Path, *, parts: Sequence[str] = ()) -> Iterator[Path]:
     WriteError
         As :func:`replacing`.
     """
-    with _translate_faults(path):
-        target = _find_target(path)
-        _require_replaceable(path, target)
+    with _finding_target(path) as target:
         folder = target.with_name(f".{target.stem[:_STEM]}-{os.urandom(4).hex()}")
         try:  # begins before the folder is there, so that no signal can come in between
             folder.mkdir()

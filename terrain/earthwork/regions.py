@@ -67,36 +67,26 @@ def _name_regions(regions: Any) -> Iterator[tuple[str, Any]]:
         yield from _take_features(regions)
     elif isinstance(regions, Mapping) and "type" not in regions:
         yield from ((str(name), shape) for name, shape in regions.items())
-    elif hasattr(regions, "__geo_interface__"):
-        yield from _take_interface(regions.__geo_interface__)
-    elif isinstance(regions, Mapping):
-        yield from _take_interface(regions)
+    elif isinstance(given := getattr(regions, "__geo_interface__", regions), Mapping):
+        yield from _name_features(given)
     elif isinstance(regions, Sequence | np.ndarray) or hasattr(regions, "__iter__"):
         yield from ((str(number), shape) for number, shape in enumerate(regions, start=1))
     else:
         raise OptionError("regions", type(regions).__name__, allowed="polygons")
 
 
-def _take_interface(given: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+def _name_features(given: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     if given["type"] != "FeatureCollection":
-        yield "1", _Interface(given)
+        yield "1", given
         return
     for number, feature in enumerate(given["features"], start=1):
-        properties = feature.get("properties") or {}
-        yield _find_name(properties, number), _Interface(feature["geometry"])
+        yield _find_name(feature.get("properties") or {}, number), feature["geometry"]
 
 
 def _find_name(properties: Mapping[str, Any], number: int) -> str:
     by_lower = {str(key).lower(): value for key, value in properties.items()}
     found = [by_lower[key] for key in _NAMES if by_lower.get(key) not in (None, "")]
     return str(found[0]) if found else str(number)
-
-
-class _Interface:
-    """A mapping as in GeoJSON, as an object that has it."""
-
-    def __init__(self, given: Mapping[str, Any]) -> None:
-        self.__geo_interface__ = given
 
 
 def _take_features(features: Features) -> Iterator[tuple[str, Any]]:

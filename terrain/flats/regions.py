@@ -76,7 +76,7 @@ class Regions(NamedTuple):
     size : int
         How many.
     kinds : (r,) int64 array
-        Places in ``KINDS``.
+        Indices into ``KINDS``.
     elevations : (r,) float64 array
     rises : (r,) float64 array
         From the region to the next contour that its triangles lead to; of caps, to what the next

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 __all__ = ["grade"]
 
+_SHARE = 1e-6
+"""Of the area of pad and slopes: less of it may lie beyond the ground by rounding."""
+
 
 def grade(
     tin: TIN,
@@ -98,6 +101,7 @@ def grade(
         if reach > 0
     ]
     patch = build_patch(tin, polygon, level, slopes)
+    _require_within(tin, patch)
     agreed = Agreement(tin.crs, tin.elevation_unit, (1.0, 1.0), reference.notes)
     return join_surfaces(tin, patch, agreed, "daylight")
 
@@ -138,6 +142,15 @@ def _find_level(ring: NDArray[np.float64]) -> float:
             "elevation", None, f"a number: the pad's ring is not level ({low:g} to {high:g})"
         )
     return low
+
+
+def _require_within(tin: TIN, patch: TIN) -> None:
+    import shapely
+
+    beyond = shapely.difference(find_area(patch), find_area(tin))
+    if beyond.area > _SHARE * patch.area:
+        place = shapely.point_on_surface(beyond)
+        raise PointsError(f"A slope reaches beyond the ground, at {place.x:.10g} {place.y:.10g}.")
 
 
 def _require_on_ground(tin: TIN, pad: Any) -> None:

@@ -14,7 +14,7 @@ from ...tin.building.attributes import join_columns
 from ...tin.constraints.clipping import in_rings
 from ...tin.topology import edge_keys
 from ...tin.validation.options import require_tin
-from ..georeference import agree
+from ..georeference import agree, find_plane_units
 from .seams import Seam, find_sides, measure_tolerance
 
 if TYPE_CHECKING:
@@ -42,8 +42,8 @@ def paste(base: TIN, patch: TIN) -> TIN:
     ----------
     base : TIN
     patch : TIN
-        Within the boundary of ``base``, with holes or in several parts: in its holes the base
-        stays.
+        Within the boundary of ``base`` or beyond it, with holes or in several parts: in its holes
+        the base stays.
 
     Returns
     -------
@@ -51,7 +51,8 @@ def paste(base: TIN, patch: TIN) -> TIN:
         The surface of ``patch`` within its boundary, that of ``base`` elsewhere, in the CRS and
         unit of both. Vertices of the base within the patch are left out; lines of both stay, those
         of the base up to the seam, a hard breakline named "seam" that runs along the boundary of
-        the patch. ``report.notes`` tell by how much elevations differ along it.
+        the patch. ``report.notes`` tell by how much elevations differ along it, and what area the
+        patch adds where it reaches beyond the base.
 
     Raises
     ------
@@ -59,7 +60,8 @@ def paste(base: TIN, patch: TIN) -> TIN:
         If the CRSs differ, or are known of one only; if it cannot be told whether elevations are
         in one unit.
     PointsError
-        If the patch reaches beyond the base.
+        If the boundaries of both are so near to each other that rounding leaves no surface
+        between them.
 
     Notes
     -----
@@ -81,12 +83,13 @@ def paste(base: TIN, patch: TIN) -> TIN:
     require_tin(base)
     require_tin(patch)
     found = agree((base, patch), ("the base", "the patch"))
-    return join_surfaces(base, patch, found)
+    return join_surfaces(base, patch, found, extend=True)
 
 
-def join_surfaces(base: TIN, patch: TIN, agreed: Agreement, name: str = "seam") -> TIN:
-    """Paste a surface into another one, and name the seam."""
-    _require_within(base, patch)
+def join_surfaces(
+    base: TIN, patch: TIN, agreed: Agreement, name: str = "seam", *, extend: bool = False
+) -> TIN:
+    """Paste a surface into another one, name the seam, and extend the base where it is told to."""
     ground, insert = (
         one.triangulation.points * (1.0, 1.0, factor)
         for one, factor in zip((base, patch), agreed.factors, strict=True)
@@ -97,6 +100,9 @@ def join_surfaces(base: TIN, patch: TIN, agreed: Agreement, name: str = "seam") 
     seam.insert_cuts()
     lines += [Breakline(ring, name=name, priority=_PRIORITY) for ring in seam.rings]
     lines += seam.list_lines()
+    beyond = _measure_beyond(base, patch) if extend else 0.0
+    reaches = beyond > seam.rounding
+    rings = _join_rings(base, patch, cut, seam) if reaches else _list_rings(base, ground)
     made = triangulate(
         Survey(
             points=np.concatenate([ground[cut.is_kept], insert]),
@@ -106,10 +112,11 @@ def join_surfaces(base: TIN, patch: TIN, agreed: Agreement, name: str = "seam") 
         duplicates="last",
         crs=agreed.crs,
         z_unit=agreed.elevation_unit,
-        **_list_rings(base, ground),
+        **rings,
     )
     gap = _describe_gap(base, agreed, np.concatenate(seam.rings))
-    notes = (*made.report.notes, *agreed.notes, *gap)
+    added = _describe_beyond(beyond, patch, agreed) if reaches else []
+    notes = (*made.report.notes, *agreed.notes, *gap, *added)
     return made.replace(report=replace(made.report, notes=notes))
 
 
@@ -142,17 +149,55 @@ def find_area(tin: TIN) -> Any:
     return shapely.build_area(shapely.geometrycollections(rings))
 
 
-def _require_within(base: TIN, patch: TIN) -> None:
+def _measure_beyond(base: TIN, patch: TIN) -> float:
+    """Return the area of a patch beyond the boundary of the base."""
     import shapely
 
-    inner = find_area(patch)
-    beyond = shapely.difference(inner, find_area(base))
-    if beyond.area > _SHARE**0.5 * inner.area:
-        place = shapely.point_on_surface(beyond)
+    return float(shapely.difference(find_area(patch), find_area(base)).area)
+
+
+def _join_rings(base: TIN, patch: TIN, cut: _Base, seam: Seam) -> dict[str, Any]:
+    """Return boundary and holes of both surfaces together, where the patch reaches beyond.
+
+    They are made of the pieces of both boundaries as they were cut at each other, without new
+    intersections: of the faces between them those in either surface.
+    """
+    import shapely
+
+    paths = [*cut.list_boundary(), *(pair for ring in seam.rings for pair in _split(ring))]
+    wanted = shapely.union(find_area(base), find_area(patch))
+    faces = shapely.get_parts(shapely.polygonize(shapely.linestrings(np.array(paths)[:, :, :2])))
+    shapely.prepare(wanted)
+    joined = shapely.coverage_union_all(
+        faces[shapely.contains(wanted, shapely.point_on_surface(faces))]
+    )
+    if abs(joined.area - wanted.area) > 2 * seam.rounding:
         raise PointsError(
-            f"The patch reaches beyond the base, at {place.x:.10g} {place.y:.10g}: it must lie "
-            "within it."
+            "The patch cannot be joined to the base: their boundaries are so near to each other "
+            "that they cross within the rounding of the coordinates."
         )
+    elevations = {(x, y): z for path in paths for x, y, z in path.tolist()}
+    rings = [
+        (np.array([[x, y, elevations[x, y]] for x, y in ring.coords]), number > 0)
+        for part in shapely.get_parts(joined)
+        for number, ring in enumerate([part.exterior, *part.interiors])
+    ]
+    return {
+        "boundary": [ring for ring, is_hole in rings if not is_hole],
+        "holes": [ring for ring, is_hole in rings if is_hole],
+    }
+
+
+def _split(ring: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the segments of a ring, (k, 2, 3)."""
+    return np.stack([ring[:-1], ring[1:]], axis=1)
+
+
+def _describe_beyond(beyond: float, patch: TIN, agreed: Agreement) -> list[str]:
+    """Say how much of the patch lies beyond the base."""
+    unit = find_plane_units(agreed.crs).area or "square units"
+    where = "lies beside" if beyond >= (1 - _SHARE) * patch.area else "reaches beyond"
+    return [f"The patch {where} the base, which becomes larger by {beyond:.6g} {unit}."]
 
 
 def _describe_gap(base: TIN, agreed: Agreement, seam: NDArray[np.float64]) -> list[str]:
@@ -224,6 +269,12 @@ class _Base:
                 else:
                     runs.append([start, end])
         return runs
+
+    def list_boundary(self) -> Iterator[NDArray[np.float64]]:
+        """Yield the parts of the boundary that the patch does not cover, (2, 3) each."""
+        for ring in self._tin.boundary:
+            for a, b in pairwise([*ring.tolist(), int(ring[0])]):
+                yield from self._find_parts(a, b)
 
     def list_joints(self) -> Iterator[Breakline]:
         """Yield the edges of the triangles that the seam cuts, and constrained ones in no line."""

@@ -43,6 +43,12 @@ class Seam:
     points : (n, 3) float64 array
         Its vertices, in the unit of the other surface.
     tolerance : float
+
+    Attributes
+    ----------
+    rings : list of (k, 3) float64 array
+    rounding : float
+        Area that the roundings of the boundary can take away or add.
     """
 
     def __init__(self, patch: TIN, points: NDArray[np.float64], tolerance: float) -> None:
@@ -57,6 +63,7 @@ class Seam:
         closed = [shapely.linearrings(ring[:, :2]) for ring in self.rings]
         self._area = shapely.build_area(shapely.geometrycollections(closed))
         shapely.prepare(self._area)
+        self.rounding = tolerance * float(self._area.length)
         self._cuts: dict[int, list[tuple[float, NDArray[np.float64]]]] = {}
 
     def find_near(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:

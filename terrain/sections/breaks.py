@@ -36,7 +36,7 @@ class Breaks(NamedTuple):
     elevations : (n,) float64 array
         NaN where there is no surface.
     crossed : (n,) int8 array
-        Place in ``CROSSED``.
+        Index into ``CROSSED``.
     triangles : (n,) int32 array
         Through which, or along an edge of which, the segment goes on; -1 where there is no surface.
     vertices, edges : (n,) int32 arrays

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import groupby
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -13,24 +14,18 @@ from ...errors import LinesError, PointsError
 from ...tin import Breakline
 from ...tin.constraints.breaklines import as_coords
 from ...tin.topology import find_offsets
+from ...tin.validation.geometries import find_geometries
 from ...tin.validation.points import require_exact_range
 from ..results import Features
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ...tin.validation.geometries import Geometries
+
 __all__ = ["as_features"]
 
-_KINDS = {
-    "Point": ("points", 0),
-    "MultiPoint": ("points", 1),
-    "LineString": ("lines", 0),
-    "LinearRing": ("lines", 0),
-    "MultiLineString": ("lines", 1),
-    "Polygon": ("polygons", 0),
-    "MultiPolygon": ("polygons", 1),
-}
-_GROUPS = {"FeatureCollection": "features", "GeometryCollection": "geometries"}
+_KINDS = {"Point": "points", "LineString": "lines", "Polygon": "polygons"}
 _LEAST = {"points": 1, "lines": 2, "polygons": 4}
 """Vertices of a piece; a ring repeats its first."""
 
@@ -79,18 +74,16 @@ def as_features(given: Any, what: str = "line") -> Features:
 
 
 def _walk(given: Any, what: str) -> Iterator[_Item]:
-    """Take apart what is given; a collection's features keep their properties."""
+    """Take apart what is given; features keep their properties."""
     if isinstance(given, Breakline):
         yield _as_line(given.coords, what)
-        return
-    interface = given if _is_geometry(given) else getattr(given, "__geo_interface__", None)
-    if isinstance(interface, Mapping):
-        yield from _walk_geometry(interface, what)
+    elif (found := find_geometries(given)) is not None:
+        yield from _take_geometries(found, what)
     elif _is_one_line(given):
         yield _as_line(given, what)
     elif isinstance(given, Iterable) and not isinstance(given, str | bytes | Mapping):
         for one in given:
-            if not (_is_one_line(one) or isinstance(one, Breakline) or _is_geometry_like(one)):
+            if not (_is_one_line(one) or isinstance(one, Breakline) or find_geometries(one)):
                 raise _refuse(one, what)
             yield from _walk(one, what)
     else:
@@ -102,14 +95,6 @@ def _refuse(given: Any, what: str) -> LinesError:
         f"Invalid {what} {shown(given)}: a (k, 2) array, a Breakline, Features, or a geometry "
         "is needed."
     )
-
-
-def _is_geometry(given: Any) -> bool:
-    return isinstance(given, Mapping) and isinstance(given.get("type"), str)
-
-
-def _is_geometry_like(given: Any) -> bool:
-    return _is_geometry(given) or hasattr(given, "__geo_interface__")
 
 
 def _is_one_line(given: Any) -> bool:
@@ -128,40 +113,20 @@ def _as_line(coords: Any, what: str) -> _Item:
     return _Item("lines", [[as_coords(coords, f"a {what}", least=2)]], {})
 
 
-def _walk_geometry(given: Mapping[str, Any], what: str) -> Iterator[_Item]:
-    """Take collections apart without recursion; features keep their properties."""
-    pending: list[tuple[Mapping[str, Any], Mapping[str, Any]]] = [(given, {})]
-    while pending:
-        geometry, properties = pending.pop()
-        kind = geometry.get("type")
-        if kind == "Feature":
-            pending.append(
-                (geometry.get("geometry") or {"type": "nothing"}, _find_properties(geometry))
-            )
-        elif kind in _GROUPS:
-            members = [(one, properties) for one in geometry[_GROUPS[kind]]]
-            pending.extend(reversed(members))
-        elif kind in _KINDS:
-            yield _as_item(str(kind), geometry["coordinates"], properties, what)
-        else:
+def _take_geometries(found: Geometries, what: str) -> Iterator[_Item]:
+    """Make an item of the geometries of a row, which are of one kind."""
+    empty = set(range(found.rows)) - {part.row for part in found.parts}
+    if empty:
+        raise LinesError(f"The {what} in row {min(empty)} has no coordinates.")
+    for (row, kind), parts in groupby(found.parts, key=lambda part: (part.row, part.kind)):
+        if kind not in _KINDS:
             raise LinesError(f"Invalid {what}: a geometry of type {shown(kind)} has no place here.")
-
-
-def _find_properties(feature: Mapping[str, Any]) -> Mapping[str, Any]:
-    return feature.get("properties") or {}
-
-
-def _as_item(kind: str, coordinates: Any, properties: Mapping[str, Any], what: str) -> _Item:
-    name, is_multi = _KINDS[kind]
-    parts = coordinates if is_multi else [coordinates]
-    pieces = [
-        part if name == "polygons" else [[part] if name == "points" else part] for part in parts
-    ]
-    least = _LEAST[name]
-    tables = [[as_coords(piece, f"a {what}", least=least) for piece in part] for part in pieces]
-    if not tables or not all(tables):
-        raise LinesError(f"Invalid {what}: a {kind} without coordinates.")
-    return _Item(name, tables, properties)
+        name = _KINDS[kind]
+        tables = [
+            [as_coords(ring, f"a {what}", least=_LEAST[name]) for ring in part.rings]
+            for part in parts
+        ]
+        yield _Item(name, tables, {key: column[row] for key, column in found.columns.items()})
 
 
 # ---------------------------------------------------------------- as features

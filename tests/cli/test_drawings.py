@@ -4,18 +4,11 @@ import json
 
 import ezdxf
 import pytest
-from click.testing import CliRunner
+from support.commands import run_command as run
 
 import tinsmith as ts
-from tinsmith.cli import main
 
 ROWS = [[0, 0, 5], [40, 0, 6], [0, 30, 8], [40, 30, 4], [20, 10, 7]]
-
-
-def run(*arguments, code=0):
-    result = CliRunner().invoke(main, [str(one) for one in arguments])
-    assert result.exit_code == code, result.output
-    return result
 
 
 @pytest.fixture

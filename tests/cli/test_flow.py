@@ -6,14 +6,9 @@ import json
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from support.commands import run
 
 import tinsmith as ts
-from tinsmith.cli import main
-
-
-def run(*args):
-    return CliRunner().invoke(main, [str(arg) for arg in args], standalone_mode=True)
 
 
 @pytest.fixture

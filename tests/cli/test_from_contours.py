@@ -6,11 +6,10 @@ from pathlib import Path
 import geopandas
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from shapely.geometry import LineString
+from support.commands import run
 
 import tinsmith as ts
-from tinsmith.cli import main
 
 SITE = str(Path(__file__).parents[2] / "sample_data" / "site_survey.csv")
 ANGLES = np.linspace(0, 2 * np.pi, 40, endpoint=False)
@@ -32,10 +31,6 @@ def write(path, *, with_z=False, column="elevation"):
     frame = geopandas.GeoDataFrame(columns, geometry=list(lines.values()), crs="EPSG:32616")
     frame.to_file(path)
     return path
-
-
-def run(*arguments):
-    return CliRunner().invoke(main, list(map(str, arguments)))
 
 
 @pytest.mark.parametrize(

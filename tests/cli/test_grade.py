@@ -5,18 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from support.commands import run
 
 import tinsmith as ts
-from tinsmith.cli import main
 
 SITE = Path(__file__).parents[2] / "sample_data" / "site_survey.csv"
 PAD = np.add([752_740.0, 4_024_290], [[0, 0], [40, 0], [40, 25], [0, 25]])
 SLOPES = ("--cut-slope", 2, "--fill-slope", 3)
-
-
-def run(*arguments):
-    return CliRunner().invoke(main, list(map(str, arguments)))
 
 
 @pytest.fixture

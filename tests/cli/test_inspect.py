@@ -7,10 +7,9 @@ import json
 import numpy as np
 import pandas as pd
 import pytest
-from click.testing import CliRunner
+from support.commands import run_command as run
 
 import tinsmith as ts
-from tinsmith.cli import main
 
 COUNT = 600
 
@@ -28,12 +27,6 @@ def site(tmp_path):
     names = {"point": np.arange(1, COUNT + 1), "easting": xy[:, 0], "northing": xy[:, 1]}
     pd.DataFrame(names | {"elevation": z}).to_csv(path, index=False)
     return path
-
-
-def run(*args, code=0):
-    result = CliRunner().invoke(main, [str(arg) for arg in args], standalone_mode=True)
-    assert result.exit_code == code, result.output
-    return result
 
 
 def test_findings_to_tables_a_map_and_json(site, tmp_path):

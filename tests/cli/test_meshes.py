@@ -9,17 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from support.commands import run
 from support.surfaces import hills
 
 import tinsmith as ts
-from tinsmith.cli import main
 
 DATA = Path(__file__).parents[1] / "data" / "meshes"
-
-
-def run(*arguments):
-    return CliRunner().invoke(main, [str(one) for one in arguments])
 
 
 def run_alone(*arguments):

@@ -56,14 +56,18 @@ def test_units_are_converted_and_events_told(tmp_path, square):
     assert made.interpolate(CORNER[None, :2] + 20) == pytest.approx([3.0])
 
 
+def test_a_patch_that_reaches_beyond_is_told(tmp_path, square):
+    moved = np.add(INNER, [25, 0, 0])
+    patch = write_tin(tmp_path / "patch.ply", moved, crs="EPSG:32616", z_unit="m")
+    out = tmp_path / "pasted.ply"
+    done = run("paste", square, patch, "-o", out)
+    assert "reaches beyond the base, which becomes larger by" in " ".join(done.output.split())
+    assert ts.read(out).bounds.xmax == moved[:, 0].max()
+
+
 @pytest.mark.parametrize(
     ("points", "known", "text"),
     [
-        (
-            np.add(INNER, [25, 0, 0]),
-            {"crs": "EPSG:32616", "z_unit": "m"},
-            "reaches beyond the base, at",
-        ),
         (INNER, {"crs": "EPSG:32617", "z_unit": "m"}, "EPSG:32617"),
         (INNER, {}, "the CRS of the patch is not known"),
     ],

@@ -7,25 +7,13 @@ import numpy as np
 import pyogrio
 import pytest
 import shapely
-from click.testing import CliRunner
+from support.commands import refuse, run
 from support.printed import read_pdf, read_svg
 
 import tinsmith as ts
-from tinsmith.cli import main
 
 SITE = Path(__file__).parents[2] / "sample_data" / "site_survey.csv"
 UTM = "EPSG:32616"
-
-
-def run(*arguments):
-    return CliRunner().invoke(main, list(map(str, arguments)))
-
-
-def refusal(*arguments, code):
-    out = run("plan", *arguments)
-    assert out.exit_code == code, out.output
-    assert "Traceback" not in out.output
-    return out.stderr
 
 
 @pytest.fixture
@@ -74,7 +62,7 @@ def test_papers_are_named_or_measured(road, tmp_path):
 
 
 def test_what_does_not_fit_is_refused_with_the_scale_that_does(road, tmp_path):
-    said = refusal(road, "--scale", 500, "-o", tmp_path / "a.pdf", code=2)
+    said = refuse("plan", road, "--scale", 500, "-o", tmp_path / "a.pdf", code=2)
     assert "--scale '1:500': it must be 1:5000 or smaller on A3 landscape" in " ".join(said.split())
     assert list(tmp_path.iterdir()) == [road]
 
@@ -93,7 +81,7 @@ def test_what_does_not_fit_is_refused_with_the_scale_that_does(road, tmp_path):
     ],
 )
 def test_wrong_options_are_named(road, tmp_path, options, code, words):
-    said = refusal(road, *options, "-o", tmp_path / "a.pdf", code=code)
+    said = refuse("plan", road, *options, "-o", tmp_path / "a.pdf", code=code)
     assert words in said
     assert not (tmp_path / "a.pdf").exists()
 
@@ -101,6 +89,6 @@ def test_wrong_options_are_named(road, tmp_path, options, code, words):
 def test_inputs_are_never_overwritten(road, tmp_path):
     copy = tmp_path / "plan.pdf"
     copy.write_bytes(road.read_bytes())
-    said = refusal(copy, "--format", "ply", "-o", copy, code=2)
+    said = refuse("plan", copy, "--format", "ply", "-o", copy, code=2)
     assert "cannot be the output too" in said
-    assert refusal(road, "-o", tmp_path / "plan.docx", code=1).count("must end in") == 1
+    assert refuse("plan", road, "-o", tmp_path / "plan.docx", code=1).count("must end in") == 1

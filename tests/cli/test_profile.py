@@ -8,26 +8,13 @@ import numpy as np
 import pyogrio
 import pytest
 import shapely
-from click.testing import CliRunner
+from support.commands import refuse, run
 
 import tinsmith as ts
-from tinsmith.cli import main
 
 SITE = str(Path(__file__).parents[2] / "sample_data" / "site_survey.csv")
 LINE = ("--from", 752690, 4024225, "--to", 752850, 4024330)
 UTM = "EPSG:32616"
-
-
-def run(*arguments):
-    return CliRunner().invoke(main, list(map(str, arguments)))
-
-
-def refusal(*arguments):
-    out = run(*arguments)
-    assert out.exit_code in (1, 2), out.output
-    assert "Traceback" not in out.output
-    assert "bug" not in out.output
-    return out.stderr
 
 
 @pytest.fixture
@@ -152,7 +139,7 @@ def test_points_are_triangulated_with_their_lines(tmp_path):
 )
 def test_what_is_wrong_is_said_and_nothing_is_written(site, tmp_path, arguments, why):
     given = [tmp_path / a if a in ("a.csv", "a.png", "a.gpkg") else a for a in arguments]
-    assert why in " ".join(refusal("profile", site, *given).split())
+    assert why in " ".join(refuse("profile", site, *given).split())
     assert {path.name for path in tmp_path.iterdir()} == {"site.ply"}
 
 
@@ -160,13 +147,13 @@ def test_inputs_are_not_overwritten(site, tmp_path):
     before = site.read_bytes()
     copy = tmp_path / "a.csv"
     copy.write_bytes(Path(SITE).read_bytes())
-    assert "cannot be the output too" in refusal("profile", copy, *LINE, "-o", copy)
-    assert "is the input" in refusal("profile", site, *LINE, "-o", site)
+    assert "cannot be the output too" in refuse("profile", copy, *LINE, "-o", copy)
+    assert "is the input" in refuse("profile", site, *LINE, "-o", site)
     assert site.read_bytes() == before
 
 
 def test_surfaces_of_one_name_are_told_apart_by_the_user(site, tmp_path):
-    text = refusal("profile", site, site, *LINE, "-o", tmp_path / "a.csv")
+    text = refuse("profile", site, site, *LINE, "-o", tmp_path / "a.csv")
     assert "Two surfaces are called 'site'" in text
 
 
@@ -187,7 +174,7 @@ def test_features_are_draped_with_their_columns(site, tmp_path):
 def test_what_lies_outside_is_refused_told_or_cut(site, tmp_path):
     line = [[752690, 4024225], [753850, 4024330]]
     given = write_lines(tmp_path / "roads.gpkg", [line])
-    text = refusal("drape", site, given, "-o", tmp_path / "b.gpkg")
+    text = refuse("drape", site, given, "-o", tmp_path / "b.gpkg")
     assert "1 of 1 line lies outside the surface" in text
     assert "--outside" in text
     assert not (tmp_path / "b.gpkg").exists()
@@ -222,5 +209,5 @@ def test_features_of_several_kinds_are_refused(site, tmp_path):
         for one in shapes
     ]
     path.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
-    text = refusal("drape", site, path, "-o", tmp_path / "b.gpkg")
+    text = refuse("drape", site, path, "-o", tmp_path / "b.gpkg")
     assert "one of lines, and the first one of points" in text

@@ -6,10 +6,9 @@ import json
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from support.commands import run
 
 import tinsmith as ts
-from tinsmith.cli import main
 
 RIDGE = [[0, 0, 0], [0, 4, 0], [4, 0, 2], [4, 4, 2], [8, 0, 0], [8, 4, 0]]
 
@@ -19,10 +18,6 @@ def site(tmp_path):
     path = tmp_path / "site.ply"
     ts.write(ts.triangulate(np.array(RIDGE, float), crs="EPSG:32616", z_unit="m"), path)
     return path
-
-
-def run(*args):
-    return CliRunner().invoke(main, [str(arg) for arg in args], standalone_mode=True)
 
 
 def test_lines_and_the_viewshed_are_written(site, tmp_path):

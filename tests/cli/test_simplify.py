@@ -5,18 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from support.commands import run
 from support.simplification import errors
 
 import tinsmith as ts
-from tinsmith.cli import main
 
 SAMPLES = Path(__file__).parents[2] / "sample_data"
 SITE = str(SAMPLES / "site_survey.csv")
-
-
-def run(*arguments):
-    return CliRunner().invoke(main, list(map(str, arguments)))
 
 
 def test_a_survey_with_lines_becomes_a_light_surface(tmp_path):

@@ -9,9 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import rasterio
-from click.testing import CliRunner
-
-from tinsmith.cli import main
+from support.commands import run_command as run
 
 
 @pytest.fixture
@@ -22,12 +20,6 @@ def site(tmp_path):
     path = tmp_path / "site.csv"
     pd.DataFrame({"easting": xy[:, 0], "northing": xy[:, 1], "elevation": z}).to_csv(path)
     return path
-
-
-def run(*args, code=0):
-    result = CliRunner().invoke(main, [str(arg) for arg in args], standalone_mode=True)
-    assert result.exit_code == code, result.output
-    return result
 
 
 def test_classes_to_a_map_and_a_table(site, tmp_path):

@@ -19,20 +19,24 @@ _FACETS = 2e-4
 
 
 def generate(rng: np.random.Generator) -> Case:
-    """A ground, and a patch within it: on its very vertices in a lattice, or anywhere."""
+    """A ground, and a patch in it or beyond it: on its very vertices in a lattice, or anywhere."""
     origin = [500_000.0, 4_000_000.0] if rng.random() < 0.5 else [0.0, 0.0]
+    is_beyond = rng.random() < 0.4
     if rng.random() < 0.6:
         size = int(rng.integers(4, 9))
-        first = rng.integers(0, size - 2, 2)
-        last = np.minimum(first + rng.integers(1, 3, 2), size - 1)
+        first = rng.integers(-2, size, 2) if is_beyond else rng.integers(0, size - 2, 2)
+        last = first + rng.integers(1, 4, 2)
+        last = last if is_beyond else np.minimum(last, size - 1)
         base = _lattice((0, 0), (size - 1, size - 1))
         patch = _lattice(first, last)
     else:
         corners = [[0, 0], [10, 0], [10, 10], [0, 10]]
         base = np.concatenate([rng.uniform(0, 10, (40, 2)), corners])
-        patch = rng.uniform(0, 4, (9, 2)) + rng.uniform(0.2, 5.5, 2)
+        low, high = (-4.0, 9.0) if is_beyond else (0.2, 5.5)
+        patch = rng.uniform(0, 4, (9, 2)) + rng.uniform(low, high, 2)
     return {
         "base": np.column_stack([base + origin, rng.uniform(0, 1, len(base))]).tolist(),
+        "max_edge": float(rng.choice([0.0, 4.0])),
         "patch": np.column_stack([patch + origin, rng.uniform(3, 5, len(patch))]).tolist(),
         "weights": rng.dirichlet([1, 1, 1], 8).tolist(),
         "level": float(rng.uniform(-0.4, 1.4)),
@@ -50,11 +54,12 @@ def _lattice(first: Any, last: Any) -> Any:
 def examine(case: Case) -> str:
     """Paste the patch, and grade its convex hull."""
     try:
-        base, patch = ts.triangulate(case["base"]), ts.triangulate(case["patch"])
+        base = ts.triangulate(case["base"], max_edge=_find_limit(case))
+        patch = ts.triangulate(case["patch"])
     except ts.TinsmithError:
         return "refused: TIN"
     pasted = ts.paste(base, patch)
-    _require_sound(base, pasted)
+    _require_sound(base, pasted, beyond=patch)
     weights = np.array(case["weights"])
     weights /= weights.sum(axis=1, keepdims=True)
     corners = patch.points[patch.triangles]
@@ -67,6 +72,15 @@ def examine(case: Case) -> str:
     allowed = 1e-6 + _STEPS * step * ts.slope(patch, unit="ratio")
     assert (error <= allowed[:, None]).all(), "within the seam another surface than the patch"
     return "pasted" if _grade(case, base, patch) is None else "pasted and graded"
+
+
+def _find_limit(case: Case) -> float | None:
+    return case["max_edge"] or None
+
+
+def _cover(tin: Any) -> Any:
+    """Return what the triangles cover, of themselves rather than of the boundary's rings."""
+    return shapely.union_all(shapely.polygons(tin.points[tin.triangles, :2]))
 
 
 def _grade(case: Case, base: Any, patch: Any) -> Any:
@@ -92,10 +106,15 @@ def _grade(case: Case, base: Any, patch: Any) -> Any:
     return graded
 
 
-def _require_sound(base: Any, made: Any) -> None:
+def _require_sound(base: Any, made: Any, beyond: Any = None) -> None:
     found = ts.check(made)
     assert found.ok, [one.sentence for one in found.problems]
-    assert abs(made.area - base.area) <= 1e-9 * base.area, "another area than the base"
+    wanted = _cover(base)
+    if beyond is not None:
+        wanted = shapely.union(wanted, _cover(beyond))
+    assert abs(made.area - wanted.area) <= 1e-9 * wanted.area, "another area than both surfaces"
+    far = shapely.difference(_cover(made), shapely.buffer(wanted, 1e-6))
+    assert far.is_empty, "a triangle beyond both surfaces"
 
 
 CAMPAIGNS = (Campaign("grading", "pasted surfaces, and pads with slopes", generate, examine),)

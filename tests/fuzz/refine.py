@@ -11,20 +11,15 @@ from numpy.typing import NDArray
 import tinsmith as ts
 
 from .campaign import Campaign, Case
-from .coordinates import points
+from .linework import surface
 
 MOST_VERTICES = 3000
 
 
 def generate(rng: np.random.Generator) -> Case:
     """A TIN with lines, a boundary or holes, and what its triangles shall be."""
-    kind = None if rng.random() < 0.6 else str(rng.choice(["nearly_collinear", "neighbours"]))
-    case: Case = {"points": points(rng, int(rng.integers(3, 14)), kind)}
+    case = surface(rng, most=13)
     xy = np.array(case["points"])[:, :2]
-    if rng.random() < 0.5:
-        case["breaklines"] = [line(rng, xy) for _ in range(int(rng.integers(1, 4)))]
-    if rng.random() < 0.3:
-        case[str(rng.choice(["boundary", "holes"]))] = [ring(rng, xy)]
     case["min_angle"] = float(rng.choice([0, 15, 20, 25, 30, 33]))
     size = float(np.ptp(xy, axis=0).max())
     if rng.random() < 0.4:
@@ -32,23 +27,6 @@ def generate(rng: np.random.Generator) -> Case:
     if rng.random() < 0.3:
         case["max_edge"] = max(size, 1e-150) * float(rng.choice([0.7, 0.2]))
     return case
-
-
-def line(rng: np.random.Generator, xy: NDArray[np.float64]) -> list[list[float]]:
-    """Return two or three vertices of the points, or near them, with elevations."""
-    rows = xy[rng.integers(0, len(xy), int(rng.integers(2, 4)))]
-    if rng.random() < 0.3:
-        rows = rows + rng.integers(-2, 3, rows.shape) * np.spacing(rows)
-    return [[*row, float(rng.integers(0, 9))] for row in rows.tolist()]
-
-
-def ring(rng: np.random.Generator, xy: NDArray[np.float64]) -> list[list[float]]:
-    """Return three to five vertices of the points or within their bounds."""
-    low, high = xy.min(axis=0), xy.max(axis=0)
-    rows = low + rng.random((int(rng.integers(3, 6)), 2)) * (high - low)
-    is_vertex = rng.random(len(rows)) < 0.5
-    rows[is_vertex] = xy[rng.integers(0, len(xy), int(is_vertex.sum()))]
-    return rows.tolist()  # type: ignore[no-any-return]
 
 
 def examine(case: Case) -> str:

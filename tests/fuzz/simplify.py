@@ -9,19 +9,12 @@ import numpy as np
 import tinsmith as ts
 
 from .campaign import Campaign, Case
-from .coordinates import points
-from .refine import line, ring
+from .linework import surface
 
 
 def generate(rng: np.random.Generator) -> Case:
     """A TIN with lines, a boundary or holes, and a tolerance or a number of points."""
-    kind = None if rng.random() < 0.6 else str(rng.choice(["nearly_collinear", "neighbours"]))
-    case: Case = {"points": points(rng, int(rng.integers(3, 40)), kind)}
-    xy = np.array(case["points"])[:, :2]
-    if rng.random() < 0.4:
-        case["breaklines"] = [line(rng, xy) for _ in range(int(rng.integers(1, 3)))]
-    if rng.random() < 0.3:
-        case[str(rng.choice(["boundary", "holes"]))] = [ring(rng, xy)]
+    case = surface(rng, most=39)
     heights = np.array(case["points"])[:, 2]
     case["tolerance"] = float(rng.choice([0, 0.01, 0.1, 0.5, 2])) * float(np.ptp(heights))
     case["share"] = float(rng.random())

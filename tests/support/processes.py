@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 import subprocess
+import sys
 
-__all__ = ["run"]
+__all__ = ["run", "run_alone"]
 
 
 def run(*command, cwd=None, **environment):
@@ -18,3 +19,9 @@ def run(*command, cwd=None, **environment):
         text=True,
         check=False,
     )
+
+
+def run_alone(code):
+    """Run Python in an interpreter of its own, which must end well and print no warning."""
+    done = run(sys.executable, "-W", "error", "-c", code)
+    assert (done.returncode, done.stderr) == (0, "")

@@ -33,3 +33,37 @@ def punched(seed):
     whole = ts.triangulate(np.column_stack([xy, rng.uniform(0, 5, len(xy))]).astype(float))
     keep = rng.random(len(whole.triangles)) < 0.6
     return ts.TIN.from_triangles(whole.points, whole.triangles[keep])
+
+
+UTM = np.array([500_000.0, 4_000_000.0, 300.0])
+"""The corner of the points, within 100 by 100, of the surfaces below."""
+
+
+def with_lines(points):
+    """Triangulate points with a breakline and a soft one."""
+    line = np.add(UTM, [[10, 10, 1], [50, 60, 2], [90, 20, 3]])
+    wall = np.add(UTM, [[0, 80, 9], [100, 81, 9]])
+    return ts.triangulate(points, breaklines=[line, ts.Breakline(wall, kind="soft", name="wall")])
+
+
+def with_boundary_and_hole(points):
+    """Triangulate points within a boundary with a reflex corner, around a square hole."""
+    corner = UTM[:2]
+    return ts.triangulate(
+        points,
+        boundary=[np.add(corner, [[5, 5], [95, 5], [95, 40], [40, 40], [40, 95], [5, 95]])],
+        holes=[np.add(corner, [[20, 20], [30, 20], [30, 30], [20, 30]])],
+    )
+
+
+def with_pond(points):
+    """Triangulate points with a pond of one elevation."""
+    ring = np.add(UTM[:2], [[30, 30], [70, 35], [60, 70], [35, 60]])
+    return ts.triangulate(points, water=[ts.Water(ring, 301.0)])
+
+
+def triangulate_whole_numbers(side, relief, rng):
+    """Make a TIN of a square grid with whole elevations: flats, pits and equal slopes."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side)))
+    z = rng.integers(0, relief + 1, len(x))
+    return ts.triangulate(np.column_stack([x, y, z]).astype(float))

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support import surfaces
 from support.simplification import errors, is_needed
+from support.surfaces import UTM
 
 import tinsmith as ts
-
-UTM = np.array([500_000.0, 4_000_000.0, 300.0])
 
 
 def scattered(n=400, seed=1):
@@ -23,24 +23,7 @@ def gridded(rows=14, columns=17, height=np.hypot):
 
 
 def with_lines():
-    line = np.add(UTM, [[10, 10, 1], [50, 60, 2], [90, 20, 3]])
-    wall = np.add(UTM, [[0, 80, 9], [100, 81, 9]])
-    lines = [line, ts.Breakline(wall, kind="soft", name="wall")]
-    return ts.triangulate(scattered(200, 2), breaklines=lines)
-
-
-def with_boundary_and_hole():
-    corner = UTM[:2]
-    return ts.triangulate(
-        scattered(200, 3),
-        boundary=[np.add(corner, [[5, 5], [95, 5], [95, 40], [40, 40], [40, 95], [5, 95]])],
-        holes=[np.add(corner, [[20, 20], [30, 20], [30, 30], [20, 30]])],
-    )
-
-
-def with_pond():
-    ring = np.add(UTM[:2], [[30, 30], [70, 35], [60, 70], [35, 60]])
-    return ts.triangulate(scattered(200, 4), water=[ts.Water(ring, 301.0)])
+    return surfaces.with_lines(scattered(200, 2))
 
 
 def with_voids():
@@ -56,8 +39,8 @@ SURFACES = {
     "scattered": lambda: ts.triangulate(scattered()),
     "gridded": lambda: ts.triangulate(gridded()),
     "with_lines": with_lines,
-    "with_boundary_and_hole": with_boundary_and_hole,
-    "with_pond": with_pond,
+    "with_boundary_and_hole": lambda: surfaces.with_boundary_and_hole(scattered(200, 3)),
+    "with_pond": lambda: surfaces.with_pond(scattered(200, 4)),
     "with_voids": with_voids,
     "trimmed": lambda: ts.triangulate(scattered(300, 5), max_edge=9.0),
 }

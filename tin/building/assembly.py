@@ -299,7 +299,7 @@ def _find_reasons(
     is_erased: NDArray[np.bool_],
     made: ConstrainedTriangulation,
 ) -> NDArray[np.int8]:
-    """Return why each row was left out, as places in ``LEFT_OUT``."""
+    """Return why each row was left out, as indices into ``LEFT_OUT``."""
     xy = inputs.points[rows, :2]
     why = np.full(len(rows), LEFT_OUT.index("trimmed"), np.int8)
     for rings in inputs.holes:

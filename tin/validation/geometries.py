@@ -47,10 +47,11 @@ class Geometry(NamedTuple):
 
 
 class Geometries(NamedTuple):
-    """Geometries with the columns of their rows; what is empty is left out."""
+    """Geometries, the columns of their rows, and how many rows; what is empty is left out."""
 
     parts: list[Geometry]
     columns: Mapping[str, Sequence[Any]]
+    rows: int
 
 
 def is_plain(given: Any) -> bool:
@@ -86,7 +87,7 @@ def find_geometries(given: Any) -> Geometries | None:
         rows = _list_rows(shapely, given)
         if rows is not None:
             parts = [part for k, row in enumerate(rows) for part in _walk(shapely, row, k)]
-            return Geometries(parts, _find_columns(given))
+            return Geometries(parts, _find_columns(given), len(rows))
     interface = given if isinstance(given, Mapping) else getattr(given, "__geo_interface__", None)
     if isinstance(interface, Mapping) and interface.get("type") in _TYPES:
         return _read_interface(interface)
@@ -117,7 +118,7 @@ def _find_columns(given: Any) -> Mapping[str, Sequence[Any]]:
     names = getattr(given, "columns", None)
     if names is None or callable(names):
         return {}
-    return {str(name): given[name] for name in names}
+    return {str(name): list(given[name]) for name in names if name != given.geometry.name}
 
 
 def _walk(shapely: Any, geometry: Any, row: int) -> Iterator[Geometry]:
@@ -144,7 +145,8 @@ def _read_interface(interface: Mapping[str, Any]) -> Geometries:
     parts = [part for row, one in enumerate(features) for part in _walk_mapping(one, row)]
     properties = [(one or {}).get("properties") or {} for one in features]
     names = dict.fromkeys(name for one in properties for name in one)
-    return Geometries(parts, {str(name): [one.get(name) for one in properties] for name in names})
+    columns = {str(name): [one.get(name) for one in properties] for name in names}
+    return Geometries(parts, columns, len(features))
 
 
 def _walk_mapping(given: Any, row: int) -> Iterator[Geometry]:

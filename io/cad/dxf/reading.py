@@ -51,13 +51,13 @@ def read(
 ) -> TIN | Survey:
     """Read a DXF drawing, text or binary.
 
+    A TIN has the drawing's own triangles. Lines of a survey are breaklines; those of plane entities
+    without elevation are draped. What was assumed or left out is in the notes. Points and lines are
+    reprojected to ``crs``. Parameters and errors are those of every reader, see :class:`.Format`;
+    and:
+
     Parameters
     ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        Declares the CRS; default the one of the drawing. Points and lines are reprojected to it.
-    z_unit : Unit or str, optional
-        Declares the unit of the elevations, where the drawing does not say.
     unit : Unit or str, optional
         Declares the unit of coordinates and elevations, where the drawing does not say, or where
         it says another one than its CRS.
@@ -73,23 +73,13 @@ def read(
         How far an arc or spline may lie from its chords, in the unit of the drawing; default a
         centimetre, or a hundredth of a unit that is not known.
 
-    Returns
-    -------
-    TIN or Survey
-        A TIN has the drawing's own triangles. Lines of a survey are breaklines; those of plane
-        entities without elevation are draped. What was assumed or left out is in the notes.
-
     Raises
     ------
-    MissingExtraError
-        If ezdxf is not installed.
     ReadError
-        If the file is damaged, has nothing of the kind, or faces and other points and no content
-        is chosen; if its unit is not that of its CRS, or the faces are no TIN.
+        Also if there is nothing of the kind, or faces and other points and no content is chosen; or
+        if the unit is not that of the CRS.
     CrsError
-        If PROJ does not know the CRS, or a TIN is in another one.
-    OptionError
-        If there is no such layer or content, or a unit is unknown.
+        Also if a TIN is in another CRS.
 
     Notes
     -----

@@ -47,32 +47,25 @@ def write(
 ) -> None:
     """Write a TIN, a survey, or features as a DXF drawing.
 
+    Triangles become 3DFACEs on the layer TIN, lines 3D polylines on BREAKLINES, BOUNDARY and so on,
+    contours plane polylines with an elevation on CONTOURS and INDEX_CONTOURS, points POINTs.
+    Parameters and errors are those of every writer, see :class:`.Format`; and:
+
     Parameters
     ----------
-    obj : TIN, Survey or Features
-        Triangles become 3DFACEs on the layer TIN, lines 3D polylines on BREAKLINES, BOUNDARY and
-        so on, contours plane polylines with an elevation on CONTOURS and INDEX_CONTOURS, points
-        POINTs.
-    path : Path
     version : {"R2010", "R12"}
         R12 is read by nearly every program, and has no units and no CRS.
     unit : Unit or str, optional
         Unit of coordinates and elevations, where the CRS does not tell.
     labels : bool
         Write number, elevation and description of points as texts on layers of their own.
-    progress : callable, optional
-        Called with the fraction done.
 
     Raises
     ------
-    FormatError
-        If it is neither.
     OptionError
         If there is no such version, or the unit is not that of the CRS.
-    MissingExtraError
-        If ezdxf is not installed.
     WriteError
-        If the file cannot be written, or the unit is one that DXF does not have.
+        Also if the unit is one that DXF does not have.
     CrsError
         If coordinates are angles.
 

@@ -42,13 +42,12 @@ def read(
 ) -> TIN | Survey:
     """Read a LandXML file, version 1.0 to 2.0.
 
+    A TIN has the file's own triangles; source data and points are a survey, which is reprojected to
+    ``crs``. What was assumed or left out is in the notes. Parameters and errors are those of every
+    reader, see :class:`.Format`; and:
+
     Parameters
     ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        Declares the CRS; default the one of the file. Points of a survey are reprojected to it.
-    z_unit : Unit or str, optional
-        Declares the unit of the elevations, where the file does not say.
     unit : Unit or str, optional
         Declares the unit of coordinates and elevations, where the file does not say, or where it
         says another one than its CRS.
@@ -58,22 +57,13 @@ def read(
         The triangles of a surface; the data that it was made of, with breaklines and boundaries;
         or the survey points (CgPoints). Default the first of these that the file has.
 
-    Returns
-    -------
-    TIN or Survey
-        A TIN has the file's own triangles; source data and points are a survey. What was assumed
-        or left out is in the notes.
-
     Raises
     ------
     ReadError
-        If the file is damaged, has nothing of the kind, several surfaces and no name is given, a
-        grid surface, no units and none are declared, or units that its CRS does not have; if the
-        triangles are no TIN.
+        Also if there is nothing of the kind, several surfaces and no name is given, a grid surface,
+        no units and none are declared, or units that the CRS does not have.
     CrsError
-        If PROJ does not know the CRS, or a TIN is in another one.
-    OptionError
-        If there is no such surface or content, or a unit is unknown or not that of the file.
+        Also if a TIN is in another CRS.
 
     Notes
     -----

@@ -60,28 +60,24 @@ def write(
 ) -> None:
     """Write a TIN, the points and lines of a survey, or contours and other lines.
 
+    Of a survey points become CgPoints and lines the source data of a surface; of features points
+    become CgPoints, lines of one elevation contours, other lines breaklines. Parameters and errors
+    are those of every writer, see :class:`.Format`; and:
+
     Parameters
     ----------
-    obj : TIN, Survey or Features
-        Of a survey points become CgPoints and lines the source data of a surface; of features
-        points become CgPoints, lines of one elevation contours, other lines breaklines.
-    path : Path
     surface : str
         Name of the surface.
     unit : Unit or str, optional
         Unit of coordinates and elevations, where the CRS does not tell. Without one the file has
         no units, and programs guess.
-    progress : callable, optional
-        Called with the fraction done.
 
     Raises
     ------
     FormatError
-        If it is neither, or features are polygons.
+        Also if features are polygons.
     OptionError
         If the name is no text, or the unit is not one of LandXML, or not that of the CRS.
-    WriteError
-        If the file cannot be written, or the unit is one that LandXML does not have.
     CrsError
         If coordinates are angles.
 

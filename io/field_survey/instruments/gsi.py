@@ -81,15 +81,10 @@ def read(
 ) -> Survey:
     """Read points of a Leica GSI file.
 
+    Parameters and errors are those of :func:`.dc.read`; and:
+
     Parameters
     ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-    z_unit : Unit or str, optional
-        Which feet the file is in, if it is in feet.
-    encoding : str, optional
-    source_crs : CRS, str, int or pyproj.CRS, optional
-        CRS in which the file's coordinates are, if not ``crs``.
     code_blocks : {"before", "after"}, optional
         Whether a block of codes (word 41) stands before or after the point that it is for; default
         where the first and last block show it.
@@ -108,8 +103,6 @@ def read(
     ------
     ReadError
         If a word is no word, lengths are in feet and in metres, or no point has coordinates.
-    OptionError
-        If an option has a value that it cannot have.
     """
     if code_blocks not in (None, "before", "after"):
         raise OptionError("code_blocks", code_blocks, ("before", "after"))

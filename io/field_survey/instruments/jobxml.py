@@ -49,16 +49,9 @@ def read(
 ) -> Survey:
     """Read points of a Trimble JobXML file.
 
-    Parameters
-    ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        CRS of the grid coordinates, whose metres are converted to its unit; the file names its
-        coordinate system in words of its own.
-    z_unit : Unit or str, optional
-        Metres; another one is refused.
-    source_crs : CRS, str, int or pyproj.CRS, optional
-        CRS in which the file's coordinates are, if not ``crs``.
+    Parameters and errors are those of :func:`.dc.read`. The file names its coordinate system in
+    words of its own: ``crs`` is that of the grid coordinates, whose metres are converted to its
+    unit; of units only the metre is taken.
 
     Returns
     -------

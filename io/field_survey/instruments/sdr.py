@@ -69,15 +69,10 @@ def read(
 ) -> Survey:
     """Read points of an SDR file.
 
+    Parameters and errors are those of :func:`.dc.read`; and:
+
     Parameters
     ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-    z_unit : Unit or str, optional
-        Which feet the file is in, if it is in feet.
-    encoding : str, optional
-    source_crs : CRS, str, int or pyproj.CRS, optional
-        CRS in which the file's coordinates are, if not ``crs``.
     refraction : float, optional
         Coefficient of refraction by which shots are corrected, with the earth's curvature.
 
@@ -88,13 +83,6 @@ def read(
         reduced where station, back bearing and height of the target are known, and else left out;
         so are those that the instrument has corrected itself (09MC), of which the file does not say
         by what.
-
-    Raises
-    ------
-    ReadError
-        If it has no header, a number is none, or no point has coordinates.
-    OptionError
-        If an option has a value that it cannot have.
     """
     coefficient = require_refraction(refraction)
     lines = read_lines(path, encoding=encoding)

@@ -52,32 +52,17 @@ def read(
 ) -> TIN:
     """Read the terrain of a CityJSON file.
 
+    The CRS defaults to that of the metadata; the unit of elevations is known where tinsmith wrote
+    the file. Vertices at the same place become one. Polygons of more than three corners are cut
+    into triangles, and of several levels of detail the finest is read, which the report tells.
+    Parameters and errors are those of every reader, see :class:`.Format`; and:
+
     Parameters
     ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        Declares the CRS; default the one of the metadata.
-    z_unit : Unit or str, optional
-        Unit of the elevations, which the file cannot tell unless tinsmith wrote it.
     surface : str, optional
         Name of the TINRelief; needed where the file has several and they are not joined.
     join : bool
         Whether all of them become one TIN.
-
-    Returns
-    -------
-    TIN
-        Vertices at the same place become one. Polygons of more than three corners are cut into
-        triangles, and of several levels of detail the finest is read, which the report tells.
-
-    Raises
-    ------
-    ReadError
-        If the file is damaged, holds no TINRelief, or its triangles are no TIN.
-    CrsError
-        If PROJ does not know the CRS, or the file names another.
-    OptionError
-        If the unit is unknown, or another than that of the file or the CRS.
     """
     city = _parse(path)
     objects = _choose_objects(city, surface, join, path)

@@ -43,24 +43,20 @@ def write(
 ) -> None:
     """Write a TIN as CityJSON 2.0.
 
+    Parameters and errors are those of every writer, see :class:`.Format`; and:
+
     Parameters
     ----------
-    surface : TIN
-    path : Path
     precision : float, optional
         Step of the coordinates, a power of ten such as 0.001, in the units of each axis; default
         the coarsest that holds every digit.
-    progress : callable, optional
-        Called with the fraction done.
 
     Raises
     ------
-    FormatError
-        If ``surface`` is no TIN.
     OptionError
         If ``precision`` is no power of ten from 1e-15 to 1.
     WriteError
-        If the file cannot be written, or triangles lose their area at this precision.
+        Also if triangles lose their area at this precision.
 
     Warns
     -----
@@ -75,21 +71,19 @@ def write(
     grids = [_choose_grid(axis, precision) for axis in points.T]
     counts = np.stack([grid.count(axis) for grid, axis in zip(grids, points.T, strict=True)], 1)
     _require_areas(counts, triangles, grids, path)
-    total = len(counts) + len(triangles)
+    done, total = 0, len(counts) + len(triangles)
+    head, middle = _format_head(tin, grids, counts), ']}]}},\n"vertices":[\n'
     with replacing(path, binary=False) as file:
-        file.write(_format_head(tin, grids, counts))
-        done = 0
-        for n_rows, text in _iterate_rows(triangles, "[[%d,%d,%d]]"):
-            file.write(text)
-            done += n_rows
-            if progress is not None:
-                progress(done / total)
-        file.write(']}]}},\n"vertices":[\n')
-        for n_rows, text in _iterate_rows(counts, "[%d,%d,%d]"):
-            file.write(text)
-            done += n_rows
-            if progress is not None:
-                progress(done / total)
+        for start, rows, form in (
+            (head, triangles, "[[%d,%d,%d]]"),
+            (middle, counts, "[%d,%d,%d]"),
+        ):
+            file.write(start)
+            for n_rows, text in _iterate_rows(rows, form):
+                file.write(text)
+                done += n_rows
+                if progress is not None:
+                    progress(done / total)
         file.write("]}\n")
 
 

@@ -69,10 +69,10 @@ def write(
 ) -> None:
     """Write a TIN as GLB.
 
+    Parameters and errors are those of every writer, see :class:`.Format`; and:
+
     Parameters
     ----------
-    surface : TIN
-    path : Path
     drape : path-like, optional
         Picture to lay over it: a GeoTIFF in any CRS, or a PNG or JPEG file with a world file beside
         it. Default colours by elevation.
@@ -80,22 +80,17 @@ def write(
         The former name of ``drape``.
     exaggeration : float
         Factor on the elevations, which ``extras`` tells.
-    progress : callable, optional
-        Called with 1.0 at the end.
 
     Raises
     ------
-    FormatError
-        If ``surface`` is no TIN.
     CrsError
-        If its coordinates are longitude and latitude.
+        If coordinates are longitude and latitude.
     OptionError
         If the exaggeration is not positive, or two pictures are named.
     ReadError
         If the picture cannot be read, or shows nothing of the surface.
     WriteError
-        If the file cannot be written; if triangles have no area in float32, or the file would be
-        larger than 4 GiB.
+        Also if triangles have no area in float32, or the file would be larger than 4 GiB.
 
     Notes
     -----

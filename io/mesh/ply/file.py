@@ -58,30 +58,11 @@ _TYPE_NAMES = {
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
-    """Read a PLY file, text or binary of either byte order.
+    """Read a PLY file, text or binary of either byte order; called as :class:`.Format` says.
 
-    Parameters
-    ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        Declares the CRS; default the one named in the header.
-    z_unit : Unit or str, optional
-        Declares the unit of the elevations; default the one named there.
-
-    Returns
-    -------
-    TIN or Survey
-        A survey where the file has no faces; further vertex properties as attributes. Polygons
-        are cut into triangles; other properties and elements are skipped.
-
-    Raises
-    ------
-    ReadError
-        If the file is damaged, or its faces are no TIN.
-    CrsError
-        If PROJ does not know the CRS, or the file names another.
-    OptionError
-        If the unit is unknown, or the file names another.
+    CRS and unit default to those named in the header. Polygons are cut into triangles, and further
+    vertex properties become attributes; other properties and elements are skipped. A file without
+    faces gives a survey.
     """
     content = common.read_content(path)
     header = parse_header(content, path)
@@ -179,21 +160,8 @@ def write(
 ) -> None:
     """Write a TIN, or the points of a survey, as binary PLY; :func:`read` gives it back.
 
-    Parameters
-    ----------
-    surface : TIN or Survey
-        Of the attributes of points those that are numbers are written (whole numbers beyond 32
-        bits as double); PLY has no text.
-    path : Path
-    progress : callable, optional
-        Called with the fraction done.
-
-    Raises
-    ------
-    FormatError
-        If ``surface`` is neither a TIN nor a survey.
-    WriteError
-        If the file cannot be written.
+    Of the attributes of points those that are numbers are written (whole numbers beyond 32 bits as
+    double); PLY has no text. Parameters and errors are those of every writer, see :class:`.Format`.
     """
     surface = common.require_writable(surface, path)
     body = {"vertex": _pack_vertices(surface.points, surface.attributes)}

@@ -38,33 +38,16 @@ def read(
     z_unit: UnitLike | None = None,
     tile: str | None = None,
 ) -> TIN:
-    """Read a tile, gzipped or not.
+    """Read a tile, gzipped or not, in longitude, latitude and metres above the ellipsoid.
+
+    A CRS or unit that is given must be EPSG:4979 and the metre. Triangles without area, which
+    programs leave in tiles, are left out and told. Normals, water and other extensions are skipped.
+    Parameters and errors are those of every reader, see :class:`.Format`; and:
 
     Parameters
     ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        Must be EPSG:4979, if given.
-    z_unit : Unit or str, optional
-        Must be the metre, if given.
     tile : str, optional
         Where it lies, "level/column/row", rows from the south; default what the path says.
-
-    Returns
-    -------
-    TIN
-        Longitude, latitude, metres above the ellipsoid. Triangles without area, which programs
-        leave in tiles, are left out and told. Normals, water and other extensions are skipped.
-
-    Raises
-    ------
-    ReadError
-        If the file is damaged or no such tile, the path does not tell where it lies, or its
-        triangles are no TIN.
-    OptionError
-        If ``tile`` is no place of a tile.
-    CrsError
-        If another CRS is declared.
     """
     name = _find_name(path, tile)
     content = _unzip(read_content(path), path)

@@ -69,30 +69,24 @@ def write(
 ) -> None:
     """Write a TIN as a folder of quantized-mesh 1.0 tiles with normals and ``layer.json``.
 
+    A folder that holds such tiles is replaced, another one must be empty. Parameters and errors are
+    those of every writer, see :class:`.Format`; and:
+
     Parameters
     ----------
-    surface : TIN
-        With a CRS.
-    path : Path
-        The folder. One that holds such tiles is replaced, another one must be empty.
     max_level : int, optional
         The finest level, 0 to 23; default the one at which the median edge has 1,000 steps.
     gzipped : bool
         Compress each tile: a server must then send ``Content-Encoding: gzip``.
-    progress : callable, optional
-        Called with the fraction done.
 
     Raises
     ------
-    FormatError
-        If ``surface`` is no TIN.
     CrsError
-        If its CRS is not known, or puts points outside the Earth.
+        If the CRS of the TIN is not known, or puts points outside the Earth.
     OptionError
         If there is no such level.
     WriteError
-        If the folder cannot be written, is of something else, or the surface crosses the
-        antimeridian.
+        Also if the folder is of something else, or the surface crosses the antimeridian.
 
     Warns
     -----

@@ -48,7 +48,7 @@ def format_edge_properties(tin: TIN, flags: NDArray[np.bool_]) -> NDArray[np.obj
 
 
 def find_edge_kinds(tin: TIN, flags: NDArray[np.bool_]) -> NDArray[np.int8]:
-    """Return the kind of each edge, a place in ``EDGE_KINDS``; -1 where none is known: (m, 3).
+    """Return the kind of each edge, an index into ``EDGE_KINDS``; -1 where none is known: (m, 3).
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def find_edge_kinds(tin: TIN, flags: NDArray[np.bool_]) -> NDArray[np.int8]:
 
 
 def _look_kinds_up(tin: TIN, pairs: NDArray[np.int32]) -> NDArray[np.int8]:
-    """Return the kind of each edge, a place in ``EDGE_KINDS``; -1 where no line is known."""
+    """Return the kind of each edge, an index into ``EDGE_KINDS``; -1 where no line is known."""
     known = find_line_edges(tin, guess=False)
     keys = edge_keys(known.pairs, len(tin.points))
     order = np.argsort(keys)

@@ -29,7 +29,7 @@ SECTIONS = {
         "volume": "Measure cut and fill, or how much a pond holds.",
         "diff": "Subtract one surface from another: TIN, zones, statistics, map.",
         "drape": "Lay points, lines or polygons on a TIN.",
-        "interpolate": "Find the elevations of a surface at the places of a CSV file.",
+        "interpolate": "Find the elevations of a surface at the points of a CSV file.",
         "raster": "Turn a surface into a raster: elevation, slope, aspect, hillshade.",
         "flow": "Find flow paths, catchments, pits, depressions, ponds and ridges.",
         "sight": "Find what is seen from where: lines of sight, viewsheds.",

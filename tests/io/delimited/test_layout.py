@@ -27,6 +27,15 @@ USUAL = {
     "elevation_unit": None,
     "notes": (),
 }
+TEXT_TAIL = {
+    "has_text_tail": True,
+    "may_lack_tail": True,
+    "text_columns": [4],
+    "mostly_text": [4],
+    "divided": [1, 2, 3],
+}
+"""Points with descriptions of several words behind their numbers and coordinates."""
+
 CASES = {
     "xyz": ("1.5,2.5,3.5\n4.5,5.5,6.5\n", 3, [0, 1], {"divided": [0, 1, 2]}),
     "header": (
@@ -115,26 +124,13 @@ CASES = {
         "1 2.5 3.5 4.5 red barn\n2 5.5 6.5 7.5 old well here\n3 5.5 6.5 7.5 x\n",
         5,
         [0, 1, 2],
-        {
-            "delimiter": " ",
-            "has_text_tail": True,
-            "may_lack_tail": True,
-            "text_columns": [4],
-            "mostly_text": [4],
-            "divided": [1, 2, 3],
-        },
+        {"delimiter": " ", **TEXT_TAIL},
     ),
     "tail comma": (
         "1,2.5,3.5,4.5,barn\n2,5.5,6.5,7.5,well, old\n3,5.5,6.5,7.5,x\n",
         5,
         [0, 1, 2],
-        {
-            "has_text_tail": True,
-            "may_lack_tail": True,
-            "text_columns": [4],
-            "mostly_text": [4],
-            "divided": [1, 2, 3],
-        },
+        TEXT_TAIL,
     ),
     "word column": (
         "1 2.5 3.5 4.5 EP 7 8\n2 5.5 6.5 7.5 CL 9 8\n",
@@ -146,14 +142,7 @@ CASES = {
         "1 2.5 3.5 4.5 EP x 8\n2 5.5 6.5 7.5 CL y 8\n",
         5,
         [0, 1],
-        {
-            "delimiter": " ",
-            "has_text_tail": True,
-            "may_lack_tail": True,
-            "text_columns": [4],
-            "mostly_text": [4],
-            "divided": [1, 2, 3],
-        },
+        {"delimiter": " ", **TEXT_TAIL},
     ),
     "padded": (
         "001,2.5,3.5,4.5\n002,5.5,6.5,7.5\n",

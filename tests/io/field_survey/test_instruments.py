@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 import pytest
+from support.refusals import refuse
 
 import tinsmith as ts
 from tinsmith.io.field_survey.instruments.reduction import (
@@ -28,11 +29,7 @@ def read(tmp_path, name, text, **options):
 
 
 def refused(words, tmp_path, name, text, error=ts.ReadError, **options):
-    with pytest.raises(error, match=words) as caught:
-        read(tmp_path, name, text, **options)
-    message = str(caught.value)
-    assert message.endswith(".")
-    assert "\n" not in message
+    refuse(words, read, tmp_path, name, text, error=error, **options)
 
 
 # ------------------------------------------------------------------ GSI

@@ -9,6 +9,7 @@ import numpy as np
 import pyproj
 import pytest
 import shapely
+from support.refusals import refuse as refused
 
 import tinsmith as ts
 from tinsmith.io import read_lines, read_rings, read_water, with_lines
@@ -65,15 +66,6 @@ def write_json(path, *geometries, crs=None, **properties):
         document["crs"] = {"type": "name", "properties": {"name": crs}}
     path.write_text(json.dumps(document))
     return path
-
-
-def refused(words, function, *arguments, error=ts.ReadError, **options):
-    with pytest.raises(error, match=words) as caught:
-        function(*arguments, **options)
-    text = str(caught.value)
-    assert text.endswith(".")
-    assert "\n" not in text
-    return text
 
 
 # -------------------------------------------------------------------------- geometry

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 import shapely
 from support.cards import picture_of, read
+from support.processes import run_alone
 
 import tinsmith as ts
 from tinsmith.terrain.cards.drawings import Canvas, draw_cells
@@ -275,7 +273,4 @@ def test_cards_need_no_library_that_draws():
         "assert 'tinsmith.terrain' not in sys.modules\n"
         "assert survey._repr_html_().startswith('<div')\n"
     )
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=False
-    )
-    assert (done.returncode, done.stderr) == (0, "")
+    run_alone(code)

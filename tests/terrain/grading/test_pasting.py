@@ -114,8 +114,6 @@ def test_elevations_are_converted_to_the_unit_of_the_base():
 def test_refusals():
     base = make_base()
     beyond = ts.triangulate(np.add([*UTM, 5], [[190, 190, 0], [250, 190, 0], [190, 195, 0]]))
-    with pytest.raises(ts.PointsError, match="beyond the base, at"):
-        ts.paste(base, beyond)
     with pytest.raises(ts.CrsError):
         ts.paste(base.replace(crs=ts.CRS("EPSG:32616")), beyond)
     with pytest.raises(ts.PointsError, match="Invalid TIN"):
@@ -138,6 +136,53 @@ def test_a_patch_on_the_vertices_of_the_base_takes_their_place(first, last):
     raised = {tuple(row[:2]) for row in inner}
     for x, y, z in pasted.points.tolist():
         assert z == (5.0 if (x, y) in raised else 1.0)
+
+
+def cover(tin):
+    """The area of the triangles themselves."""
+    shapely = pytest.importorskip("shapely")
+    return shapely.union_all(shapely.polygons(tin.points[tin.triangles, :2]))
+
+
+def shift_star(seed, way, **options):
+    """A star of 60 m across whose middle is moved from that of the base."""
+    star = make_star(seed, lambda xy, rng: 100 + 3 * rng.random(len(xy)))
+    ring = star.points[star.boundary[0], :2] + way
+    return ts.triangulate(np.add(star.points, [*way, 0.0]), boundary=[ring], **options)
+
+
+@pytest.mark.parametrize("way", [(90, 10), (-100, 95), (0, -85), (300, 0)])
+@pytest.mark.parametrize("limit", [None, 12.0])
+def test_a_patch_beyond_the_base_makes_it_larger(way, limit):
+    """Also across a ragged boundary with gaps, across a corner, and beside it."""
+    base, patch = make_base(max_edge=limit), shift_star(3, way)
+    pasted = ts.paste(base, patch)
+    assert ts.check(pasted).ok
+    outline = cover(base).union(cover(patch))
+    assert pasted.area == pytest.approx(outline.area)
+    assert cover(pasted).difference(outline.buffer(1e-6)).is_empty
+    added = f"{cover(patch).difference(cover(base)).area:.6g} square units"
+    said = "lies beside the base" if way == (300, 0) else "reaches beyond the base"
+    assert any(said in note and added in note for note in pasted.report.notes)
+    xy = np.random.default_rng(2).random((20_000, 2)) * 650 - 150 + UTM
+    new, inner, old = (tin.interpolate(xy) for tin in (pasted, patch, base))
+    inside = np.isfinite(inner)
+    assert inside.sum() > 50
+    assert np.abs(new - inner)[inside].max() < 1e-8
+    joined = np.isin(base.locate(xy), touched(base, patch))
+    stays = ~inside & ~joined
+    np.testing.assert_allclose(new[stays], old[stays], rtol=0, atol=1e-8)
+
+
+def test_surfaces_side_by_side_become_one():
+    """Both have the vertices of the edge between them, and no other."""
+    west = ts.triangulate([[x, y, 1.0] for x in range(5) for y in range(6)])
+    east = ts.triangulate([[x, y, 2.0] for x in range(4, 8) for y in range(6)])
+    merged = ts.paste(west, east)
+    assert ts.check(merged).ok
+    assert len(merged.points) == 8 * 6
+    assert merged.area == 7 * 5
+    assert merged.interpolate([[2.5, 2.5], [4.0, 3.0], [5.5, 2.5]]).tolist() == [1.0, 2.0, 2.0]
 
 
 def find_attributes(tin, name):

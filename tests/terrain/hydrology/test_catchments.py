@@ -8,6 +8,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.hydrology_oracle import require_catchments
+from support.surfaces import triangulate_whole_numbers
 
 import tinsmith as ts
 
@@ -74,9 +75,7 @@ def test_a_fall_line_parts_a_triangle():
 @given(st.integers(0, 2**32 - 1), st.integers(1, 5), st.sampled_from([4, 7]))
 def test_paths_from_inside_end_at_the_pit_of_integer_grids(seed, relief, side):
     rng = np.random.default_rng(seed)
-    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side)))
-    z = rng.integers(0, relief + 1, len(x))
-    tin = ts.triangulate(np.column_stack([x, y, z]).astype(float))
+    tin = triangulate_whole_numbers(side, relief, rng)
     require_catchments(tin, rng.random((30, 2)))
 
 

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.hydrology_oracle import require_descent
+from support.surfaces import triangulate_whole_numbers
 
 import tinsmith as ts
 from tinsmith.terrain.hydrology.falls import find_falls, measure_fall
@@ -80,9 +81,7 @@ def test_of_two_ways_as_steep_the_smaller_azimuth_is_taken():
 @given(st.integers(0, 2**32 - 1), st.integers(1, 4), st.sampled_from([3, 5]))
 def test_paths_of_integer_grids_descend_along_gradients_and_channels(seed, relief, side):
     rng = np.random.default_rng(seed)
-    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side)))
-    z = rng.integers(0, relief + 1, len(x))
-    tin = ts.triangulate(np.column_stack([x, y, z]).astype(float))
+    tin = triangulate_whole_numbers(side, relief, rng)
     starts = np.vstack([tin.points[:, :2], rng.integers(0, 4 * side - 3, (20, 2)) / 4])
     for line in split_lines(ts.flow_path(tin, starts)):
         require_descent(tin, line, 1e-9)

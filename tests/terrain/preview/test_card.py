@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import io
 import re
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 from PIL import Image
 from support.cards import picture_of, read
 from support.pages import open_page
+from support.processes import run_alone
 
 import tinsmith as ts
 from tinsmith.terrain.cards.frame import encode_png
@@ -166,10 +165,7 @@ def test_a_card_needs_neither_pyvista_nor_matplotlib_nor_pillow():
         "assert 'tinsmith.terrain' not in sys.modules\n"
         "assert tin._repr_html_().startswith('<div')\n"
     )
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=False
-    )
-    assert (done.returncode, done.stderr) == (0, "")
+    run_alone(code)
 
 
 @pytest.mark.slow

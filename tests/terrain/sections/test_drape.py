@@ -135,9 +135,9 @@ def test_points_of_one_feature_become_several():
     [
         ([], "no feature"),
         ([shapely.Point(1, 1), shapely.LineString([[1, 1], [2, 2]])], "lines and points together"),
-        ({"type": "GeometryCollection", "geometries": []}, "no feature"),
+        ({"type": "GeometryCollection", "geometries": []}, "no coordinates"),
         ({"type": "Curve", "coordinates": []}, "'Curve'"),
-        (shapely.LineString(), "shape"),
+        (shapely.LineString(), "no coordinates"),
         ([[20, 20], [21, 21]], "outside"),
     ],
 )

@@ -8,13 +8,12 @@ import triangle
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Point, Polygon
-from support import oracles
+from support import oracles, surfaces
+from support.surfaces import UTM
 
 import tinsmith as ts
 from tinsmith.tin.meshing.refinement import _interpolate, refine
 from tinsmith.tin.report import UNMENDED_WHY
-
-UTM = np.array([500_000.0, 4_000_000.0, 300.0])
 
 
 def uniform(n, seed=1):
@@ -35,24 +34,15 @@ def square():
 
 
 def with_lines():
-    points = uniform(150, 2)
-    line = np.add(UTM, [[10, 10, 1], [50, 60, 2], [90, 20, 3]])
-    wall = np.add(UTM, [[0, 80, 9], [100, 81, 9]])
-    return ts.triangulate(points, breaklines=[line, ts.Breakline(wall, kind="soft", name="wall")])
+    return surfaces.with_lines(uniform(150, 2))
 
 
 def with_boundary_and_hole():
-    corner = UTM[:2]
-    return ts.triangulate(
-        uniform(200, 3),
-        boundary=[np.add(corner, [[5, 5], [95, 5], [95, 40], [40, 40], [40, 95], [5, 95]])],
-        holes=[np.add(corner, [[20, 20], [30, 20], [30, 30], [20, 30]])],
-    )
+    return surfaces.with_boundary_and_hole(uniform(200, 3))
 
 
 def with_pond():
-    ring = np.add(UTM[:2], [[30, 30], [70, 35], [60, 70], [35, 60]])
-    return ts.triangulate(uniform(200, 4), water=[ts.Water(ring, 301.0)])
+    return surfaces.with_pond(uniform(200, 4))
 
 
 def touching_corners():

@@ -29,8 +29,9 @@ def paste(base: Path, patch: Path, request: Request) -> None:
     """Put the TIN in PATCH in the place of a part of that in BASE.
 
     Within the boundary of PATCH the surface is that of PATCH, elsewhere that of BASE: a new survey
-    in an old one, a design in the ground. PATCH must lie within BASE; either file may hold points,
-    of which the TIN is built. Elevations along the seam are those of PATCH.
+    in an old one, a design in the ground. Where PATCH reaches beyond BASE the surface becomes
+    larger, and a note says so. Either file may hold points, of which the TIN is built. Elevations
+    along the seam are those of PATCH.
 
     \b
     Example:

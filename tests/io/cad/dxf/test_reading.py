@@ -6,6 +6,7 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
+from support.refusals import refuse
 
 import tinsmith as ts
 from tinsmith.io import read_lines, read_rings
@@ -33,12 +34,7 @@ def save(tmp_path):
 
 
 def refused(words, path, error=ts.ReadError, **options):
-    with pytest.raises(error, match=words) as caught:
-        ts.read(path, **options)
-    text = str(caught.value)
-    assert text.endswith(".")
-    assert "\n" not in text
-    return text
+    return refuse(words, ts.read, path, error=error, **options)
 
 
 def notes_of(found):

@@ -1,4 +1,4 @@
-"""Places in a text file with a header: two columns of coordinates, and whatever else there is."""
+"""Query points in a text file with a header: two columns of coordinates, and others."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["Places", "read_places"]
+__all__ = ["QueryPoints", "read_query_points"]
 
 _DELIMITERS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 _IN_DEGREES = ("lon", "lat")
@@ -27,8 +27,8 @@ _SHOWN = 5
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Places:
-    """A table with places.
+class QueryPoints:
+    """A table with points at which something is asked.
 
     Attributes
     ----------
@@ -53,10 +53,10 @@ class _Table(NamedTuple):
     lines: list[int]
 
 
-def read_places(
+def read_query_points(
     path: Path, *, columns: tuple[str, str] | None = None, delimiter: str | None = None
-) -> Places:
-    """Read places from a text file whose first line names the columns.
+) -> QueryPoints:
+    """Read points from a text file whose first line names the columns.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def read_places(
 
     Returns
     -------
-    Places
+    QueryPoints
 
     Raises
     ------
@@ -84,7 +84,7 @@ def read_places(
     xy = np.column_stack([_parse_numbers(table, column, path) for column in chosen])
     cells = np.array(table.rows, object).reshape(len(table.rows), len(table.header))
     names = [table.header[column] for column in chosen]
-    return Places(
+    return QueryPoints(
         columns={name: cells[:, k] for k, name in enumerate(table.header)},
         xy=xy,
         is_degrees=any(_is_longitude(name) for name in names),
