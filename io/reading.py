@@ -129,8 +129,8 @@ def read(
         Whether paths may be addresses of HTTP or HTTPS, which are copied to a temporary file.
         Nothing is fetched otherwise.
     progress : callable, optional
-        Called with the fraction done, ascending to 1.0: lidar chunk by chunk, several files one by
-        one; of a single file of another format only that it is done. What it raises ends the call.
+        Called with the fraction done, ascending to 1.0: within files of lidar, rasters and
+        delimited text, else file by file. What it raises ends the call.
     **options
         Options of the reader, see :meth:`Format.options`.
 
@@ -206,7 +206,8 @@ def read_as_wished(
     with ExitStack() as copies:
         if remote:
             places = [copies.enter_context(_localise(place)) for place in places]
-        found = _read_several(_require_paths(places), asked)
+        with done.passing_on():
+            found = _read_several(_require_paths(places), asked)
     done.end()
     return found
 

@@ -7,13 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 from .._atomic import as_path
 from .._plug_ins import describe_failure
+from .._progress import Progress
 from ..errors import FormatError, TinsmithError, WriteError
 from ..terrain.results import Features, Raster, Table
 from ..tin import TIN, Survey
-from .registry import find_writer, require_options
+from .registry import find_writer, require_options, takes_progress
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Callable
+
+    from .registry import Format
 
 __all__ = ["find_kind", "write"]
 
@@ -25,6 +29,7 @@ def write(
     path: str | os.PathLike[str],
     *,
     format: str | None = None,  # noqa: A002 - as in read
+    progress: Callable[[float], None] | None = None,
     **options: Any,
 ) -> Path:
     """Write a TIN, a Survey or a product; the writer is chosen by what it is and the suffix.
@@ -35,6 +40,9 @@ def write(
     path : path-like
     format : str, optional
         Name of a format, to choose it whatever the suffix.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0, which is told once the file is whole and in
+        its place; before that, what it raises ends the call, and there is no new file.
     **options
         Options of the writer, see :meth:`Format.options`.
 
@@ -72,6 +80,18 @@ def write(
     chosen = find_writer(file, format, (find_kind(obj, file),))
     writer = chosen.load("write")
     require_options(chosen, "write", writer, options)
+    done = Progress(progress)
+    if progress is not None and takes_progress(writer):
+        options["progress"] = done.stage(0.0, 1.0)
+    with done.passing_on():
+        _call_writer(chosen, writer, obj, file, options)
+    done.end()
+    return file
+
+
+def _call_writer(
+    chosen: Format, writer: Callable[..., Any], obj: object, file: Path, options: dict[str, Any]
+) -> None:
     try:
         writer(obj, file, **options)
     except Exception as error:
@@ -82,7 +102,6 @@ def write(
             f"{chosen.distribution}, fails ({describe_failure(error)}).",
             path=file,
         ) from error
-    return file
 
 
 def find_kind(obj: object, path: Path) -> str:

@@ -135,6 +135,17 @@ def fit_quadratics(
     up: float,
     threads: int = ...,
 ) -> Doubles: ...
+def find_seen_vertices(
+    points: Doubles,
+    triangles: Ints,
+    neighbors: Ints,
+    wanted: Flags,
+    eye: Doubles,
+    target_height: float,
+    radius: float,
+    fall: float,
+    threads: int = ...,
+) -> Bytes: ...
 def leave_one_out(
     points: Doubles,
     triangles: Ints,
@@ -164,4 +175,5 @@ def densify(
     sine: float,
     distance: float,
     full_edge: float,
+    progress: Callable[[float], None] | None = None,
 ) -> tuple[Doubles, Doubles]: ...

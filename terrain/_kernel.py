@@ -20,6 +20,7 @@ __all__ = [
     "OverlayMesh",
     "densify",
     "fill_bands",
+    "find_seen_vertices",
     "fit_quadratics",
     "leave_one_out",
     "list_neighbors",
@@ -49,6 +50,7 @@ leave_one_out = _core.leave_one_out
 list_neighbors = _core.list_neighbors
 measure_neighbors = _core.measure_neighbors
 densify = _core.densify
+find_seen_vertices = _core.find_seen_vertices
 
 trace_contours = _core.trace_contours
 smooth_contours = _core.smooth_contours

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from support.product_arrays import list_arrays
 
 import tinsmith as ts
 from tinsmith._progress import Progress
@@ -23,9 +24,23 @@ def tins(points):
     return ts.triangulate(points), ts.triangulate(points[::3] + np.array([3, 5, 0.5]))
 
 
+@pytest.fixture(scope="module")
+def contoured():
+    """Contours of a hill with a saddle, with flat triangles in its bends and on its tops."""
+    x, y = np.meshgrid(np.arange(0.0, 100.0, 4.0), np.arange(0.0, 100.0, 4.0))
+    z = 20 * np.exp(-((x - 30) ** 2 + (y - 40) ** 2) / 500)
+    z += 15 * np.exp(-((x - 70) ** 2 + (y - 60) ** 2) / 300)
+    lines = ts.contours(ts.triangulate(np.column_stack([x.ravel(), y.ravel(), z.ravel()])), 2.0)
+    parts = np.split(lines.coordinates, lines.offsets[1:-1])
+    return ts.triangulate(ts.Survey(points=np.concatenate(parts), breaklines=parts))
+
+
 RING = [[100, 100], [900, 100], [900, 900], [100, 900]]
 LINE = [[200, 150], [500, 600], [700, 800]]
 GRID = {"spacing": 1.0, "threads": 2}
+
+PAD = [[400, 400], [600, 400], [600, 600], [500, 540], [400, 600]]
+SLOPES = {"cut_slope": 2, "fill_slope": 3}
 
 # What is called with the points, two TINs and progress; the least number of fractions told.
 CALLS = {
@@ -49,22 +64,18 @@ CALLS = {
     "volume, regions": (lambda _, tins, **to: ts.volume(*tins, regions=[RING], **to), 3),
     "volume, level": (lambda _, tins, **to: ts.volume(tins[0], base=5.0, **to), 1),
     "difference": (lambda _, tins, **to: ts.difference(tins[1], tins[1], **to), 4),
+    "refine": (lambda _, tins, **to: ts.refine(tins[1], max_area=40.0, **to), 6),
+    "ground": (lambda p, _, **to: ts.ground(p, cell=2.0, **to), 15),
+    "blunders": (lambda p, _, **to: ts.blunders(ts.Survey(points=p), **to), 5),
+    "blunders, TIN": (lambda _, tins, **to: ts.blunders(tins[1], **to), 4),
+    "grade": (lambda _, tins, **to: ts.grade(tins[0], PAD, 10.0, **SLOPES, **to), 6),
+    "paste": (lambda p, tins, **to: ts.paste(tins[0], cut_middle(p), **to), 5),
 }
 
 
-def list_arrays(made):
-    """Return all arrays of a result."""
-    if isinstance(made, ts.TIN):
-        return [made.points, made.triangles, made.neighbors, made.vertex_of]
-    if isinstance(made, ts.Survey):
-        return [made.points, *made.attributes.values()]
-    if isinstance(made, ts.Difference):
-        return [*list_arrays(made.tin), np.array([made.cut, made.fill])]
-    if isinstance(made, ts.Raster):
-        return [band[:, :] for band in made.bands.values()]
-    if isinstance(made, ts.Features):
-        return [made.coordinates, *made.columns.values()]
-    return [made[name] for name in made.columns]
+def cut_middle(points):
+    """Return the TIN of the points in the middle, raised."""
+    return ts.triangulate(points[np.abs(points[:, :2] - 500).max(axis=1) < 200] + [0, 0, 2])
 
 
 def assert_same(one, other):
@@ -107,6 +118,15 @@ def test_what_it_raises_ends_the_call(name, after, points, tins):
     assert sum(fraction >= after for fraction in fractions) == 1, "told after it had raised"
     for a, b in zip(before, (x for tin in tins for x in list_arrays(tin)), strict=True):
         np.testing.assert_array_equal(a, b)
+
+
+def test_flats_are_mended_with_fractions(contoured):
+    fractions = []
+    told = ts.mend_flats(contoured, progress=fractions.append)
+    assert_ascends(fractions)
+    assert len(fractions) == 4
+    assert_same(told, ts.mend_flats(contoured))
+    assert len(told.points) > len(contoured.points)
 
 
 @pytest.mark.parametrize("wrong", [1, "yes", True, [print]])
@@ -161,14 +181,100 @@ def test_reading_ends_when_it_is_told_to(tiles):
 
 
 @pytest.mark.parametrize("count", [1, 3])
-def test_other_formats_tell_file_by_file(tmp_path, points, count):
-    paths = [
-        ts.write(ts.Survey(points=points[k : k + 50]), tmp_path / f"{k}.csv") for k in range(count)
-    ]
+def test_other_formats_tell_file_by_file(tmp_path, tins, count):
+    survey = ts.Survey(points=tins[1].points[:50], crs=ts.CRS.of("EPSG:32616"))
+    paths = [ts.write(survey, tmp_path / f"{k}.gpkg") for k in range(count)]
     fractions = []
-    ts.read(paths, crs="EPSG:32616", progress=fractions.append)
+    ts.read(paths, progress=fractions.append)
     assert fractions == pytest.approx([(k + 1) / count for k in range(count)])
     assert_ascends(fractions)
+
+
+def write_rows(path, points, form):
+    path.write_text("".join(form.format(i, *row) for i, row in enumerate(points.tolist())))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("form", "least"),
+    [("{0},{1:.3f},{2:.3f},{3:.3f}\n", 6), ('{0},{1:.3f},{2:.3f},{3:.3f},6" PIPE\n', 20)],
+)
+def test_text_is_read_with_fractions(tmp_path, points, form, least):
+    path = write_rows(tmp_path / "points.csv", points, form)
+    fractions = []
+    told = ts.read(path, columns="PENZD"[: form.count(",") + 1], progress=fractions.append)
+    assert_ascends(fractions)
+    assert len(fractions) >= least
+    assert len(told) == N_POINTS
+
+
+@pytest.fixture(scope="module")
+def dem(tmp_path_factory):
+    """A raster of several strips."""
+    pytest.importorskip("rasterio")
+    plane = ts.triangulate([[0, 0, 5], [2400, 0, 6], [2400, 2400, 8], [0, 2400, 9]])
+    raster = ts.rasterize(plane.replace(crs=ts.CRS.of("EPSG:32616")), spacing=1.0, lazy=True)
+    return ts.write(raster, tmp_path_factory.mktemp("dem") / "dem.tif")
+
+
+def test_rasters_are_read_with_fractions(dem):
+    fractions = []
+    told = ts.read(dem, stride=8, progress=fractions.append)
+    assert_ascends(fractions)
+    assert len(fractions) >= 3
+    assert_same(told, ts.read(dem, stride=8))
+
+
+@pytest.mark.parametrize("error", [OSError, ts.ReadError, KeyboardInterrupt])
+def test_whatever_it_raises_comes_out_of_reading(tiles, dem, tmp_path, points, error):
+    raised = error("enough")
+
+    def stop(fraction):
+        raise raised
+
+    text = write_rows(tmp_path / "points.csv", points[:99], "{1:.3f},{2:.3f},{3:.3f}\n")
+    for path in (tiles[0], dem, text):
+        with pytest.raises(error) as caught:
+            ts.read(path, progress=stop)
+        assert caught.value is raised
+
+
+# ------------------------------------------------------------------------- writing
+
+
+SUFFIXES = (".ply", ".laz", ".geojson", ".geojsons", ".gpkg", ".xyz", ".xml", ".dxf", ".fgb")
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_files_are_written_with_fractions(tmp_path, tins, suffix):
+    tin = ts.triangulate(tins[1].points[:500], crs="EPSG:32616")
+    fractions = []
+    told = ts.write(tin, tmp_path / f"told{suffix}", progress=fractions.append)
+    assert_ascends(fractions)
+    plain = ts.write(tin, tmp_path / f"plain{suffix}")
+    if suffix not in (".gpkg", ".xml"):  # which hold the name of the file
+        assert told.read_bytes() == plain.read_bytes()
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".geojsons"])
+@pytest.mark.parametrize("error", [Enough, OSError, ts.WriteError, KeyboardInterrupt])
+def test_a_file_that_was_not_finished_is_not_there(tmp_path, tins, suffix, error):
+    raised = error("enough")
+
+    def stop(fraction):
+        raise raised
+
+    tin = tins[1].replace(crs=ts.CRS.of("EPSG:32616"))
+    with pytest.raises(error) as caught:
+        ts.write(tin, tmp_path / f"made{suffix}", progress=stop)
+    assert caught.value is raised
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_writing_refuses_what_cannot_be_called(tmp_path, tins):
+    with pytest.raises(ts.OptionError, match="Invalid progress 7"):
+        ts.write(tins[0], tmp_path / "made.ply", progress=7)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_reading_refuses_what_cannot_be_called(tiles):

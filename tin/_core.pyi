@@ -140,6 +140,7 @@ def refine(
     largest_area: float,
     longest_edge: float,
     most: int,
+    progress: Callable[[float], None] | None = None,
 ) -> tuple[Doubles, Ints, Ints, int, bool]: ...
 def regions(
     points: Doubles,

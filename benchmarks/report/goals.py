@@ -83,9 +83,9 @@ def _find_memory(results: Results, task: str) -> float | None:
 
 
 def _compare_lines_with_cgal(results: Results, task: str) -> float | None:
-    """Take the quicker of CGAL's two ways."""
-    ways = [results.seconds(task, CGAL), results.seconds(task, CGAL_INDICES)]
-    known = [seconds for seconds in ways if seconds is not None and not math.isnan(seconds)]
+    """Take the quicker of the two calls of CGAL."""
+    calls = [results.seconds(task, CGAL), results.seconds(task, CGAL_INDICES)]
+    known = [seconds for seconds in calls if seconds is not None and not math.isnan(seconds)]
     return _divide(min(known), results.seconds(task, OURS)) if known else None
 
 

@@ -13,8 +13,7 @@ from ..measure import OURS, Outcome, Result, is_installed
 from ..peers.answers import AS_MANY, EQUAL
 from ..peers.line_tools import ALL_LINE_TOOLS
 from ..peers.triangulators import CGAL, KERNEL
-from ..sections import answers, edits, kernel, lines, locate, readers, startup, writers
-from ..sections import variants as ways
+from ..sections import answers, edits, kernel, lines, locate, readers, startup, variants, writers
 from .goals import judge_goals
 
 __all__ = ["write_report"]
@@ -389,8 +388,8 @@ def _format_item(text: str) -> str:
 
 SECTIONS: dict[str, Callable[[list[Result], str], str]] = {
     kernel.SECTION: _format_kernel_part,
-    ways.SECTION: _make_part_formatter(
-        "The kernel's own ways",
+    variants.SECTION: _make_part_formatter(
+        "Variants of the kernel",
         "points",
         "Vector instructions, the two methods between which the kernel chooses, and small inputs;\n"
         "all in one process and in turn, each with the same arrays as the others.\n",

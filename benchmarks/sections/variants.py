@@ -1,4 +1,4 @@
-"""The kernel's own ways to one result: vector instructions, methods, small inputs."""
+"""Variants of the kernel with one result: vector instructions, methods, small inputs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ..measure import OURS, Outcome, Result, alternate, find_median
 
 __all__ = ["SECTION", "TWO_THREADS", "run"]
 
-SECTION = "ways"
+SECTION = "variants"
 TWO_THREADS = "two threads"
 SMALL_SIZES = (100, 1_000)
 SMALL_CALLS = 200
@@ -47,18 +47,18 @@ def run(n: int, *, repeats: int = 5) -> Outcome:
 def _measure_vector_paths(name: str, n: int, repeats: int) -> Iterator[Result]:
     points = make_points(name, n)
     *slower, used = _kernel.VECTOR_PATHS
-    ways = {OURS: partial(_kernel.grow, points)}
-    ways |= {f"path {path}": partial(_kernel.grow, points, path=path) for path in slower}
+    variants = {OURS: partial(_kernel.grow, points)}
+    variants |= {f"path {path}": partial(_kernel.grow, points, path=path) for path in slower}
     note = {OURS: f"path {used}, the one it takes here"}
-    return _measure_variants(f"{name}, vector instructions", len(points), ways, repeats, note)
+    return _measure_variants(f"{name}, vector instructions", len(points), variants, repeats, note)
 
 
 def _measure_threads(name: str, n: int, repeats: int) -> Iterator[Result]:
     points = make_points(name, n)
-    ways = {OURS: partial(_kernel.grow, points, threads=1)}
-    ways |= {TWO_THREADS: partial(_kernel.grow, points, threads=2)}
+    variants = {OURS: partial(_kernel.grow, points, threads=1)}
+    variants |= {TWO_THREADS: partial(_kernel.grow, points, threads=2)}
     return _measure_variants(
-        f"{name}, threads", len(points), ways, 3 * repeats, {OURS: "one thread"}
+        f"{name}, threads", len(points), variants, 3 * repeats, {OURS: "one thread"}
     )
 
 
@@ -67,32 +67,32 @@ def _measure_methods(name: str, n: int, repeats: int) -> Iterator[Result]:
     methods = {"insertion": _kernel.Method.INSERTION, "growth": _kernel.Method.GROWTH}
     if name in QUADRATIC:
         del methods["growth"]
-    ways = {OURS: partial(_kernel.grow, points)}
-    ways |= {x: partial(_kernel.grow, points, method=method) for x, method in methods.items()}
+    variants = {OURS: partial(_kernel.grow, points)}
+    variants |= {x: partial(_kernel.grow, points, method=method) for x, method in methods.items()}
     return _measure_variants(
-        f"{name}, methods", len(points), ways, repeats, {OURS: "as it chooses"}
+        f"{name}, methods", len(points), variants, repeats, {OURS: "as it chooses"}
     )
 
 
 def _measure_small(size: int) -> Iterator[Result]:
     points = make_points("uniform", max(size, 200))[:size]
-    ways: dict[str, Callable[[], Any]] = {
+    variants: dict[str, Callable[[], Any]] = {
         OURS: partial(ts.triangulate, points),
         "kernel": partial(_kernel.grow, points),
     }
     return _measure_variants(
-        f"uniform, {size:,} points", size, ways, SMALL_CALLS, {OURS: "whole call"}
+        f"uniform, {size:,} points", size, variants, SMALL_CALLS, {OURS: "whole call"}
     )
 
 
 def _measure_variants(
     task: str,
     count: int,
-    ways: dict[str, Callable[[], Any]],
+    variants: dict[str, Callable[[], Any]],
     repeats: int,
     notes: dict[str, str],
 ) -> Iterator[Result]:
-    answers, runs = alternate(ways, repeats)
+    answers, runs = alternate(variants, repeats)
     for way, answer in answers.items():
         _require_equal(answer, answers[OURS])
         yield Result(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..._atomic import replacing
+from ..._progress import Progress
 from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError, WriteError
@@ -65,6 +66,7 @@ def read(
     source_crs: CrsLike | None = None,
     nodata: float | Sequence[float] | None = None,
     skip_bad: bool = False,
+    progress: Callable[[float], None] | None = None,
 ) -> Survey:
     """Read survey points.
 
@@ -96,6 +98,9 @@ def read(
     skip_bad : bool, optional
         Whether rows with too few or too many cells, or a coordinate that is no number, are left
         out, instead of the file being refused.
+    progress : callable, optional
+        Called with the fraction done, ascending, by columns and blocks of rows. What it raises ends
+        the call.
 
     Returns
     -------
@@ -128,12 +133,12 @@ def read(
     on one core, two seconds where quotes stand inside cells or descriptions hold blanks.
     """
     left_out = parse_nodata(nodata)
-    declared = CRS.of(source_crs)
+    declared, done = CRS.of(source_crs), Progress(progress)
     lines = read_lines(path, encoding=encoding)
     layout = find_layout(
         lines, path, columns=columns, delimiter=delimiter, decimal=decimal, comment=comment
     )
-    cells = read_cells(lines, layout, path)
+    cells = read_cells(lines, layout, path, progress=done.stage(0.1, 0.9))
     if cells.faults and not skip_bad:
         raise describe_faults_of_rows(cells.faults, len(layout.rows), lines, layout, path)
     target = CRS.of(crs)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..._progress import Progress
 from ..._sentences import counted, inflect
 from ...errors import ReadError
 from .cell_bounds import find_cell_bounds
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ..._progress import Tell
     from .cell_bounds import CellBounds
     from .columns import Columns
     from .layout import Layout
@@ -56,6 +58,8 @@ _SHOWN = 5
 _QUOTED_ROWS = 2_000
 _REWRITTEN_DELIMITER = "\t"
 _GROUP_DIGITS = 3
+_REWRITTEN = 0.7
+"""Of the work as it is told, what is done once all rows are written anew."""
 
 
 class Fault(NamedTuple):
@@ -97,7 +101,9 @@ class Table(NamedTuple):
     n_grouped: int
 
 
-def read_cells(lines: TextLines, layout: Layout, path: Path) -> Cells:
+def read_cells(
+    lines: TextLines, layout: Layout, path: Path, *, progress: Tell | None = None
+) -> Cells:
     """Read the cells of every row.
 
     Parameters
@@ -106,6 +112,8 @@ def read_cells(lines: TextLines, layout: Layout, path: Path) -> Cells:
     layout : Layout
     path : Path
         For sentences.
+    progress : callable, optional
+        Called with the fraction done, by blocks of rows that are rewritten, and by columns.
 
     Raises
     ------
@@ -118,12 +126,13 @@ def read_cells(lines: TextLines, layout: Layout, path: Path) -> Cells:
     one by one, by the rules of Python's csv module, on the way. Every number is the float64
     nearest to its text.
     """
+    done = Progress(progress)
     data = lines.join(layout.rows)
     if layout.delimiter != layout.decimal:
         bounds = find_cell_bounds(data, layout.delimiter, layout.count)
         if bounds is not None:
-            return Cells(_parse_columns(bounds, layout), layout.rows)
-    data, rows, faults = _rewrite_rows(lines, layout)
+            return Cells(_parse_columns(bounds, layout, done.stage(0.3, 1.0)), layout.rows)
+    data, rows, faults = _rewrite_rows(lines, layout, done.stage(0.0, _REWRITTEN))
     if len(rows) == 0:
         raise describe_faults_of_rows(faults, len(layout.rows), lines, layout, path)
     bounds = find_cell_bounds(data, _REWRITTEN_DELIMITER, layout.count)
@@ -133,14 +142,19 @@ def read_cells(lines: TextLines, layout: Layout, path: Path) -> Cells:
             "check its quotes.",
             path=path,
         )
-    return Cells(_parse_columns(bounds, layout), rows, tuple(faults))
+    columns = _parse_columns(bounds, layout, done.stage(_REWRITTEN, 1.0))
+    return Cells(columns, rows, tuple(faults))
 
 
-def _parse_columns(bounds: CellBounds, layout: Layout) -> tuple[NDArray[Any], ...]:
-    return tuple(
-        parse_column(bounds, i, decimal=layout.decimal, is_text=i in layout.text_columns)
-        for i in range(layout.count)
-    )
+def _parse_columns(
+    bounds: CellBounds, layout: Layout, progress: Tell | None
+) -> tuple[NDArray[Any], ...]:
+    done, columns = Progress(progress), []
+    for i in range(layout.count):
+        is_text = i in layout.text_columns
+        columns.append(parse_column(bounds, i, decimal=layout.decimal, is_text=is_text))
+        done((i + 1) / layout.count)
+    return tuple(columns)
 
 
 def describe_faults_of_rows(
@@ -174,14 +188,16 @@ def describe_faults_of_rows(
 # ------------------------------------------------------------------ shape
 
 
-def _rewrite_rows(lines: TextLines, layout: Layout) -> tuple[bytes, NDArray[np.int64], list[Fault]]:
+def _rewrite_rows(
+    lines: TextLines, layout: Layout, progress: Tell | None
+) -> tuple[bytes, NDArray[np.int64], list[Fault]]:
     """Write the rows anew with plain quotes; leave those out that have not the right cells."""
     text = StringIO(newline="")
     writer = csv.writer(text, delimiter=_REWRITTEN_DELIMITER, lineterminator="\n")
     kept: list[int] = []
     faults: list[Fault] = []
     last = -1 if lines.is_whole else len(lines) - 1
-    for line, raw, cells in _iterate_cells(lines, layout):
+    for line, raw, cells in _iterate_cells(lines, layout, Progress(progress)):
         if isinstance(cells, str):
             faults.append(Fault(line, "quote", cells))
             continue
@@ -195,7 +211,9 @@ def _rewrite_rows(lines: TextLines, layout: Layout) -> tuple[bytes, NDArray[np.i
     return text.getvalue().removesuffix("\n").encode(), np.array(kept, np.int64), faults
 
 
-def _iterate_cells(lines: TextLines, layout: Layout) -> Iterator[tuple[int, str, list[str] | str]]:
+def _iterate_cells(
+    lines: TextLines, layout: Layout, done: Progress
+) -> Iterator[tuple[int, str, list[str] | str]]:
     """Walk the rows: line number (from 0), its text, and its cells or what is wrong with them."""
     for start in range(0, len(layout.rows), _QUOTED_ROWS):
         rows = layout.rows[start : start + _QUOTED_ROWS]
@@ -206,6 +224,7 @@ def _iterate_cells(lines: TextLines, layout: Layout) -> Iterator[tuple[int, str,
             texts = text.split("\n")
         split = _split_by_csv(texts, layout.delimiter)
         yield from zip(rows.tolist(), texts, split, strict=True)
+        done((start + len(rows)) / len(layout.rows))
 
 
 def _split_by_csv(texts: Sequence[str], delimiter: str) -> Iterator[list[str] | str]:

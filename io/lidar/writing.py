@@ -10,13 +10,14 @@ import numpy as np
 
 from ... import _optional
 from ..._atomic import replacing
+from ..._progress import Progress
 from ...errors import LossWarning, OptionError, WriteError
 from ...tin import TIN, Survey
 from ..mesh.common import require_writable
 from ..reprojection.crs_kept import require_kept
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -78,7 +79,13 @@ class _Scaling(NamedTuple):
     error: NDArray[np.float64]
 
 
-def write(surface: TIN | Survey, path: Path, *, scale: float | None = None) -> None:
+def write(
+    surface: TIN | Survey,
+    path: Path,
+    *,
+    scale: float | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> None:
     """Write the points of a survey, or the vertices of a TIN, as LAS 1.4; ``.laz`` is compressed.
 
     Parameters
@@ -89,6 +96,8 @@ def write(surface: TIN | Survey, path: Path, *, scale: float | None = None) -> N
         Distance of neighbouring coordinates, in CRS units. Default on each axis the coarsest power
         of ten that gives every coordinate back, else the finest from a millionth on that holds the
         extent of the points in 32 bits.
+    progress : callable, optional
+        Called with the fraction done.
 
     Raises
     ------
@@ -120,7 +129,9 @@ def write(surface: TIN | Survey, path: Path, *, scale: float | None = None) -> N
     header = _make_header(laspy, scaling, columns, surface.crs)
     _warn_of_unit(surface, path)
     with replacing(path) as file:
-        _write_points(laspy, file, header, surface.points, columns, path)
+        is_compressed = path.suffix.lower() == ".laz"
+        with laspy.LasWriter(file, header, do_compress=is_compressed, closefd=False) as writer:
+            _write_points(laspy, writer, surface.points, columns, Progress(progress))
     _require_crs(surface.crs, path)
 
 
@@ -284,26 +295,25 @@ def _format_crs(crs: CRS) -> str:
 
 def _write_points(
     laspy: Any,
-    file: Any,
-    header: Any,
+    writer: Any,
     points: NDArray[np.float64],
     columns: Mapping[str, NDArray[Any]],
-    path: Path,
+    done: Progress,
 ) -> None:
-    is_compressed = path.suffix.lower() == ".laz"
-    with laspy.LasWriter(file, header, do_compress=is_compressed, closefd=False) as writer:
-        for start in range(0, len(points), _CHUNK):
-            part = slice(start, start + _CHUNK)
-            record = laspy.ScaleAwarePointRecord.zeros(len(points[part]), header=header)
-            for k, axis in enumerate("XYZ"):
-                scale, offset = float(header.scales[k]), float(header.offsets[k])
-                record[axis] = _round_to_whole(points[part, k], scale, offset)
-            if "number_of_returns" not in columns:
-                ones = np.ones(len(record), np.uint8)
-                record["return_number"], record["number_of_returns"] = ones, ones
-            for name, values in columns.items():
-                record[name] = values[part]
-            writer.write_points(record)
+    header = writer.header
+    for start in range(0, len(points), _CHUNK):
+        part = slice(start, start + _CHUNK)
+        record = laspy.ScaleAwarePointRecord.zeros(len(points[part]), header=header)
+        for k, axis in enumerate("XYZ"):
+            scale, offset = float(header.scales[k]), float(header.offsets[k])
+            record[axis] = _round_to_whole(points[part, k], scale, offset)
+        if "number_of_returns" not in columns:
+            ones = np.ones(len(record), np.uint8)
+            record["return_number"], record["number_of_returns"] = ones, ones
+        for name, values in columns.items():
+            record[name] = values[part]
+        writer.write_points(record)
+        done((start + len(record)) / len(points))
 
 
 def _require_crs(crs: CRS | None, path: Path) -> None:

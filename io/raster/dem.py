@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ... import _optional
+from ..._progress import Progress
 from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ..._progress import Tell
     from ...crs import CrsLike, UnitLike
     from ..isolated import Answer
 
@@ -49,6 +51,8 @@ BYTES_PER_CELL = 48
 
 LEFT_OUT = "cells between samples"
 _FEWEST_CELLS = 4
+_READ = 0.8
+"""Of the work as it is told, what is done once all strips are read."""
 
 _COLOURS = ("red", "green", "blue", "palette", "cyan", "magenta", "yellow", "black")
 
@@ -89,6 +93,7 @@ def read(
     most_cells: int | None = None,
     nodata: float | Sequence[float] | None = None,
     fill: bool = False,
+    progress: Callable[[float], None] | None = None,
 ) -> Survey:
     """Read a raster as points, one at the centre of every cell that has an elevation.
 
@@ -116,6 +121,8 @@ def read(
     fill : bool
         Let the surface span the voids. Otherwise it ends at the cells around them, along the
         rings of ``Survey.extent``.
+    progress : callable, optional
+        Called with the fraction done, ascending, strip by strip. What it raises ends the call.
 
     Returns
     -------
@@ -154,6 +161,7 @@ def read(
         most_cells=most_cells,
         nodata=nodata,
         fill=fill,
+        progress=progress,
     )
 
 
@@ -169,6 +177,7 @@ def make_survey(
     most_cells: int | None = None,
     nodata: float | Sequence[float] | None,
     fill: bool,
+    progress: Tell | None = None,
 ) -> Survey:
     """Make a survey of the cells of a raster, as :func:`read` does.
 
@@ -177,7 +186,7 @@ def make_survey(
     dataset : Header
     open_strips : callable
         Takes what to read, and gives the strips that ``gdal_child.read_strips`` yields.
-    crs, z_unit, band, window, stride, most_cells, nodata, fill
+    crs, z_unit, band, window, stride, most_cells, nodata, fill, progress
         As of :func:`read`.
     """
     path = dataset.path
@@ -190,7 +199,7 @@ def make_survey(
     marks = parse_nodata(nodata)
     _require_few_cells(cells, path)
     place(_find_middle(dataset), source=source, target=target, path=path)
-    points, valid, n_nodata = _read_points(dataset, open_strips, number, cells, marks)
+    points, valid, n_nodata = _read_points(dataset, open_strips, number, cells, marks, progress)
     if len(points) == 0:
         raise ReadError(
             f"'{path}': of {counted(n_nodata, 'cell')} of band {number}, none has an elevation but "
@@ -571,6 +580,7 @@ def _read_points(
     band: int,
     cells: _Cells,
     marks: NDArray[np.float64],
+    progress: Tell | None,
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_], int]:
     """Return the points of valid cells, which cells are valid, and how many have no elevation."""
     strips = _cut_into_strips(dataset, cells)
@@ -578,13 +588,14 @@ def _read_points(
     ends = [[int(rows[0]), int(rows[-1])] for rows in strips]
     found: list[NDArray[np.float64]] = []
     kept: list[NDArray[np.bool_]] = []
-    n_nodata = 0
+    n_nodata, done = 0, Progress(progress)
     with open_strips({**window, "rows": ends}) as answers:
         for rows, answer in zip(strips, answers, strict=False):
             points, keep, missing = _read_strip(dataset, band, cells, rows, answer.arrays, marks)
             found.append(points)
             kept.append(keep)
             n_nodata += missing
+            done(_READ * len(found) / len(strips))
     if not any(map(len, found)) and n_nodata == 0:
         raise OptionError("window", cells.bounds, f"an area with a cell centre of '{dataset.path}'")
     return np.concatenate(found), np.concatenate(kept), n_nodata

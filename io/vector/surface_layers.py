@@ -12,6 +12,7 @@ from . import flatgeobuf, geopackage, shapefile
 from .surface_features import make_features, make_whole_surface
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
     from typing import TypeAlias
 
@@ -88,13 +89,18 @@ def write_geoparquet(surface: Writable, path: Path, *, kind: FeatureKind | None 
 
 
 def write_geojson_sequence(
-    surface: Writable, path: Path, *, kind: FeatureKind | None = None
+    surface: Writable,
+    path: Path,
+    *,
+    kind: FeatureKind | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> None:
     """Write a kind of parts of a surface, or features, as lines of GeoJSON, each a feature.
 
     The CRS must be known: coordinates are WGS 84 longitude and latitude, elevations metres, as
-    those of a GeoJSON file. Parameters are those of :func:`write_flatgeobuf`.
+    those of a GeoJSON file. Parameters are those of :func:`write_flatgeobuf`; ``progress`` is
+    called with the fraction done.
     """
     from .geojson.features import write_feature_lines
 
-    write_feature_lines(make_features(surface, path, kind), path)
+    write_feature_lines(make_features(surface, path, kind), path, progress=progress)

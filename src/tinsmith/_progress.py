@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TypeAlias
 
 from .errors import OptionError
@@ -44,17 +45,36 @@ class Progress:
             raise OptionError("progress", tell, "a function of the fraction done, or None")
         self._tell = tell
         self._told = 0.0
+        self._raised: BaseException | None = None
 
     def __call__(self, fraction: float) -> None:
         """Tell a fraction below 1, if it is larger than the last."""
         if self._tell is not None and self._told < fraction < 1.0:
             self._told = fraction
-            self._tell(fraction)
+            self._tell_caller(fraction)
 
     def end(self) -> None:
         """Tell that all is done."""
-        if self._tell is not None:
-            self._tell(1.0)
+        self._tell_caller(1.0)
+
+    def _tell_caller(self, fraction: float) -> None:
+        if self._tell is None:
+            return
+        try:
+            self._tell(fraction)
+        except BaseException as error:
+            self._raised = error
+            raise
+
+    @contextmanager
+    def passing_on(self) -> Iterator[None]:
+        """Raise what the function raised within the block, whatever others make of it there."""
+        try:
+            yield
+        except BaseException as error:
+            if self._raised in (None, error):
+                raise
+            raise self._raised from None
 
     def stage(self, start: float, end: float) -> Tell | None:
         """Return the function that a stage tells its own fraction; None if nobody listens."""

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..._progress import Progress
 from ..._sentences import counted
 from ...tin.validation.options import require_tin
 from .regions import CAPS, NARROWEST, find_regions
 from .skeleton import find_shares, trace_skeleton
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
     from typing import Any
 
     from numpy.typing import NDArray
@@ -32,7 +33,7 @@ behind where the survey has another one of this name."""
 _GIVEN, _ADDED = "given", "added"
 
 
-def mend_flats(tin: TIN) -> TIN:
+def mend_flats(tin: TIN, *, progress: Callable[[float], None] | None = None) -> TIN:
     """Add points along ridges, valleys, peaks and pits where contours leave flat triangles.
 
     Parameters
@@ -40,6 +41,9 @@ def mend_flats(tin: TIN) -> TIN:
     tin : TIN
         With its contours as lines, such as those of
         ``ts.read("contours.gpkg", lines_as="breaklines")``.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0, between the stages. What it raises ends
+        the call.
 
     Returns
     -------
@@ -88,14 +92,20 @@ def mend_flats(tin: TIN) -> TIN:
     1
     """
     require_tin(tin)
+    done = Progress(progress)
     regions = find_regions(tin)
+    done(0.2)
     skeleton = trace_skeleton(tin, regions)
+    done(0.5)
     points = _lift(regions, skeleton)
+    done(0.6)
     given = len(tin.vertex_of)
     mended = copy.copy(tin)
     if len(points):
         mended.insert(points)
-    return _annotate(mended, regions, len(mended.vertex_of) - given)
+    annotated = _annotate(mended, regions, len(mended.vertex_of) - given)
+    done.end()
+    return annotated
 
 
 def _lift(regions: Regions, skeleton: Skeleton) -> NDArray[np.float64]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._progress import Progress
 from ...crs import scale_elevations
 from ...errors import LinesError, OptionError, PointsError
 from ...tin.constraints.polygons import gather_rings_of_regions
@@ -17,6 +18,8 @@ from .pasting import find_area, join_surfaces
 from .slopes import find_slope
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
     from ...tin import TIN
@@ -25,6 +28,8 @@ __all__ = ["grade"]
 
 _SHARE = 1e-6
 """Of the area of pad and slopes: less of it may lie beyond the ground by rounding."""
+_SLOPE = 0.2
+"""Of the work as it is told, following the one slope or the other."""
 
 
 def grade(
@@ -34,6 +39,7 @@ def grade(
     *,
     cut_slope: float,
     fill_slope: float,
+    progress: Callable[[float], None] | None = None,
 ) -> TIN:
     """Grade a level pad into the ground, with side slopes to where they meet it.
 
@@ -51,6 +57,9 @@ def grade(
         Of the pad, in the unit of the ground's; default that of the ring, which must be level.
     cut_slope, fill_slope : float
         Horizontal over vertical: 2 is 2:1, two along for one up or down.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0, as slopes are followed and pasted into the
+        ground. What it raises ends the call.
 
     Returns
     -------
@@ -86,6 +95,7 @@ def grade(
     >>> graded.interpolate([[30, 30], [30, 37], [30, 45]]).round(9)
     array([3., 4., 5.])
     """
+    done = Progress(progress)
     reference = find_reference(tin, "Slopes")
     up = scale_elevations(reference.crs, reference.elevation_unit)
     cut = 1.0 / (_require_ratio("cut_slope", cut_slope) * up)
@@ -95,15 +105,18 @@ def grade(
     local = tin.replace(crs=None, elevation_unit=None)
     used = tin.points[tin.triangles, 2]
     farthest = {cut: (used.max() - level) / cut, fill: (used.min() - level) / fill}
-    slopes = [
-        find_slope(local, polygon, level, rate, float(reach))
-        for rate, reach in farthest.items()
-        if reach > 0
-    ]
+    slopes = []
+    for number, (rate, reach) in enumerate(farthest.items(), 1):
+        if reach > 0:
+            slopes.append(find_slope(local, polygon, level, rate, float(reach)))
+        done(number * _SLOPE)
     patch = build_patch(tin, polygon, level, slopes)
     _require_within(tin, patch)
+    done(0.5)
     agreed = Agreement(tin.crs, tin.elevation_unit, (1.0, 1.0), reference.notes)
-    return join_surfaces(tin, patch, agreed, "daylight")
+    graded = join_surfaces(tin, patch, agreed, "daylight", progress=done.stage(0.5, 1.0))
+    done.end()
+    return graded
 
 
 # ---------------------------------------------------------------- what is given

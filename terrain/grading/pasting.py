@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._progress import Progress
 from ...errors import PointsError
 from ...tin import Breakline, Survey, triangulate
 from ...tin.building.attributes import join_columns
@@ -18,10 +19,11 @@ from ..georeference import agree, find_plane_units
 from .seams import Seam, find_sides, measure_tolerance
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
+    from ..._progress import Tell
     from ...tin import TIN
     from ..georeference import Agreement
 
@@ -35,7 +37,7 @@ _PRIORITY = 1000
 """Of the seam: where lines cross it, its elevations count."""
 
 
-def paste(base: TIN, patch: TIN) -> TIN:
+def paste(base: TIN, patch: TIN, *, progress: Callable[[float], None] | None = None) -> TIN:
     """Put a surface in the place of a part of another one.
 
     Parameters
@@ -44,6 +46,9 @@ def paste(base: TIN, patch: TIN) -> TIN:
     patch : TIN
         Within the boundary of ``base`` or beyond it, with holes or in several parts: in its holes
         the base stays.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0, as the base is cut and both are
+        triangulated. What it raises ends the call.
 
     Returns
     -------
@@ -82,20 +87,31 @@ def paste(base: TIN, patch: TIN) -> TIN:
     """
     require_tin(base)
     require_tin(patch)
+    done = Progress(progress)
     found = agree((base, patch), ("the base", "the patch"))
-    return join_surfaces(base, patch, found, extend=True)
+    pasted = join_surfaces(base, patch, found, extend=True, progress=done.stage(0.0, 1.0))
+    done.end()
+    return pasted
 
 
 def join_surfaces(
-    base: TIN, patch: TIN, agreed: Agreement, name: str = "seam", *, extend: bool = False
+    base: TIN,
+    patch: TIN,
+    agreed: Agreement,
+    name: str = "seam",
+    *,
+    extend: bool = False,
+    progress: Tell | None = None,
 ) -> TIN:
     """Paste a surface into another one, name the seam, and extend the base where it is told to."""
+    done = Progress(progress)
     ground, insert = (
         one.triangulation.points * (1.0, 1.0, factor)
         for one, factor in zip((base, patch), agreed.factors, strict=True)
     )
     seam = Seam(patch, insert, measure_tolerance(ground, insert))
-    cut = _Base(base, ground, seam)
+    cut = _Base(base, ground, seam, done.stage(0.1, 0.6))
+    done(0.6)
     lines = [*cut.list_lines(), *cut.list_joints()]
     seam.insert_cuts()
     lines += [Breakline(ring, name=name, priority=_PRIORITY) for ring in seam.rings]
@@ -103,6 +119,7 @@ def join_surfaces(
     beyond = _measure_beyond(base, patch) if extend else 0.0
     reaches = beyond > seam.rounding
     rings = _join_rings(base, patch, cut, seam) if reaches else _list_rings(base, ground)
+    done(0.7)
     made = triangulate(
         Survey(
             points=np.concatenate([ground[cut.is_kept], insert]),
@@ -112,6 +129,7 @@ def join_surfaces(
         duplicates="last",
         crs=agreed.crs,
         z_unit=agreed.elevation_unit,
+        progress=done.stage(0.7, 1.0),
         **rings,
     )
     gap = _describe_gap(base, agreed, np.concatenate(seam.rings))
@@ -218,14 +236,16 @@ def _describe_gap(base: TIN, agreed: Agreement, seam: NDArray[np.float64]) -> li
 class _Base:
     """What stays of the base: vertices, lines, and edges that the seam cuts."""
 
-    def __init__(self, base: TIN, points: NDArray[np.float64], seam: Seam) -> None:
+    def __init__(
+        self, base: TIN, points: NDArray[np.float64], seam: Seam, progress: Tell | None
+    ) -> None:
         self._tin, self._points, self._seam = base, points, seam
         xy = np.ascontiguousarray(points[:, :2])
         self.is_kept = in_rings(xy, [ring[:, :2] for ring in seam.rings]) < 0
         self.is_kept[seam.find_near(xy)] = False
-        self._pieces = self._cut_edges()
+        self._pieces = self._cut_edges(progress)
 
-    def _cut_edges(self) -> dict[int, list[NDArray[np.float64]]]:
+    def _cut_edges(self, progress: Tell | None) -> dict[int, list[NDArray[np.float64]]]:
         """Return what is left of the edges at the seam, by key."""
         edges = self._tin.edges
         ends = self._points[edges]
@@ -233,7 +253,7 @@ class _Base:
         crossing = self._seam.find_crossing(ends[:, :, :2])
         at_seam = np.union1d(crossing, np.flatnonzero(is_dropped[:, 0] != is_dropped[:, 1]))
         at_seam = at_seam[~is_dropped[at_seam].all(axis=1) | np.isin(at_seam, crossing)]
-        pieces = self._seam.cut(ends[at_seam], self.is_kept[edges[at_seam]])
+        pieces = self._seam.cut(ends[at_seam], self.is_kept[edges[at_seam]], progress)
         keys = edge_keys(edges[at_seam], len(self._points)).tolist()
         return dict(zip(keys, pieces, strict=True))
 

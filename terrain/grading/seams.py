@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._progress import Progress
 from ...tin import Breakline
 from ...tin.topology import edge_keys
 
@@ -14,12 +15,15 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ..._progress import Tell
     from ...tin import TIN
 
 __all__ = ["Seam", "find_sides", "measure_tolerance"]
 
 _ROUNDINGS = 64.0
 """Of the largest coordinate: places so near to each other are one."""
+_BATCH = 256
+"""Segments that are cut between two words of how far it is."""
 
 
 def measure_tolerance(*points: NDArray[np.float64]) -> float:
@@ -85,12 +89,13 @@ class Seam:
         return np.unique(near[self._tree.query(segments, predicate="intersects")[0]])
 
     def cut(
-        self, ends: NDArray[np.float64], is_kept: NDArray[np.bool_]
+        self, ends: NDArray[np.float64], is_kept: NDArray[np.bool_], progress: Tell | None = None
     ) -> list[list[NDArray[np.float64]]]:
         """Return the parts of segments, (k, 2, 3), outside; their new ends are on the seam."""
         import shapely
 
         outside = shapely.difference(shapely.linestrings(ends[:, :, :2]), self._area)
+        done = Progress(progress)
         found = []
         for left, own, stays in zip(outside, ends, is_kept.tolist(), strict=True):
             there = [part for part in shapely.get_parts(left) if not part.is_empty]
@@ -99,6 +104,8 @@ class Seam:
             off = [part for part in parts if self._is_off(part)]
             ways = [np.array([self._place(xy, fixed) for xy in part]) for part in off]
             found.append([way for way in ways if (way[0, :2] != way[1, :2]).any()])
+            if len(found) % _BATCH == 0:
+                done(len(found) / len(ends))
         return found
 
     def _is_off(self, part: NDArray[np.float64]) -> bool:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._progress import Progress
 from ..._sentences import counted
 from ...crs import assume_elevation_unit
 from ...errors import CrsError, PointsError
@@ -22,7 +23,7 @@ from .seeds import find_low_noise, find_seeds
 from .surroundings import surround
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -133,6 +134,7 @@ def ground(
     horizontal_tolerance: float = 1.0,
     noise_depth: float = 1.0,
     returns: GroundReturns = "last",
+    progress: Callable[[float], None] | None = None,
 ) -> GroundPoints:
     """Tell the points on the ground from those on buildings, plants and cars, and low noise.
 
@@ -161,6 +163,9 @@ def ground(
         Points deeper than that below all around them are low noise, metres.
     returns : {"last", "all"}
         Which returns of a pulse may be ground, where the attributes tell.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0, between the steps below and as the TIN is
+        densified. What it raises ends the call.
 
     Returns
     -------
@@ -205,6 +210,7 @@ def ground(
     >>> ground(np.column_stack([x, y, z]))
     <GroundPoints: 819 ground, 81 others, 0 low noise>
     """
+    done = Progress(progress)
     parameters = Parameters(
         building=building,
         cell=cell,
@@ -221,15 +227,17 @@ def ground(
     across, up, unit_notes = _find_units(survey)
     metric = _make_metric(as_points(survey.points), across, up)
     may_be, return_notes = may_be_ground(survey, parameters.returns)
-    classes, heights = _classify(metric, may_be, are_noise(survey), parameters)
+    classes, heights = _classify(metric, may_be, are_noise(survey), parameters, done)
     _keep_noise(classes, survey)
-    return GroundPoints(
+    found = GroundPoints(
         given=survey,
         classification=classes,
         heights=heights / up,
         parameters=parameters.to_dict(),
         notes=(*unit_notes, *return_notes),
     )
+    done.end()
+    return found
 
 
 def _find_units(survey: Survey) -> tuple[float, float, tuple[str, ...]]:
@@ -276,6 +284,7 @@ def _classify(
     may_be_ground: NDArray[np.bool_],
     is_noise: NDArray[np.bool_],
     parameters: Parameters,
+    done: Progress,
 ) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
     """Return the class of each point in metres, and its height above the ground."""
     is_taken = may_be_ground & ~is_noise
@@ -285,9 +294,10 @@ def _classify(
             "are not the last of their pulse."
         )
     cells = lay_cells(points, parameters.cell)
-    is_low = find_low_noise(points, cells, is_taken, parameters)
+    is_low = find_low_noise(points, cells, is_taken, parameters, done.stage(0.0, 0.2))
     is_taken &= ~is_low
-    seeds = points[find_seeds(points, cells, is_taken, parameters)]
+    seeds = points[find_seeds(points, cells, is_taken, parameters, done.stage(0.2, 0.5))]
+    done(0.5)
     order = cells.order
     heights, slopes = np.empty(len(points)), np.empty(len(points))
     heights[order], slopes[order] = _kernel.densify(
@@ -297,6 +307,7 @@ def _classify(
         float(np.sin(np.radians(parameters.iteration_angle))),
         parameters.iteration_distance,
         parameters.edge_length,
+        done.stage(0.5, 1.0),
     )
     sideways = parameters.horizontal_tolerance * slopes
     is_low |= is_taken & (heights < -(parameters.noise_depth + sideways))

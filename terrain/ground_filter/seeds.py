@@ -16,11 +16,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..._progress import Progress
 from .morphology import least_around, list_windows, open_grid, split_columns
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ..._progress import Tell
     from .cells import Cells
     from .parameters import Parameters
 
@@ -40,16 +42,19 @@ def find_low_noise(
     cells: Cells,
     is_taken: NDArray[np.bool_],
     parameters: Parameters,
+    progress: Tell | None = None,
 ) -> NDArray[np.bool_]:
     """Find points that lie deeper than all around them, alone or in a small group."""
+    done = Progress(progress)
     is_noise = np.zeros(len(points), bool)
     z = np.ascontiguousarray(points[:, 2])
-    for _ in range(_ROUNDS):
+    for number in range(_ROUNDS):
         grid = cells.spread(cells.find_lowest(is_taken & ~is_noise), z)
         is_low = np.zeros(len(points), bool)
-        for frame in _FRAMES:
+        for k, frame in enumerate(_FRAMES, 1):
             least = _find_least_around(grid, *frame).reshape(-1)[cells.number]
             is_low |= (z < least - parameters.noise_depth) & np.isfinite(least) & ~is_noise
+            done((number + k / len(_FRAMES)) / _ROUNDS)
         if not is_low.any():
             break
         is_noise |= is_low
@@ -70,6 +75,7 @@ def find_seeds(
     cells: Cells,
     is_taken: NDArray[np.bool_],
     parameters: Parameters,
+    progress: Tell | None = None,
 ) -> NDArray[np.int64]:
     """Return rows of the lowest points of cells that are part of no object.
 
@@ -79,17 +85,17 @@ def find_seeds(
     rows = cells.find_lowest(is_taken)
     grid = cells.spread(rows, points[:, 2])
     half = max(1, int(np.ceil(parameters.building / (2 * parameters.cell))))
-    is_object = _find_objects(grid, list_windows(half), parameters)
+    is_object = _find_objects(grid, list_windows(half), parameters, Progress(progress))
     return rows[~is_object.reshape(-1)[cells.number[rows]]]
 
 
 def _find_objects(
-    grid: NDArray[np.float64], windows: list[int], parameters: Parameters
+    grid: NDArray[np.float64], windows: list[int], parameters: Parameters, done: Progress
 ) -> NDArray[np.bool_]:
     is_empty = np.isinf(grid)
     is_object = np.zeros(grid.shape, bool)
     rounding = np.finfo(float).eps * np.abs(grid[~is_empty]).max(initial=0.0)
-    for window in windows:
+    for number, window in enumerate(windows, 1):
         opened = np.empty_like(grid)
         for wide, inner, own in split_columns(grid.shape, 2 * window):
             opened[own] = open_grid(grid[wide], window)[inner]
@@ -98,4 +104,5 @@ def _find_objects(
         with np.errstate(invalid="ignore"):  # cells that are empty, which compare as false
             is_object |= grid - opened > rise
         grid = opened
+        done(number / len(windows))
     return is_object

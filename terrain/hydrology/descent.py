@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .falls import Falls
+    from .filling import Filling
+    from .vertices import Exits
 
 __all__ = [
     "BOUNDARY",
@@ -96,10 +98,13 @@ class Walker:
        never to where it would not be lower than before. So every step descends, and ends.
     3. At an edge it enters the triangle beyond if that one falls away from the edge. Otherwise the
        edge is a channel, which it follows to the lower end.
+
+    On a filled surface it goes on across water and level ground by its vertices. No drop ends there
+    but at the boundary.
     """
 
-    def __init__(self, falls: Falls) -> None:
-        self.falls = falls
+    def __init__(self, falls: Falls, filling: Filling | None = None) -> None:
+        self.falls, self.filling = falls, filling
         self.is_boundary = find_boundary_vertices(
             falls.triangles, falls.neighbors, len(falls.points)
         )
@@ -127,10 +132,24 @@ class Walker:
         xyz[on_edge] = interpolate_edges(points[start], points[end], share)
         return xyz
 
+    def runs_level(self, drops: Drops) -> NDArray[np.bool_]:
+        """Tell which drops go on over level ground of a filled surface."""
+        filling = self.filling
+        if filling is None:
+            return np.zeros(len(drops.vertices), np.bool_)
+        at_vertex = drops.vertices != NOWHERE
+        goes = np.where(at_vertex, filling.nexts[drops.vertices], drops.targets)
+        start, end = self.falls.ends(drops.triangles, drops.edges)
+        start = np.where(at_vertex | (drops.triangles == NOWHERE), goes, start)
+        end = np.where(at_vertex | (drops.triangles == NOWHERE), goes, end)
+        z = self.falls.points[:, 2]
+        is_level: NDArray[np.bool_] = (goes != NOWHERE) & (z[start] == z[end])
+        return is_level
+
     # ------------------------------------------------------------------ from vertices
 
     def _leave_vertices(self, vertices: NDArray[np.int64]) -> Drops:
-        exits = find_exits(self.falls, vertices, self.is_boundary)
+        exits = self.find_exits(vertices)
         moved = make_drops(len(vertices))
         moved.vertices[:] = np.where(exits.vertices == NOWHERE, vertices, exits.vertices)
         stays = (exits.vertices == NOWHERE) & (exits.triangles == NOWHERE)
@@ -141,6 +160,16 @@ class Walker:
         shares = self.falls.shares(triangles, edges)
         moved.put(rows, self.arrive(triangles, edges, shares))
         return moved
+
+    def find_exits(self, vertices: NDArray[np.int64]) -> Exits:
+        """Find the way of water from vertices."""
+        if self.filling is None:
+            return find_exits(self.falls, vertices, self.is_boundary)
+        found = find_exits(self.falls, vertices, self.is_boundary, self.filling.levels)
+        crosses = self.filling.nexts[vertices] != NOWHERE
+        found.vertices[crosses] = self.filling.nexts[vertices[crosses]]
+        found.triangles[crosses], found.leaves[crosses] = NOWHERE, False
+        return found
 
     # ------------------------------------------------------------------ in triangles
 
@@ -248,13 +277,14 @@ class Walker:
         other, its_edge = falls.cross(triangles, edges)
         beyond = falls.sign_beyond(triangles, edges)
         z = falls.points[:, 2]
-        lower = np.where(z[start] < z[end], start, end)
+        lower = self._choose_end(start, end)
         enters = (beyond < 0) & (shares > 0.0) & (shares < 1.0)
         moved.triangles[:] = np.where(enters, other, triangles)
         moved.edges[:] = np.where(enters, its_edge, edges)
         moved.shares[:] = np.where(enters, 1.0 - shares, shares)
         stops = (z[start] == z[end]) | self._level[other]
-        moved.ends[~enters & stops] = FLAT
+        if self.filling is None:
+            moved.ends[~enters & stops] = FLAT
         moved.ends[other == NO_NEIGHBOR] = BOUNDARY
         follows = ~enters & (moved.ends == MOVING)
         moved.targets[follows] = lower[follows]
@@ -263,3 +293,12 @@ class Walker:
             moved.vertices[hit], moved.targets[hit] = vertex[hit], NOWHERE
             moved.ends[hit] = MOVING
         return moved
+
+    def _choose_end(self, start: NDArray[np.int64], end: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return to which end of an edge water runs."""
+        z = self.falls.points[:, 2]
+        lower = np.where(z[start] < z[end], start, end)
+        if self.filling is None:
+            return lower
+        is_level = self.filling.levels[start] == self.filling.levels[end]
+        return np.where(is_level, self.filling.choose_way(start, end), lower)

@@ -7,14 +7,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...errors import OptionError, PointsError
-from ...tin.validation.options import is_finite_number
+from ...tin.validation.options import as_flag, is_finite_number
 from ..earthwork.reference import find_reference
 from ..results import Features
 from .descent import MOVING
 from .divides import cut_at_divides
+from .filling import fill
 from .hierarchy import build_hierarchy
 from .networks import accumulate, build_network, find_ends
-from .paths import as_places
+from .paths import FILLED_NOTE, as_places
+from .routes import DESCENT, FLAT_GROUND, KINDS, POND
 from .starts import place_drops
 from .strips import settle
 from .vertices import NOWHERE
@@ -25,12 +27,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...tin import TIN
+    from .filling import Filling
     from .networks import Network
 
 __all__ = ["catchments", "flow_accumulation"]
 
 
-def catchments(tin: TIN, outlets: Any = None) -> Features:
+def catchments(tin: TIN, outlets: Any = None, *, fill_depressions: bool = False) -> Features:
     """Find which part of a surface drains into each pit, or through each outlet.
 
     Parameters
@@ -39,6 +42,8 @@ def catchments(tin: TIN, outlets: Any = None) -> Features:
     outlets : (k, 2) array or Features of points, optional
         Places on the surface, CRS units; default the pits. Each is moved down to the first vertex
         that a drop comes to there, as to the lower end of a channel.
+    fill_depressions : bool, optional
+        Depressions are full, so that water goes on from where they spill, as of :func:`flow_path`.
 
     Returns
     -------
@@ -48,10 +53,17 @@ def catchments(tin: TIN, outlets: Any = None) -> Features:
         these tile the surface. Of outlets, with the columns ``outlet`` (number of the point, from
         0 on), ``vertex`` and ``area``; each place belongs to the first outlet its water comes to.
 
+        With ``fill_depressions`` all water leaves the surface: without outlets there is a polygon
+        for each vertex of the boundary at which it does, with the columns ``vertex`` and ``area``,
+        and one for what leaves across edges, with ``vertex`` -1. An outlet under water is moved to
+        where the pond spills.
+
     Raises
     ------
     CrsError
         If coordinates are degrees, or the CRS of the outlets is another one.
+    OptionError
+        If ``fill_depressions`` is neither True nor False.
     PointsError
         If an outlet lies outside the surface, its water comes to no vertex, two come to the same,
         or fall lines cross too many triangles.
@@ -81,21 +93,24 @@ def catchments(tin: TIN, outlets: Any = None) -> Features:
     >>> found.columns["pit"], found.columns["area"]
     (array([4]), array([36.]))
     """
+    is_filled = as_flag("fill_depressions", fill_depressions)
     reference = find_reference(tin, "Catchments")
-    notes: tuple[str, ...] = ()
-    network = build_network(tin)
-    if outlets is None:
-        named = np.arange(network.first_end, len(network.nexts))
+    notes: tuple[str, ...] = (FILLED_NOTE,) if is_filled else ()
+    network = build_network(tin, fill(tin) if is_filled else None)
+    if outlets is not None:
+        named, told = _place_outlets(tin, network, outlets)
+        notes += told
+    elif is_filled:
+        named = network.find_leaving()
     else:
-        named, notes = _place_outlets(tin, network, outlets)
+        named = np.arange(network.first_end, len(network.nexts))
     network.nexts[named] = named
     numbers = np.full(len(network.nexts), NOWHERE)
     numbers[named] = np.arange(len(named))
     labels, level = _label(network, numbers)
     areas = _measure(network, labels, level, len(named))
     kept = np.flatnonzero(areas > 0.0) if outlets is None else np.arange(len(named))
-    columns = _describe_pits(tin, network, named[kept]) if outlets is None else {}
-    columns = columns or {"outlet": kept, "vertex": named - network.first_vertex}
+    columns = _describe_catchments(tin, network, named[kept], kept, outlets is None)
     columns["area"] = areas[kept]
     order = np.lexsort((kept, -areas[kept]))
     places = np.full(len(named) + 1, NOWHERE)
@@ -115,7 +130,9 @@ def catchments(tin: TIN, outlets: Any = None) -> Features:
     )
 
 
-def flow_accumulation(tin: TIN, *, min_area: float = 0.0) -> Features:
+def flow_accumulation(
+    tin: TIN, *, min_area: float = 0.0, fill_depressions: bool = False
+) -> Features:
     """Measure the area that drains through each channel of a surface.
 
     Parameters
@@ -123,20 +140,24 @@ def flow_accumulation(tin: TIN, *, min_area: float = 0.0) -> Features:
     tin : TIN
     min_area : float, optional
         Leave out channels through which less drains, in the square of CRS units.
+    fill_depressions : bool, optional
+        Depressions are full, so that water goes on from where they spill, as of :func:`flow_path`.
 
     Returns
     -------
     Features
         A line for each edge along which water runs, from its upper end, the largest first, with the
         columns ``start`` and ``end`` (vertices), ``area`` that drains through the edge at its lower
-        end, and ``start_area`` and ``end_area``, those that drain through both vertices.
+        end, and ``start_area`` and ``end_area``, those that drain through both vertices. With
+        ``fill_depressions`` also ``kind`` ("descent", "pond" or "flat", over level ground), and
+        elevations are those of the water where there is any.
 
     Raises
     ------
     CrsError
         If coordinates are degrees.
     OptionError
-        If the least area is no number from 0 on.
+        If the least area is no number from 0 on, or ``fill_depressions`` no flag.
     PointsError
         If fall lines cross too many triangles.
 
@@ -156,8 +177,10 @@ def flow_accumulation(tin: TIN, *, min_area: float = 0.0) -> Features:
     """
     if not is_finite_number(min_area) or min_area < 0:
         raise OptionError("min_area", min_area, allowed="a number from 0 on")
+    is_filled = as_flag("fill_depressions", fill_depressions)
     reference = find_reference(tin, "Flow accumulation")
-    network = build_network(tin)
+    filling = fill(tin) if is_filled else None
+    network = build_network(tin, filling)
     total = accumulate(network)
     nodes = np.flatnonzero(network.uppers != NOWHERE)
     start, end = network.uppers[nodes], network.nexts[nodes] - network.first_vertex
@@ -174,16 +197,34 @@ def flow_accumulation(tin: TIN, *, min_area: float = 0.0) -> Features:
         "end_area": total[network.first_vertex + end],
     }
     names = ("area", "start_area", "end_area")
+    coordinates = tin.points[pairs[chosen]].reshape(-1, 3)
+    notes: tuple[str, ...] = (BOUNDARY_NOTE,)
+    if filling is not None:
+        columns["kind"] = _find_kinds(filling, start, end)
+        coordinates[:, 2] = filling.levels[pairs[chosen]].ravel()
+        notes += (FILLED_NOTE,)
     return Features.of_lines(
-        tin.points[pairs[chosen]].reshape(-1, 3),
+        coordinates,
         2 * np.arange(len(chosen) + 1),
         columns=columns,
         units=dict.fromkeys(names, reference.units.area),
         crs=tin.crs,
         elevation_unit=tin.elevation_unit,
         name="flow accumulation",
-        notes=[*reference.notes, BOUNDARY_NOTE],
+        notes=[*reference.notes, *notes],
     )
+
+
+def _find_kinds(
+    filling: Filling, start: NDArray[np.int64], end: NDArray[np.int64]
+) -> NDArray[np.object_]:
+    """Tell which edges lead across water or level ground."""
+    is_level = filling.levels[start] == filling.levels[end]
+    is_wet = (filling.ponds[start] != NOWHERE) | (filling.ponds[end] != NOWHERE)
+    kinds: NDArray[np.object_] = KINDS[
+        np.where(is_level, np.where(is_wet, POND, FLAT_GROUND), DESCENT)
+    ]
+    return kinds
 
 
 def _label(
@@ -191,10 +232,11 @@ def _label(
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the number of each strip's end, and of level triangles; ``NOWHERE`` for none."""
     falls = network.walker.falls
-    labels = numbers[find_ends(network.nexts)[: network.first_vertex]]
+    ends = find_ends(network.nexts)
+    labels = numbers[ends[: network.first_vertex]]
     level = np.full(len(falls.triangles), NOWHERE)
     flat = np.flatnonzero(falls.is_level)
-    level[flat] = numbers[network.first_end + network.grounds[falls.triangles[flat, 0]]]
+    level[flat] = numbers[ends[network.find_level_nodes(flat)]]
     return labels, level
 
 
@@ -209,6 +251,18 @@ def _measure(
     flat = level != NOWHERE
     np.add.at(areas, level[flat], network.areas[flat])
     return areas
+
+
+def _describe_catchments(
+    tin: TIN, network: Network, nodes: NDArray[np.int64], numbers: NDArray[np.int64], is_all: bool
+) -> dict[str, Any]:
+    """Name what the water of catchments comes to: all ends there are, or outlets by number."""
+    vertices = nodes - network.first_vertex
+    if not is_all:
+        return {"outlet": numbers, "vertex": vertices}
+    if network.walker.filling is None:
+        return _describe_pits(tin, network, nodes)
+    return {"vertex": np.where(nodes == len(network.nexts) - 1, NOWHERE, vertices)}
 
 
 def _describe_pits(tin: TIN, network: Network, nodes: NDArray[np.int64]) -> dict[str, Any]:
@@ -249,6 +303,11 @@ def _place_outlets(
             "it ends on level ground, or leaves across the boundary.",
             rows=lost[:5],
         )
+    filling = network.walker.filling
+    if filling is not None:
+        ponds = filling.ponds[vertices]
+        spills = np.append(filling.hierarchy.spill_vertices, NOWHERE)[ponds]
+        vertices = np.where(ponds == NOWHERE, vertices, spills)
     order = np.argsort(vertices, kind="stable")
     same = np.flatnonzero(np.diff(vertices[order]) == 0)
     if len(same):

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from ...tin import TIN
 
-__all__ = ["Hierarchy", "build_hierarchy"]
+__all__ = ["Hierarchy", "build_hierarchy", "rank_vertices"]
 
 
 class Hierarchy(NamedTuple):
@@ -28,8 +28,6 @@ class Hierarchy(NamedTuple):
         Where each is full: it joins another one, or runs over.
     parents : (d,) int64 array
         The depression that it becomes a part of, ``NOWHERE`` for the outermost ones.
-    into : (d,) int64 array
-        A pit that water running over comes to, if it does not leave the surface: a vertex.
     basins : (n,) int64 array
         For each vertex the smallest depression that its water is in once it is full, ``NOWHERE`` if
         it leaves the surface; it need not be under water then.
@@ -38,7 +36,6 @@ class Hierarchy(NamedTuple):
     pits: NDArray[np.int64]
     spill_vertices: NDArray[np.int64]
     parents: NDArray[np.int64]
-    into: NDArray[np.int64]
     basins: NDArray[np.int64]
 
     def find_roots(self) -> NDArray[np.int64]:
@@ -92,11 +89,11 @@ def build_hierarchy(tin: TIN) -> Hierarchy:
     .. [2] R. Barnes, K. L. Callaghan, A. D. Wickert, Computing water flow through complex
        landscapes, Earth Surface Dynamics 8 (2020), doi:10.5194/esurf-8-431-2020.
     """
-    rank = _rank_vertices(tin.points)
+    rank = rank_vertices(tin.points)
     edges = tin.edges.astype(np.int64)
     basin = _find_basins(rank, edges)
     pits, number = np.unique(basin, return_inverse=True)
-    joining = _Joining(tin.points[:, 2], pits)
+    joining = _Joining(rank, pits)
     joining.join(_list_passes(tin, rank, edges, number))
     stands = _leave_out_shallow(joining, tin.points[:, 2])
     kept = np.flatnonzero(stands == np.arange(len(stands)))
@@ -106,12 +103,11 @@ def build_hierarchy(tin: TIN) -> Hierarchy:
         np.array(joining.pits, np.int64)[kept],
         np.array(joining.spills, np.int64)[kept],
         places[np.array(joining.parents, np.int64)[kept]],
-        np.array(joining.into, np.int64)[kept],
         places[stands[number]],
     )
 
 
-def _rank_vertices(points: NDArray[np.float64]) -> NDArray[np.int64]:
+def rank_vertices(points: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return the place of each vertex in the order of elevations, no two the same."""
     rank = np.empty(len(points), np.int64)
     rank[np.lexsort((points[:, 1], points[:, 0], points[:, 2]))] = np.arange(len(points))
@@ -170,15 +166,14 @@ class _Joining:
     Nodes are depressions, with and without depth, those that join before what they make.
     """
 
-    def __init__(self, elevations: NDArray[np.float64], pits: NDArray[np.int64]) -> None:
-        self._z = elevations
+    def __init__(self, rank: NDArray[np.int64], pits: NDArray[np.int64]) -> None:
+        self._rank = rank
         self._joined = list(range(len(pits) + 1))
         self._node = [*range(len(pits)), NOWHERE]  # of each set of basins
         self.pits: list[int] = pits.tolist()
         self.starts: list[int] = pits.tolist()  # the vertex at which each begins
         self.spills = [NOWHERE] * len(pits)
         self.parents = [NOWHERE] * len(pits)
-        self.into = [NOWHERE] * len(pits)
 
     def join(self, passes: _Passes) -> None:
         """Join basins pass after pass."""
@@ -187,11 +182,10 @@ class _Joining:
             first, second = self._find(one), self._find(other)
             if first == second:
                 continue
-            if self._find(outside) == first:
-                self._drain(vertex, second, one)
-            elif self._find(outside) == second:
-                self._drain(vertex, first, other)
+            if self._find(outside) == second:
                 first, second = second, first
+            if self._find(outside) == first:
+                self.spills[self._node[second]] = vertex  # runs over
             else:
                 self._merge(vertex, first, second)
             self._joined[second] = first
@@ -203,21 +197,14 @@ class _Joining:
             basin = joined[basin]
         return basin
 
-    def _drain(self, vertex: int, basins: int, beyond: int) -> None:
-        """Let a set of basins run over into a basin that does so already, or to the outside."""
-        node = self._node[basins]
-        self.spills[node] = vertex
-        self.into[node] = NOWHERE if beyond == NOWHERE else self.pits[beyond]
-
     def _merge(self, vertex: int, first: int, second: int) -> None:
         parts = [self._node[first], self._node[second]]
         made = len(self.pits)
         for part in parts:
             self.spills[part], self.parents[part] = vertex, made
-        lowest = min(parts, key=lambda part: (self._z[self.pits[part]], part))
-        self.pits.append(self.pits[lowest])
+        self.pits.append(min((self.pits[part] for part in parts), key=self._rank.__getitem__))
         self.starts.append(vertex)
-        for column in (self.spills, self.parents, self.into):
+        for column in (self.spills, self.parents):
             column.append(NOWHERE)
         self._node[first] = made
 
@@ -230,19 +217,17 @@ def _leave_out_shallow(found: _Joining, z: NDArray[np.float64]) -> NDArray[np.in
     (nodes,) int64 array
         The node that stands for each, ``NOWHERE`` for none; parents are those that are left.
     """
-    parents, into = found.parents, found.into
+    parents = found.parents
     count = len(parents)
     deep = [
         spill != NOWHERE and z[spill] > z[start]
         for spill, start in zip(found.spills, found.starts, strict=True)
     ]
-    # From the outermost inwards; what has no depth hands on where it runs over into.
+    # From the outermost inwards.
     stands = [NOWHERE] * count
     for node in range(count - 1, -1, -1):
         parent = parents[node]
         if parent != NOWHERE:
-            if not deep[parent] and stands[parent] == NOWHERE:
-                into[node] = into[parent]
             parents[node] = stands[parent]
         stands[node] = node if deep[node] else parents[node]
     return _join_single_parts(parents, deep)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from ...tin import TIN
     from .descent import Drops
+    from .filling import Filling
     from .strips import Bases, Strips
 
 __all__ = ["Network", "accumulate", "build_network", "find_ends"]
@@ -59,16 +60,29 @@ class Network(NamedTuple):
         """The node of the ground of vertex 0."""
         return self.first_vertex + len(self.grounds)
 
+    def find_level_nodes(self, level: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return the nodes to which water of level triangles goes."""
+        corners, filling = self.walker.falls.triangles[level].astype(np.int64), self.walker.filling
+        if filling is None:
+            return self.first_end + self.grounds[corners[:, 0]]
+        return self.first_vertex + filling.choose_way(*corners.T)
 
-def build_network(tin: TIN) -> Network:
-    """Find the way of all water of a surface.
+    def find_leaving(self) -> NDArray[np.int64]:
+        """Return the nodes of vertices at which water leaves the surface, and the outside."""
+        vertices = np.flatnonzero(self.walker.is_boundary)
+        leaves = self.walker.find_exits(vertices).leaves
+        return np.append(self.first_vertex + vertices[leaves], len(self.nexts) - 1)
+
+
+def build_network(tin: TIN, filling: Filling | None = None) -> Network:
+    """Find the way of all water of a surface, or of a filled one.
 
     Raises
     ------
     PointsError
         If fall lines cross too many triangles, or elevations are too large to decide exactly.
     """
-    walker = Walker(find_falls(tin))
+    walker = Walker(find_falls(tin), filling)
     falls = walker.falls
     bases = find_bases(falls)
     strips = cut_strips(falls, bases)
@@ -156,8 +170,7 @@ def accumulate(found: Network) -> NDArray[np.float64]:
     total = np.zeros(len(found.nexts))
     total[: len(strips.triangles)] = strips.parts * found.areas[strips.triangles]
     level = np.flatnonzero(found.walker.falls.is_level)
-    ground = found.grounds[found.walker.falls.triangles[level, 0]]
-    np.add.at(total, found.first_end + ground, found.areas[level])
+    np.add.at(total, found.find_level_nodes(level), found.areas[level])
     moving = np.flatnonzero(found.nexts != np.arange(len(found.nexts)))
     waits = np.bincount(found.nexts[moving], minlength=len(total))
     ready = moving[waits[moving] == 0]

@@ -9,12 +9,15 @@ import numpy as np
 from ..._sentences import counted
 from ...errors import PointsError
 from ...tin.topology import find_offsets
+from ...tin.validation.options import as_flag
 from ...tin.validation.points import as_xy
 from ..earthwork.reference import find_reference
 from ..georeference import require_same_crs
 from ..results import Features
-from .descent import BOUNDARY, FLAT, MOVING, PIT, Walker
+from .descent import BOUNDARY, FLAT, PIT, Walker
 from .falls import find_falls
+from .filling import fill
+from .routes import KINDS, cut_parts, trace_down
 from .starts import place_drops
 from .vertices import NOWHERE
 
@@ -22,14 +25,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...tin import TIN
-    from .descent import Drops
+    from .filling import Filling
+    from .routes import Trace
 
-__all__ = ["ENDS", "as_places", "flow_path", "trace_down"]
+__all__ = ["ENDS", "FILLED_NOTE", "as_places", "flow_path"]
 
+FILLED_NOTE = "Depressions are full: their water goes on from where they spill."
 ENDS = {PIT: "pit", FLAT: "flat", BOUNDARY: "boundary"}
 
 
-def flow_path(tin: TIN, points: Any) -> Features:
+def flow_path(tin: TIN, points: Any, *, fill_depressions: bool = False) -> Features:
     """Follow drops of water down a surface, along the steepest descent.
 
     Parameters
@@ -37,6 +42,9 @@ def flow_path(tin: TIN, points: Any) -> Features:
     tin : TIN
     points : (k, 2) array or Features of points
         Where they fall, CRS units.
+    fill_depressions : bool, optional
+        Depressions are full, so that water goes on from where they spill, to the boundary; default
+        they are empty, and hold what comes to their pits.
 
     Returns
     -------
@@ -46,10 +54,17 @@ def flow_path(tin: TIN, points: Any) -> Features:
         the surface), ``length`` in the plane and ``drop`` in elevation. A point from which nothing
         descends has no line; a note tells it.
 
+        With ``fill_depressions`` a line for each part, on the surface of the water where there is
+        any, and the columns ``start``, ``part`` (from 0 on), ``kind`` ("descent", "pond" or "flat",
+        over level ground), ``pit`` (the lowest vertex of the pond, -1 for none), ``end`` (the kind
+        of the next part, "boundary" behind the last), ``length`` and ``drop``.
+
     Raises
     ------
     CrsError
         If coordinates are degrees, or the CRS of the points is another one.
+    OptionError
+        If ``fill_depressions`` is neither True nor False.
     PointsError
         If there is no point, or one lies outside the surface.
 
@@ -64,10 +79,17 @@ def flow_path(tin: TIN, points: Any) -> Features:
     It ends in a pit, on flat ground (a level triangle or channel, over which no direction is
     steepest) or at the boundary, of a hole too, which water leaves freely.
 
+    Filled depressions are those of a priority flood [2]_, on the edges: a depression that spills
+    into one that spills back is one with it. Across water and level ground a drop takes the edges
+    of the surface, as few as there can be, to where the pond spills or the ground descends; so its
+    way there is one of many. Under water it may cross a triangle to come to the first vertex.
+
     References
     ----------
     .. [1] S. Yu, M. van Kreveld, J. Snoeyink, Drainage queries in TINs: from local to global and
        back again, Advances in GIS Research II (1996), 829-842.
+    .. [2] R. Barnes, C. Lehman, D. Mulla, Priority-flood, Computers & Geosciences 62 (2014),
+       doi:10.1016/j.cageo.2013.04.024.
 
     Examples
     --------
@@ -80,31 +102,31 @@ def flow_path(tin: TIN, points: Any) -> Features:
            [4.    , 0.    , 0.    ]])
     >>> path.columns["end"].tolist()
     ['boundary']
+
+    >>> bowl = [[0, 0, 3], [6, 0, 3], [6, 6, 2], [0, 6, 3], [3, 3, 0]]
+    >>> path = ts.flow_path(ts.triangulate(bowl), [[0, 0]], fill_depressions=True)
+    >>> path.columns["kind"].tolist(), path.columns["end"].tolist()
+    (['descent', 'pond'], ['pond', 'boundary'])
     """
+    is_filled = as_flag("fill_depressions", fill_depressions)
     reference = find_reference(tin, "Flow paths")
     xy, notes = as_places(tin, points, "the points")
-    walker = Walker(find_falls(tin))
+    walker = Walker(find_falls(tin), fill(tin) if is_filled else None)
     start = np.column_stack([xy, tin.interpolate(xy)])
-    coordinates, owners, ends = trace_down(walker, start, place_drops(tin, walker, xy))
-    lengths = np.bincount(owners, minlength=len(xy))
+    trace = trace_down(walker, start, place_drops(tin, walker, xy))
+    lengths = np.bincount(trace.owners, minlength=len(xy))
     stays = np.flatnonzero(lengths < 2)
     if len(stays):
         what = counted(len(stays), "point")
         notes += (
             f"Nothing descends from {what} (first: number {stays[0]}): no path starts there.",
         )
-    kept = np.flatnonzero(lengths >= 2)
-    coordinates = coordinates[lengths[owners] >= 2]
-    offsets = find_offsets(lengths[kept])
-    steps = np.diff(coordinates, axis=0)
-    spans = np.append(np.hypot(steps[:, 0], steps[:, 1]), 0.0)
-    spans[offsets[1:] - 1] = 0.0
-    columns = {
-        "start": kept,
-        "end": np.array([ENDS[end] for end in ends[kept].tolist()], object),
-        "length": np.add.reduceat(spans, offsets[:-1]) if len(kept) else np.zeros(0),
-        "drop": coordinates[offsets[:-1], 2] - coordinates[offsets[1:] - 1, 2],
-    }
+    if walker.filling is None:
+        coordinates, offsets, columns = _describe_paths(trace, lengths)
+    else:
+        coordinates, offsets, columns = _describe_parts(trace, walker.filling)
+        notes += (FILLED_NOTE,)
+    columns |= _measure_lines(coordinates, offsets)
     return Features.of_lines(
         coordinates,
         offsets,
@@ -115,6 +137,48 @@ def flow_path(tin: TIN, points: Any) -> Features:
         name="flow paths",
         notes=[*reference.notes, *notes],
     )
+
+
+def _describe_paths(
+    trace: Trace, lengths: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.int64], dict[str, Any]]:
+    """Return the paths of more than one place: coordinates, offsets, columns."""
+    kept = np.flatnonzero(lengths >= 2)
+    ends = np.array([ENDS[end] for end in trace.ends[kept].tolist()], object)
+    coordinates = trace.coordinates[lengths[trace.owners] >= 2]
+    return coordinates, find_offsets(lengths[kept]), {"start": kept, "end": ends}
+
+
+def _describe_parts(
+    trace: Trace, filling: Filling
+) -> tuple[NDArray[np.float64], NDArray[np.int64], dict[str, Any]]:
+    """Return the parts of paths over a filled surface: coordinates, offsets, columns."""
+    parts = cut_parts(trace, filling)
+    rows = np.arange(len(parts.owners))
+    first = np.append(True, np.diff(parts.owners) != 0)[: len(rows)]
+    last = np.append(first[1:], True)[: len(rows)]
+    kinds = KINDS[parts.kinds]
+    columns = {
+        "start": parts.owners,
+        "part": rows - np.maximum.accumulate(np.where(first, rows, 0)),
+        "kind": kinds,
+        "pit": np.append(filling.hierarchy.pits, NOWHERE)[parts.ponds],
+        "end": np.where(last, ENDS[BOUNDARY], np.roll(kinds, -1)),
+    }
+    return parts.coordinates, parts.offsets, columns
+
+
+def _measure_lines(
+    coordinates: NDArray[np.float64], offsets: NDArray[np.int64]
+) -> dict[str, NDArray[np.float64]]:
+    """Return lengths in the plane and drops in elevation."""
+    steps = np.diff(coordinates, axis=0)
+    spans = np.append(np.hypot(steps[:, 0], steps[:, 1]), 0.0)
+    spans[offsets[1:] - 1] = 0.0
+    return {
+        "length": np.add.reduceat(spans, offsets[:-1]) if len(offsets) > 1 else np.zeros(0),
+        "drop": coordinates[offsets[:-1], 2] - coordinates[offsets[1:] - 1, 2],
+    }
 
 
 def as_places(tin: TIN, points: Any, what: str) -> tuple[NDArray[np.float64], tuple[str, ...]]:
@@ -147,37 +211,3 @@ def as_places(tin: TIN, points: Any, what: str) -> tuple[NDArray[np.float64], tu
             rows=outside[:5],
         )
     return xy, notes
-
-
-def trace_down(
-    walker: Walker, start: NDArray[np.float64], drops: Drops
-) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int8]]:
-    """Follow drops to their ends.
-
-    Returns
-    -------
-    coordinates : (n, 3) float64 array
-        Of all paths, one after the other; a place that repeats the one before is left out.
-    owners : (n,) int64 array
-        The drop of each.
-    ends : (k,) int8 array
-    """
-    numbers = np.arange(len(start))
-    ends = drops.ends.copy()
-    places, owners = [start], [numbers]
-    stays = (drops.vertices == NOWHERE) & (drops.triangles == NOWHERE)
-    here = np.where(stays[:, None], start, walker.locate(drops))
-    while True:
-        places.append(here)
-        owners.append(numbers)
-        ends[numbers] = drops.ends
-        moving = np.flatnonzero(drops.ends == MOVING)
-        if len(moving) == 0:
-            break
-        numbers, drops = numbers[moving], walker.step(drops.choose(moving))
-        here = walker.locate(drops)
-    owner, xyz = np.concatenate(owners), np.concatenate(places)
-    order = np.argsort(owner, kind="stable")
-    owner, xyz = owner[order], xyz[order]
-    is_new = np.append(True, (np.diff(xyz[:, :2], axis=0) != 0).any(axis=1) | (np.diff(owner) != 0))
-    return xyz[is_new], owner[is_new], ends

@@ -70,8 +70,7 @@ class _Start:
         """Follow the fall line to the edge where it leaves the triangle."""
         signs = self._walker.falls.signs[self._triangle].tolist()
         if not any(signs):
-            drop.ends[0] = FLAT
-            return drop
+            return self._start_on_level_ground(drop)
         values = [self._measure(k) for k in range(3)]
         for k in range(3):
             if signs[k] <= 0:
@@ -80,6 +79,14 @@ class _Start:
             if 0 <= share <= 1:
                 edge, rounded = k, round_share(float(share))
         return self._walker.arrive(*(np.array([one]) for one in (self._triangle, edge, rounded)))
+
+    def _start_on_level_ground(self, drop: Drops) -> Drops:
+        filling = self._walker.filling
+        if filling is None:
+            drop.ends[0] = FLAT
+        else:
+            drop.targets[:] = filling.choose_way(*np.array(self._corners)[:, None])
+        return drop
 
     def _find_share(self, k: int, values: list[Fraction]) -> Fraction:
         """Return where the fall line meets the line of edge k, from corner k + 1 on.
@@ -104,7 +111,7 @@ class _Start:
             sides.append((int(other[0]), int(its_edge[0]), 1.0 - share))
         away = [side for side in sides if falls.signs[side[0], side[1]] < 0]
         if away:
-            chosen = max(away, key=lambda side: self._measure_steepness(side[0]))
+            chosen = max(away, key=lambda side: self._rate(*side[:2]))
             drop.triangles[0], drop.edges[0], drop.shares[0] = chosen
             return drop
         moved = self._walker.arrive(triangle, edge, np.array([share]))
@@ -116,6 +123,13 @@ class _Start:
     def _measure(self, k: int) -> Fraction:
         a, b, c = (self._corners[(k + turn) % 3] for turn in (1, 2, 0))
         return measure_fall(self._walker.falls.points, a, b, c)
+
+    def _rate(self, triangle: int, edge: int) -> tuple[bool, Fraction]:
+        """Return what makes a triangle below an edge the better way: no level water, steepness."""
+        falls, filling = self._walker.falls, self._walker.filling
+        apex, *ends = falls.triangles[triangle, [edge, edge - 2, edge - 1]].tolist()
+        is_water = filling is not None and len(set(filling.levels[[apex, *ends]].tolist())) == 1
+        return not is_water, self._measure_steepness(triangle)
 
     def _measure_steepness(self, triangle: int) -> Fraction:
         """Return the squared slope of a triangle."""

@@ -54,7 +54,12 @@ class _Candidates(NamedTuple):
     slopes: NDArray[np.float64]
 
 
-def find_exits(falls: Falls, vertices: NDArray[np.int64], is_boundary: NDArray[np.bool_]) -> Exits:
+def find_exits(
+    falls: Falls,
+    vertices: NDArray[np.int64],
+    is_boundary: NDArray[np.bool_],
+    levels: NDArray[np.float64] | None = None,
+) -> Exits:
     """Find the steepest descent from vertices.
 
     Parameters
@@ -63,6 +68,8 @@ def find_exits(falls: Falls, vertices: NDArray[np.int64], is_boundary: NDArray[n
     vertices : (k,) int64 array
     is_boundary : (n,) bool array
         Of all vertices.
+    levels : (n,) float64 array, optional
+        Of water at vertices: there is a descent only to where it stands lower.
 
     Returns
     -------
@@ -76,6 +83,8 @@ def find_exits(falls: Falls, vertices: NDArray[np.int64], is_boundary: NDArray[n
     where the steepest way is an edge of the boundary across which its triangle drains.
     """
     found = _list_candidates(falls, vertices)
+    if levels is not None:
+        found = _leave_out_water(falls, vertices, found, levels)
     chosen = _choose_steepest(falls, vertices, found)
     to_vertex, to_triangle = (np.full(len(vertices), NOWHERE) for _ in range(2))
     slopes = np.zeros(len(vertices))
@@ -149,6 +158,18 @@ def _cross_exactly(falls: Falls, triangle: int) -> tuple[Fraction, Fraction, Fra
     u, v = ([end - start for start, end in zip(a, other, strict=True)] for other in (b, c))
     east, north, area = (u[i] * v[j] - u[j] * v[i] for i, j in ((1, 2), (2, 0), (0, 1)))
     return east, north, area
+
+
+def _leave_out_water(
+    falls: Falls, vertices: NDArray[np.int64], found: _Candidates, levels: NDArray[np.float64]
+) -> _Candidates:
+    """Leave out ways down under water that stands as high as the vertex."""
+    z = falls.points[:, 2]
+    corners = falls.triangles[found.triangles]
+    lowest = corners[np.arange(len(corners)), z[corners].argmin(axis=1)]
+    beyond = np.where(found.vertices == NOWHERE, lowest, found.vertices)
+    kept = levels[beyond] < z[vertices[found.owners]]
+    return _Candidates._make(array[kept] for array in found)
 
 
 def _choose_steepest(

@@ -12,7 +12,10 @@ from ...tin.validation.options import as_flag, is_finite_number
 from ..earthwork.reference import find_reference
 from ..relief.dissolving import number_components
 from ..results import Features
-from .hierarchy import build_hierarchy
+from .descent import MOVING, Walker, make_drops
+from .falls import find_falls
+from .filling import fill
+from .strips import settle
 from .vertices import NOWHERE
 from .water import Waters, cut_below, gather_polygons, measure_waters
 
@@ -21,6 +24,7 @@ if TYPE_CHECKING:
 
     from ...tin import TIN
     from ..earthwork.reference import Reference
+    from .filling import Filling
     from .hierarchy import Hierarchy
 
 __all__ = ["BOUNDARY_NOTE", "depressions", "pits", "ponds"]
@@ -64,7 +68,7 @@ def pits(tin: TIN) -> Features:
     (array([[3., 3., 0.]]), array([2.]), array([2]))
     """
     reference = find_reference(tin, "Pits")
-    found = build_hierarchy(tin)
+    found = fill(tin).hierarchy
     is_leaf = np.ones(len(found.pits), np.bool_)
     is_leaf[found.parents[found.parents != NOWHERE]] = False
     chosen = np.flatnonzero(is_leaf)
@@ -97,9 +101,9 @@ def depressions(tin: TIN, *, nested: bool = False, min_depth: float = 0.0) -> Fe
     Features
         The surface of the water in each when it is full, as polygons at that elevation, the deepest
         first, with the columns ``depression`` (a number from 0 on), ``parent`` (the one it is part
-        of, -1 for none), ``into`` (the outermost one that its water runs over into, -1 where it
-        leaves the surface), ``pit_vertex``, ``pit_level``, ``depth``, ``spill_level``, ``spill_x``,
-        ``spill_y``, ``spill_vertex``, ``area`` and ``volume``.
+        of, -1 for none), ``into`` (the next outermost one here that its water comes to when all are
+        full, -1 where it leaves the surface), ``pit_vertex``, ``pit_level``, ``depth``,
+        ``spill_level``, ``spill_x``, ``spill_y``, ``spill_vertex``, ``area`` and ``volume``.
 
     Raises
     ------
@@ -131,12 +135,13 @@ def depressions(tin: TIN, *, nested: bool = False, min_depth: float = 0.0) -> Fe
     if not is_finite_number(min_depth) or min_depth < 0:
         raise OptionError("min_depth", min_depth, allowed="a number from 0 on")
     reference = find_reference(tin, "Depressions")
-    found = build_hierarchy(tin)
+    filling = fill(tin)
+    found = filling.hierarchy
     chosen = _choose_depressions(tin, found, nested, float(min_depth))
     waters = _list_waters(tin, found, chosen)
     areas, volumes = measure_waters(tin.points, tin.triangles, waters, reference.up)
     columns = {
-        **_describe_places(tin, found, chosen),
+        **_describe_places(tin, filling, chosen),
         **_describe_spills(tin, found, chosen),
         "area": areas,
         "volume": volumes,
@@ -303,21 +308,42 @@ def _describe_spills(tin: TIN, found: Hierarchy, chosen: NDArray[np.int64]) -> d
     }
 
 
-def _describe_places(tin: TIN, found: Hierarchy, chosen: NDArray[np.int64]) -> dict[str, Any]:
+def _describe_places(tin: TIN, filling: Filling, chosen: NDArray[np.int64]) -> dict[str, Any]:
     """Name depressions, those they are part of, and those that they run over into."""
-    numbers = np.full(len(found.pits) + 1, NOWHERE)
+    found, numbers = filling.hierarchy, np.full(len(filling.hierarchy.pits) + 1, NOWHERE)
     numbers[chosen] = np.arange(len(chosen))
-    outer = found.find_roots()[chosen] if len(chosen) else chosen
-    into = found.into[outer]
-    basin = np.where(into == NOWHERE, NOWHERE, found.basins[into])
-    root = np.where(basin == NOWHERE, NOWHERE, np.append(found.find_roots(), NOWHERE)[basin])
+    outer, row = np.unique(found.find_roots()[chosen], return_inverse=True)
+    into = _run_over(tin, filling, outer, numbers != NOWHERE) if len(outer) else outer
     return {
         "depression": np.arange(len(chosen)),
         "parent": numbers[found.parents[chosen]],
-        "into": numbers[root],
+        "into": numbers[into][row],
         "pit_vertex": found.pits[chosen],
         "pit_level": tin.points[found.pits[chosen], 2],
     }
+
+
+def _run_over(
+    tin: TIN, filling: Filling, ponds: NDArray[np.int64], is_listed: NDArray[np.bool_]
+) -> NDArray[np.int64]:
+    """Return the next listed depression that water of full ones comes to, ``NOWHERE`` for none."""
+    walker = Walker(find_falls(tin), filling)
+    spills = filling.hierarchy.spill_vertices
+    into, vertices = np.full(len(ponds), NOWHERE), spills[ponds]
+    rows = np.arange(len(ponds))
+    while len(rows):
+        unique, row = np.unique(vertices, return_inverse=True)
+        drops = make_drops(len(unique))
+        drops.vertices[:] = unique
+        drops, _ = settle(walker, drops)
+        comes = np.where(drops.vertices == NOWHERE, drops.targets, drops.vertices)
+        pond = np.where(drops.ends == MOVING, filling.ponds[comes], NOWHERE)
+        arrives = (pond != NOWHERE) & is_listed[pond]
+        into[rows[arrives[row]]] = pond[row][arrives[row]]
+        comes = np.where(pond == NOWHERE, comes, spills[pond])
+        on = ((drops.ends == MOVING) & ~arrives)[row]
+        rows, vertices = rows[on], comes[row][on]
+    return into
 
 
 def _draw_waters(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._progress import Progress
 from ...errors import LinesError, OptionError, PointsError
 from ...tin import TIN, Survey, triangulate
 from ..gaps import describe_gaps
@@ -19,10 +20,11 @@ from .slips import name_factor
 from .suspects import CERTAINTIES, REASONS, Rows, Suspect
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
+    from ..._progress import Tell
     from .heights import Heights
 
 __all__ = ["DROPPED", "blunders", "screen"]
@@ -37,7 +39,7 @@ _MOST_PEAKS = 0.02
 """Of the points: where more stand out they are the ground, or what grows on it."""
 
 
-def blunders(points: Survey | TIN) -> Table:
+def blunders(points: Survey | TIN, *, progress: Callable[[float], None] | None = None) -> Table:
     """Check points: find those that look like blunders.
 
     Every point is compared with the surface that the others make without it, and with the scale of
@@ -48,6 +50,9 @@ def blunders(points: Survey | TIN) -> Table:
     ----------
     points : Survey or TIN
         Points, which are triangulated with their lines, or a TIN of them.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0, between the stages and the rounds in which
+        elevations are judged. What it raises ends the call.
 
     Returns
     -------
@@ -88,17 +93,22 @@ def blunders(points: Survey | TIN) -> Table:
     >>> found["row"], found["reason"].tolist(), found["residual"].round(1)
     (array([58, 33]), ['factor', 'spike'], array([2883.6,    3. ]))
     """
-    tin = _as_tin(points)
+    done = Progress(progress)
+    tin = _as_tin(points, done.stage(0.0, 0.3))
     rows = Rows.of(tin)
     suspects, notes = find_places(rows, tin.crs)
     codes = _find_codes(rows)
-    heights, scale = _find_heights(tin, suspects, codes)
+    done(0.4)
+    heights, scale = _find_heights(tin, suspects, codes, progress=done.stage(0.4, 0.8))
+    done(0.8)
     suspects += [*codes, *heights]
     repeated, more = find_repeated_numbers(tin, rows)
     suspects += repeated
     suspects += find_repeated_places(tin, rows, scale)
     suspects += find_crossings(tin, scale, STRICT * scale)
-    return _tabulate(tin, suspects, [*notes, *more, *describe_gaps(tin)])
+    table = _tabulate(tin, suspects, [*notes, *more, *describe_gaps(tin)])
+    done.end()
+    return table
 
 
 def screen(tin: TIN) -> Table:
@@ -114,12 +124,12 @@ def screen(tin: TIN) -> Table:
     return _tabulate(tin, [*suspects, *codes, *heights], notes)
 
 
-def _as_tin(points: Any) -> TIN:
+def _as_tin(points: Any, progress: Tell | None) -> TIN:
     if isinstance(points, TIN):
         return points
     if not isinstance(points, Survey):
         raise OptionError("points", points, "a Survey or a TIN")
-    return triangulate(points)
+    return triangulate(points, progress=progress)
 
 
 # ---------------------------------------------------------------- elevations
@@ -139,7 +149,12 @@ def _find_codes(rows: Rows) -> list[Suspect]:
 
 
 def _find_heights(
-    tin: TIN, misplaced: Sequence[Suspect], codes: Sequence[Suspect], *, is_whole: bool = True
+    tin: TIN,
+    misplaced: Sequence[Suspect],
+    codes: Sequence[Suspect],
+    *,
+    is_whole: bool = True,
+    progress: Tell | None = None,
 ) -> tuple[list[Suspect], float]:
     """Return the rows that are too high or too low, and the usual scale of residuals.
 
@@ -154,7 +169,8 @@ def _find_heights(
     judged = np.arange(count, dtype=np.int32) if is_whole else find_peaks_and_pits(ground)
     if not is_whole and len(judged) > _MOST_PEAKS * count:
         return [], np.nan
-    heights = find_heights(ground, judged, wrong, sample=None if is_whole else _SAMPLE)
+    sample = None if is_whole else _SAMPLE
+    heights = find_heights(ground, judged, wrong, sample=sample, progress=progress)
     return _judge_rows(ground, rows, heights.found), heights.scale
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..._progress import Progress
 from ...errors import LinesError, PointsError
 from ...tin.topology import find_boundary_vertices, find_owners
 from .. import _kernel
@@ -17,6 +18,7 @@ from .scales import find_rounding, measure_scales
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ..._progress import Tell
     from ...tin import TIN
 
 __all__ = ["STRICT", "Heights", "Judgement", "find_heights", "find_peaks_and_pits"]
@@ -27,6 +29,8 @@ _CARE = 2.0
 """So many times more on lines and at the boundary, where less is known."""
 _APART = 2.5
 """And if it is so many times as large as those of its neighbours once it is corrected."""
+_STARTED = 0.3
+"""Of the work as it is told, what is done before the first round; how many there are depends."""
 _MOST_REMOVED = 20_000
 """More are measured against corrected elevations, and not against a surface without them."""
 
@@ -66,7 +70,12 @@ class Judgement(NamedTuple):
 
 
 def find_heights(
-    tin: TIN, judged: NDArray[np.int32], wrong: NDArray[np.int32], *, sample: int | None = None
+    tin: TIN,
+    judged: NDArray[np.int32],
+    wrong: NDArray[np.int32],
+    *,
+    sample: int | None = None,
+    progress: Tell | None = None,
 ) -> Judgement:
     """Find vertices that are too high or too low for those around them.
 
@@ -89,6 +98,8 @@ def find_heights(
     sample : int, optional
         Measure scales from so many of the vertices, and residuals against corrected elevations;
         default scales from all of them, and residuals against the surface without those found.
+    progress : callable, optional
+        Told before the first round, and after each half of what is left.
 
     Returns
     -------
@@ -99,9 +110,12 @@ def find_heights(
     Rousseeuw, P. J. and Hubert, M. (2011). Robust statistics for outlier detection. WIREs Data
     Mining and Knowledge Discovery 1(1), 73-79. https://doi.org/10.1002/widm.2
     """
+    done, left = Progress(progress), 1.0
     search = _Search.start(tin, judged, wrong, sample)
+    done(_STARTED)
     while search.correct_most_striking():
-        pass
+        left *= 0.5
+        done(1.0 - (1.0 - _STARTED) * left)
     found = _measure_without(tin, search, is_exact=sample is None)
     return Judgement(found, float(np.nanmedian(search.scales)))
 

@@ -51,6 +51,39 @@ def test_steps_and_summary_are_what_people_read(run):
     assert {one["event"] for one in found} == {"step", "summary"}
 
 
+PAD = (
+    '{"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"EPSG:32616"}},'
+    '"features":[{"type":"Feature","properties":{},"geometry":{"type":"Polygon",'
+    '"coordinates":[[[4,4],[8,4],[8,8],[4,8],[4,4]]]}}]}'
+)
+SLOPES = ["--cut-slope", "2", "--fill-slope", "2"]
+
+# Commands of long steps: the step, and its arguments behind a file of points.
+LONG = {
+    "refine": ("Refining", ["--max-area", "2", "-o", "out.ply"]),
+    "ground": ("Finding the ground", ["-o", "out.csv"]),
+    "inspect": ("Checking points", []),
+    "grade": ("Grading", ["--pad", "pad.geojson", "--elevation", "8", *SLOPES, "-o", "out.ply"]),
+    "contours": ("Tracing contours", ["--interval", "1", "-o", "out.geojson", "--projected"]),
+    "volume": ("Measuring", ["--base", "8"]),
+}
+
+
+@pytest.mark.parametrize("command", LONG)
+def test_long_steps_tell_how_far_they_are(run, command):
+    Path("pad.geojson").write_text(PAD)
+    rows = [f"{x},{y},{8 + 0.01 * x * y + 0.3 * (x % 3)}" for x in range(14) for y in range(13)]
+    Path("hill.csv").write_text("\n".join(["x,y,z", *rows]))
+    step, arguments = LONG[command]
+    code, _, err = run(command, "hill.csv", *arguments, "--crs", "EPSG:32616", "--events")
+    assert code == 0, err
+    told = [one for one in read_events(err) if one["event"] == "step" and step in one["text"]]
+    assert told[0]["fraction"] is None
+    fractions = [one["fraction"] for one in told[1:]]
+    assert fractions == sorted(set(fractions))
+    assert fractions[-1] == 1.0
+
+
 def test_events_and_the_result_as_json_go_to_two_streams(run):
     code, out, err = run("check", "in.csv", "--events", "--json")
     assert code == 0

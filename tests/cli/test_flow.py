@@ -30,10 +30,23 @@ def test_what_is_found_is_what_the_library_finds(site, tmp_path):
         "accumulation": (["--min-area", "1"], ts.flow_accumulation(tin, min_area=1)),
         "catchments": ([], ts.catchments(tin)),
         "paths": (["--from", "1", "2", "--from", "5", "5"], ts.flow_path(tin, [[1, 2], [5, 5]])),
+        "full paths": (
+            ["--find", "paths", "--from", "1", "2", "--fill-depressions"],
+            ts.flow_path(tin, [[1, 2]], fill_depressions=True),
+        ),
+        "full catchments": (
+            ["--find", "catchments", "--fill-depressions"],
+            ts.catchments(tin, fill_depressions=True),
+        ),
+        "full accumulation": (
+            ["--find", "accumulation", "--fill-depressions"],
+            ts.flow_accumulation(tin, fill_depressions=True),
+        ),
     }
     for find, (options, wanted) in cases.items():
         out = tmp_path / f"{find}.json"
-        done = run("flow", site, "--find", find, *options, "-o", out, "--json")
+        chosen = options if "--find" in options else ["--find", find, *options]
+        done = run("flow", site, *chosen, "-o", out, "--json")
         assert done.exit_code == 0, done.stderr
         told = json.loads(done.stdout)
         for name, column in wanted.columns.items():
@@ -59,6 +72,7 @@ def test_outlets_are_places_or_those_of_a_file(site, tmp_path):
         (["--find", "pits", "--nested"], "--nested is for --find depressions, not pits"),
         (["--min-area", "2"], "--min-area is for --find accumulation, not depressions"),
         (["--min-depth", "-1"], "min"),
+        (["--fill-depressions"], "--fill-depressions is for --find paths, not depressions"),
     ],
 )
 def test_wrong_usage_exits_2(site, tmp_path, options, sentence):

@@ -183,7 +183,8 @@ void refine_square() {
   MeshEditor mesh = editor_of({xyz.data(), 4, 3}, {arrays.corners.data(), arrays.neighbors.data(),
                                                    fixed.get(), arrays.count()});
   const RefinementGoal goal{0.5, 5.0, INFINITY};
-  const Refined refined = refine(mesh, goal, {nullptr, 0}, 100000, keep_going);
+  Team team(1, keep_going);
+  const Refined refined = refine(mesh, goal, {nullptr, 0}, 100000, team);
   expect(refined.ended == Refiner::Ended::kDone && refined.misses.empty(), "the goal is reached");
   std::vector<Point> all = corners;
   all.insert(all.end(), refined.points.begin(), refined.points.end());

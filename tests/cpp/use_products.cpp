@@ -2,6 +2,7 @@
 // whose answers are known. Prints what is wrong and returns 1, or prints "sound".
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -17,6 +18,7 @@
 #include "isolines/line_arrays.hpp"
 #include "isolines/line_smoothing.hpp"
 #include "location/locator.hpp"
+#include "sight/seen_vertices.hpp"
 #include "triangulation.hpp"
 
 using namespace tinsmith;
@@ -46,6 +48,21 @@ struct Plane {
             static_cast<std::uint32_t>(made.triangle_count)};
   }
 };
+
+void see() {
+  const Plane plane(0.0, 0.1, 1);
+  const Surface surface = plane.surface();
+  Team team(2, keep_going);
+  const double infinite = std::numeric_limits<double>::infinity();
+  for (const double height : {1.0, -1.0}) {
+    const sight::View view{{{30.5, 40.5}, 3.05 + height}, 0.0, infinite};
+    std::vector<sight::Sight> seen(plane.xyz.size() / 3, sight::Sight::kSeen);
+    sight::find_seen_vertices(surface, view, 0.0, seen.data(), team);
+    std::size_t count = 0;
+    for (const sight::Sight one : seen) count += one == sight::Sight::kSeen;
+    expect(height < 0.0 ? count < 10 : count == seen.size(), "a plane is seen from above alone");
+  }
+}
 
 void contour() {
   const Plane plane(0.0, 0.1, 1);
@@ -148,6 +165,7 @@ void draw_raster() {
 
 int main() {
   contour();
+  see();
   refuse_open_boundary();
   simplify();
   measure_earthwork();

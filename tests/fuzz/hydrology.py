@@ -1,7 +1,7 @@
 """Flow paths, catchments, depressions and ponds of hard surfaces.
 
 The oracles: gradients in fractions, flow paths from inside of catchments, a priority flood on
-edges, stage-storage tables, shapely.
+edges, a plain search across ponds and level ground, stage-storage tables, shapely.
 """
 
 from __future__ import annotations
@@ -11,7 +11,13 @@ from typing import Any
 
 import numpy as np
 import shapely
-from support.hydrology_oracle import flood, require_catchments, require_descent
+from support.hydrology_oracle import (
+    flood,
+    require_catchments,
+    require_descent,
+    require_full_catchments,
+    require_full_routes,
+)
 
 import tinsmith as ts
 
@@ -48,13 +54,18 @@ def examine(case: Case) -> str:
     require_ponds(tin, case["level"])
     require_catchments(tin, np.array(case["starts"]))
     require_accumulation(tin)
+    require_full(tin, np.array(case["starts"]))
     return "flow"
 
 
-def require_paths(tin: Any, shares: list[list[float]]) -> None:
+def choose_starts(tin: Any, shares: Any) -> np.ndarray:
     low, high = tin.points[:, :2].min(axis=0), tin.points[:, :2].max(axis=0)
     starts = np.vstack([low + np.array(shares) * (high - low), tin.points[:, :2]])
-    starts = starts[tin.locate(starts) >= 0]
+    return starts[tin.locate(starts) >= 0]
+
+
+def require_paths(tin: Any, shares: list[list[float]]) -> None:
+    starts = choose_starts(tin, shares)
     found = ts.flow_path(tin, starts)
     offsets = found.offsets[0]
     for begin, end in pairwise(offsets.tolist()):
@@ -91,6 +102,36 @@ def require_accumulation(tin: Any) -> None:
     vertex, area = int(found.columns["end"][0]), found.columns["end_area"][0]
     upstream = ts.catchments(tin, tin.points[[vertex], :2]).columns["area"]
     assert np.isclose(upstream, area, rtol=1e-9).all(), "what accumulates is not what drains"
+
+
+def require_full(tin: Any, shares: np.ndarray) -> None:
+    """Water of full depressions goes where paths go, and nothing of it is lost."""
+    starts = choose_starts(tin, shares)
+    require_full_routes(tin, starts, 1e-5)
+    require_full_catchments(tin, shares)
+    require_spills(tin)
+    found = ts.flow_accumulation(tin, fill_depressions=True)
+    kinds, ends = found.columns["kind"], found.columns["end"]
+    rows = np.flatnonzero(kinds == "descent")[:1]
+    if len(rows) == 0 or tin.points[ends[rows[0]], 2] != found.coordinates[2 * rows[0] + 1, 2]:
+        return  # that vertex is under water
+    outlet = tin.points[ends[rows], :2]
+    upstream = ts.catchments(tin, outlet, fill_depressions=True).columns["area"]
+    area = found.columns["end_area"][rows]
+    assert np.isclose(upstream, area, rtol=1e-9).all(), "what accumulates is not what drains"
+
+
+def require_spills(tin: Any) -> None:
+    """What a depression runs over into is what a path from its pit comes to next."""
+    found = ts.depressions(tin, min_depth=1.0)
+    pits = found.columns["pit_vertex"]
+    if len(pits) == 0:
+        return
+    parts = ts.flow_path(tin, tin.points[pits, :2], fill_depressions=True).columns
+    for row, (pit, into) in enumerate(zip(pits, found.columns["into"], strict=True)):
+        ponds = parts["pit"][parts["start"] == row]
+        later = [number for one in ponds[ponds >= 0][1:] for number in np.flatnonzero(pits == one)]
+        assert [pit, into] == [ponds[0], [*later, -1][0]], f"depression {row}: not into {into}"
 
 
 CAMPAIGNS = (Campaign("hydrology", "flow paths, catchments, ponds", generate, examine),)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import heapq
 from fractions import Fraction
-from itertools import pairwise
-from typing import Any
+from itertools import pairwise, zip_longest
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -152,3 +152,158 @@ def require_catchments(tin: Any, shares: np.ndarray) -> None:
         assert pit < 0 or tin.points[pit, 2] == end[2], f"{xy[start]}: not to vertex {pit}"
         alone = np.count_nonzero(tin.points[:, 2] == end[2]) == 1
         assert pit < 0 or not alone or (tin.points[pit] == end).all(), f"{xy[start]}: not {pit}"
+
+
+# ------------------------------------------------------------------ full depressions
+
+
+def find_boundary(tin: Any) -> set[int]:
+    return {vertex for ring in tin.boundary for vertex in ring.tolist()}
+
+
+def list_neighbors(tin: Any) -> dict[int, list[int]]:
+    around: dict[int, list[int]] = {int(v): [] for v in np.unique(tin.triangles)}
+    for a, b in tin.edges.tolist():
+        around[a].append(b)
+        around[b].append(a)
+    return around
+
+
+def part_ponds(tin: Any, level: np.ndarray) -> dict[int, int]:
+    """Return the smallest vertex of the pond that each vertex under water is in."""
+    around, pond = list_neighbors(tin), {}
+    for first in np.flatnonzero(level > tin.points[:, 2]).tolist():
+        stack = [] if first in pond or np.isinf(level[first]) else [first]
+        while stack:
+            vertex = stack.pop()
+            if vertex not in pond:
+                pond[vertex] = first
+                stack += [w for w in around[vertex] if level[w] > tin.points[w, 2]]
+    return pond
+
+
+def route_on_level(tin: Any, level: np.ndarray) -> tuple[dict[Any, int], dict[int, int]]:
+    """Return the steps from dry vertices and ponds to where water descends, and where ponds spill.
+
+    Ponds stand under the key ("pond", their smallest vertex).
+    """
+    around, pond, rim = list_neighbors(tin), part_ponds(tin, level), find_boundary(tin)
+    name = {v: ("pond", pond[v]) if v in pond else v for v in around}
+    ways: dict[Any, dict[Any, tuple[Any, ...]]] = {node: {} for node in name.values()}
+    for v, others in around.items():
+        for w in others:
+            if level[v] == level[w] and name[v] != name[w]:
+                key = (tin.points[w, 2], *tin.points[w, :2].tolist(), w)
+                ways[name[v]][name[w]] = min(key, ways[name[v]].get(name[w], key))
+    steps = {
+        v: 0
+        for v in around
+        if v not in pond and (v in rim or any(level[w] < level[v] for w in around[v]))
+    }
+    queue = list(steps)
+    for node in queue:  # grows on the way
+        for other in ways[node]:
+            if other not in steps:
+                steps[other] = steps[node] + 1
+                queue.append(other)
+    spills = {}
+    for first in set(pond.values()):
+        node = ("pond", first)
+        near = [(key, w) for w, key in ways[node].items() if steps[w] == steps[node] - 1]
+        spills[first] = min(near)[1]
+    return steps, spills
+
+
+def require_full_routes(tin: Any, starts: np.ndarray, slack: float) -> None:
+    """Refuse paths over full depressions that differ from a priority flood and a plain search."""
+    level = flood(tin.points, tin.edges, find_boundary(tin))
+    steps, spills = route_on_level(tin, level)
+    known = _Known(tin, level, part_ponds(tin, level), steps, spills, slack)
+    found = ts.flow_path(tin, starts, fill_depressions=True)
+    lines = [found.coordinates[a:b] for a, b in pairwise(found.offsets[0].tolist())]
+    vertices = {tuple(point[:2]): number for number, point in enumerate(tin.points.tolist())}
+    table = zip(*found.columns.values(), strict=True)
+    rows = [dict(zip(found.columns, row, strict=True)) for row in table]
+    require_joined(tin, rows, lines, slack)
+    for row, line in zip(rows, lines, strict=True):
+        places = [vertices.get(tuple(xyz[:2])) for xyz in line.tolist()]
+        {"descent": _require_dry, "flat": _require_level, "pond": _require_pond}[row["kind"]](
+            known, row, line, places
+        )
+
+
+class _Known(NamedTuple):
+    tin: Any
+    level: np.ndarray
+    pond: dict[int, int]
+    steps: dict[Any, int]
+    spills: dict[int, int]
+    slack: float
+
+
+def require_joined(tin: Any, rows: list[dict[str, Any]], lines: list[Any], slack: float) -> None:
+    """Refuse parts that do not join, and paths that end before the boundary."""
+    rings = [tin.points[[*ring, ring[0]], :2] for ring in tin.boundary]
+    boundary = shapely.MultiLineString([shapely.LineString(ring) for ring in rings])
+    for row, follower in zip_longest(range(len(rows)), range(1, len(rows))):
+        if rows[row]["end"] == "boundary":
+            assert follower is None or rows[follower]["part"] == 0
+            near = shapely.distance(boundary, shapely.Point(lines[row][-1, :2]))
+            assert near <= slack, f"{lines[row][-1]}: not at the boundary"
+        else:
+            assert follower is not None
+            assert rows[follower]["start"] == rows[row]["start"], "a path ends on its way"
+            assert (lines[follower][0] == lines[row][-1]).all(), "parts do not join"
+            assert rows[row]["end"] == rows[follower]["kind"]
+
+
+def _require_dry(known: _Known, row: dict[str, Any], line: np.ndarray, places: list[Any]) -> None:
+    require_descent(known.tin, line, known.slack)
+    assert line[0, 2] > line[-1, 2], "no descent"
+    wet = [v for v in places if v in known.pond]
+    assert not wet, f"{wet}: under water"
+
+
+def _require_level(known: _Known, row: dict[str, Any], line: np.ndarray, places: list[Any]) -> None:
+    assert row["pit"] == -1
+    assert (line[:, 2] == line[0, 2]).all()
+    assert all(v is not None and v not in known.pond for v in places[1:])
+    counts = [known.steps[v] for v in places if v is not None]
+    assert (np.diff(counts) == -1).all(), f"{places}: not the shortest"
+
+
+def _require_pond(known: _Known, row: dict[str, Any], line: np.ndarray, places: list[Any]) -> None:
+    first = known.pond[row["pit"]]
+    pool = [v for v in known.pond if known.pond[v] == first]
+    z = known.tin.points[:, 2]
+    assert z[row["pit"]] == z[pool].min()
+    assert (line[:, 2] == known.level[first]).all(), "not on the water"
+    spill = known.spills[first]
+    assert places[-1] == spill, f"{places[-1]}: spills at {spill}"
+    assert all(v is None or known.pond.get(v) == first for v in places[1:-1])
+
+
+def require_full_catchments(tin: Any, shares: np.ndarray) -> None:
+    """Refuse catchments over full depressions that do not tile the surface, or that paths leave."""
+    found = ts.catchments(tin, fill_depressions=True)
+    shapes, areas = found.to_shapely(), found.columns["area"]
+    assert shapely.is_valid(shapes).all(), "a catchment is not valid"
+    assert np.isclose(areas.sum(), tin.area, rtol=1e-9), "catchments do not make up the surface"
+    size = np.hypot(*np.ptp(tin.points[:, :2], axis=0))
+    low, high = tin.points[:, :2].min(axis=0), tin.points[:, :2].max(axis=0)
+    xy = low + shares * (high - low)
+    xy = xy[tin.locate(xy) >= 0]
+    if len(xy) == 0:
+        return
+    paths = ts.flow_path(tin, xy, fill_depressions=True)
+    last = paths.columns["end"] == "boundary"
+    ends = paths.coordinates[paths.offsets[0][1:] - 1][last]
+    vertices = {tuple(point[:2]): number for number, point in enumerate(tin.points.tolist())}
+    for start, end in zip(paths.columns["start"][last], ends, strict=True):
+        place = shapely.Point(xy[start])
+        inside = np.flatnonzero(shapely.contains(shapes, place))
+        assert len(inside) <= 1, f"{xy[start]}: in several catchments"
+        if len(inside) == 0 or shapes[inside[0]].boundary.distance(place) < 1e-6 * size:
+            continue
+        vertex, other = found.columns["vertex"][inside[0]], vertices.get(tuple(end[:2]), -1)
+        assert vertex == other, f"{xy[start]}: leaves at {other}, not {vertex}"

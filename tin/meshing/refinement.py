@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..._progress import Progress
 from ..._sentences import counted
 from ...errors import OptionError, PointsError
 from .. import _kernel, topology
@@ -24,8 +25,11 @@ from .surface_pslg import gather_pslg, list_rings
 from .unmended import find_unmended
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
+    from ..._progress import Tell
     from ..constraints.pslg import Pslg
     from ..report import Report
 
@@ -36,6 +40,9 @@ _MOST_ATTEMPTS = 5
 
 LARGEST_MIN_ANGLE = 33.0
 """Degrees; beyond about 34 refinement as good as never ends [1]_ in :func:`refine`."""
+
+_FOUND = 0.6
+"""Of the work as it is told, what is done once all points are found."""
 
 MOST_VERTICES = 10_000_000
 """What a mesh may have unless the caller says otherwise: some five gigabytes of memory."""
@@ -49,6 +56,7 @@ def refine(
     max_edge: float | None = None,
     max_vertices: int = MOST_VERTICES,
     threads: int | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> TIN:
     """Add points to a TIN until its triangles are good enough for finite elements.
 
@@ -76,6 +84,9 @@ def refine(
         So many are allowed.
     threads : int, optional
         For building the TIN of the points found.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0, as points are found and their TIN is built.
+        How many there will be is estimated. What it raises ends the call.
 
     Returns
     -------
@@ -117,6 +128,7 @@ def refine(
     <TIN: 104 vertices, 158 triangles, z 0 to 1, crs unknown>
     """
     require_tin(tin)
+    done = Progress(progress)
     _require_limits(min_angle, max_area, max_edge, max_vertices)
     _require_room(tin, max_area, max_vertices)
     goal = _Goal(
@@ -127,9 +139,12 @@ def refine(
     )
     kept_whole = np.empty((0, 2), np.int32)
     for attempt in range(_MOST_ATTEMPTS):
-        found = _find_points(tin, goal, kept_whole)
-        refined = _build(tin, found, thread_count(threads, len(tin.points) + len(found.xy)))
+        found = _find_points(tin, goal, kept_whole, done.stage(0.0, _FOUND))
+        done(_FOUND)
+        workers = thread_count(threads, len(tin.points) + len(found.xy))
+        refined = _build(tin, found, workers, done.stage(_FOUND, 1.0))
         if isinstance(refined, TIN):
+            done.end()
             return refined
         in_the_way = refined if attempt < _MOST_ATTEMPTS - 2 else None
         kept_whole = _add_kept_whole(tin, kept_whole, in_the_way)
@@ -301,10 +316,12 @@ class _Found(NamedTuple):
     n_triangles: int
 
 
-def _find_points(tin: TIN, goal: _Goal, kept_whole: NDArray[np.int32]) -> _Found:
+def _find_points(
+    tin: TIN, goal: _Goal, kept_whole: NDArray[np.int32], progress: Tell | None
+) -> _Found:
     fixed = tin.constrained | (tin.neighbors == topology.NO_NEIGHBOR)
     xy, splits, left, n_triangles, is_too_many = _kernel.refine(
-        tin.points, tin.triangles, tin.neighbors, fixed, kept_whole, *goal
+        tin.points, tin.triangles, tin.neighbors, fixed, kept_whole, *goal, progress
     )
     if is_too_many:
         raise PointsError(_explain_too_many(goal.most_vertices))
@@ -314,25 +331,31 @@ def _find_points(tin: TIN, goal: _Goal, kept_whole: NDArray[np.int32]) -> _Found
 # ------------------------------------------------------------------------- result
 
 
-def _build(tin: TIN, found: _Found, threads: int) -> TIN | set[tuple[int, int]]:
+def _build(
+    tin: TIN, found: _Found, threads: int, progress: Tell | None
+) -> TIN | set[tuple[int, int]]:
     """Build the TIN of all points, with the boundary and the lines as they were split.
 
     The core sees the surface only. Vertices on the boundary are rounded, and beyond it, across a
     gap as narrow as that, there can be another part of the boundary: then it returns the segments
     of ``tin`` that are in the way of each other when they are split.
     """
+    done = Progress(progress)
     points = np.concatenate([tin.points, _lift(tin, found.xy, found.splits)])
+    done(0.2)
     along = found.splits.along
     rings = [along(ring) for ring in list_rings(tin)]
     pslg = gather_pslg(tin, points, along, rings, names_boundary=True)
-    growth = _kernel.grow(points, threads=threads)
+    growth = _kernel.grow(points, threads=threads, progress=done.stage(0.2, 0.6))
     if growth.kept_row is not None:
         return found.splits.segments_of(np.flatnonzero(growth.kept_row != np.arange(len(points))))
     mesh = build_mesh_of_growth(points, growth)
     in_the_way = _force(mesh, pslg, found.splits)
     if in_the_way is not None:
         return in_the_way
+    done(0.7)
     surface, number_of = pslg.surface(Surface(points, *mesh.arrays(threads)))
+    done(0.9)
     if len(surface.points) != len(points) or len(surface.triangles) != found.n_triangles:
         return set()
     return _make_refined(tin, pslg, surface, number_of, found)

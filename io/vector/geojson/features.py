@@ -86,7 +86,9 @@ def write_features(
         file.write("\n]}\n")
 
 
-def write_feature_lines(features: Features, path: Path) -> None:
+def write_feature_lines(
+    features: Features, path: Path, *, progress: Callable[[float], None] | None = None
+) -> None:
     """Write features as a sequence of GeoJSON texts, a line each, with no head around them.
 
     Parameters, errors and coordinates are those of :func:`write_features`.
@@ -94,8 +96,10 @@ def write_feature_lines(features: Features, path: Path) -> None:
     places = project_to_wgs84(_located(features))
     _require_one_side(places.xyz, features, path)
     with replacing(path, binary=False) as file:
-        for _, written in _iterate_batches(features, places):
+        for done, written in _iterate_batches(features, places):
             file.writelines(f"{line}\n" for line in written)
+            if progress is not None:
+                progress(done / len(features))
 
 
 def _iterate_batches(features: Features, places: Places) -> Iterator[tuple[int, list[str]]]:

@@ -69,7 +69,10 @@ class Densification {
   // Add points of those that `is_candidate` marks until none fits; false if stopped.
   bool run(const bool* is_candidate, Team& team) {
     Pulse pulse(team);
+    team.expect(kParts * std::int64_t{count_});
     if (!place_all(is_candidate, pulse)) return false;
+    team.advance(count_);
+    std::int64_t ahead = (kParts - 2) * std::int64_t{count_};  // of the rounds, however many
     editor_.watch();
     std::vector<Triangle> changed;
     for (const Triangle t : editor_.mesh().triangles()) changed.push_back(t);
@@ -79,7 +82,10 @@ class Densification {
       std::sort(changed.begin(), changed.end());
       changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
       place_again(changed);
+      team.advance(ahead / kShareOfRound);
+      ahead -= ahead / kShareOfRound;
     }
+    team.advance(ahead);
     return pulse.goes_on();
   }
 
@@ -106,6 +112,10 @@ class Densification {
  private:
   static constexpr HalfEdge kStart = half_edge(Triangle{0}, 0);
   static constexpr std::int32_t kNone = -1;
+
+  // Of the work as it is told: placing and measuring are a part each, and every round a share of
+  // what is ahead of it.
+  static constexpr int kParts = 4, kShareOfRound = 4;
 
   struct Corner {
     Point place;

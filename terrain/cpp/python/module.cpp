@@ -7,6 +7,7 @@
 #include "bind_inspection.hpp"
 #include "bind_isolines.hpp"
 #include "bind_relief.hpp"
+#include "bind_sight.hpp"
 
 NB_MODULE(_core, m) {
   m.doc() = "Compiled core of tinsmith.terrain: what is derived from a TIN.";
@@ -16,4 +17,5 @@ NB_MODULE(_core, m) {
   tinsmith::python::bind_relief(m);
   tinsmith::python::bind_inspection(m);
   tinsmith::python::bind_ground(m);
+  tinsmith::python::bind_sight(m);
 }

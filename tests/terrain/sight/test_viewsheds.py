@@ -1,4 +1,4 @@
-"""Viewsheds: each vertex in fractions, and GDAL's on a fine raster."""
+"""Viewsheds: each vertex in fractions and by a line of its own, and GDAL's on a fine raster."""
 
 from __future__ import annotations
 
@@ -12,9 +12,11 @@ from hypothesis import strategies as st
 from support.sight_oracle import find_first_block
 
 import tinsmith as ts
+from tinsmith.terrain.sight.eyes import as_view, measure_distances
+from tinsmith.terrain.sight.vertices import judge_vertices, look_one_by_one, see_vertices
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.integers(1, 4), st.sampled_from([0.0, 0.5]))
 def test_vertices_that_are_seen_are_those_of_brute_force(seed, relief, height):
     rng = np.random.default_rng(seed)
@@ -27,6 +29,84 @@ def test_vertices_that_are_seen_are_those_of_brute_force(seed, relief, height):
         is_eye = point[:2] == start[:2]
         block = None if is_eye else find_first_block(tin.points, tin.edges, start, point)
         assert seen[vertex] == (block is None)
+
+
+def require_same_as_lines(tin, eye, fall=0.0, heights=(0.0, 0.0), radius=None):
+    """Hold all vertices against lines of sight that are traced one by one."""
+    view, _ = as_view(tin, eye, heights, radius, fall)
+    distances = measure_distances(tin.points, view.eye)
+    asked = np.flatnonzero((distances > 0) & (distances <= view.radius))
+    asked = np.intersect1d(asked, tin.triangles)
+    asked = asked[np.argsort(distances[asked])]
+    seen = see_vertices(tin, view)
+    assert seen[asked].tolist() == look_one_by_one(tin, view, asked).tolist()
+    others = np.setdiff1d(np.arange(len(tin.points)), asked)
+    assert (seen[others] <= (distances[others] == 0)).all()
+
+
+def make_surface(rng, kind):
+    """Make a grid with many equal heights, scattered points far from the origin, or a ramp."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(9.0), np.arange(9.0)))
+    if kind == "grid":
+        return np.column_stack([x, y, rng.integers(0, 4, len(x))])
+    if kind == "ramp":
+        return np.column_stack([x, y, x / 2 + y / 4 + (rng.random(len(x)) < 0.1)])
+    corner = np.array([500_000.3, 4_000_000.7, 200.1])
+    return corner + rng.uniform(0, [50, 50, 8], (81, 3))
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    st.integers(0, 2**32 - 1),
+    st.sampled_from(["grid", "ramp", "scattered"]),
+    st.sampled_from([None, 1.2, 8.0]),
+    st.sampled_from([0.0, 1e-7, 1e-3]),
+)
+def test_the_sweep_sees_what_lines_see(seed, kind, max_edge, fall):
+    rng = np.random.default_rng(seed)
+    points = make_surface(rng, kind)
+    try:
+        tin = ts.triangulate(points, max_edge=max_edge)
+    except ts.LinesError:  # scattered points are farther apart
+        tin = ts.triangulate(points)
+    eye = tin.points[rng.choice(np.unique(tin.triangles)), :2]
+    if rng.random() < 0.5:
+        corners = tin.points[tin.triangles[rng.integers(len(tin.triangles))], :2]
+        eye = rng.dirichlet([1, 1, 1]) @ corners
+    heights = rng.choice([0.0, 0.5, 2.0], 2)
+    radius = None if rng.random() < 0.5 else rng.uniform(0.5, 30)
+    require_same_as_lines(tin, eye, fall, heights, radius)
+
+
+def test_the_sweep_goes_around_holes_and_along_breaklines():
+    rng = np.random.default_rng(6)
+    angle = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    ring = np.column_stack([np.cos(angle), np.sin(angle)])
+    lines = [[[5, 5, 9], [95, 30, 9]], [[5, 90, 3], [95, 80, 9], [60, 20, 1]]]
+    points = rng.uniform(0, [100, 100, 5], (300, 3))
+    tin = ts.triangulate(points, breaklines=lines, holes=[50 + 9 * ring, [30, 70] + 5 * ring])
+    for eye in ([10, 10], [50, 61], [80, 50]):
+        require_same_as_lines(tin, eye, heights=(2.0, 0.0))
+
+
+@pytest.mark.parametrize("fall", [0.0, 1e-4])
+def test_many_sectors_and_threads_see_the_same(fall):
+    rng = np.random.default_rng(7)
+    xy = rng.uniform(0, 300, (20_000, 2))
+    tin = ts.triangulate(
+        np.column_stack([xy, 9 * np.sin(xy[:, 0] / 20) + rng.uniform(0, 1, 20_000)])
+    )
+    view, _ = as_view(tin, [150, 150], (9.0, 0.0), None, fall)
+    asked = rng.choice(len(xy), 150, replace=False)
+    one, three = (judge_vertices(tin, view, np.ones(len(xy), bool), n) for n in (1, 3))
+    assert one.tolist() == three.tolist()
+    assert see_vertices(tin, view)[asked].tolist() == look_one_by_one(tin, view, asked).tolist()
+
+
+def test_elevations_beyond_exact_arithmetic_are_looked_at_in_fractions():
+    rng = np.random.default_rng(8)
+    points = make_surface(rng, "grid") * [1, 1, 1e-90]
+    require_same_as_lines(ts.triangulate(points), [4, 4])
 
 
 def test_classes_tile_the_surface_and_a_radius_limits_them():

@@ -21,16 +21,15 @@ struct Refined {
 };
 
 // Segments between the pairs `kept_whole` are not split.
-template <typename KeepGoing>
-Refined refine(MeshEditor& editor, const RefinementGoal& goal, const VertexPairs& kept_whole,
-               std::int32_t most_vertices, KeepGoing&& keep_going) {
+inline Refined refine(MeshEditor& editor, const RefinementGoal& goal, const VertexPairs& kept_whole,
+                      std::int32_t most_vertices, Team& team) {
   const std::int32_t given = editor.slots();
   Refiner refiner(editor, goal);
   for (std::size_t i = 0; i < kept_whole.count; ++i) {
     refiner.keep_whole(kept_whole.from(i), kept_whole.to(i));
   }
   Refined refined;
-  refined.ended = refiner.run(most_vertices, keep_going);
+  refined.ended = refiner.run(most_vertices, team);
   const Mesh& mesh = editor.mesh();
   std::vector<Vertex> number_of(editor.slots());
   for (const Vertex v : editor.vertices()) {

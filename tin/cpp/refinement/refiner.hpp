@@ -29,6 +29,7 @@
 #include <utility>
 #include <vector>
 
+#include "../base/parallel.hpp"
 #include "../mesh/mesh_editor.hpp"
 #include "triangle_shape.hpp"
 #include "work_queue.hpp"
@@ -58,13 +59,14 @@ class Refiner {
     squared_floor_ = floor * floor;
   }
 
-  template <typename KeepGoing>
-  Ended run(std::int32_t most_vertices, KeepGoing&& keep_going) {
+  Ended run(std::int32_t most_vertices, Team& team) {
     for (const Triangle t : mesh_.triangles()) examine(t);
+    const std::int64_t expected = expect_vertices();
     constexpr int kStepsPerQuestion = 4096;
     for (int until_question = kStepsPerQuestion; has_work(); --until_question) {
       if (until_question == 0) {
-        if (!keep_going()) return Ended::kStopped;
+        tell(expected, team);
+        if (!team.keeps_going(0)) return Ended::kStopped;
         until_question = kStepsPerQuestion;
       }
       if (editor_.count() >= most_vertices) return Ended::kTooMany;
@@ -113,6 +115,29 @@ class Refiner {
       largest = std::max({largest, std::abs(point(v).x), std::abs(point(v).y)});
     }
     return largest * std::numeric_limits<double>::epsilon();
+  }
+
+  // ------------------------------------------------------------------ progress
+
+  // How many vertices a mesh of such triangles has, about.
+  std::int64_t expect_vertices() const {
+    double twice_area = 0.0;
+    for (const Triangle t : mesh_.triangles()) {
+      if (!is_surface(t)) continue;
+      const auto& c = mesh_[t].corner;
+      twice_area += std::abs(detail::twice_area(point(c[0]), point(c[1]), point(c[2])));
+    }
+    const double count = twice_area / (4.0 * shape_.usual_area());  // a vertex has two triangles
+    return static_cast<std::int64_t>(std::clamp(count, 0.0, 1e15));
+  }
+
+  // The work that waits is a lower bound of what is left.
+  void tell(std::int64_t expected, Team& team) {
+    const auto waiting = static_cast<std::int64_t>(segments_.size() + triangles_.size());
+    const std::int64_t made = editor_.count() - input_count_;
+    team.expect(std::max(made + waiting, expected - input_count_));
+    team.advance(made - told_);
+    told_ = made;
   }
 
   std::int32_t input_segment_of(Vertex v) const { return input_segment_of_[number(v)]; }
@@ -448,6 +473,7 @@ class Refiner {
       input_segments_;         // ends of the input's segments that were split
   std::vector<bool> is_free_;  // of the vertices put in: inside the surface
   std::vector<Split> splits_;
+  std::int64_t told_ = 0;                    // of the vertices put in
   std::unordered_set<std::uint64_t> stuck_;  // segments that have no room for a point
   std::vector<Triangle> touched_;
   std::set<TriangleKey> given_up_;  // triangles that cannot be mended

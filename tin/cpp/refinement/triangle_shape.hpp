@@ -83,6 +83,12 @@ class ShapeTest {
     return squared_distance(a, b) > goal_.longest_edge * goal_.longest_edge;
   }
 
+  // Of triangles in a mesh that has just become small enough; infinite if any size will do.
+  double usual_area() const {
+    return std::min(kUsualArea * goal_.largest_area,
+                    kUsualOfSquare * goal_.longest_edge * goal_.longest_edge);
+  }
+
   // Whether a point sees a segment under so large an angle that the triangle there cannot be mended
   // but by splitting the segment: 180 degrees less twice the least angle [Chew 1993].
   bool encroaches(Point c, Point a, Point b) const {
@@ -111,6 +117,9 @@ class ShapeTest {
   // Half of the cotangent of half the angle puts the third corner under just that angle; a little
   // less keeps rounding from making the new triangle a bad one again.
   static constexpr double kOffCenter = 0.475;
+
+  // Measured on refined squares.
+  static constexpr double kUsualArea = 0.55, kUsualOfSquare = 0.2;
 
   static double square(double x, double y) { return x * x + y * y; }
 

@@ -30,6 +30,7 @@ template <typename Work>
 class WorkQueue {
  public:
   bool is_empty() const { return count_ == 0; }
+  std::size_t size() const { return count_; }
 
   // Small ranks are served first.
   void push(std::uint32_t rank, const Work& work) {

@@ -82,8 +82,8 @@ def build(
     tin = build_tin(survey, how, console)
     suspects = _find_blunders(tin, request, drop=drop_blunders)
     if from_contours:
-        with request.step("Mending flat triangles"):
-            tin = mend_flats(tin)
+        with request.step("Mending flat triangles") as progress:
+            tin = mend_flats(tin, progress=progress)
     gaps = _find_gaps(tin, request)
     planned.write("TIN", tin)
     account = describe_report(tin.report, survey, gaps) | describe_suspects(suspects)
@@ -100,10 +100,10 @@ def _find_blunders(tin: TIN, request: Request, *, drop: bool) -> Suspects:
     from ...terrain.inspection import blunders, drop_blunders, screen
     from ..output.blunder_summaries import Suspects
 
-    with request.step("Checking points"):
+    with request.step("Checking points") as progress:
         if not drop:
             return Suspects(screen(tin), None)
-        table = blunders(tin)
+        table = blunders(tin, progress=progress)
         return Suspects(table, drop_blunders(tin, table))
 
 

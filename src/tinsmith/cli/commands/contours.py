@@ -15,6 +15,7 @@ from ..request import surface_options
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...terrain import Features
     from ...tin import TIN
     from ..output.console import Row
@@ -76,8 +77,8 @@ def contours(
     _require_one_product(options)
     planned = request.plan_products(request.list_inputs(file), "Features", "picture")
     tin = request.read_tin(file)
-    with request.step("Tracing contours"):
-        made = _make_product(tin, options)
+    with request.step("Tracing contours") as progress:
+        made = _make_product(tin, options, progress)
     planned.write("Features", made)
     planned.draw(lambda: _draw(tin, made, options, make_title(file)))
     rows = [*_summarise_contours(made), *(("Note", note) for note in made.notes)]
@@ -98,7 +99,7 @@ def _require_one_product(options: dict[str, Any]) -> None:
         raise click.UsageError("Either --interval or --levels is needed, and not both.")
 
 
-def _make_product(tin: TIN, options: dict[str, Any]) -> Features:
+def _make_product(tin: TIN, options: dict[str, Any], progress: Tell | None = None) -> Features:
     from ...terrain import contour_bands, contour_labels
     from ...terrain import contours as trace
 
@@ -111,6 +112,7 @@ def _make_product(tin: TIN, options: dict[str, Any]) -> Features:
         index=options["index"] or None,
         smooth=options["smooth"],
         simplify=options["simplify"],
+        progress=progress,
     )
     if not options["labels"]:
         return lines

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["flow"]
 
 _SHOWN = 8
+_TOLD = ("kind", "end", "length", "drop", "pit_level", "spill_level", "depth", "area", "volume")
 _FLAGS = {
     "begins": ("--from", ("paths", "catchments")),
     "points": ("--points", ("paths", "catchments")),
@@ -31,6 +32,7 @@ _FLAGS = {
     "nested": ("--nested", ("depressions",)),
     "min_area": ("--min-area", ("accumulation",)),
     "min_angle": ("--min-angle", ("ridges",)),
+    "fill_depressions": ("--fill-depressions", ("paths", "catchments", "accumulation")),
 }
 
 
@@ -53,6 +55,11 @@ _FLAGS = {
 @click.option("--nested", is_flag=True, help="Also depressions that are part of larger ones.")
 @number_option("--min-angle", "DEGREES", "Leave out ridges and valleys that bend less.")
 @number_option("--min-area", "AREA", "Leave out channels through which less drains.")
+@click.option(
+    "--fill-depressions",
+    is_flag=True,
+    help="Let water go on from where full depressions spill, to the boundary.",
+)
 @surface_options()
 def flow(file: Path, find: FlowProduct, request: Request, **asked: Any) -> None:
     """Find where water runs on the TIN in FILE, or on that of the points in it.
@@ -66,6 +73,7 @@ def flow(file: Path, find: FlowProduct, request: Request, **asked: Any) -> None:
     Example:
       tinsmith flow sample_data/jacksboro.tif --min-depth 1 -o depressions.gpkg
       tinsmith flow site.ply --find paths --from 752700 4024300 -o path.geojson
+      tinsmith flow site.ply --find catchments --fill-depressions -o basins.gpkg
     """  # noqa: D301 - click reads the control character
     from ...terrain.results.table import tabulate_columns
     from ..output.line_summaries import describe_features
@@ -98,17 +106,20 @@ def _require_fitting(find: str, asked: dict[str, Any]) -> None:
 def _find(tin: TIN, find: str, asked: dict[str, Any]) -> Features:
     from ... import terrain
 
+    is_full = asked["fill_depressions"]
     if find == "paths":
-        return terrain.flow_path(tin, _list_places(tin, asked))
+        return terrain.flow_path(tin, _list_places(tin, asked), fill_depressions=is_full)
     if find == "pits":
         return terrain.pits(tin)
     if find == "ponds":
         return terrain.ponds(tin, asked["level"])
     if find == "catchments":
         given = asked["begins"] or asked["points"] is not None
-        return terrain.catchments(tin, _list_places(tin, asked) if given else None)
+        outlets = _list_places(tin, asked) if given else None
+        return terrain.catchments(tin, outlets, fill_depressions=is_full)
     if find == "accumulation":
-        return terrain.flow_accumulation(tin, min_area=asked["min_area"] or 0.0)
+        least = asked["min_area"] or 0.0
+        return terrain.flow_accumulation(tin, min_area=least, fill_depressions=is_full)
     if find == "ridges":
         return terrain.ridges_and_valleys(tin, min_angle=asked["min_angle"] or 0.0)
     return terrain.depressions(tin, nested=asked["nested"], min_depth=asked["min_depth"] or 0.0)
@@ -128,7 +139,7 @@ def _summarise(tin: TIN, found: Features) -> list[Row]:
     from ..output.line_summaries import describe_counts
 
     rows: list[Row] = [("TIN", describe_counts(tin)), ("Found", f"{found.name}: {len(found):,}")]
-    for row in range(min(len(found), _SHOWN) if "kind" not in found.columns else 0):
+    for row in range(min(len(found), _SHOWN) if "angle" not in found.columns else 0):
         rows.append(("" if row else "First", _describe_row(found, row)))
     return [*rows, *(("Note", note) for note in found.notes)]
 
@@ -137,7 +148,7 @@ def _describe_row(found: Features, row: int) -> str:
     from ..output.line_summaries import name_unit
 
     parts = []
-    for name in ("end", "length", "drop", "pit_level", "spill_level", "depth", "area", "volume"):
+    for name in _TOLD:
         if name in found.columns:
             value = found.columns[name][row]
             text = value if isinstance(value, str) else f"{value:,.2f}"

@@ -65,9 +65,16 @@ def grade(
     planned = request.plan(request.list_inputs(file, more=[_name_pad(pad)]), "TIN")
     tin = request.read_tin(file)
     ring = _read_pad(pad, tin, elevation)
-    with request.step("Grading"):
+    with request.step("Grading") as progress:
         try:
-            graded = grade_tin(tin, ring, elevation, cut_slope=cut_slope, fill_slope=fill_slope)
+            graded = grade_tin(
+                tin,
+                ring,
+                elevation,
+                cut_slope=cut_slope,
+                fill_slope=fill_slope,
+                progress=progress,
+            )
         except OptionError as error:
             raise refuse_option(error) from error
         except TinsmithError as error:

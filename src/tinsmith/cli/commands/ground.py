@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from ...policies import GroundReturns
     from ...terrain import GroundPoints
     from ...tin import Survey
     from ..files import Output
@@ -108,9 +109,10 @@ def ground(points: tuple[Path, ...], request: Request, **options: Any) -> None:
     reading = replace(request.reading, attributes="all")
     found = read_inputs(points, reading, request.console)
     survey = add_lines(_require_survey(found, points[0]), request.how, request.console)
-    with request.step(f"Finding the ground among {counted(len(survey), 'point')}"):
+    with request.step(f"Finding the ground among {counted(len(survey), 'point')}") as progress:
         given = {name: options[name] for name in _PARAMETERS}
-        made = find_ground(survey, **given, returns="all" if options["any_return"] else "last")
+        returns: GroundReturns = "all" if options["any_return"] else "last"
+        made = find_ground(survey, **given, returns=returns, progress=progress)
     _write(made, planned, request, is_ground_only=options["ground_only"])
     rows = _summarise(points, made)
     request.finish(planned, rows, lambda: _describe(points, made))

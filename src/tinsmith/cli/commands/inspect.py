@@ -47,8 +47,8 @@ def inspect(points: tuple[Path, ...], title: str | None, request: Request) -> No
 
     planned = request.plan_products(request.list_inputs(*points), "Table", "Features", "picture")
     tin = read_tin_of_files(points, request.reading, request.how, request.console)[0]
-    with request.step("Checking points"):
-        table = blunders(tin)
+    with request.step("Checking points") as progress:
+        table = blunders(tin, progress=progress)
     planned.write("Table", table)
     if planned.holds("Features"):
         planned.write("Features", _place_suspects(table, tin))

@@ -61,7 +61,7 @@ def refine(
     tin = request.read_tin(file)
     _require_lengths(tin, file)
     triangles = counted(len(tin.triangles), "triangle")
-    with request.step(f"Refining {triangles}"):
+    with request.step(f"Refining {triangles}") as progress:
         try:
             refined = refine_tin(
                 tin,
@@ -70,6 +70,7 @@ def refine(
                 max_edge=max_side,
                 max_vertices=max_vertices,
                 threads=request.how.threads,
+                progress=progress,
             )
         except OptionError as error:  # its max_edge is not --max-edge, which trims
             raise refuse_option(error, max_edge="max_side") from error

@@ -14,6 +14,7 @@ from ..request import surface_options
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from ..._progress import Tell
     from ...terrain import Difference, Features, Table
     from ...tin import TIN
     from ..output.console import Row
@@ -71,12 +72,12 @@ def volume(
     kinds = ["Table"] if asked["stage_storage"] else ["Table", "Features", "picture"]
     planned = request.plan_products(inputs, *kinds)
     surfaces = request.read_tins(files)
-    with request.step("Measuring"):
-        table = _measure(surfaces, regions, asked)
+    with request.step("Measuring") as progress:
+        table = _measure(surfaces, regions, asked, progress)
     planned.write("Table", table)
     if planned.holds("Features") or planned.holds("picture"):
-        with request.step("Overlaying"):
-            found = _overlay(surfaces, asked["base"])
+        with request.step("Overlaying") as progress:
+            found = _overlay(surfaces, asked["base"], progress)
         planned.write("Features", found.zones)
         planned.draw(lambda: _draw_map(found, surfaces[0], files, asked["title"]))
     request.finish(
@@ -119,7 +120,9 @@ def _read_regions(path: Path, tin: TIN) -> Features:
 # ---------------------------------------------------------------- what is made
 
 
-def _measure(surfaces: Sequence[TIN], regions: Path | None, asked: dict[str, Any]) -> Table:
+def _measure(
+    surfaces: Sequence[TIN], regions: Path | None, asked: dict[str, Any], progress: Tell
+) -> Table:
     from ...terrain import stage_storage
     from ...terrain import volume as measure
 
@@ -127,19 +130,20 @@ def _measure(surfaces: Sequence[TIN], regions: Path | None, asked: dict[str, Any
     chosen = None if regions is None else _read_regions(regions, tin)
     if not asked["stage_storage"]:
         base = asked["base"] if len(surfaces) == 1 else None
-        return measure(tin, *surfaces[1:], base=base, regions=chosen)
+        return measure(tin, *surfaces[1:], base=base, regions=chosen, progress=progress)
     return stage_storage(
         tin, levels=asked["levels"] or None, interval=asked["interval"], region=chosen
     )
 
 
-def _overlay(surfaces: Sequence[TIN], base: float) -> Difference:
+def _overlay(surfaces: Sequence[TIN], base: float, progress: Tell) -> Difference:
     """Subtract the ground from the design, or from a level."""
     from ...terrain import difference
     from ...terrain.earthwork import level_surface
 
     ground = surfaces[0]
-    return difference(ground, surfaces[1] if len(surfaces) > 1 else level_surface(ground, base))
+    other = surfaces[1] if len(surfaces) > 1 else level_surface(ground, base)
+    return difference(ground, other, progress=progress)
 
 
 def _draw_map(found: Difference, ground: TIN, files: Sequence[Path], title: str | None) -> Any:

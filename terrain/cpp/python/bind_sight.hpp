@@ -1,0 +1,51 @@
+// Bindings of viewsheds.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <cstdint>
+#include <stdexcept>
+#include <utility>
+
+#include "../../../tin/cpp/python/conversion.hpp"
+#include "../sight/seen_vertices.hpp"
+
+namespace tinsmith::python {
+
+using GivenEye = Given<double, 3>;
+using GivenMask = Given<bool, -1>;
+using Verdicts = Made<std::uint8_t, -1>;
+
+inline Verdicts find_seen_vertices(const GivenXyz& points, const GivenTriples& triangles,
+                                   const GivenTriples& neighbors, const GivenMask& wanted,
+                                   const GivenEye& eye, double target_height, double radius,
+                                   double fall, int threads) {
+  const Surface surface = surface_of(points, triangles, &neighbors);
+  require_exact_points(surface);
+  if (!surface.has_sound_neighbors()) {
+    throw std::invalid_argument("neighbors must be triangles or -1");
+  }
+  if (wanted.shape(0) != points.shape(0)) {
+    throw std::invalid_argument("there must be one flag for each point");
+  }
+  const double* const at = eye.data();
+  const sight::View view{{{at[0], at[1]}, at[2]}, target_height, radius};
+  auto seen = streamed_array<sight::Sight>(points.shape(0));
+  for (std::size_t i = 0; i < points.shape(0); ++i) {
+    seen[i] = wanted.data()[i] ? sight::Sight::kSeen : sight::Sight::kHidden;
+  }
+  run_unlocked(threads, [&](Team& team) {
+    sight::find_seen_vertices(surface, view, fall, seen.get(), team);
+  });
+  StreamedArray<std::uint8_t> numbers(reinterpret_cast<std::uint8_t*>(seen.release()));
+  return hand_over<Verdicts>(std::move(numbers), {points.shape(0)});
+}
+
+inline void bind_sight(nb::module_& m) {
+  m.def("find_seen_vertices", &find_seen_vertices, "points"_a.noconvert(),
+        "triangles"_a.noconvert(), "neighbors"_a.noconvert(), "wanted"_a.noconvert(),
+        "eye"_a.noconvert(), "target_height"_a, "radius"_a, "fall"_a, "threads"_a = 1,
+        "Of the vertices wanted: 0 hidden, 1 seen, 2 not known (with a fall alone).");
+}
+
+}  // namespace tinsmith::python

@@ -1,0 +1,48 @@
+"""Eyes above a surface, and how they see."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...errors import OptionError, PointsError
+from ...tin.validation.options import is_finite_number
+from ..hydrology.paths import as_places
+from .lines import as_height, raise_places
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+
+__all__ = ["View", "as_view", "measure_distances"]
+
+
+class View(NamedTuple):
+    """An eye, and how it sees."""
+
+    eye: NDArray[np.float64]
+    target_height: float
+    radius: float
+    fall: float
+
+
+def as_view(
+    tin: TIN, eye: Any, heights: tuple[Any, Any], radius: Any, fall: float
+) -> tuple[View, tuple[str, ...]]:
+    """Return how an eye sees, from what a caller gives, and what is to be told about it."""
+    above = as_height("eye_height", heights[0]), as_height("target_height", heights[1])
+    if radius is not None and (not is_finite_number(radius) or not radius > 0):
+        raise OptionError("radius", radius, allowed="a finite number above 0, or None")
+    xy, notes = as_places(tin, eye, "the eye")
+    if len(xy) != 1:
+        raise PointsError(f"There are {len(xy)} eyes: a viewshed has one.")
+    reach = np.inf if radius is None else float(radius)
+    return View(raise_places(tin, xy, above[0])[0], above[1], reach, fall), notes
+
+
+def measure_distances(points: NDArray[np.float64], eye: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the distances of points from the eye in the plane."""
+    found: NDArray[np.float64] = np.hypot(points[:, 0] - eye[0], points[:, 1] - eye[1])
+    return found
