@@ -73,11 +73,11 @@ def test_results_are_those_of_the_package(tmp_path):
         "graded": job("grade", INPUT="ground", PAD="pad", OUTPUT=tmp_path / "graded.ply", **slopes),
         "pasted": job("paste", BASE="ground", PATCH="patch", OUTPUT=tmp_path / "pasted.nc"),
         "suspects": job("inspect", INPUT="cloud", OUTPUT=tmp_path / "suspects.gpkg"),
-        "beyond": job("paste", BASE="patch", PATCH="ground", OUTPUT=tmp_path / "no.ply"),
+        "alone": job("paste", BASE="ground", OUTPUT=tmp_path / "no.ply"),
         "outside": job("sight", INPUT="ground", EYE=f"0,0 [{UTM}]", OUTPUT=tmp_path / "no.gpkg"),
     }  # fmt: skip
     told = drive(tmp_path, layers, jobs)
-    assert "reaches beyond the base" in told.pop("beyond")["error"]
+    assert "Patch: choose a layer or a file" in told.pop("alone")["error"]
     assert "outside the surface" in told.pop("outside")["error"]
     require_done(told)
     check_flow(told, tin, tmp_path)

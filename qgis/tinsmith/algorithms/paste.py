@@ -16,8 +16,8 @@ class PasteAlgorithm(CommandAlgorithm):
     summary = "Puts a TIN in the place of a part of another: a new survey in an old one, a design."
     explanation = (
         "Within the boundary of the patch the surface is that of the patch, elsewhere that of the "
-        "base. The patch must lie within the base. Elevations along the seam are those of the "
-        "patch; the log tells by how much they differ."
+        "base; beyond the base it adds to it. Elevations along the seam are those of the patch; "
+        "the log tells by how much they differ."
     )
     surfaces = (Surface("BASE", "Base"), Surface("PATCH", "Patch"))
 
