@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...tin.constraints.clipping import in_rings
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -28,11 +30,15 @@ def build_area(points: NDArray[np.float64], rings: Sequence[NDArray[Any]]) -> An
     """Return the area within rings of vertices, which may touch themselves and one another."""
     import shapely
 
-    lines = [shapely.linearrings(points[ring, :2]) for ring in rings]
+    outlines = [np.ascontiguousarray(points[ring, :2]) for ring in rings]
+    lines = [shapely.linearrings(outline) for outline in outlines]
     vertices = np.concatenate(rings)
-    if len(np.unique(vertices)) < len(vertices):
-        return shapely.build_area(shapely.union_all(lines))
-    return shapely.build_area(shapely.geometrycollections(lines))
+    if len(np.unique(vertices)) == len(vertices):
+        return shapely.build_area(shapely.geometrycollections(lines))
+    noded = shapely.get_parts(shapely.union_all(lines))
+    faces = shapely.get_parts(shapely.polygonize(noded))
+    places = shapely.get_coordinates(shapely.point_on_surface(faces))
+    return shapely.coverage_union_all(faces[in_rings(places, outlines) > 0])
 
 
 def fills_hull(area: Any) -> bool:

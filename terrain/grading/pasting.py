@@ -120,8 +120,6 @@ def join_surfaces(
     area = find_area(base)
     beyond = float(seam.area.difference(area).area) if extend else 0.0
     reaches = beyond > seam.rounding
-    is_hull = not reaches and fills_hull(area)
-    rings = {} if is_hull else _choose_rings(area, base, ground, cut, seam)
     done(0.7)
     made = triangulate(
         Survey(
@@ -133,9 +131,9 @@ def join_surfaces(
         crs=agreed.crs,
         z_unit=agreed.elevation_unit,
         progress=done.stage(0.7, 1.0),
-        **rings,
+        **(_join_rings(area, cut, seam) if reaches else _list_rings(area, cut, seam)),
     )
-    gap = _describe_gap(base, agreed, np.concatenate(seam.rings))
+    gap = _describe_gap(base, area, agreed, seam)
     added = _describe_beyond(beyond, patch, agreed) if reaches else []
     notes = (*made.report.notes, *agreed.notes, *gap, *added)
     return made.replace(report=replace(made.report, notes=notes))
@@ -147,14 +145,11 @@ def _join_attributes(base: TIN, patch: TIN, is_kept: NDArray[np.bool_]) -> dict[
     return join_columns([kept, patch.attributes], [int(is_kept.sum()), len(patch.points)])
 
 
-def _choose_rings(
-    area: Any, base: TIN, points: NDArray[np.float64], cut: _Base, seam: Seam
-) -> dict[str, Any]:
-    """Return boundary and holes of both surfaces together, where they do not reach the hull."""
-    if seam.touches(area):
-        return _join_rings(area, cut, seam)
-    numbers = np.concatenate(base.boundary)
-    return arrange_rings(area, {(x, y): z for x, y, z in points[numbers].tolist()})
+def _list_rings(area: Any, cut: _Base, seam: Seam) -> dict[str, Any]:
+    """Return boundary and holes of the base, where it does not reach its hull."""
+    if fills_hull(area):
+        return {}
+    return _join_rings(area, cut, seam) if seam.touches(area) else cut.list_rings(area)
 
 
 def _join_rings(area: Any, cut: _Base, seam: Seam) -> dict[str, Any]:
@@ -192,9 +187,14 @@ def _describe_beyond(beyond: float, patch: TIN, agreed: Agreement) -> list[str]:
     return [f"The patch {where} the base, which becomes larger by {beyond:.6g} {unit}."]
 
 
-def _describe_gap(base: TIN, agreed: Agreement, seam: NDArray[np.float64]) -> list[str]:
+def _describe_gap(base: TIN, area: Any, agreed: Agreement, cut: Seam) -> list[str]:
     """Say how far the surfaces are apart along the seam, if they are."""
-    own = base.interpolate(seam[:, :2]) * agreed.factors[0]
+    seam = np.concatenate(cut.rings)
+    own = base.interpolate(seam[:, :2])
+    lost = np.isnan(own)  # outside, or by rounding
+    lost[lost] = cut.lie_near(area, seam[lost])
+    own[lost] = base.interpolate(seam[lost, :2], method="linear", extrapolate="nearest")
+    own *= agreed.factors[0]
     gaps = np.nan_to_num(np.abs(own - seam[:, 2]))
     worst = int(gaps.argmax())
     if gaps[worst] <= _LEVEL * max(1.0, float(np.abs(seam[:, 2]).max())):
@@ -263,6 +263,11 @@ class _Base:
                 else:
                     runs.append([start, end])
         return runs
+
+    def list_rings(self, area: Any) -> dict[str, Any]:
+        """Return boundary and holes of the area, which no patch meets."""
+        rows = self._points[np.concatenate(self._tin.boundary)]
+        return arrange_rings(area, {(x, y): z for x, y, z in rows.tolist()})
 
     def list_boundary(self) -> Iterator[NDArray[np.float64]]:
         """Yield the parts of the boundary that the patch does not cover, (2, 3) each."""

@@ -79,6 +79,16 @@ class Seam:
         lines = shapely.multilinestrings([shapely.linestrings(ring[:, :2]) for ring in self.rings])
         return bool(shapely.dwithin(shapely.boundary(area), lines, self._tolerance))
 
+    def lie_near(self, area: Any, places: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Tell which places are in an area but for rounding."""
+        import shapely
+
+        shapely.prepare(area)
+        is_near: NDArray[np.bool_] = shapely.dwithin(
+            area, shapely.points(places[:, :2]), self._tolerance
+        )
+        return is_near
+
     def find_near(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return which places lie on the seam but for rounding."""
         import shapely

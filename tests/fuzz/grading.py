@@ -43,7 +43,18 @@ def generate(rng: np.random.Generator) -> Case:
         "cut": float(rng.choice([0.5, 1, 2])),
         "fill": float(rng.choice([0.5, 1, 2])),
         "places": rng.uniform(0, 1, (40, 2)).tolist(),
+        "holes": _draw_hole(rng, base, origin),
+        "patch_holes": _draw_hole(rng, patch, origin),
     }
+
+
+def _draw_hole(rng: np.random.Generator, points: Any, origin: list[float]) -> list[Any]:
+    """Return rings on the lattice: none, a hole, or one with an island in it."""
+    low = np.floor(points.min(axis=0)) + rng.integers(0, 4, 2) + origin
+    side = int(rng.integers(1, 4))
+    corners = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
+    rings = [(low + side * corners).tolist(), (low + (1 + corners) * side / 3).tolist()]
+    return rings[: int(rng.choice([0, 0, 1, 2]))]
 
 
 def _lattice(first: Any, last: Any) -> Any:
@@ -54,8 +65,8 @@ def _lattice(first: Any, last: Any) -> Any:
 def examine(case: Case) -> str:
     """Paste the patch, and grade its convex hull."""
     try:
-        base = ts.triangulate(case["base"], max_edge=_find_limit(case))
-        patch = ts.triangulate(case["patch"])
+        base = ts.triangulate(case["base"], max_edge=_find_limit(case), holes=_list_holes(case))
+        patch = ts.triangulate(case["patch"], holes=_list_holes(case, "patch_"))
     except ts.TinsmithError:
         return "refused: TIN"
     pasted = ts.paste(base, patch)
@@ -76,6 +87,12 @@ def examine(case: Case) -> str:
 
 def _find_limit(case: Case) -> float | None:
     return case["max_edge"] or None
+
+
+def _list_holes(case: Case, of: str = "") -> list[Any]:
+    """Return the one hole, with its island: a polygon for itself."""
+    rings = [np.array(ring) for ring in case[f"{of}holes"]]
+    return [rings] if rings else []
 
 
 def _cover(tin: Any) -> Any:
