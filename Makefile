@@ -5,8 +5,11 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 CORE := $(wildcard tin/cpp/* tin/cpp/*/* terrain/cpp/* terrain/cpp/*/*)
 TREE := build/typing
-# One more than there are cores: some tests wait for child processes.
-WORKERS := $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
+# A worker for each core takes tests from the others when it has none: a further one would spend
+# more on collecting all tests than it saves.
+PYTEST_WORKERS := -n $(shell getconf _NPROCESSORS_ONLN) --dist worksteal
+# Rewritten tests and compiled modules are kept: hundreds of tests start Python.
+unexport PYTHONDONTWRITEBYTECODE
 
 # Pins reach the isolated build of the core too.
 export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
@@ -30,7 +33,7 @@ demo: $(READY) ## Build both samples into demo/: TINs, pictures, contours, a pro
 	@PATH="$(CURDIR)/$(BIN):$$PATH" sh sample_data/demo.sh demo
 
 test: $(READY) ## Run the tests
-	$(BIN)/python -m pytest -q -n $(WORKERS)
+	$(BIN)/python -m pytest -q $(PYTEST_WORKERS)
 
 check: $(READY) $(TREE) ## Lint, formatting, types, import contract
 	$(BIN)/ruff check .
@@ -71,7 +74,7 @@ page: ## Build the code of the 3D page anew from its sources; needs Node.js
 
 .PHONY: slow
 slow: $(READY) ## Run the tests of many seconds that `make test` leaves to CI
-	$(BIN)/python -m pytest -q -n $(WORKERS) -m slow
+	$(BIN)/python -m pytest -q $(PYTEST_WORKERS) -m slow
 
 # dist/ gets the same bytes for the same commit: times are those of the commit. The wheel is for this
 # machine; those of all platforms are made by cibuildwheel.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+
 import hypothesis
 import pytest
 from support.no_skips import (  # noqa: F401 - hooks
@@ -13,8 +15,10 @@ from support.no_skips import (  # noqa: F401 - hooks
 from tinsmith.terrain.preview import opengl
 from tinsmith.tin import TinsmithError
 
-# A timing is never a test; a test that hangs ends at pytest's own limit.
-hypothesis.settings.register_profile("tinsmith", deadline=None)
+# A timing is never a test; a test that hangs ends at pytest's own limit. The same commit is tested
+# with the same examples; --hypothesis-profile=explore draws others each time.
+hypothesis.settings.register_profile("explore", deadline=None)
+hypothesis.settings.register_profile("tinsmith", deadline=None, derandomize=True, database=None)
 hypothesis.settings.load_profile("tinsmith")
 
 
@@ -32,3 +36,8 @@ def pytest_collection_modifyitems(config, items):
     left = {item for name in left_out for item in items if item.get_closest_marker(name)}
     config.hook.pytest_deselected(items=[item for item in items if item in left])
     items[:] = [item for item in items if item not in left]
+
+
+def pytest_collection_finish():
+    """Keep the collector from searching thousands of tests through again and again."""
+    gc.freeze()

@@ -197,7 +197,7 @@ def write_rows(path, points, form):
 
 @pytest.mark.parametrize(
     ("form", "least"),
-    [("{0},{1:.3f},{2:.3f},{3:.3f}\n", 6), ('{0},{1:.3f},{2:.3f},{3:.3f},6" PIPE\n', 20)],
+    [("{0},{1:.3f},{2:.3f},{3:.3f}\n", 4), ('{0},{1:.3f},{2:.3f},{3:.3f},6" PIPE\n', 20)],
 )
 def test_text_is_read_with_fractions(tmp_path, points, form, least):
     path = write_rows(tmp_path / "points.csv", points, form)

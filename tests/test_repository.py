@@ -2,6 +2,7 @@
 
 import ast
 import doctest
+import functools
 import importlib
 import os
 import pkgutil
@@ -21,6 +22,11 @@ import tinsmith as ts
 import tinsmith.cli
 
 ROOT = Path(__file__).parents[1]
+
+
+@functools.cache
+def parse(path):
+    return ast.parse(path.read_text())
 
 
 def run(*command, cwd=ROOT, **environment):
@@ -50,6 +56,7 @@ def test_lint_and_formatting():
         assert result.returncode == 0, result.stdout + result.stderr
 
 
+@pytest.mark.slow
 def test_types(tree):
     result = run(tool("mypy"), "--config-file", str(ROOT / "pyproject.toml"), cwd=tree)
     assert result.returncode == 0, result.stdout + result.stderr
@@ -88,7 +95,7 @@ def imports_of(name, path, modules):
     what writes it as something else, and that may name the record's type.
     """
     package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-    tree = ast.parse(path.read_text())
+    tree = parse(path.resolve())
     typing_only = {
         id(node)
         for block in ast.walk(tree)
@@ -193,7 +200,7 @@ FOLDERS = ("tin", "io", "terrain", "src", "qgis", "tests", "benchmarks", "sample
 
 def measure_python_functions(path):
     """Yield name and lines of every function's body, docstring aside."""
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in ast.walk(parse(path)):
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             body = node.body[1:] if ast.get_docstring(node) is not None else node.body
             yield node.name, body[-1].end_lineno - body[0].lineno + 1 if body else 0

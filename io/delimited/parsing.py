@@ -130,7 +130,7 @@ def _parse_numbers(bounds: CellBounds, column: int, decimal: str) -> NDArray[Any
             number = _read_number(text.strip(), decimal)
             if number is None:
                 return None
-            floats[start + k] = number
+            floats[start + k] = float(text) if isinstance(number, int) else number  # keeps -0.0
             whole = _place_whole(whole, k, number)
         if whole is None:
             integers = None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 
 import matplotlib.image
@@ -138,14 +137,6 @@ def test_wrong_options_are_told(few, arguments, code, words, tmp_path, monkeypat
     monkeypatch.chdir(tmp_path)
     assert words in run(few, *arguments, code=code).stderr
     assert list(tmp_path.iterdir()) == []
-
-
-def test_example_of_the_help_runs_as_written(tmp_path, monkeypatch):
-    (tmp_path / "sample_data").symlink_to(SAMPLES)
-    monkeypatch.chdir(tmp_path)
-    example = re.search(r"tinsmith compare (.*)", run("--help").stdout)
-    run(*example.group(1).split())
-    assert (tmp_path / "comparison.png").stat().st_size > 0
 
 
 def test_input_is_not_overwritten(few):

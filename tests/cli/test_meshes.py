@@ -20,7 +20,7 @@ DATA = Path(__file__).parents[1] / "data" / "meshes"
 def run_alone(*arguments):
     """Run in a process of its own, whose warnings are sentences on standard error."""
     command = [sys.executable, "-m", "tinsmith", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    return subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
 
 
 @pytest.fixture

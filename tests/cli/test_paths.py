@@ -156,7 +156,7 @@ def piped(command, text, *arguments):
         capture_output=True,
         text=True,
         check=False,
-        timeout=120,
+        timeout=600,
     )
 
 

@@ -147,7 +147,7 @@ def test_closed_streams_get_their_numbers_back(tmp_path, closed):
         "extra = os.open(os.devnull, os.O_RDONLY)\n"
         f"open({str(tmp_path / 'told')!r}, 'w').write(json.dumps([found, modes, extra]))\n"
     )
-    subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, timeout=60)
+    subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, timeout=600)
     found, modes, extra = json.loads((tmp_path / "told").read_text())
     for number in range(3):
         assert (found[str(number)] == "/dev/null") >= (number in closed)

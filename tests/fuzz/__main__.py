@@ -12,6 +12,7 @@ import dataclasses
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 from .campaign import Campaign, discover
 from .child import Child
@@ -41,12 +42,13 @@ def parse(arguments: list[str] | None = None) -> argparse.Namespace:
 
 def main(arguments: list[str] | None = None) -> int:
     given = parse(arguments)
-    campaigns = discover(given.module)
+    find = json.loads(given.replay.read_text(encoding="utf-8")) if given.replay else None
+    campaigns = discover(given.module, [find["campaign"]] if find else given.campaign or ())
     if given.list:
         print("\n".join(f"{c.name:<20} {c.what}" for c in campaigns.values()))
         return 0
-    if given.replay:
-        return replay(campaigns, given.replay, has_limits=not given.no_memory_limit)
+    if find:
+        return replay(campaigns, find, has_limits=not given.no_memory_limit)
     unknown = set(given.campaign or ()) - set(campaigns)
     if unknown:
         sys.exit(f"no campaign {', '.join(sorted(unknown))}; there are {', '.join(campaigns)}")
@@ -80,8 +82,7 @@ def run_all(campaigns: list[Campaign], options: Options) -> int:
     return int(any(tally.finds for tally in tallies))
 
 
-def replay(campaigns: dict[str, Campaign], path: Path, *, has_limits: bool) -> int:
-    find = json.loads(path.read_text(encoding="utf-8"))
+def replay(campaigns: dict[str, Campaign], find: dict[str, Any], *, has_limits: bool) -> int:
     child = Child(campaigns[find["campaign"]], find["seed"], has_limits=has_limits)
     try:
         outcome = child.ask("case", find["case"])

@@ -31,14 +31,24 @@ class Campaign(NamedTuple):
     megabytes: int = 4096  # what a case may allocate
 
 
-def discover(modules: Iterable[str] = ()) -> dict[str, Campaign]:
-    """Return the campaigns of this package, and of further modules, by their names."""
+def discover(modules: Iterable[str] = (), wanted: Iterable[str] = ()) -> dict[str, Campaign]:
+    """Return the campaigns of further modules and of this package, by their names.
+
+    The package is not loaded when the further modules have all campaigns that are wanted.
+    """
+    found = _import_campaigns(modules)
+    if wanted and found.keys() >= set(wanted):
+        return found
     package = importlib.import_module(__package__ or "fuzz")
     inside = [f"{package.__name__}.{m.name}" for m in pkgutil.iter_modules(package.__path__)]
+    ours = _import_campaigns(name for name in sorted(inside) if not name.endswith("__main__"))
+    assert not found.keys() & ours.keys(), "two campaigns have one name"
+    return ours | found
+
+
+def _import_campaigns(modules: Iterable[str]) -> dict[str, Campaign]:
     found: dict[str, Campaign] = {}
-    for name in [*sorted(inside), *modules]:
-        if name.endswith("__main__"):
-            continue
+    for name in modules:
         for campaign in getattr(importlib.import_module(name), "CAMPAIGNS", ()):
             assert campaign.name not in found, f"two campaigns are called {campaign.name}"
             found[campaign.name] = campaign

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
+
+import tinsmith as ts
 
 from .campaign import Case
 from .coordinates import points
 
-__all__ = ["line", "ring", "surface"]
+__all__ = ["list_lines", "surface", "triangulate"]
 
 
 def surface(rng: np.random.Generator, *, most: int) -> Case:
@@ -21,6 +25,20 @@ def surface(rng: np.random.Generator, *, most: int) -> Case:
     if rng.random() < 0.3:
         case[str(rng.choice(["boundary", "holes"]))] = [ring(rng, xy)]
     return case
+
+
+def list_lines(case: Case) -> dict[str, Any]:
+    """Return the lines of a case by the parameter that takes them."""
+    return {name: case[name] for name in ("breaklines", "boundary", "holes") if name in case}
+
+
+def triangulate(case: Case) -> Any:
+    """Return the TIN of a case, or in a few words why there is none to go on with."""
+    try:
+        tin = ts.triangulate(case["points"], **list_lines(case))
+    except ts.TinsmithError:
+        return "refused: TIN"
+    return tin if ts.check(tin).ok else "not ours: unsound before"
 
 
 def line(rng: np.random.Generator, xy: NDArray[np.float64]) -> list[list[float]]:

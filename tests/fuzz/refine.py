@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 import tinsmith as ts
 
 from .campaign import Campaign, Case
-from .linework import surface
+from .linework import surface, triangulate
 
 MOST_VERTICES = 3000
 
@@ -31,13 +31,9 @@ def generate(rng: np.random.Generator) -> Case:
 
 def examine(case: Case) -> str:
     """Refine, and ask for a sound mesh that keeps what it promises."""
-    lines = {name: case[name] for name in ("breaklines", "boundary", "holes") if name in case}
-    try:
-        tin = ts.triangulate(case["points"], **lines)
-    except ts.TinsmithError:
-        return "refused: TIN"
-    if not ts.check(tin).ok:
-        return "not ours: unsound before"
+    tin = triangulate(case)
+    if isinstance(tin, str):
+        return tin
     limits = {name: case[name] for name in ("min_angle", "max_area", "max_edge") if name in case}
     try:
         mesh = ts.tin.refine(tin, **limits, max_vertices=MOST_VERTICES)

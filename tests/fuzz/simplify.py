@@ -9,7 +9,7 @@ import numpy as np
 import tinsmith as ts
 
 from .campaign import Campaign, Case
-from .linework import surface
+from .linework import list_lines, surface, triangulate
 
 
 def generate(rng: np.random.Generator) -> Case:
@@ -24,13 +24,9 @@ def generate(rng: np.random.Generator) -> Case:
 
 def examine(case: Case) -> str:
     """Simplify both ways, and in another order of the points."""
-    lines = {name: case[name] for name in ("breaklines", "boundary", "holes") if name in case}
-    try:
-        tin = ts.triangulate(case["points"], **lines)
-    except ts.TinsmithError:
-        return "refused: TIN"
-    if not ts.check(tin).ok:
-        return "not ours: unsound before"
+    tin = triangulate(case)
+    if isinstance(tin, str):
+        return tin
     try:
         simple = ts.simplify(tin, tolerance=case["tolerance"])
     except ts.PointsError:
@@ -44,7 +40,7 @@ def examine(case: Case) -> str:
         counted = ts.simplify(tin, points=number)
         require_sound(tin, counted)
         assert len(counted.points) == number, "another number of points"
-    if not lines:
+    if not list_lines(case):
         require_same_in_any_order(case, simple)
     return "simplified"
 

@@ -26,7 +26,7 @@ _seconds: dict[str, float] = json.loads(_KNOWN.read_text()) if _KNOWN.exists() e
 
 @pytest.hookimpl(trylast=True)
 def pytest_configure() -> None:
-    usual = hypothesis.settings.get_profile("tinsmith")
+    usual = hypothesis.settings.get_profile("explore")
     phases = (Phase.explicit, Phase.generate)
     hypothesis.settings.register_profile("mutation", usual, phases=phases)
     hypothesis.settings.load_profile("mutation")

@@ -12,6 +12,8 @@ import pytest
 
 _WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
 _NO_WEBGL = ("--disable-gpu", "--disable-3d-apis")
+_PATIENCE = 500_000
+"""Milliseconds: a browser that draws without a graphics card is slow on a busy machine."""
 
 
 @contextmanager
@@ -21,6 +23,7 @@ def open_page(path, *, webgl=True, **context_options):
     options = {"offline": True, "viewport": {"width": 1200, "height": 800}, **context_options}
     context = _launch_browser(webgl).new_context(**options)
     try:
+        context.set_default_timeout(_PATIENCE)
         page = context.new_page()
         page.on("pageerror", lambda error: said.append(str(error)))
         page.on("console", lambda line: said.append(line.text) if line.type == "error" else None)
@@ -40,7 +43,9 @@ def _launch_browser(webgl):
     if browser_path is None:
         pytest.skip("chromium is not installed")
     arguments = ["--no-sandbox", *(_WEBGL if webgl else _NO_WEBGL)]
-    return _start_driver().chromium.launch(executable_path=browser_path, args=arguments)
+    return _start_driver().chromium.launch(
+        executable_path=browser_path, args=arguments, timeout=_PATIENCE
+    )
 
 
 @cache

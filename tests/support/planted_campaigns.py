@@ -41,7 +41,7 @@ seen: list[int] = []
 
 CAMPAIGNS = (
     Campaign("fails", "fails now and then", generate, fail),
-    Campaign("hangs", "hangs now and then", generate, hang, seconds=0.3),
+    Campaign("hangs", "hangs now and then", generate, hang, seconds=1.0),
     Campaign("aborts", "dies now and then", generate, abort),
     Campaign("swells", "takes all memory now and then", generate, swell, megabytes=512),
     Campaign("depends", "fails by its history", generate, depend),

@@ -57,7 +57,7 @@ def run_in_qgis(script, arguments, folder):
         [_PYTHON, "-c", script, *arguments],
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
         check=False,
         env=environment,
     )

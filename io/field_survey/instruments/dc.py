@@ -13,13 +13,12 @@ columns); Traverse PC, Trimble DC10.7 (which record is what).
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from ....crs import METRE
 from ....errors import ReadError
-from ...delimited.cells import is_number
 from ...delimited.lines import read_lines
+from .record_lines import find_head, parse_coordinate, read_records
 from .records import Book
 
 if TYPE_CHECKING:
@@ -72,16 +71,8 @@ def read(
         If it has no header, a number is none, or no point has coordinates.
     """
     lines = read_lines(path, encoding=encoding)
-    reader = _Reader(lines, path)
-    for number in range(len(lines)):
-        line = lines.decode_line(number)
-        is_last = number == len(lines) - 1 and not lines.is_whole
-        if is_last and line[:2] in _POINTS and len(line) < _END_OF_NUMBERS:
-            reader.book.leave_out("records without an end that may be cut", number + 1)
-        else:
-            reader.read_record(line, number + 1)
-    reader.finish()
-    return reader.book.make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
+    book = read_records(lines, _Reader(lines, path))
+    return book.make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
 
 
 class _Reader:
@@ -95,7 +86,7 @@ class _Reader:
 
     def _read_header(self, lines: TextLines, path: Path) -> bool:
         """Read units and the order of coordinates, and return whether eastings come first."""
-        head = next((lines.decode_line(i) for i in range(len(lines)) if not lines.is_blank[i]), "")
+        head = find_head(lines)
         if not head.startswith("00"):
             raise ReadError(
                 f"'{path}' begins with '{head[:20]}', and a Trimble DC file with the record 00.",
@@ -114,6 +105,10 @@ class _Reader:
         self.book.unit = METRE if length == "1" else None
         return order == "2"
 
+    def may_be_cut(self, line: str) -> bool:
+        """Whether the last number of a record may go on."""
+        return line[:2] in _POINTS and len(line) < _END_OF_NUMBERS
+
     def read_record(self, line: str, number: int) -> None:
         """Take one record; of kinds that say nothing of points none."""
         kind = line[:2]
@@ -126,7 +121,7 @@ class _Reader:
         name, *cells, code = (
             line[at : at + _WIDTH].strip() for at in range(4, _END_OF_CODE, _WIDTH)
         )
-        first, second, z = (self._number(cell, number) for cell in cells)
+        first, second, z = (parse_coordinate(cell, self.book.path, number) for cell in cells)
         x, y = (first, second) if self.is_east_first else (second, first)
         self._known.add(name)
         self.book.add(name, (x, y, z), code, number, line[_END_OF_CODE : _END_OF_CODE + 2].strip())
@@ -151,17 +146,3 @@ class _Reader:
             self.book.notes.insert(
                 0, "export the job with grid coordinates, or as JobXML with its reductions."
             )
-
-    def _number(self, cell: str, line: int) -> float:
-        """Return the number of a field, NaN if it is empty."""
-        if cell in ("", "?"):
-            return math.nan
-        value = float(cell) if is_number(cell, ".") else math.inf
-        if math.isinf(value):
-            raise ReadError(
-                f"'{self.book.path}', line {line}: '{cell[:30]}' stands where a coordinate must "
-                "be.",
-                path=self.book.path,
-                lines=[line],
-            )
-        return value

@@ -10,12 +10,11 @@ Reference: Trimble, JobXML schema 5.3.
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 from xml.parsers import expat
 
 from ....errors import ReadError
-from ...delimited.cells import is_number
+from .record_lines import parse_coordinate
 from .records import Book
 
 if TYPE_CHECKING:
@@ -199,21 +198,8 @@ class _Reader:
         if grid is None:
             book.leave_out("points without a position in the grid", record.line)
             return
-        x, y, z = (self._number(grid.get(axis, ""), record.line) for axis in _AXES)
+        x, y, z = (parse_coordinate(grid.get(axis, ""), self.path, record.line) for axis in _AXES)
         texts = record.texts
         method = texts.get("SurveyMethod") or texts.get("Method") or ""
         name = texts.get("Name", "")
         book.add(name, (x, y, z), texts.get("Code", ""), record.line, method)
-
-    def _number(self, text: str, line: int) -> float:
-        """Return a coordinate in metres, NaN where there is none."""
-        if text in ("", "?"):
-            return math.nan
-        value = float(text) if is_number(text, ".") else math.inf
-        if math.isinf(value):
-            raise ReadError(
-                f"'{self.path}', line {line}: '{text[:30]}' stands where a coordinate must be.",
-                path=self.path,
-                lines=[line],
-            )
-        return value

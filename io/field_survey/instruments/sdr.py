@@ -20,6 +20,7 @@ from ....crs import METRE
 from ....errors import ReadError
 from ...delimited.cells import is_number
 from ...delimited.lines import read_lines
+from .record_lines import find_head, read_records
 from .records import Book, require_refraction
 from .reduction import Shot, Station, reduce_shot, to_radians
 
@@ -86,15 +87,8 @@ def read(
     """
     coefficient = require_refraction(refraction)
     lines = read_lines(path, encoding=encoding)
-    reader = _Reader(lines, path, coefficient)
-    for number in range(len(lines)):
-        line = lines.decode_line(number)
-        if number == len(lines) - 1 and not lines.is_whole and reader.may_be_cut(line):
-            reader.book.leave_out("records without an end that may be cut", number + 1)
-        else:
-            reader.read_record(line, number + 1)
-    reader.finish()
-    return reader.book.make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
+    book = read_records(lines, _Reader(lines, path, coefficient))
+    return book.make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
 
 
 class _Reader:
@@ -122,7 +116,7 @@ class _Reader:
         }
 
     def _read_header(self, lines: TextLines, path: Path) -> tuple[_Columns, bool, str]:
-        head = next((lines.decode_line(i) for i in range(len(lines)) if not lines.is_blank[i]), "")
+        head = find_head(lines)
         version = head[4:20].strip().upper()
         columns = next((one for name, one in _VERSIONS.items() if version.startswith(name)), None)
         if not head.startswith("00") or columns is None:

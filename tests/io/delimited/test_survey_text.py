@@ -542,11 +542,11 @@ def test_a_row_too_many_does_not_mislead_the_delimiter(survey):
 
 @pytest.mark.parametrize("text", ["1" * 8_000, "1" * 200_000 + "x", "(" * 100_000, "-" * 100_000])
 def test_long_cells_are_judged_in_no_time(survey, text):
-    started = time.monotonic()
+    started = time.process_time()
     for content in (f"x,y,z\n{text},2,3\n4,5,6\n", f"{text};y;z\n1;2;3\n", f"{text} 1 2\n"):
         with contextlib.suppress(ReadError):
             survey(content)
-    assert time.monotonic() - started < 5.0
+    assert time.process_time() - started < 5.0
 
 
 def test_overlong_lines_are_refused(survey):

@@ -272,12 +272,12 @@ print(json.dumps([
     fork.wait(), "OF_A_FORK" in os.environ, len(signal.pthread_sigmask(signal.SIG_BLOCK, ())),
     Fork(fail, {}).wait(), Fork(lambda: None, {}).wait(20.0),
 ]))
-fork = Fork(lambda: time.sleep(60), {})
+fork = Fork(lambda: time.sleep(600), {})
 begin = time.monotonic()
 try:
     fork.wait(0.3)
 except subprocess.TimeoutExpired as error:
-    print(json.dumps([0.29 < time.monotonic() - begin < 20, error.timeout, fork.returncode]))
+    print(json.dumps([0.29 < time.monotonic() - begin < 500, error.timeout, fork.returncode]))
 fork.kill()
 print(fork.wait(20.0), fork.returncode, fork.wait())
 fork.kill()
@@ -287,7 +287,7 @@ fork.kill()
 @on_linux
 def test_a_fork_begins_clean_and_its_end_is_told():
     done = subprocess.run(
-        [sys.executable, "-c", FORKS], capture_output=True, text=True, check=False, timeout=60
+        [sys.executable, "-c", FORKS], capture_output=True, text=True, check=False, timeout=600
     )
     assert (done.returncode, done.stderr) == (0, "")
     told, ends, late, last = done.stdout.splitlines()

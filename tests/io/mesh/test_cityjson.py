@@ -75,7 +75,7 @@ def test_cjio_reads_our_file(tmp_path):
     tin = hills()
     path = ts.write(tin, tmp_path / "a.city.json")
     command = [sys.executable, "-c", _CJIO, str(path)]
-    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60)
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=600)
     epsg, version, bbox, boundaries = ast.literal_eval(done.stdout.splitlines()[-1])
     assert (epsg, version) == (32616, "2.0")
     low, high = tin.points.min(axis=0), tin.points.max(axis=0)

@@ -281,7 +281,7 @@ def run_qgis(folder, *paths):
     if not Path(python).exists() or subprocess.run(probe, capture_output=True).returncode:
         pytest.skip("needs QGIS with its Python")
     command = [python, "-c", QGIS, *map(str, paths)]
-    done = subprocess.run(command, capture_output=True, text=True, env=surroundings, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, env=surroundings, timeout=600)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout.splitlines()[-1])
 

@@ -143,7 +143,9 @@ def test_gdal_sees_the_same_on_a_fine_raster(tmp_path):
     # GDAL's own line of sight: no curvature, targets on the ground.
     how = ("-ox", f"{eye[0]}", "-oy", f"{eye[1]}", "-oz", "4", "-cc", "0")
     subprocess.run(
-        ["gdal_viewshed", *how, tmp_path / "dem.tif", tmp_path / "seen.tif"], check=True, timeout=60
+        ["gdal_viewshed", *how, tmp_path / "dem.tif", tmp_path / "seen.tif"],
+        check=True,
+        timeout=600,
     )
     import rasterio
 

@@ -15,6 +15,9 @@ enum class Vertex : std::int32_t {};
 
 enum class Triangle : std::uint32_t {};
 
+// A segment of the caller's lines, in the order in which they were given.
+enum class Segment : std::int32_t {};
+
 // An edge as seen from one triangle: 4 * triangle + number of the corner opposite the edge. It is
 // directed with that triangle on its left. So half-edges are the corners of a corner table
 // (Rossignac, Safonova and Szymczak, "3D compression made simple: Edgebreaker on a corner table",
@@ -42,6 +45,7 @@ static_assert(4 * 2 * kMostPoints + 3 < UINT32_MAX - 1, "the last half-edge is n
 
 constexpr std::int32_t number(Row row) { return static_cast<std::int32_t>(row); }
 constexpr std::int32_t number(Vertex v) { return static_cast<std::int32_t>(v); }
+constexpr std::int32_t number(Segment s) { return static_cast<std::int32_t>(s); }
 constexpr std::uint32_t number(Triangle t) { return static_cast<std::uint32_t>(t); }
 constexpr std::uint32_t number(HalfEdge e) { return static_cast<std::uint32_t>(e); }
 

@@ -25,15 +25,15 @@ inline bool do_cross(Point a, Point b, Point c, Point d) {
          orientation(c, d, a) * orientation(c, d, b) < 0;
 }
 
-inline NumberPair in_ascending_order(std::int32_t first, std::int32_t second) {
+inline Crossing in_ascending_order(Segment first, Segment second) {
   return {std::min(first, second), std::max(first, second)};
 }
 
 // Pairs i < j with j >= first_new, sorted; incomplete if the team was stopped.
-inline std::vector<NumberPair> find_crossings(const Segments& segments, std::int32_t first_new,
-                                              Team& team) {
+inline std::vector<Crossing> find_crossings(const Segments& segments, Segment first_new,
+                                            Team& team) {
   using Item = SegmentBoxes::Item;
-  std::vector<std::vector<NumberPair>> found(team.size());
+  std::vector<std::vector<Crossing>> found(team.size());
   const SegmentBoxes tree(segments, 0.0);
   tree.visit_pairs(first_new, team, [&](int part, const Item& s, const Item& t) {
     if (!do_cross(s.end[0], s.end[1], t.end[0], t.end[1])) return;
@@ -48,8 +48,9 @@ inline std::vector<Point> find_intersections(const Segments& segments, const std
   std::vector<Point> found(count);
   visit_in_blocks(count, team, [&](int, std::int32_t i) {
     const std::int32_t* pair = pairs + 2 * static_cast<std::size_t>(i);
-    const Point a = segments.point(pair[0], 0), b = segments.point(pair[0], 1);
-    const Point c = segments.point(pair[1], 0), d = segments.point(pair[1], 1);
+    const Segment s{pair[0]}, t{pair[1]};
+    const Point a = segments.point(s, 0), b = segments.point(s, 1);
+    const Point c = segments.point(t, 0), d = segments.point(t, 1);
     if (!do_cross(a, b, c, d)) {
       throw std::invalid_argument("the segments of every pair must cross");
     }
@@ -62,13 +63,14 @@ inline std::vector<Point> find_intersections(const Segments& segments, const std
 // Crossings, and touches within a distance, of all segments and vertices in one search.
 class ContactSearch {
  public:
-  std::vector<NumberPair> crossings, touches;  // incomplete if the team was stopped
+  std::vector<Crossing> crossings;  // incomplete, as the touches, if the team was stopped
+  std::vector<Touch> touches;
 
   ContactSearch(const Segments& segments, std::int32_t vertex_count, double distance, Team& team)
       : distance_(distance), found_(team.size()) {
     const SegmentBoxes tree(segments, distance);
     tree.visit_pairs(
-        0, team, [&](int part, const SegmentBoxes::Item& s, const SegmentBoxes::Item& t) {
+        Segment{0}, team, [&](int part, const SegmentBoxes::Item& s, const SegmentBoxes::Item& t) {
           distance > 0.0 ? compare_near(s, t, found_[part]) : compare(s, t, found_[part]);
         });
     if (team.is_stopped()) return;
@@ -80,14 +82,15 @@ class ContactSearch {
     std::sort(crossings.begin(), crossings.end());
     std::sort(touches.begin(), touches.end());
     // A vertex is the end of several segments.
-    const auto is_same = [](NumberPair p, NumberPair q) { return !(p < q) && !(q < p); };
+    const auto is_same = [](Touch p, Touch q) { return !(p < q) && !(q < p); };
     touches.erase(std::unique(touches.begin(), touches.end(), is_same), touches.end());
   }
 
  private:
   using Item = SegmentBoxes::Item;
   struct Found {
-    std::vector<NumberPair> crossings, touches;
+    std::vector<Crossing> crossings;
+    std::vector<Touch> touches;
   };
 
   // Most pairs are told apart by the first two signs.
@@ -124,14 +127,14 @@ class ContactSearch {
     found.touches.push_back({item.segment, other.vertex[k]});
   }
 
-  std::vector<NumberPair> touches_of_others(const Segments& segments, std::int32_t vertex_count,
-                                            Team& team) const {
+  std::vector<Touch> touches_of_others(const Segments& segments, std::int32_t vertex_count,
+                                       Team& team) const {
     std::vector<char> is_end(vertex_count);
     for (std::int32_t i = 0; i < segments.count; ++i) {
-      for (int k = 0; k < 2; ++k) is_end[segments.end(i, k)] = 1;
+      for (int k = 0; k < 2; ++k) is_end[number(segments.end(Segment{i}, k))] = 1;
     }
-    const auto is_asked = [&](std::int32_t v) { return is_end[v] == 0; };
-    return TouchSearch(segments, {distance_, false}).run(0, vertex_count, is_asked, team);
+    const auto is_asked = [&](Vertex v) { return is_end[number(v)] == 0; };
+    return TouchSearch(segments, {distance_, false}).run(Vertex{0}, vertex_count, is_asked, team);
   }
 
   double distance_;

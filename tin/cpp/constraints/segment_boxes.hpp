@@ -20,8 +20,8 @@ class SegmentBoxes {
  public:
   struct Item {
     Point end[2];
-    std::int32_t vertex[2];
-    std::int32_t segment;
+    Vertex vertex[2];
+    Segment segment;
   };
 
   SegmentBoxes(const Segments& segments, double reach)
@@ -29,9 +29,10 @@ class SegmentBoxes {
         reach_(reach),
         items_(scratch_array<Item>(count_)),
         boxes_(scratch_array<Box>(count_)) {
-    const HilbertOrder order(count_, [&](std::int32_t i) { return segments.box_of(i).center(); });
+    const HilbertOrder order(count_,
+                             [&](std::int32_t i) { return segments.box_of(Segment{i}).center(); });
     for (std::int32_t i = 0; i < count_; ++i) {
-      const std::int32_t segment = order[i];
+      const Segment segment{order[i]};
       items_[i] = {{segments.point(segment, 0), segments.point(segment, 1)},
                    {segments.end(segment, 0), segments.end(segment, 1)},
                    segment};
@@ -43,7 +44,7 @@ class SegmentBoxes {
   // visit(part, item, other) once for every pair of which at least one segment is `first_new` or
   // later and whose boxes come within reach, by the team's parts.
   template <typename Visit>
-  void visit_pairs(std::int32_t first_new, Team& team, Visit&& visit) const {
+  void visit_pairs(Segment first_new, Team& team, Visit&& visit) const {
     const std::int32_t group_count = count_ / kGroup + (count_ % kGroup != 0);
     visit_in_blocks(group_count, team, [&](int part, std::int32_t group) {
       visit_group({kGroup * group, std::min(kGroup * group + kGroup, count_)}, first_new,
@@ -62,7 +63,7 @@ class SegmentBoxes {
     Box around;
   };
 
-  Askers askers(Range group, std::int32_t first_new) const {
+  Askers askers(Range group, Segment first_new) const {
     Askers result;
     for (std::int32_t i = group.begin; i < group.end; ++i) {
       if (items_[i].segment < first_new) continue;
@@ -75,10 +76,10 @@ class SegmentBoxes {
 
   // Of two new segments the one that comes first in the tree asks.
   template <typename Visit>
-  void visit_group(Range group, std::int32_t first_new, Visit&& visit) const {
+  void visit_group(Range group, Segment first_new, Visit&& visit) const {
     const Askers asking = askers(group, first_new);
     if (asking.count == 0) return;
-    const std::int32_t from = first_new == 0 ? group.begin : 0;
+    const std::int32_t from = first_new == Segment{0} ? group.begin : 0;
     const auto wanted = [&](const Box& box, std::int64_t end) {
       return end > from && asking.around.meets(box);
     };

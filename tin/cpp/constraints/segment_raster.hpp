@@ -17,11 +17,11 @@ namespace tinsmith {
 class SegmentRaster {
  public:
   SegmentRaster(const Segments& segments, Reach reach, std::int64_t vertex_count) {
-    const auto reach_of = [&](std::int32_t i) {
-      return Band::kRoom * reach.of(segments.point(i, 0), segments.point(i, 1));
+    const auto reach_of = [&](Segment s) {
+      return Band::kRoom * reach.of(segments.point(s, 0), segments.point(s, 1));
     };
     for (std::int32_t i = 0; i < segments.count; ++i) {
-      box_.include(segments.box_of(i).grown_by(reach_of(i)));
+      box_.include(segments.box_of(Segment{i}).grown_by(reach_of(Segment{i})));
     }
     if (segments.count == 0) return;  // the empty box holds nothing
     choose_side(segments, vertex_count);
@@ -29,7 +29,8 @@ class SegmentRaster {
     rows_per_unit_ = cells_per_unit(box_.height());
     bits_.resize(static_cast<std::size_t>(side_) * (side_ / kWord));
     for (std::int32_t i = 0; i < segments.count; ++i) {
-      mark(cell_of(segments.point(i, 0)), cell_of(segments.point(i, 1)), reach_of(i));
+      const Segment s{i};
+      mark(cell_of(segments.point(s, 0)), cell_of(segments.point(s, 1)), reach_of(s));
     }
   }
 
@@ -52,7 +53,7 @@ class SegmentRaster {
   void choose_side(const Segments& segments, std::int64_t vertex_count) {
     double rise = 0.0;
     for (std::int32_t i = 0; i < segments.count; ++i) {
-      rise += std::fabs(segments.point(i, 1).y - segments.point(i, 0).y);
+      rise += std::fabs(segments.point(Segment{i}, 1).y - segments.point(Segment{i}, 0).y);
     }
     const double height = box_.height();
     const double heights = height > 0.0 ? rise / height : 0.0;

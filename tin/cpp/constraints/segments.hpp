@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../base/box.hpp"
+#include "../base/ids.hpp"
 #include "../base/parallel.hpp"
 #include "../predicates/predicates.hpp"
 
@@ -20,11 +21,12 @@ struct Segments {
   const std::int32_t* ends;  // two point numbers each
   std::int32_t count;
 
-  std::int32_t end(std::int32_t segment, int k) const {
-    return ends[2 * static_cast<std::size_t>(segment) + k];
+  Vertex end(Segment s, int k) const {
+    return Vertex{ends[2 * static_cast<std::size_t>(number(s)) + k]};
   }
-  Point point(std::int32_t segment, int k) const { return points[end(segment, k)]; }
-  Box box_of(std::int32_t segment) const { return Box::of(point(segment, 0), point(segment, 1)); }
+  Point point(Vertex v) const { return points[number(v)]; }
+  Point point(Segment s, int k) const { return point(end(s, k)); }
+  Box box_of(Segment s) const { return Box::of(point(s, 0), point(s, 1)); }
 };
 
 // How far a segment reaches for vertices.
@@ -40,13 +42,24 @@ struct Reach {
   }
 };
 
-struct NumberPair {
-  std::int32_t first;
-  std::int32_t second;
+// Two segments that cross, in ascending order.
+struct Crossing {
+  Segment first;
+  Segment second;
 };
 
-inline bool operator<(NumberPair a, NumberPair b) {
+inline bool operator<(Crossing a, Crossing b) {
   return a.first < b.first || (a.first == b.first && a.second < b.second);
+}
+
+// A vertex on or near the interior of a segment.
+struct Touch {
+  Segment segment;
+  Vertex vertex;
+};
+
+inline bool operator<(Touch a, Touch b) {
+  return a.segment < b.segment || (a.segment == b.segment && a.vertex < b.vertex);
 }
 
 // All that lies within `reach` of a segment. meets() may say yes to what lies just outside, but
@@ -102,8 +115,9 @@ void visit_in_blocks(std::int32_t count, Team& team, Visit&& visit) {
 }
 
 // What the parts found, as one sorted list.
-inline std::vector<NumberPair> sorted_together(std::vector<std::vector<NumberPair>>& found) {
-  std::vector<NumberPair> all = std::move(found[0]);
+template <typename Pair>
+std::vector<Pair> sorted_together(std::vector<std::vector<Pair>>& found) {
+  std::vector<Pair> all = std::move(found[0]);
   for (std::size_t part = 1; part < found.size(); ++part) {
     all.insert(all.end(), found[part].begin(), found[part].end());
   }

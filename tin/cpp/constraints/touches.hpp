@@ -54,52 +54,52 @@ inline bool touches_interior(Point a, Point b, Point p, double distance) {
 }
 
 // Pairs (segment, vertex), sorted; incomplete if the team was stopped. The vertices are those of
-// the points from `first_vertex` to `vertex_count` - 1 for which `is_asked(number)`.
+// the points from `first_vertex` to `vertex_count` - 1 for which `is_asked(vertex)`.
 class TouchSearch {
  public:
   TouchSearch(const Segments& segments, Reach reach) : segments_(segments), reach_(reach) {}
 
   template <typename IsAsked>
-  std::vector<NumberPair> run(std::int32_t first_vertex, std::int32_t vertex_count,
-                              IsAsked&& is_asked, Team& team) {
+  std::vector<Touch> run(Vertex first_vertex, std::int32_t vertex_count, IsAsked&& is_asked,
+                         Team& team) {
     gather(first_vertex, vertex_count, is_asked, team);
-    std::vector<std::vector<NumberPair>> found(team.size());
+    std::vector<std::vector<Touch>> found(team.size());
     if (team.is_stopped() || items_.empty()) return {};
     visit_in_blocks(segments_.count, team,
-                    [&](int part, std::int32_t segment) { search(segment, found[part]); });
+                    [&](int part, std::int32_t i) { search(Segment{i}, found[part]); });
     return sorted_together(found);
   }
 
  private:
   struct Item {
     Point point;
-    std::int32_t vertex;
+    Vertex vertex;
   };
 
   // The vertices that a raster of the segments cannot rule out, in spatial order.
   template <typename IsAsked>
-  void gather(std::int32_t first_vertex, std::int32_t vertex_count, IsAsked&& is_asked,
-              Team& team) {
-    const SegmentRaster raster(segments_, reach_, vertex_count - first_vertex);
-    std::vector<std::vector<std::int32_t>> kept(team.size());
+  void gather(Vertex first_vertex, std::int32_t vertex_count, IsAsked&& is_asked, Team& team) {
+    const std::int32_t asked = vertex_count - number(first_vertex);
+    const SegmentRaster raster(segments_, reach_, asked);
+    std::vector<std::vector<Vertex>> kept(team.size());
     team.run([&](int part) {
-      const Range range = part_of(vertex_count - first_vertex, part, team.size());
+      const Range range = part_of(asked, part, team.size());
       if (!team.keeps_going(part)) return;
       for (std::int32_t i = range.begin; i < range.end; ++i) {
-        const std::int32_t v = first_vertex + i;
-        if (is_asked(v) && raster.may_hold(segments_.points[v])) kept[part].push_back(v);
+        const Vertex v{number(first_vertex) + i};
+        if (is_asked(v) && raster.may_hold(segments_.point(v))) kept[part].push_back(v);
       }
     });
-    std::vector<std::int32_t> numbers = std::move(kept[0]);
+    std::vector<Vertex> vertices = std::move(kept[0]);
     for (int part = 1; part < team.size(); ++part) {
-      numbers.insert(numbers.end(), kept[part].begin(), kept[part].end());
+      vertices.insert(vertices.end(), kept[part].begin(), kept[part].end());
     }
-    const auto count = static_cast<std::int32_t>(numbers.size());
-    const HilbertOrder order(count, [&](std::int32_t i) { return segments_.points[numbers[i]]; });
+    const auto count = static_cast<std::int32_t>(vertices.size());
+    const HilbertOrder order(count, [&](std::int32_t i) { return segments_.point(vertices[i]); });
     items_.resize(count);
     for (std::int32_t i = 0; i < count; ++i) {
-      const std::int32_t v = numbers[order[i]];
-      items_[i] = {segments_.points[v], v};
+      const Vertex v = vertices[order[i]];
+      items_[i] = {segments_.point(v), v};
     }
     tree_ = BoxTree(count, [&](std::int32_t i) {
       const Point p = items_[i].point;
@@ -107,9 +107,9 @@ class TouchSearch {
     });
   }
 
-  void search(std::int32_t segment, std::vector<NumberPair>& found) const {
+  void search(Segment segment, std::vector<Touch>& found) const {
     const Point a = segments_.point(segment, 0), b = segments_.point(segment, 1);
-    const std::int32_t first = segments_.end(segment, 0), second = segments_.end(segment, 1);
+    const Vertex first = segments_.end(segment, 0), second = segments_.end(segment, 1);
     const double distance = reach_.of(a, b);
     const Band band(a, b, distance);
     const auto wanted = [&](const Box& box, std::int64_t) { return band.meets(box); };

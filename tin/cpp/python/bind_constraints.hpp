@@ -38,7 +38,9 @@ inline void require_distance(double distance) {
   throw std::invalid_argument("the distance must be finite and 0 or more");
 }
 
-inline Pairs hand_over(const std::vector<NumberPair>& pairs) {
+// Crossings or touches.
+template <typename Pair>
+Pairs hand_over_pairs(const std::vector<Pair>& pairs) {
   return copy_over<Pairs, std::int32_t>(pairs, {pairs.size(), 2});
 }
 
@@ -46,8 +48,8 @@ inline Pairs crossings(const GivenXy& xy, const GivenPairs& segments, std::int32
                        int threads) {
   require_first(first_new);
   const Segments given = segments_of(xy, segments);
-  return hand_over(
-      unlocked(threads, [&](Team& team) { return find_crossings(given, first_new, team); }));
+  return hand_over_pairs(unlocked(
+      threads, [&](Team& team) { return find_crossings(given, Segment{first_new}, team); }));
 }
 
 inline Pairs touches(const GivenXy& xy, const GivenPairs& segments, double distance,
@@ -56,10 +58,10 @@ inline Pairs touches(const GivenXy& xy, const GivenPairs& segments, double dista
   require_first(first_vertex);
   const Segments given = segments_of(xy, segments);
   const std::int32_t count = row_count(xy.shape(0));
-  return hand_over(unlocked(threads, [&](Team& team) {
-    const auto is_asked = [](std::int32_t) { return true; };
+  return hand_over_pairs(unlocked(threads, [&](Team& team) {
+    const auto is_asked = [](Vertex) { return true; };
     return TouchSearch(given, {distance, is_rounded})
-        .run(std::min(first_vertex, count), count, is_asked, team);
+        .run(Vertex{std::min(first_vertex, count)}, count, is_asked, team);
   }));
 }
 
@@ -69,7 +71,7 @@ inline auto contacts(const GivenXy& xy, const GivenPairs& segments, double dista
   const std::int32_t count = row_count(xy.shape(0));
   const ContactSearch found =
       unlocked(threads, [&](Team& team) { return ContactSearch(given, count, distance, team); });
-  return std::make_tuple(hand_over(found.crossings), hand_over(found.touches));
+  return std::make_tuple(hand_over_pairs(found.crossings), hand_over_pairs(found.touches));
 }
 
 inline Xy intersections(const GivenXy& xy, const GivenPairs& segments, const GivenPairs& pairs) {
