@@ -164,9 +164,11 @@ def _join_rings(area: Any, cut: _Base, seam: Seam) -> dict[str, Any]:
     wanted = shapely.union(area, seam.area)
     faces = shapely.get_parts(shapely.polygonize(shapely.linestrings(np.array(paths)[:, :, :2])))
     shapely.prepare(wanted)
-    joined = shapely.coverage_union_all(
-        faces[shapely.contains(wanted, shapely.point_on_surface(faces))]
-    )
+    inside = faces[shapely.contains(wanted, shapely.point_on_surface(faces))]
+    try:
+        joined = shapely.coverage_union_all(inside)
+    except shapely.GEOSException:  # faces lie over each other, by rounding
+        joined = shapely.MultiPolygon()
     if abs(joined.area - wanted.area) > 2 * seam.rounding:
         raise PointsError(
             "The patch cannot be joined to the base: their boundaries are so near to each other "
