@@ -74,7 +74,7 @@ class AreaOfUse:
         longitude, latitude = _convert_to_degrees(self.source, xy)
         inside: NDArray[np.bool_] = np.isfinite(longitude) & np.isfinite(latitude)
         for crs in self.targets:
-            inside &= _lies_in(_find_area(crs), longitude, latitude, margin)
+            inside &= _is_within(_find_area(crs), longitude, latitude, margin)
         return inside
 
     def covers_most(self, xy: NDArray[np.float64]) -> bool:
@@ -146,7 +146,7 @@ def _measure_width(area: pyproj.aoi.AreaOfUse) -> float:
     return (float(area.east - area.west) % 360.0 or 360.0) * float(area.north - area.south)
 
 
-def _lies_in(
+def _is_within(
     area: pyproj.aoi.AreaOfUse,
     longitude: NDArray[Any],
     latitude: NDArray[Any],

@@ -140,15 +140,15 @@ def _require_one_crs(first: Referenced, its_name: str, other: Referenced, name: 
         known, unknown = (its_name, name) if two is None else (name, its_name)
         crs = one or two
         raise CrsError(
-            f"{_capital(known)} is in {crs.label if crs else ''} and the CRS of {unknown} is not "
-            "known: give that of both, for coordinates are never mixed on a guess.",
+            f"{_begin_sentence(known)} is in {crs.label if crs else ''} and the CRS of {unknown} "
+            "is not known: give that of both, for coordinates are never mixed on a guess.",
             crs=crs,
         )
     if not one.horizontal.is_same(two.horizontal):
         raise CrsError(
-            f"{_capital(its_name)} is in {one.label} and {name} in {two.label}: bring the points "
-            "of one into the CRS of the other and build the surface from them, for triangles that "
-            "are moved make another surface.",
+            f"{_begin_sentence(its_name)} is in {one.label} and {name} in {two.label}: bring the "
+            "points of one into the CRS of the other and build the surface from them, for "
+            "triangles that are moved make another surface.",
             crs=two,
         )
 
@@ -262,5 +262,5 @@ def require_same_crs(
     return ()
 
 
-def _capital(text: str) -> str:
+def _begin_sentence(text: str) -> str:
     return text[:1].upper() + text[1:]

@@ -75,6 +75,7 @@ for name in sys.argv[1:]:
 """
 
 
+@pytest.mark.slow
 def test_every_name_can_be_the_first():
     """No circle of imports shows up, whichever name a program begins with; nothing heavy comes."""
     names = [name for name in ts.__all__ if name != "__version__"]

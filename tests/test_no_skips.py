@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 TESTS = Path(__file__).parent
 SKIPS = {
     "skip": "def test_it():\n    pytest.skip('no device')\n",
@@ -36,6 +38,7 @@ def write_tests(folder: Path, bodies: dict[str, str]) -> None:
         (folder / f"test_{name}.py").write_text("import time\nimport pytest\n" + body)
 
 
+@pytest.mark.slow
 def test_what_is_skipped_fails_in_ci_and_passes_elsewhere(tmp_path):
     write_tests(tmp_path, SKIPS)
     elsewhere = run_pytest(tmp_path)
@@ -53,6 +56,7 @@ def test_what_is_skipped_fails_in_ci_and_passes_elsewhere(tmp_path):
     assert by_option.returncode == 1
 
 
+@pytest.mark.slow
 def test_a_hang_is_a_failure_and_what_passes_passes(tmp_path):
     bodies = {"long": "def test_it():\n    time.sleep(600)\n", "fine": "def test_it():\n    pass\n"}
     write_tests(tmp_path, bodies)

@@ -93,14 +93,14 @@ def _count_numbers(cells: Sequence[str], delimiter: str) -> int:
     marks = "." if delimiter == "," else ".,"
     return sum(
         bool(cell)
-        and not _clings(cell)
+        and not _is_beside_delimiter(cell)
         and not (delimiter == "," and " " in cell)  # what groups 4 024 240 is no comma
         and any(is_number_like(cell, mark) for mark in marks)
         for cell in cells
     )
 
 
-def _clings(cell: str) -> bool:
+def _is_beside_delimiter(cell: str) -> bool:
     """Whether a cell begins or ends with what must be a delimiter: blanks stand beside it."""
     return cell.startswith(_VISIBLE) or cell.endswith(_VISIBLE)
 
@@ -148,7 +148,8 @@ def _is_headed_by_blanks(sample: Sequence[str]) -> bool:
     count = len(rows[top]) - is_described
     bodies = [row[:count] for row in rows[top + 1 :] if is_described or len(row) == count]
     if len(bodies) < len(rows) - top - 1 or any(
-        len(body) != count or not all(is_number(cell, ",") for cell in body if _clings(cell))
+        len(body) != count
+        or not all(is_number(cell, ",") for cell in body if _is_beside_delimiter(cell))
         for body in bodies
     ):
         return False
@@ -200,7 +201,7 @@ def _score_delimiter(sample: Sequence[str], delimiter: str) -> tuple[int, float,
     )
     if numbers < 2 or max(map(len, rows)) < 3:
         return 0, 0.0, 0
-    even = [row for row in rows if delimiter != BLANKS or not any(map(_clings, row))]
+    even = [row for row in rows if delimiter != BLANKS or not any(map(_is_beside_delimiter, row))]
     count, times = Counter(map(len, even)).most_common(1)[0] if even else (0, 0)
     return min(numbers, 3), times / len(rows), count
 
@@ -246,7 +247,7 @@ def find_decimal_mark(rows: Iterable[Sequence[str]], delimiter: str) -> DecimalM
         return DecimalMark(".")
     if not commas:
         return None
-    if delimiter == ";" and not any(map(_clings, numbers)):
+    if delimiter == ";" and not any(map(_is_beside_delimiter, numbers)):
         return DecimalMark(
             ",",
             "The commas in its numbers are taken as decimal marks, as is usual between semicolons "

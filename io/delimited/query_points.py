@@ -174,7 +174,7 @@ def _find_coordinates(
 
 
 def _parse_numbers(table: _Table, column: int, path: Path) -> NDArray[np.float64]:
-    values = np.array([_number(row[column]) for row in table.rows], np.float64)
+    values = np.array([_parse_number(row[column]) for row in table.rows], np.float64)
     wrong = np.flatnonzero(~np.isfinite(values))
     if len(wrong):
         lines = [table.lines[row] for row in wrong[:_SHOWN]]
@@ -188,7 +188,7 @@ def _parse_numbers(table: _Table, column: int, path: Path) -> NDArray[np.float64
     return values
 
 
-def _number(text: str) -> float:
+def _parse_number(text: str) -> float:
     try:
         return float(text) if "_" not in text else float("nan")
     except ValueError:

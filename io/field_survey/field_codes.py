@@ -127,7 +127,7 @@ def lines_from_codes(
     tolerance = _choose_tolerance(survey, table, arc_tolerance)
     texts = _require_descriptions(survey)
     order = _order_by_number(survey).tolist()
-    reading, notes = _read(order, texts, table, code_style, _namer(survey))
+    reading, notes = _read(order, texts, table, code_style, _make_namer(survey))
     if not reading.figures and not _excludes(table, reading):
         known = ", ".join(table.rules)
         raise NoCodesError(f"No description begins with a line code: {known} are known.")
@@ -171,7 +171,7 @@ def _order_by_number(survey: Survey) -> NDArray[np.int64]:
     return np.argsort(numbers, kind="stable")
 
 
-def _namer(survey: Survey) -> Callable[[int], str]:
+def _make_namer(survey: Survey) -> Callable[[int], str]:
     """Return what names a row for a sentence."""
     given = survey.attributes.get("number")
     numbers = None if given is None else given.tolist()
@@ -232,7 +232,7 @@ class _Builder:
         self._find_unknown_codes(order, texts)
         survey = self.survey
         words = self.reading.style.list_words()
-        told, findings = describe_faults(self.faults, _namer(survey), words)
+        told, findings = describe_faults(self.faults, _make_namer(survey), words)
         made = replace(
             survey,
             breaklines=[*survey.breaklines, *(self._make_breakline(*one) for one in lines["line"])],

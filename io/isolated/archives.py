@@ -79,12 +79,12 @@ def unpack(path: Path) -> Iterator[Path]:
             inner = unpacker(path, Path(folder))
         except OSError as error:
             if isinstance(error, gzip.BadGzipFile):
-                raise _damaged(path, error) from error
+                raise _describe_damage(path, error) from error
             raise describe_system_error(path, error) from error
         except (EOFError, zlib.error, zipfile.BadZipFile, ValueError, RuntimeError) as error:
             if isinstance(error, TinsmithError):
                 raise
-            raise _damaged(path, error) from error
+            raise _describe_damage(path, error) from error
         try:
             yield inner
         except TinsmithError as error:
@@ -101,7 +101,7 @@ def _read_start(path: Path) -> bytes:
         return b""
 
 
-def _damaged(path: Path, error: Exception) -> ReadError:
+def _describe_damage(path: Path, error: Exception) -> ReadError:
     reason = " ".join(str(error).split()).rstrip(".") or type(error).__name__
     return ReadError(f"'{path}' cannot be unpacked, it may be damaged: {reason}.", path=path)
 

@@ -130,7 +130,7 @@ def parse_header(path: Path) -> Header:
 def _parse(file: IO[bytes], path: Path, size: int) -> Header:
     fixed = file.read(_FIXED.size)
     if not fixed.startswith(b"LASF") or len(fixed) < _FIXED.size:
-        raise _fault(path, "it has no whole header of LAS")
+        raise _describe_fault(path, "it has no whole header of LAS")
     fields = _FIXED.unpack(fixed)
     major, version, header_bytes, offset, n_records = *fields[4:6], *fields[10:13]
     _require_version(major, version, header_bytes, path)
@@ -163,7 +163,7 @@ def _parse(file: IO[bytes], path: Path, size: int) -> Header:
     return header
 
 
-def _fault(path: Path, what: str) -> ReadError:
+def _describe_fault(path: Path, what: str) -> ReadError:
     return ReadError(f"'{path}' is damaged or cut short: {what}.", path=path)
 
 
@@ -173,7 +173,7 @@ def _require_version(major: int, version: int, header_bytes: int, path: Path) ->
             f"'{path}' is LAS {major}.{version}: the versions 1.0 to 1.4 can be read.", path=path
         )
     if header_bytes < _HEADER_BYTES[version]:
-        raise _fault(
+        raise _describe_fault(
             path,
             f"its header is said to have {header_bytes} bytes, and that of LAS 1.{version} has "
             f"{_HEADER_BYTES[version]}",
@@ -182,7 +182,7 @@ def _require_version(major: int, version: int, header_bytes: int, path: Path) ->
 
 def _require_offset(header_bytes: int, offset: int, size: int, path: Path) -> None:
     if not header_bytes <= offset <= size:
-        raise _fault(
+        raise _describe_fault(
             path,
             f"its points are said to begin at byte {offset:,}, and the header ends at byte "
             f"{header_bytes:,}, the file at byte {size:,}",
@@ -199,13 +199,13 @@ def _require_point_format(
             path=path,
         )
     if _VERSION_OF_FORMAT[plain] > version:
-        raise _fault(
+        raise _describe_fault(
             path,
             f"it is LAS 1.{version} with points of the format {plain}, which LAS "
             f"1.{_VERSION_OF_FORMAT[plain]} brought",
         )
     if point_bytes < _POINT_BYTES[plain]:
-        raise _fault(
+        raise _describe_fault(
             path,
             f"a point is said to have {point_bytes} bytes, and one of the format {plain} has "
             f"{_POINT_BYTES[plain]}",
@@ -219,7 +219,9 @@ def _find_count(whole: bytes, version: int, legacy: int, path: Path) -> int:
         return legacy
     (count,) = struct.unpack_from("<Q", whole, 247)
     if legacy not in (0, count):
-        raise _fault(path, f"it is said to have {count:,} points, and in another place {legacy:,}")
+        raise _describe_fault(
+            path, f"it is said to have {count:,} points, and in another place {legacy:,}"
+        )
     return int(count)
 
 
@@ -232,7 +234,7 @@ def _require_scales(
     with np.errstate(over="ignore", invalid="ignore"):
         reach = np.abs(scales) * _LASTING + np.abs(offsets)
     if not np.isfinite(reach).all() or (scales == 0).any():
-        raise _fault(
+        raise _describe_fault(
             path,
             f"its coordinates have the scales {_list(scales)} and the offsets {_list(offsets)}, "
             "and finite ones, the scales not 0, are needed",
@@ -252,7 +254,7 @@ def _read_records(
 ) -> list[Record]:
     """Read records that lie between two bytes of the file, one after the other."""
     if count * form.size > end - start:
-        raise _fault(
+        raise _describe_fault(
             path,
             f"{count:,} variable-length records are said to lie in {max(0, end - start):,} bytes",
         )
@@ -263,7 +265,7 @@ def _read_records(
         head = file.read(form.size)
         length = form.unpack(head)[3] if len(head) == form.size else end
         if place + form.size + length > end:
-            raise _fault(path, f"variable-length record {number} reaches beyond its end")
+            raise _describe_fault(path, f"variable-length record {number} reaches beyond its end")
         _, user, kind, _, _ = form.unpack(head)
         if length <= _LARGEST_RECORD:
             records.append(Record(_read_text(user), kind, file.read(length)))
@@ -285,7 +287,7 @@ def _read_extended_records(
     if count == 0:
         return [], 0
     if start >= size:
-        raise _fault(
+        raise _describe_fault(
             path,
             f"its extended records are said to begin at byte {start:,}, and the file ends at byte "
             f"{size:,}",
@@ -308,7 +310,7 @@ def _require_room(header: Header, file: IO[bytes]) -> None:
     if header.is_compressed:
         _require_chunks(header, file)
     elif header.count * header.point_bytes > room:
-        raise _fault(
+        raise _describe_fault(
             header.path,
             f"{header.count:,} points of {header.point_bytes} bytes are said to be in {room:,} "
             "bytes",
@@ -319,7 +321,7 @@ def _require_chunks(header: Header, file: IO[bytes]) -> None:
     """Compare the number of points with the chunks that the compressor tells of."""
     laszip = header.find(*_LASZIP)
     if laszip is None or len(laszip) < 34:
-        raise _fault(header.path, "it is compressed, and does not say how")
+        raise _describe_fault(header.path, "it is compressed, and does not say how")
     compressor, _, _, _, _, _, chunk_size = struct.unpack_from("<HHBBHII", laszip)
     if compressor not in (2, 3) or header.count == 0:
         return  # no chunks; the size of all points is looked at where they are counted
@@ -327,7 +329,7 @@ def _require_chunks(header: Header, file: IO[bytes]) -> None:
     if n_chunks is None or chunk_size == _VARIABLE_CHUNKS:
         return
     if not (n_chunks - 1) * chunk_size < header.count <= n_chunks * chunk_size:
-        raise _fault(
+        raise _describe_fault(
             header.path,
             f"{header.count:,} points are said to be in {n_chunks:,} chunks of {chunk_size:,}",
         )
@@ -341,12 +343,14 @@ def _count_chunks(header: Header, file: IO[bytes]) -> int | None:
         file.seek(max(header.offset, header.size - 8))
         (table,) = struct.unpack("<q", file.read(8).ljust(8, b"\0"))
     if not header.offset + 8 <= table <= header.size - 8:
-        raise _fault(
+        raise _describe_fault(
             header.path,
             f"the table of its chunks is said to be at byte {table:,} of {header.size:,}",
         )
     file.seek(table)
     _, n_chunks = struct.unpack("<II", file.read(8))
     if n_chunks * header.point_bytes > header.size:  # each begins with a whole point
-        raise _fault(header.path, f"{n_chunks:,} chunks are said to be in {header.size:,} bytes")
+        raise _describe_fault(
+            header.path, f"{n_chunks:,} chunks are said to be in {header.size:,} bytes"
+        )
     return int(n_chunks)

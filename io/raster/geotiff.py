@@ -76,7 +76,7 @@ def write(
     """
     resampling = _choose_resampling(raster, overviews)
     choice("compression", compression, RasterCompression)
-    with replacing_files(path, parts=_parts(path)) as new, _translate_faults(path):
+    with replacing_files(path, parts=_list_parts(path)) as new, _translate_faults(path):
         _write_tiles(raster, new, path, compression, progress)
         factors = [] if resampling == "none" else _list_factors(raster)
         _add_overviews(raster, new, resampling, factors, compression)
@@ -98,7 +98,7 @@ def write_cog(
     The driver copies a whole raster: a GeoTIFF is written beside it first, and removed.
     """
     resampling = _choose_resampling(raster, overviews)
-    with replacing_files(path, parts=_parts(path)) as new, _translate_faults(path):
+    with replacing_files(path, parts=_list_parts(path)) as new, _translate_faults(path):
         plain = new.with_name(f"plain-{new.name}")
         _write_tiles(raster, plain, path, _choose_draft_compression(raster), progress)
         _optional.load("rasterio.shutil", f"Writing '{path}'").copy(
@@ -118,7 +118,7 @@ def write_cog(
         _require_crs(raster, new, path)
 
 
-def _parts(path: Path) -> tuple[str, ...]:
+def _list_parts(path: Path) -> tuple[str, ...]:
     return tuple(path.suffix + part for part in _PARTS)
 
 
@@ -196,7 +196,7 @@ def _make_profile(raster: Raster, path: Path, compression: RasterCompression) ->
         "height": rows,
         "count": len(raster.bands),
         "dtype": dtype.name,
-        "crs": _crs(raster, path),
+        "crs": _make_gdal_crs(raster, path),
         "transform": affine(spacing, 0.0, bounds.xmin, 0.0, -spacing, bounds.ymax),
         "nodata": _choose_nodata(raster, dtype, path),
         "interleave": "band",
@@ -211,7 +211,7 @@ def _choose_predictor(dtype: np.dtype[Any]) -> int:
     return 3 if dtype.kind == "f" else 2
 
 
-def _crs(raster: Raster, path: Path) -> Any:
+def _make_gdal_crs(raster: Raster, path: Path) -> Any:
     """Return the CRS for GDAL: as a code where it knows it, whose vertical part it keeps."""
     rasterio = _optional.load("rasterio", f"Writing '{path}'")
     if raster.crs is None:

@@ -75,13 +75,13 @@ def write_layer(
     if geometry_type is None:
         geometry_type = features.geometry_type + (" Z" if features.has_elevations else "")
     columns = [_as_field(name, values, shown) for name, values in features.columns.items()]
-    with _faults_as_sentences(shown), _without_clock():
+    with _translate_faults(shown), _without_clock():
         pyogrio.raw.write(
             os.fspath(path),
             encode_geometries(features) if geometries is None else geometries,
             columns,
             list(features.columns) if names is None else list(names),
-            field_mask=[_missing(values) for values in columns],
+            field_mask=[_find_missing(values) for values in columns],
             driver=driver,
             layer=features.name or shown.stem,
             geometry_type=geometry_type,
@@ -157,7 +157,7 @@ def _as_field(name: str, values: NDArray[Any], path: Path) -> NDArray[Any]:
     return values.astype(narrow.get(values.dtype, values.dtype))
 
 
-def _missing(values: NDArray[Any]) -> NDArray[np.bool_] | None:
+def _find_missing(values: NDArray[Any]) -> NDArray[np.bool_] | None:
     """Return which values are missing, None if none is."""
     if values.dtype.kind == "O":
         gaps = np.array([value is None for value in values], np.bool_)
@@ -166,7 +166,7 @@ def _missing(values: NDArray[Any]) -> NDArray[np.bool_] | None:
 
 
 @contextmanager
-def _faults_as_sentences(path: Path) -> Iterator[None]:
+def _translate_faults(path: Path) -> Iterator[None]:
     """Turn what GDAL says into a sentence, also where it only warns that a value was changed."""
     try:
         with warnings.catch_warnings():

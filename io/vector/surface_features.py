@@ -64,7 +64,7 @@ def make_features(
     return _MAKERS[kind or "triangles"](writable)
 
 
-def _reference(surface: TIN | Survey, name: str) -> dict[str, Any]:
+def _describe_reference(surface: TIN | Survey, name: str) -> dict[str, Any]:
     notes = surface.notes if isinstance(surface, Survey) else surface.report.notes
     return {
         "crs": surface.crs,
@@ -76,7 +76,9 @@ def _reference(surface: TIN | Survey, name: str) -> dict[str, Any]:
 
 def _make_survey_points(survey: Survey) -> Features:
     columns = _list_columns(survey)
-    return Features.of_points(survey.points, columns=columns, **_reference(survey, "points"))
+    return Features.of_points(
+        survey.points, columns=columns, **_describe_reference(survey, "points")
+    )
 
 
 def _list_columns(surface: TIN | Survey) -> dict[str, NDArray[Any]]:
@@ -94,7 +96,7 @@ def _as_column(values: NDArray[Any]) -> NDArray[Any]:
 
 def _make_points(tin: TIN) -> Features:
     columns = {"id": np.arange(len(tin.points))} | _list_columns(tin)
-    return Features.of_points(tin.points, columns=columns, **_reference(tin, "points"))
+    return Features.of_points(tin.points, columns=columns, **_describe_reference(tin, "points"))
 
 
 def make_whole_surface(tin: TIN) -> Features:
@@ -106,7 +108,7 @@ def make_whole_surface(tin: TIN) -> Features:
         np.arange(count + 1),
         [0, count],
         columns={"triangles": np.array([count])},
-        **_reference(tin, "surface"),
+        **_describe_reference(tin, "surface"),
     )
 
 
@@ -130,7 +132,7 @@ def _make_triangles(tin: TIN) -> Features:
         np.arange(0, 4 * count + 1, 4),
         np.arange(count + 1),
         columns=columns,
-        **_reference(tin, "triangles"),
+        **_describe_reference(tin, "triangles"),
     )
 
 
@@ -149,7 +151,9 @@ def _make_edges(tin: TIN) -> Features:
     }
     coordinates = tin.points[np.stack([starts, ends], axis=1).ravel()]
     offsets = np.arange(0, 2 * len(starts) + 1, 2)
-    return Features.of_lines(coordinates, offsets, columns=columns, **_reference(tin, "edges"))
+    return Features.of_lines(
+        coordinates, offsets, columns=columns, **_describe_reference(tin, "edges")
+    )
 
 
 def _make_lines(tin: TIN) -> Features:
@@ -165,7 +169,9 @@ def _make_lines(tin: TIN) -> Features:
         }
     offsets = np.concatenate([[0], np.cumsum([len(chain) for chain in chains])])
     coordinates = tin.points[np.concatenate(chains)]
-    return Features.of_lines(coordinates, offsets, columns=columns, **_reference(tin, "lines"))
+    return Features.of_lines(
+        coordinates, offsets, columns=columns, **_describe_reference(tin, "lines")
+    )
 
 
 def _make_hull(tin: TIN) -> Features:
@@ -178,7 +184,7 @@ def _make_hull(tin: TIN) -> Features:
         np.concatenate([[0], np.cumsum([len(ring) for ring in rings])]),
         np.concatenate([[0], np.cumsum([len(group) for group in groups])]),
         columns={"id": np.arange(len(groups)), "area": np.array(areas)},
-        **_reference(tin, "hull"),
+        **_describe_reference(tin, "hull"),
     )
 
 

@@ -71,7 +71,7 @@ class Canvas:
         colors = np.tile(np.array(_LINE, np.uint8), (len(xy), 1))
         if values is not None and len(values):
             order = np.argsort(values, kind="stable")
-            xy, colors = xy[order], _tint(values[order])
+            xy, colors = xy[order], _find_tints(values[order])
         columns, rows = np.rint(self._place(xy)).astype(np.intp).T
         reach = (-1, 0, 1) if len(xy) <= _FEW_POINTS else (0,)
         height, width = self.pixels.shape[:2]
@@ -106,13 +106,13 @@ def draw_cells(values: NDArray[np.float64]) -> NDArray[np.uint8]:
     """
     picture = np.zeros((*values.shape, 4), np.uint8)
     is_known = np.isfinite(values)
-    picture[is_known, :3] = _tint(values[is_known])
+    picture[is_known, :3] = _find_tints(values[is_known])
     picture[is_known, 3] = 255
     times = max(1, min(SIZE[1] // values.shape[0], SIZE[0] // values.shape[1]))
     return picture.repeat(times, axis=0).repeat(times, axis=1)
 
 
-def _tint(values: NDArray[np.float64]) -> NDArray[np.uint8]:
+def _find_tints(values: NDArray[np.float64]) -> NDArray[np.uint8]:
     """Return the hypsometric tint of each value."""
     ramp = interpolate_tints()
     values = np.nan_to_num(values)

@@ -91,7 +91,7 @@ def plot_tin(
         given = (triangles,) if is_flat else (triangles, numbers)
         mapped = ax.tripcolor(*given, **(how | options))
         if is_new and colorbar:
-            ax.figure.colorbar(mapped, ax=ax, shrink=0.7, label=_caption(name, ground))
+            ax.figure.colorbar(mapped, ax=ax, shrink=0.7, label=_write_caption(name, ground))
     if edges if edges is not None else len(tin) <= _MOST_WITH_EDGES:
         ax.triplot(triangles, color="0.25", linewidth=0.3)
     if lines:
@@ -124,7 +124,7 @@ def _find_values(tin: TIN, values: Any) -> tuple[NDArray[np.float64] | None, str
     return numbers, ""
 
 
-def _caption(name: str, ground: Ground) -> str:
+def _write_caption(name: str, ground: Ground) -> str:
     unit = {"elevation": ground.elevation_caption, "slope": "degrees"}.get(name, "")
     return f"{name}, {unit}" if unit else name
 

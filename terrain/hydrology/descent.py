@@ -238,7 +238,7 @@ class Walker:
         doubtful = before - after <= _ROUNDING * np.maximum(size, other)
         for row in np.flatnonzero(doubtful).tolist():
             triangle = int(drops.triangles[row])
-            level = self._elevation(triangle, int(drops.edges[row]), float(drops.shares[row]))
+            level = self._find_elevation(triangle, int(drops.edges[row]), float(drops.shares[row]))
             found[row] = self._lower(triangle, int(out[row]), float(found[row]), level)
         return found
 
@@ -248,7 +248,7 @@ class Walker:
         low, high = (self.falls.points[end, 2] for end in self.falls.ends(triangles, edges))
         return low + shares * (high - low), np.maximum(np.abs(low), np.abs(high))
 
-    def _elevation(self, triangle: int, edge: int, share: float) -> Fraction:
+    def _find_elevation(self, triangle: int, edge: int, share: float) -> Fraction:
         ends = (int(self.falls.triangles[triangle, (edge + k) % 3]) for k in (1, 2))
         low, high = (Fraction(float(self.falls.points[end, 2])) for end in ends)
         return low + Fraction(share) * (high - low)

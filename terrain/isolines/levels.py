@@ -74,17 +74,17 @@ class LevelOptions:
         """Return the levels above the lowest and up to the highest elevation of a TIN."""
         lowest, highest = elevation_range(tin)
         if self.interval is None:
-            return self._explicit(lowest, highest)
+            return self._take_explicit(lowest, highest)
         numbers, values = self._at_interval(lowest, highest)
         is_within = (values > lowest) & (values <= highest)
         notes = () if is_within.any() else (self._describe_none(lowest, highest),)
-        return Levels(seal(values[is_within]), self._index(numbers[is_within]), notes)
+        return Levels(seal(values[is_within]), self._find_index(numbers[is_within]), notes)
 
     def for_bands(self, tin: TIN) -> Levels:
         """Return the levels that bound the bands of a TIN, the explicit ones as they are."""
         lowest, highest = elevation_range(tin)
         if self.interval is None:
-            return self._explicit(lowest, highest)
+            return self._take_explicit(lowest, highest)
         _, values = self._at_interval(lowest, highest)
         first = np.searchsorted(values, lowest, side="right") - 1
         last = np.searchsorted(values, highest, side="right")
@@ -122,7 +122,7 @@ class LevelOptions:
             raise OptionError("interval", self.interval, allowed=allowed)
         return numbers, values
 
-    def _explicit(self, lowest: float, highest: float) -> Levels:
+    def _take_explicit(self, lowest: float, highest: float) -> Levels:
         values = as_levels(self.levels)
         outside = int(((values <= lowest) | (values > highest)).sum())
         notes: tuple[str, ...] = ()
@@ -131,9 +131,9 @@ class LevelOptions:
                 f"{outside:,} of {counted(len(values), 'level')} lie outside the elevations of "
                 f"the surface, above {lowest:g} up to {highest:g}, and have no line.",
             )
-        return Levels(values, self._index(np.arange(len(values))), notes)
+        return Levels(values, self._find_index(np.arange(len(values))), notes)
 
-    def _index(self, numbers: NDArray[Any]) -> NDArray[np.bool_]:
+    def _find_index(self, numbers: NDArray[Any]) -> NDArray[np.bool_]:
         if self.index is None:
             return np.zeros(len(numbers), np.bool_)
         return np.array(numbers % int(self.index) == 0, np.bool_)

@@ -49,13 +49,13 @@ class Overlay:
 
     def draw_polygon(self, corners: ArrayLike, color: Color) -> None:
         """Fill a polygon, (k, 2) corners."""
-        mesh = self._mesh(corners)
+        mesh = self._make_mesh(corners)
         mesh.faces = [mesh.n_points, *range(mesh.n_points)]
         self._add(mesh, color)
 
     def draw_line(self, places: ArrayLike, color: Color, *, width: float = 1.0) -> None:
         """Draw a polyline through (k, 2) places."""
-        mesh = self._mesh(places)
+        mesh = self._make_mesh(places)
         mesh.lines = [mesh.n_points, *range(mesh.n_points)]
         self._add(mesh, color, width=width)
 
@@ -108,7 +108,7 @@ class Overlay:
         style.SetFontSize(max(1, round(size * self.factor)))
         style.SetBold(bold)
 
-    def _mesh(self, places: ArrayLike) -> Any:
+    def _make_mesh(self, places: ArrayLike) -> Any:
         import pyvista as pv
 
         flat = np.asarray(places, np.float64) * self.factor

@@ -110,46 +110,46 @@ def _fit(tin: TIN) -> NDArray[np.float64]:
 # ------------------------------------------------------------------------------ formulas
 
 
-def _profile(d: _Derivatives) -> NDArray[np.float64]:
+def _compute_profile(d: _Derivatives) -> NDArray[np.float64]:
     along = d.xx * d.x**2 + 2 * d.xy * d.x * d.y + d.yy * d.y**2
-    return _ratio(-along, _steepness(d) * (1 + _steepness(d)) ** 1.5)
+    return _divide(-along, _measure_steepness(d) * (1 + _measure_steepness(d)) ** 1.5)
 
 
-def _plan(d: _Derivatives) -> NDArray[np.float64]:
-    return _ratio(-_across(d), _steepness(d) ** 1.5)
+def _compute_plan(d: _Derivatives) -> NDArray[np.float64]:
+    return _divide(-_sum_across(d), _measure_steepness(d) ** 1.5)
 
 
-def _tangential(d: _Derivatives) -> NDArray[np.float64]:
-    return _ratio(-_across(d), _steepness(d) * np.sqrt(1 + _steepness(d)))
+def _compute_tangential(d: _Derivatives) -> NDArray[np.float64]:
+    return _divide(-_sum_across(d), _measure_steepness(d) * np.sqrt(1 + _measure_steepness(d)))
 
 
-def _mean(d: _Derivatives) -> NDArray[np.float64]:
+def _compute_mean(d: _Derivatives) -> NDArray[np.float64]:
     bend = (1 + d.y**2) * d.xx - 2 * d.x * d.y * d.xy + (1 + d.x**2) * d.yy
-    return _ratio(-bend, 2 * (1 + _steepness(d)) ** 1.5)
+    return _divide(-bend, 2 * (1 + _measure_steepness(d)) ** 1.5)
 
 
-def _gaussian(d: _Derivatives) -> NDArray[np.float64]:
-    return _ratio(d.xx * d.yy - d.xy**2, (1 + _steepness(d)) ** 2)
+def _compute_gaussian(d: _Derivatives) -> NDArray[np.float64]:
+    return _divide(d.xx * d.yy - d.xy**2, (1 + _measure_steepness(d)) ** 2)
 
 
-def _steepness(d: _Derivatives) -> NDArray[np.float64]:
+def _measure_steepness(d: _Derivatives) -> NDArray[np.float64]:
     return np.asarray(d.x**2 + d.y**2)
 
 
-def _across(d: _Derivatives) -> NDArray[np.float64]:
+def _sum_across(d: _Derivatives) -> NDArray[np.float64]:
     return np.asarray(d.xx * d.y**2 - 2 * d.xy * d.x * d.y + d.yy * d.x**2)
 
 
-def _ratio(value: NDArray[np.float64], divisor: NDArray[np.float64]) -> NDArray[np.float64]:
+def _divide(value: NDArray[np.float64], divisor: NDArray[np.float64]) -> NDArray[np.float64]:
     """Divide, and return NaN where the divisor is 0."""
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(divisor == 0.0, np.nan, value / divisor)
 
 
 _FORMULAS = {
-    "profile": _profile,
-    "plan": _plan,
-    "tangential": _tangential,
-    "mean": _mean,
-    "gaussian": _gaussian,
+    "profile": _compute_profile,
+    "plan": _compute_plan,
+    "tangential": _compute_tangential,
+    "mean": _compute_mean,
+    "gaussian": _compute_gaussian,
 }

@@ -99,7 +99,7 @@ class Canvas:
             capstyle="butt" if pen.dashes else "round",
             zorder=self._take_order(),
         )
-        drawn.set_gid(self._number(name))
+        drawn.set_gid(self._choose_name(name))
         self._axes.add_collection(drawn, autolim=False)
 
     def fill(self, rings: Sequence[NDArray[np.float64]], color: str, name: str) -> None:
@@ -112,7 +112,7 @@ class Canvas:
         ]
         shape = path(np.concatenate(list(rings)), np.concatenate(codes))
         drawn = patch(shape, facecolor=color, edgecolor="none", zorder=self._take_order())
-        drawn.set_gid(self._number(name))
+        drawn.set_gid(self._choose_name(name))
         self._axes.add_patch(drawn)
 
     def write(
@@ -138,7 +138,7 @@ class Canvas:
             ha=across,
             va=up,
             parse_math=False,
-            gid=None if name is None else self._number(name),
+            gid=None if name is None else self._choose_name(name),
             zorder=self._take_order(),
         )
 
@@ -146,7 +146,7 @@ class Canvas:
         """Write the sheet as PDF, SVG or PNG, with no clock and no version in its bytes."""
         self.figure.savefig(stream, format=kind, dpi=dpi, metadata=METADATA[kind])
 
-    def _number(self, name: str) -> str:
+    def _choose_name(self, name: str) -> str:
         """Return a name that nothing has on the sheet: an SVG has each once."""
         self._names[name] += 1
         count = self._names[name]

@@ -266,10 +266,10 @@ def _place_labels(seen: Paths, lines: Features, labeling: str) -> list[_Text]:
         seen.sources[labels.columns["line"]].tolist(),
         strict=True,
     )
-    return [_outline(tuple(place), *rest) for place, *rest in rows]
+    return [_make_outline(tuple(place), *rest) for place, *rest in rows]
 
 
-def _outline(center: tuple[float, float], rotation: float, text: str, source: int) -> _Text:
+def _make_outline(center: tuple[float, float], rotation: float, text: str, source: int) -> _Text:
     width = measure_text(text, _LETTERS) + 1.0
     corners = outline_text(center, width, _CAPITAL * _LETTERS + 0.8, rotation)
     return _Text(center, rotation, text, corners, source)

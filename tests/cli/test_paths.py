@@ -93,7 +93,7 @@ def test_capitals_count_where_the_system_tells_them_apart(folder, monkeypatch):
     from tinsmith.cli import paths
 
     assert invoke("build", "s.csv", "-o", "a.ply", "-o", "A.ply", "-q").exit_code == 0
-    monkeypatch.setattr(paths, "_folds_case", lambda _: True)
+    monkeypatch.setattr(paths, "_ignores_case", lambda _: True)
     result = invoke("build", "s.csv", "-o", "b.ply", "-o", "B.ply", "-q")
     assert result.exit_code == 2
     assert "named twice" in result.stderr

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
@@ -26,8 +27,20 @@ def place(point: Sequence[float]) -> Place:
     return number(point[0]), number(point[1])
 
 
+def as_integers(*places: Place) -> Sequence[Place]:
+    """The places, all multiplied by one number: signs stay as they are, and come much quicker."""
+    if all(isinstance(one, int) for xy in places for one in xy):
+        return places
+    scale = math.lcm(*(one.denominator for xy in places for one in xy))
+    return [
+        (x.numerator * (scale // x.denominator), y.numerator * (scale // y.denominator))
+        for x, y in places
+    ]
+
+
 def orientation(a: Place, b: Place, c: Place) -> int:
     """+1 if c lies left of the line from a to b, -1 right, 0 on it."""
+    a, b, c = as_integers(a, b, c)
     return sign((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
 
 
@@ -42,7 +55,8 @@ def in_circle(a: Place, b: Place, c: Place, d: Place) -> int:
 
     Heights are x^2 + y^2 from the origin, not from d: another formula than the kernel's.
     """
-    return sign(_lifted_determinant([(p[0], p[1], p[0] ** 2 + p[1] ** 2) for p in (a, b, c, d)]))
+    places = as_integers(a, b, c, d)
+    return sign(_lifted_determinant([(x, y, x * x + y * y) for x, y in places]))
 
 
 def _lifted_determinant(rows: Sequence[tuple[Number, Number, Number]]) -> Number:

@@ -337,7 +337,7 @@ def _flip_line(state: State, a: int, b: int) -> LineChange:
     holds = (surface.triangles == a).any(axis=1) & (surface.triangles == b).any(axis=1)
     beside = np.flatnonzero(holds)
     require_inner(beside.tolist())
-    own = _lines_along(state.lines, a, b)
+    own = _find_lines_along(state.lines, a, b)
     if own:
         if not all(state.lines.names[line] == FLIP for line in own):
             raise LinesError("The edge is one of a line, which must stay.")
@@ -416,7 +416,7 @@ def _require_elevations(found: State, wanted: NDArray[np.float64]) -> None:
         )
 
 
-def _lines_along(lines: Lines, a: int, b: int) -> list[int]:
+def _find_lines_along(lines: Lines, a: int, b: int) -> list[int]:
     """Return the chains that take an edge."""
     segments = np.sort(lines.segments(), axis=1)
     found: list[int] = lines.segment_chains()[(segments == sorted((a, b))).all(axis=1)].tolist()

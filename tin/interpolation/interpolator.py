@@ -64,14 +64,14 @@ class Interpolator:
         threads : int or None
         """
         n_threads = thread_count(threads, len(xy))
-        elevations = self._inside(xy, method, n_threads)
+        elevations = self._interpolate_inside(xy, method, n_threads)
         if extrapolate:
             outside = np.flatnonzero(np.isnan(elevations) & ~np.isnan(xy).any(axis=1))
             if len(outside):
-                elevations[outside] = self._outside(xy[outside], method)
+                elevations[outside] = self._extrapolate_outside(xy[outside], method)
         return elevations
 
-    def _inside(
+    def _interpolate_inside(
         self, xy: NDArray[np.float64], method: InterpolationMethod, threads: int
     ) -> NDArray[np.float64]:
         if method == "linear":
@@ -79,15 +79,17 @@ class Interpolator:
         if method == "nearest":
             is_inside = self._surface.locator.locate(xy) >= 0
             found = np.full(len(xy), np.nan)
-            found[is_inside] = self._nearest(np.ascontiguousarray(xy[is_inside]), threads)
+            found[is_inside] = self._take_nearest(np.ascontiguousarray(xy[is_inside]), threads)
             return found
         if method == "c1":
             return self._patches.interpolate(xy, threads)
         return self._neighbors.interpolate(xy, _WEIGHTS[method], threads)
 
-    def _outside(self, xy: NDArray[np.float64], method: InterpolationMethod) -> NDArray[np.float64]:
+    def _extrapolate_outside(
+        self, xy: NDArray[np.float64], method: InterpolationMethod
+    ) -> NDArray[np.float64]:
         if method == "nearest":
-            return self._nearest(xy, 1)
+            return self._take_nearest(xy, 1)
         edges, shares = self._boundary.find(xy)
         if method == "c1":
             return self._patches.on_edges(edges, shares)
@@ -95,9 +97,9 @@ class Interpolator:
         first = 3 * (edges // 3)
         start = self._elevations[corners[first + (edges + 1) % 3]]
         end = self._elevations[corners[first + (edges + 2) % 3]]
-        return _between(start, end, shares)
+        return _interpolate_between(start, end, shares)
 
-    def _nearest(self, xy: NDArray[np.float64], threads: int) -> NDArray[np.float64]:
+    def _take_nearest(self, xy: NDArray[np.float64], threads: int) -> NDArray[np.float64]:
         return self._elevations[self._surface.nearest.find(xy, threads=threads)]
 
     @property
@@ -123,7 +125,7 @@ class Interpolator:
         return _kernel.NearestBoundary(self._surface.locator)
 
 
-def _between(
+def _interpolate_between(
     start: NDArray[np.float64], end: NDArray[np.float64], share: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Interpolate from the nearer end, so that both ends are met exactly."""

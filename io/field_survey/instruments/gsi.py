@@ -252,7 +252,7 @@ class _Reader:
         for block in blocks:
             self._set_up(block)
             station, shot = self._find_station(), self._find_shot(block)
-            target = [self._length(block, index) for index in _TARGET]
+            target = [self._read_length(block, index) for index in _TARGET]
             if not (station.is_known and shot.is_known and all(map(math.isfinite, target))):
                 continue
             reduced = reduce_shot(station, shot, refraction=None, metres=self._metres)
@@ -270,7 +270,7 @@ class _Reader:
         if 11 not in block.words:
             return
         name = _strip(block.words[11])
-        x, y, z = (self._length(block, index) for index in _TARGET)
+        x, y, z = (self._read_length(block, index) for index in _TARGET)
         if math.isfinite(x) and math.isfinite(y):
             self.book.add(name, (x, y, z), code, block.line, "coordinates")
         elif {21, 22, 31} & block.words.keys():
@@ -297,43 +297,43 @@ class _Reader:
 
     def _set_up(self, block: _Block) -> None:
         if all(index in block.words for index in _STATION):
-            x, y, z = (self._length(block, index) for index in _STATION)
+            x, y, z = (self._read_length(block, index) for index in _STATION)
             place = (x, y, z)
             if place != self._station:
                 self._height = math.nan
             self._station = place
         if 88 in block.words:
-            self._height = self._length(block, 88)
+            self._height = self._read_length(block, 88)
 
     def _find_station(self) -> Station:
         return Station(*self._station, self._height, 0.0)
 
     def _find_shot(self, block: _Block) -> Shot:
-        circle, zenith = self._angle(block, 21), self._angle(block, 22)
-        return Shot(circle, zenith, self._length(block, 31), self._length(block, 87))
+        circle, zenith = self._read_angle(block, 21), self._read_angle(block, 22)
+        return Shot(circle, zenith, self._read_length(block, 31), self._read_length(block, 87))
 
-    def _length(self, block: _Block, index: int) -> float:
+    def _read_length(self, block: _Block, index: int) -> float:
         word = block.words.get(index)
         if word is None:
             return math.nan
         if word.unit not in _LENGTHS:
             raise self._fail_value(block, word, "a unit digit 0, 1, 6, 7 or 8")
-        return self._number(block, word) / _LENGTHS[word.unit][0]
+        return self._parse_number(block, word) / _LENGTHS[word.unit][0]
 
-    def _angle(self, block: _Block, index: int) -> float:
+    def _read_angle(self, block: _Block, index: int) -> float:
         word = block.words.get(index)
         if word is None:
             return math.nan
         if word.unit not in _ANGLES:
             raise self._fail_value(block, word, "a unit digit 2, 3, 4 or 5")
         unit = _ANGLES[word.unit]
-        value = self._number(block, word) / (_MIL_DIGITS if unit == "mil" else _ANGLE_DIGITS)
+        value = self._parse_number(block, word) / (_MIL_DIGITS if unit == "mil" else _ANGLE_DIGITS)
         angle = to_radians(value, unit)
         if math.isnan(angle):
             raise self._fail_value(block, word, "minutes and seconds below 60")
         return angle
 
-    def _number(self, block: _Block, word: _Word) -> float:
+    def _parse_number(self, block: _Block, word: _Word) -> float:
         if not (word.data.isascii() and word.data.isdigit()):
             raise self._fail_value(block, word, "digits alone")
         return float(word.sign + word.data)

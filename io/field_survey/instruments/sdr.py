@@ -156,25 +156,27 @@ class _Reader:
         self.is_from_horizon = line[50:51] == "2"
 
     def _read_target_height(self, line: str, number: int) -> None:
-        self.target_height = self._number(line[4:20].strip(), number)
+        self.target_height = self._parse_number(line[4:20].strip(), number)
 
     def _read_scale(self, line: str, number: int) -> None:
-        self.scale = self._number(line[4:20].strip(), number)
+        self.scale = self._parse_number(line[4:20].strip(), number)
 
     def _read_station(self, line: str, number: int) -> None:
         name, *cells, _ = self.columns.split(line, *_FIELDS["02"])
-        x, y, z, height = (self._number(cell, number) for cell in cells)
+        x, y, z, height = (self._parse_number(cell, number) for cell in cells)
         self.stations[name] = (x, y, z, height) if self.is_east_first else (y, x, z, height)
         self.orientations.pop(name, None)
 
     def _read_back_bearing(self, line: str, number: int) -> None:
         name, _, *cells, _ = self.columns.split(line, *_FIELDS["07"])
-        azimuth, circle = (to_radians(self._number(cell, number), self.angle) for cell in cells)
+        azimuth, circle = (
+            to_radians(self._parse_number(cell, number), self.angle) for cell in cells
+        )
         self.orientations[name] = azimuth - circle
 
     def _read_coordinates(self, line: str, number: int) -> None:
         name, *cells, code = self.columns.split(line, *_FIELDS["08"])
-        x, y, z = (self._number(cell, number) for cell in cells)
+        x, y, z = (self._parse_number(cell, number) for cell in cells)
         xyz = (x, y, z) if self.is_east_first else (y, x, z)
         self._known.add(name)
         self.book.add(name, xyz, code, number, "coordinates")
@@ -185,7 +187,7 @@ class _Reader:
         if kind not in ("F1", "F2"):
             self._waiting.append((number, name, code, None, Shot(*(math.nan,) * 4)))
             return
-        distance, vertical, circle = (self._number(cell, number) for cell in cells)
+        distance, vertical, circle = (self._parse_number(cell, number) for cell in cells)
         shot = Shot(
             to_radians(circle, self.angle),
             self._find_zenith(to_radians(vertical, self.angle)),
@@ -222,7 +224,7 @@ class _Reader:
                 f"The scale {self.scale:g} of the file is not 1: no shot was reduced."
             )
 
-    def _number(self, cell: str, line: int) -> float:
+    def _parse_number(self, cell: str, line: int) -> float:
         """Return the number of a field, NaN if it is empty."""
         if not cell:
             return math.nan

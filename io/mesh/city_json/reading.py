@@ -82,7 +82,7 @@ def read(
     return make_tin(points, triangles, path, reference=reference, notes=notes)
 
 
-def _damaged(path: Path, what: str) -> ReadError:
+def _describe_damage(path: Path, what: str) -> ReadError:
     return ReadError(f"'{path}' is a damaged CityJSON file: {what}.", path=path)
 
 
@@ -90,9 +90,9 @@ def _parse(path: Path) -> dict[str, Any]:
     try:
         city = json.loads(read_content(path))
     except json.JSONDecodeError as error:
-        raise _damaged(path, f"line {error.lineno} is no JSON") from error
+        raise _describe_damage(path, f"line {error.lineno} is no JSON") from error
     except (ValueError, RecursionError) as error:  # no UTF-8, endless numbers, endless brackets
-        raise _damaged(path, "its text is no JSON") from error
+        raise _describe_damage(path, "its text is no JSON") from error
     if not isinstance(city, dict) or city.get("type") != "CityJSON":
         raise ReadError(f"'{path}' is no CityJSON file: its type is not 'CityJSON'.", path=path)
     version = str(city.get("version", ""))[:20]
@@ -110,7 +110,7 @@ def _choose_objects(
     """Return the terrains to read by their names."""
     every = city.get("CityObjects")
     if not isinstance(every, dict):
-        raise _damaged(path, "it has no CityObjects")
+        raise _describe_damage(path, "it has no CityObjects")
     found = {
         str(name): one
         for name, one in every.items()
@@ -143,7 +143,7 @@ def _collect(name: str, relief: dict[str, Any], notes: list[str], path: Path) ->
     attributes = relief.get("attributes")
     attributes = attributes if isinstance(attributes, dict) else {}
     if not fitting:
-        raise _damaged(path, f"TINRelief '{name[:40]}' has no CompositeSurface")
+        raise _describe_damage(path, f"TINRelief '{name[:40]}' has no CompositeSurface")
     fitting.sort(key=lambda one: str(one.get("lod", "")))
     if len(fitting) > 1:
         notes.append(
@@ -161,11 +161,11 @@ def _flatten(boundaries: Any, name: str, path: Path) -> tuple[NDArray[np.int64],
         lengths = np.array([len(ring) for ring in rings], np.int64)
         flat = [corner for ring in rings for corner in ring]
     except (TypeError, ValueError):
-        raise _damaged(
+        raise _describe_damage(
             path, f"the surfaces of '{name[:40]}' are no lists of one ring each"
         ) from None
     if not all(type(corner) is int and 0 <= corner < _LARGEST_EXACT for corner in flat):
-        raise _damaged(
+        raise _describe_damage(
             path, f"a surface of '{name[:40]}' names a vertex that is no number from 0 on"
         )
     return np.array(flat, np.int64), lengths
@@ -176,17 +176,21 @@ def _restore_vertices(city: dict[str, Any], path: Path) -> NDArray[np.float64]:
     try:
         vertices = np.array(city["vertices"], np.float64).reshape(-1, 3)
     except (KeyError, TypeError, ValueError, OverflowError):
-        raise _damaged(path, "its vertices are no list of three numbers each") from None
+        raise _describe_damage(path, "its vertices are no list of three numbers each") from None
     transform = city.get("transform")
     if transform is None:
         if not str(city["version"]).startswith(_WITHOUT_TRANSFORM):
-            raise _damaged(path, f"version {city['version']} needs a transform, and it has none")
+            raise _describe_damage(
+                path, f"version {city['version']} needs a transform, and it has none"
+            )
         return vertices
     try:
         scale = np.array(transform["scale"], np.float64).reshape(3)
         translate = np.array(transform["translate"], np.float64).reshape(3)
     except (KeyError, TypeError, ValueError, OverflowError):
-        raise _damaged(path, "its transform has no scale and translate of three numbers") from None
+        raise _describe_damage(
+            path, "its transform has no scale and translate of three numbers"
+        ) from None
     with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused later
         return np.column_stack([_scale(vertices[:, k], scale[k], translate[k]) for k in range(3)])
 

@@ -71,12 +71,12 @@ def write_features(
     the member ``units`` names (``"unknown"`` if they are not known); exterior rings run
     counter-clockwise.
     """
-    located = _located(features)
+    located = _locate(features)
     places = (keep_in_crs if projected else project_to_wgs84)(located)
     if places.crs_member is None:
         _require_one_side(places.xyz, features, path)
     with replacing(path, binary=False) as file:
-        file.write(_head(features, places))
+        file.write(_format_head(features, places))
         separator = "\n"
         for done, written in _iterate_batches(features, places):
             file.write(separator + ",\n".join(written))
@@ -93,7 +93,7 @@ def write_feature_lines(
 
     Parameters, errors and coordinates are those of :func:`write_features`.
     """
-    places = project_to_wgs84(_located(features))
+    places = project_to_wgs84(_locate(features))
     _require_one_side(places.xyz, features, path)
     with replacing(path, binary=False) as file:
         for done, written in _iterate_batches(features, places):
@@ -104,16 +104,16 @@ def write_feature_lines(
 
 def _iterate_batches(features: Features, places: Places) -> Iterator[tuple[int, list[str]]]:
     """Yield the texts of some features after others, with the number done."""
-    geometries = _geometries(features, places)
+    geometries = _format_geometries(features, places)
     template = properties_template(list(features.columns))
     for start in range(0, len(features), _BATCH):
         part = slice(start, min(start + _BATCH, len(features)))
         columns = [json_texts(column[part]) for column in features.columns.values()]
         rows = zip(*columns, strict=True) if columns else [()] * (part.stop - start)
-        yield part.stop, list(map(_feature, map(template.__mod__, rows), geometries[part]))
+        yield part.stop, list(map(_format_feature, map(template.__mod__, rows), geometries[part]))
 
 
-def _located(features: Features) -> _Located:
+def _locate(features: Features) -> _Located:
     """Return coordinates with elevations; 0 stands for those that are not known or not there."""
     points = np.zeros((len(features.coordinates), 3))
     points[:, : features.coordinates.shape[1]] = features.coordinates
@@ -126,7 +126,7 @@ def _located(features: Features) -> _Located:
     return _Located(points, crs, features.elevation_unit)
 
 
-def _head(features: Features, places: Places) -> str:
+def _format_head(features: Features, places: Places) -> str:
     lines = ['"type":"FeatureCollection"']
     if features.name:
         lines.append(f'"name":{json.dumps(features.name)}')
@@ -146,14 +146,14 @@ def _head(features: Features, places: Places) -> str:
     return "{" + ",\n".join(lines) + ',\n"features":['
 
 
-def _feature(properties: str, geometry: str) -> str:
+def _format_feature(properties: str, geometry: str) -> str:
     return f'{{"type":"Feature","properties":{properties},"geometry":{geometry}}}'
 
 
 # ------------------------------------------------------------------------- geometries
 
 
-def _texts(features: Features, places: Places) -> NDArray[np.object_]:
+def _format_positions(features: Features, places: Places) -> NDArray[np.object_]:
     """Return each position, with two numbers where its elevation is not known."""
     if not features.has_elevations:
         return format_positions(places.xyz[:, :2])
@@ -163,9 +163,9 @@ def _texts(features: Features, places: Places) -> NDArray[np.object_]:
     return written
 
 
-def _geometries(features: Features, places: Places) -> list[str]:
+def _format_geometries(features: Features, places: Places) -> list[str]:
     """Return the geometry of each feature."""
-    positions = _texts(features, places)
+    positions = _format_positions(features, places)
     if features.kind == "polygons" and places.crs_member is None:
         positions = positions[_turned(features, places.xyz)]
     pieces: list[str] = positions.tolist()
@@ -186,14 +186,14 @@ def _turned(features: Features, xyz: NDArray[np.float64]) -> NDArray[np.int64]:
         return order
     is_exterior = np.zeros(len(offsets) - 1, np.bool_)
     is_exterior[polygons[:-1]] = True
-    areas = _ring_areas(xyz[:, :2], offsets)
+    areas = _measure_rings(xyz[:, :2], offsets)
     for ring in np.flatnonzero((areas != 0) & ((areas > 0) != is_exterior)):
         part = slice(offsets[ring], offsets[ring + 1])
         order[part] = order[part][::-1]
     return order
 
 
-def _ring_areas(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> NDArray[np.float64]:
+def _measure_rings(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> NDArray[np.float64]:
     """Return twice the signed area of each closed ring, positive counter-clockwise."""
     near = xy - np.repeat(xy[offsets[:-1]], np.diff(offsets), axis=0)
     steps = np.zeros(len(xy))

@@ -84,9 +84,9 @@ class _Commands(click.Group):
         if args is None:  # this process is the command's own
             permit_forks()
         with raise_for_signals():
-            sys.exit(self._exit_code(arguments, **how))
+            sys.exit(self._find_exit_code(arguments, **how))
 
-    def _exit_code(self, arguments: list[str], **how: Any) -> int:
+    def _find_exit_code(self, arguments: list[str], **how: Any) -> int:
         try:
             code = super().main(arguments, standalone_mode=False, **how)
         except click.ClickException as error:

@@ -174,7 +174,7 @@ def _describe_collision(one: Named, before: Named, *, is_input: bool) -> str:
 def _identify(path: Path) -> set[object]:
     """Return what identifies a file: its place, and its number in the file system."""
     place = Path(os.path.realpath(path))
-    name = place.name.casefold() if _folds_case(place.parent) else place.name
+    name = place.name.casefold() if _ignores_case(place.parent) else place.name
     keys: set[object] = {(str(place.parent), name)}
     try:
         found = place.stat()
@@ -185,7 +185,7 @@ def _identify(path: Path) -> set[object]:
     return keys
 
 
-def _folds_case(folder: Path) -> bool:
+def _ignores_case(folder: Path) -> bool:
     """Whether the system takes capitals in names for small letters, as far as the folder shows."""
     if not folder.name:
         return False

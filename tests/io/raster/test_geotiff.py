@@ -128,14 +128,14 @@ def test_the_crs_comes_back_with_its_units(tmp_path, crs, form):
 
 
 def test_a_crs_that_would_change_its_unit_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(geotiff, "_crs", lambda *_: rasterio.crs.CRS.from_epsg(26736))
+    monkeypatch.setattr(geotiff, "_make_gdal_crs", lambda *_: rasterio.crs.CRS.from_epsg(26736))
     with pytest.raises(WriteError, match="does not keep the CRS"):
         ts.write(raster(), tmp_path / "a.tif")
     assert list(tmp_path.iterdir()) == []
 
 
 def test_another_crs_of_the_same_units_is_told(tmp_path, monkeypatch):
-    monkeypatch.setattr(geotiff, "_crs", lambda *_: rasterio.crs.CRS.from_epsg(32617))
+    monkeypatch.setattr(geotiff, "_make_gdal_crs", lambda *_: rasterio.crs.CRS.from_epsg(32617))
     with pytest.warns(ts.LossWarning, match="UTM zone 17N"):
         ts.write(raster(), tmp_path / "a.tif")
 

@@ -15,6 +15,8 @@ from support import matrix
 
 import tinsmith as ts
 
+pytestmark = pytest.mark.slow
+
 EXAMPLE = Path(__file__).parents[3] / "docs" / "examples" / "tinsmith-ifc"
 
 

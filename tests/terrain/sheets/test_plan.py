@@ -354,6 +354,7 @@ def test_a_survey_in_another_crs_is_refused():
 # ---------------------------------------------------------------- files
 
 
+@pytest.mark.slow
 def test_files_are_the_same_in_every_process(tmp_path):
     script = (
         "import sys, tinsmith as ts\n"

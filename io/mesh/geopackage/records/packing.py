@@ -125,13 +125,16 @@ class _Packer:
         if isinstance(value, CRS | Unit):
             return {name.lower(): value.text if isinstance(value, Unit) else str(value)}
         if name in CLASSES:
-            return {"type": name, **{key: self.pack(getattr(value, key)) for key in _keys(value)}}
+            return {
+                "type": name,
+                **{key: self.pack(getattr(value, key)) for key in _list_keys(value)},
+            }
         if isinstance(value, list | tuple):
             plain = list if isinstance(value, list) else tuple
             return {plain.__name__: [self.pack(one) for one in value]}
         return {"map": {str(key): self.pack(one) for key, one in dict(value).items()}}
 
 
-def _keys(value: Any) -> list[str]:
+def _list_keys(value: Any) -> list[str]:
     """Return the names of what a record holds."""
     return [one.name for one in fields(value)] if is_dataclass(value) else list(value._fields)

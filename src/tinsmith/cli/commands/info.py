@@ -77,12 +77,12 @@ def _describe(tin: TIN, file: Path, plot: Path | None, console: Console) -> None
         _plot(shapes, tin, file, plot, console)
     # Both measure the whole surface: only what is asked for.
     if console.as_json:
-        console.answer([], _record(tin, file, plot, shapes))
+        console.answer([], _make_record(tin, file, plot, shapes))
     else:
         console.answer(_summarise(tin, file, plot, shapes), {})
 
 
-def _record(tin: TIN, file: Path, plot: Path | None, shapes: Quality | None) -> dict[str, Any]:
+def _make_record(tin: TIN, file: Path, plot: Path | None, shapes: Quality | None) -> dict[str, Any]:
     from ..output.summaries import describe_tin
 
     record = {"input": str(file)} | describe_tin(tin)

@@ -367,6 +367,7 @@ def test_a_block_that_inserts_itself_is_refused(drawing, save):
     refused("more than 32 deep", save(drawing))
 
 
+@pytest.mark.slow
 def test_a_million_copies_of_a_million_points_are_given_up(drawing, save, monkeypatch):
     monkeypatch.setattr("tinsmith.io.isolated.limits.LEAST_SECONDS", 1.0)
     drawing.blocks.new("A").add_point((0, 0, 1))
