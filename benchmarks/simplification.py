@@ -1,14 +1,17 @@
 """Fewest points within a tolerance: a raster terrain beside pydelatin, and a million points.
 
 ``python -m benchmarks.simplification`` prints the table of docs/simplify.md: vertices, triangles,
-the largest error at all cells and processor time, each program in the same run on one core.
-``--points N`` times N random points of a terrain with noise.
+the largest error at all cells and the least processor time of some runs, the programs in turn on
+one core. ``--blocks SIDE`` times a raster that is simplified in blocks, ``--points N`` N random
+points of a terrain with noise.
 """
 
 from __future__ import annotations
 
 import argparse
+import resource
 import time
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,9 +21,12 @@ import tinsmith as ts
 from .measure import is_installed
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
 TOLERANCES = (3.0, 1.0)
+RUNS = 5
 
 
 def make_heights(side: int, seed: int = 1) -> NDArray[np.float32]:
@@ -48,30 +54,87 @@ def print_row(program: str, tolerance: float, tin: ts.TIN, points: Any, seconds:
     print(f"| {tolerance:g} | {program} | {counts} | {error:.4f} | {seconds} |")
 
 
+def as_raster(heights: NDArray[np.float32]) -> ts.Raster:
+    """Return a raster whose rows go south from 0, cells one unit apart, with centres at 0, 1, 2."""
+    rows, columns = heights.shape
+    bounds = ts.Bounds(-0.5, 0.5 - rows, columns - 0.5, 0.5)
+    return ts.Raster({"elevation": heights}, ts.Grid(bounds, heights.shape, 1.0))
+
+
 def compare(side: int) -> None:
     """Print vertices, triangles, errors and processor seconds of both programs."""
     heights = make_heights(side)
-    points = as_points(heights)
-    begin = time.process_time()
-    surface = ts.triangulate(points, threads=1)
-    before = time.process_time() - begin
-    print(f"{side} x {side} cells; triangulating all of them takes {before:.2f} s")
+    points = as_points(heights) * [1, -1, 1]
+    raster = as_raster(heights)
     print("| tolerance | program | vertices | triangles | largest error | seconds |")
     print("|---|---|---|---|---|---|")
     for tolerance in TOLERANCES:
-        begin = time.process_time()
-        simple = ts.simplify(surface, tolerance=tolerance, threads=1)
-        print_row("tinsmith", tolerance, simple, points, f"{time.process_time() - begin:.2f}")
+        programs: dict[str, Callable[[], Any]] = {
+            "tinsmith": partial(ts.simplify, raster, tolerance=tolerance, threads=1)
+        }
         if is_installed("pydelatin"):
             from pydelatin import Delatin  # type: ignore[import-not-found]
 
+            programs["pydelatin"] = partial(Delatin, heights, max_error=tolerance)
+        made, seconds = time_in_turn(programs)
+        for program, found in made.items():
+            tin = found if program == "tinsmith" else as_tin(found, side)
+            print_row(program, tolerance, tin, points, f"{seconds[program]:.3f}")
+    surface = ts.triangulate(points, threads=1)
+    begin = time.process_time()
+    simple = ts.simplify(surface, tolerance=TOLERANCES[0], threads=1)
+    print_row("TIN", TOLERANCES[0], simple, points, f"{time.process_time() - begin:.2f}")
+
+
+def time_in_turn(
+    programs: dict[str, Callable[[], Any]],
+) -> tuple[dict[str, Any], dict[str, float]]:
+    """Run programs in turn; return what each made, and the least of its processor times."""
+    made: dict[str, Any] = {}
+    seconds = dict.fromkeys(programs, np.inf)
+    for _ in range(RUNS):
+        for name, program in programs.items():
             begin = time.process_time()
-            made = Delatin(heights, max_error=tolerance)
-            seconds = time.process_time() - begin
-            corners = made.vertices.reshape(-1, 3).astype(float)
-            corners[:, 1] = side - 1 - corners[:, 1]  # its rows go up
-            found = ts.TIN.from_triangles(corners, made.triangles.reshape(-1, 3))
-            print_row("pydelatin", tolerance, found, points, f"{seconds:.2f}")
+            made[name] = program()
+            seconds[name] = min(seconds[name], time.process_time() - begin)
+    return made, seconds
+
+
+def as_tin(made: Any, side: int) -> ts.TIN:
+    """Return what pydelatin made as a TIN; its rows go up."""
+    corners = made.vertices.reshape(-1, 3).astype(float)
+    corners[:, 1] -= side - 1
+    return ts.TIN.from_triangles(corners, made.triangles.reshape(-1, 3))
+
+
+def time_blocks(side: int) -> None:
+    """Print what a raster takes that is too large for one piece, read as it is asked for."""
+    tile = make_heights(1000)
+
+    class Tiles:
+        """The tile again and again, mirrored, so that it goes on."""
+
+        shape, dtype = (side, side), np.dtype(np.float32)
+
+        def __getitem__(self, key: Any) -> Any:
+            rows, columns = (np.arange(part.start, part.stop) for part in key)
+            return tile[np.ix_(*(np.abs((part + 999) % 1998 - 999) for part in (rows, columns)))]
+
+    grid = ts.Grid(ts.Bounds(0.0, 0.0, float(side), float(side)), (side, side), 1.0)
+    raster = ts.Raster({"elevation": Tiles()}, grid)  # type: ignore[dict-item]
+    begin, wall = time.process_time(), time.perf_counter()
+    simple = ts.simplify(raster, tolerance=TOLERANCES[0])
+    told = simple.report.simplification
+    print(
+        f"{side:,} x {side:,} cells to {len(simple.points):,} vertices, largest error "
+        f"{told.largest_error:.4f}: {time.process_time() - begin:.1f} s of processors, "
+        f"{time.perf_counter() - wall:.1f} s, {measure_peak_memory() / 2**20:,.0f} MiB at the peak"
+    )
+
+
+def measure_peak_memory() -> int:
+    """Return the most memory that the process had, in bytes."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
 
 
 def time_points(count: int) -> None:
@@ -91,9 +154,12 @@ def main() -> None:
     """Read the command line and print what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--side", type=int, default=1000, help="cells of a side")
+    parser.add_argument("--blocks", type=int, help="time a raster with such a side instead")
     parser.add_argument("--points", type=int, help="time so many random points instead")
     given = parser.parse_args()
-    if given.points:
+    if given.blocks:
+        time_blocks(given.blocks)
+    elif given.points:
         time_points(given.points)
     else:
         compare(given.side)

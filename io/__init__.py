@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from .field_survey.field_codes import lines_from_codes
     from .mesh.libraries import from_mesh, to_meshio, to_pyvista, to_trimesh
     from .mesh.ugrid_dataset import to_ugrid
+    from .raster.elevations import read_raster
     from .raster.libraries import from_raster, to_rasterio
     from .reading import read, read_points, read_tin
     from .registry import Format, find_format, known_formats
@@ -26,6 +27,7 @@ else:  # a type checker takes every name for one that such a __getattr__ has
         {
             ".vector.libraries": ("to_features",),
             ".mesh.libraries": ("from_mesh", "to_meshio", "to_pyvista", "to_trimesh"),
+            ".raster.elevations": ("read_raster",),
             ".raster.libraries": ("from_raster", "to_rasterio"),
             ".mesh.ugrid_dataset": ("to_ugrid",),
             ".field_survey": ("field_codes",),  # where the module was before
@@ -59,6 +61,7 @@ __all__ = [
     "read_lines",
     "read_points",
     "read_polygons",
+    "read_raster",
     "read_rings",
     "read_tin",
     "read_water",

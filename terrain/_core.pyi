@@ -177,3 +177,17 @@ def densify(
     full_edge: float,
     progress: Callable[[float], None] | None = None,
 ) -> tuple[Doubles, Doubles]: ...
+def simplify_cells(
+    x: Doubles,
+    y: Doubles,
+    z: Doubles,
+    vertex_cells: Ints,
+    vertices: Doubles,
+    triangles: Ints,
+    neighbors: Ints,
+    fixed: Flags,
+    tolerance: float,
+    most: int,
+    prunes: bool,
+) -> tuple[Ints, int]: ...
+def measure_cells(z: Doubles, cells: Ints, elevations: Doubles, triangles: Ints) -> Doubles: ...

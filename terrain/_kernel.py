@@ -24,9 +24,11 @@ __all__ = [
     "fit_quadratics",
     "leave_one_out",
     "list_neighbors",
+    "measure_cells",
     "measure_neighbors",
     "overlay",
     "shade_planes",
+    "simplify_cells",
     "smooth_contours",
     "stage_sums",
     "sum_areas",
@@ -50,6 +52,8 @@ leave_one_out = _core.leave_one_out
 list_neighbors = _core.list_neighbors
 measure_neighbors = _core.measure_neighbors
 densify = _core.densify
+simplify_cells = _core.simplify_cells
+measure_cells = _core.measure_cells
 find_seen_vertices = _core.find_seen_vertices
 
 trace_contours = _core.trace_contours

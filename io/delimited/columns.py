@@ -75,13 +75,14 @@ _UNIT_NAMES = (
     *("m", "metre", "metres", "meter", "meters", "mm", "cm", "dm", "km", "ft", "foot", "feet"),
     *("usft", "us ft", "us-ft", "ussft", "ftus", "ft us", "ft-us", "us foot", "us feet", "sft"),
     *("us survey foot", "us survey feet", "survey foot", "survey feet", "usfoot", "usfeet"),
+    *("us survey ft", "survey ft", "us-survey-foot", "us-survey-feet"),
     *("ift", "intft", "int ft", "international foot", "international feet", "ftint"),
 )
 _UNIT_WORDS = "|".join(sorted(_UNIT_NAMES, key=len, reverse=True)).replace(" ", r"[\s._]+")
 # The brackets inside keep the pattern linear: a text of nothing but brackets is tried once.
 _UNIT = re.compile(
     r"[\[(](?P<inside>[^\[\]()]*)[\])]"
-    rf"|(?<=[^\W_])[_ .-]+(?P<behind>{_UNIT_WORDS})$",
+    rf"|(?<=[^\W_])[\W_]+(?P<behind>{_UNIT_WORDS})$",
     re.IGNORECASE,
 )
 _SHOWN_LETTERS, _SHOWN_NAMES = 40, 12

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from itertools import permutations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._sentences import counted
 from ...crs import FOOT, Unit
-from ...errors import CrsError, OptionError
+from ...errors import CrsError, OptionError, ReadError
 from ...terrain.nodata import describe_suspects, find_suspect_elevations
+from .cells import split_line
+from .columns import COORDINATES, find_columns_by_header, find_unit_word, list_names
 from .content import are_plausible_elevations, is_too_steep, measure_relief_and_extent
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -21,6 +25,7 @@ if TYPE_CHECKING:
     from ...crs import CRS
     from ...terrain.area_of_use import AreaOfUse
     from .columns import Columns
+    from .lines import TextLines
     from .table import Fault
 
 __all__ = [
@@ -28,11 +33,36 @@ __all__ = [
     "describe_left_out",
     "find_odd_elevations",
     "find_repeated_numbers",
+    "find_rounded_coordinates",
+    "find_summary_rows",
+    "find_unit_words",
+    "find_units_above",
     "require_in_area",
+    "require_one_header",
     "require_unit_of_crs",
 ]
 
 _SHOWN = 5
+_SHOWN_NAME = 40
+_TOP_LINES = 100
+_STATISTICS = frozenset(
+    {*("min", "max", "mean", "average", "avg", "median", "total", "totals", "sum", "count", "std")}
+    | {
+        *(
+            "minimum",
+            "maximum",
+            "mittel",
+            "mittelwert",
+            "summe",
+            "anzahl",
+            "moyenne",
+            "media",
+            "suma",
+        )
+    }
+)
+_UNIT_LINE = re.compile(r"\bunits?\b[\s:=;,]*(?P<word>[a-z][a-z ._-]*)", re.IGNORECASE)
+_EXPONENT = re.compile(r"[-+]?[0-9](?:[.,](?P<decimals>[0-9]*))?[eE][+]?(?P<exponent>[0-9]{1,3})")
 _SOME = 4_096
 _FEW_POINTS = 3
 _SAME_UNIT = 1e-3
@@ -89,6 +119,112 @@ def require_in_area(
         f"{_count(len(outside), len(points))} outside the area of use of {area.label} "
         f"({_name_lines(rows[outside])}){exchanged}."
     ]
+
+
+def require_one_header(
+    faults: Sequence[Fault], lines: TextLines, delimiter: str, columns: Columns, path: Path
+) -> None:
+    """Refuse a header among the bad rows that names the coordinates otherwise than they are taken.
+
+    Raises
+    ------
+    ReadError
+    """
+    for fault in faults:
+        cells = split_line(lines.decode_line(fault.line), delimiter)
+        found = find_columns_by_header(cells, strict=False)
+        if found is not None and _differs(found, columns):
+            taken = list_names([columns.label(columns.roles[role]) for role in COORDINATES])
+            raise ReadError(
+                f"'{path}', line {fault.line + 1}: a header ({list_names(cells)}) names other "
+                f"columns or units than easting, northing and elevation are taken from ({taken}): "
+                "say with the option columns what they are, or read the parts of the file by "
+                "themselves.",
+                path=path,
+                lines=[fault.line + 1],
+            )
+
+
+def _differs(found: Columns, columns: Columns) -> bool:
+    """Whether a header names other columns or other units; one without units may repeat it."""
+    has_units = bool(found.units) and dict(found.units) != dict(columns.units)
+    return found.coordinates != columns.coordinates or has_units
+
+
+def find_rounded_coordinates(
+    lines: TextLines, rows: NDArray[np.int64], delimiter: str, columns: Columns
+) -> list[str]:
+    """Say which coordinates have an exponent that leaves tens or more open, as spreadsheets do."""
+    found = []
+    for row in rows[lines.find_with_exponents(rows)].tolist():
+        cells = split_line(lines.decode_line(row), delimiter)
+        cut = [cells[i] for i in columns.coordinates if i < len(cells) and _is_rounded(cells[i])]
+        found += [(row + 1, cell) for cell in cut]
+    if not found:
+        return []
+    line, cell = found[0]
+    return [
+        f"{counted(len(found), 'coordinate')} {'has' if len(found) == 1 else 'have'} an exponent "
+        f"and no digits below the tens (line {line}: '{cell}'): check that no spreadsheet has "
+        "rounded them."
+    ]
+
+
+def _is_rounded(cell: str) -> bool:
+    found = _EXPONENT.fullmatch(cell)
+    return found is not None and int(found["exponent"]) > len(found["decimals"] or "")
+
+
+def find_summary_rows(
+    points: NDArray[np.float64], rows: NDArray[np.int64], names: Iterable[NDArray[Any] | None]
+) -> list[str]:
+    """Say which rows are called like a statistic of the others, or are their sum."""
+    notes = []
+    for values in names:
+        if values is None or values.dtype != object:
+            continue
+        found = [i for i, name in enumerate(values.tolist()) if _is_statistic(name)]
+        if found:
+            words = ", ".join(f"'{values[i]}'" for i in found[:_SHOWN])
+            notes.append(
+                f"{counted(len(found), 'row')} {'is' if len(found) == 1 else 'are'} read as points "
+                f"and may be statistics of the others ({words}, {_name_lines(rows[found])})."
+            )
+    if len(points) > _FEW_POINTS and np.allclose(points[:-1].sum(axis=0), points[-1], rtol=1e-9):
+        notes.append(
+            f"The last row (line {rows[-1] + 1}) is the sum of all others, and read as a point."
+        )
+    return notes
+
+
+def _is_statistic(name: str) -> bool:
+    return name.strip(" :.").casefold() in _STATISTICS
+
+
+def find_units_above(lines: TextLines, first_row: int) -> list[str]:
+    """Say which line above the table tells a unit, which only a header or the caller can."""
+    for line, text in enumerate(lines.decode_lines(range(min(first_row, _TOP_LINES)))):
+        found = _UNIT_LINE.search(text)
+        if found is not None and find_unit_word(f"({found['word'].strip()})") is not None:
+            return [
+                f"Line {line + 1} ('{text.strip()[:_SHOWN_NAME]}') tells a unit, which is not "
+                "looked at: the option z_unit says that of the elevations."
+            ]
+    return []
+
+
+def find_unit_words(attributes: Mapping[str, NDArray[Any]]) -> list[str]:
+    """Say which texts begin with one and the same unit of length in every row."""
+    notes = []
+    for name, values in attributes.items():
+        words = {str(one).split(maxsplit=1)[0] for one in values.tolist() if str(one).strip()}
+        word = words.pop() if values.dtype == object and len(words) == 1 else ""
+        if find_unit_word(f"({word})") is not None:
+            notes.append(
+                f"'{name[:_SHOWN_NAME]}' begins with '{word}' in every row: if this is the unit of "
+                "the elevations, the option z_unit says so."
+            )
+    return notes
 
 
 def _count(number: int, total: int = 0) -> str:

@@ -30,6 +30,8 @@ from .marks import (
     has_idle_commas,
     parse_decimal_mark,
     parse_delimiter,
+    require_no_blank_groups,
+    require_no_delimiter,
     require_one_kind_of_comma,
     split_header,
 )
@@ -196,6 +198,8 @@ def find_layout(
     try:
         if found == "," and wishes.delimiter is None:
             require_one_kind_of_comma(rows)
+        if found == BLANKS:
+            require_no_blank_groups(rows, _count_told_columns(wishes))
         mark = _choose_decimal_mark(lines, data, cells, found, wishes)
         return _lay_out_table(lines, data, skipped, cells, (found, mark), wishes, path)
     except ReadError as error:
@@ -207,6 +211,8 @@ def _split_rows(rows: Sequence[str], delimiter: str) -> list[list[str]]:
     cells = [split_line(text, delimiter) for text in rows]
     numbers = [sum(is_number(c, ".") or is_number(c, ",") for c in row) for row in cells]
     first = next((i for i, n in enumerate(numbers[:_TOP_LINES]) if n >= 2), 0)
+    if delimiter == BLANKS:
+        cells[:first] = map(_join_units, cells[:first])
     if any(find_columns_by_header(row, strict=False) for row in cells[:first]):
         return cells
     counts = Counter(len(row) for row, n in zip(cells, numbers, strict=True) if n >= 2)
@@ -227,6 +233,7 @@ def _choose_decimal_mark(
 ) -> DecimalMark:
     """Return the mark that the caller names, else that of the lines looked at, else of any."""
     if wishes.decimal is not None:
+        require_no_delimiter(wishes.decimal, delimiter, cells)
         return DecimalMark(wishes.decimal)
     found = find_decimal_mark(cells, delimiter)
     if found is None and delimiter != ",":
@@ -364,6 +371,11 @@ def _sample_lines(data: NDArray[np.int64]) -> list[int]:
 # ------------------------------------------------------------------ rows
 
 
+def _count_told_columns(wishes: _Wishes) -> int:
+    told = wishes.columns
+    return 0 if told is None or isinstance(told, Mapping) else len(list_meanings(told))
+
+
 def _count_columns(
     rows: Sequence[Sequence[str]], delimiter: str, decimal: str, wishes: _Wishes
 ) -> tuple[int, bool]:
@@ -371,6 +383,8 @@ def _count_columns(
     body = [row for row in rows if sum(is_number(cell, decimal) for cell in row) >= 2] or rows
     counts = Counter(map(len, body))
     count = counts.most_common(1)[0][0]
+    if delimiter != BLANKS and not any(row[-1] for row in body):  # delimiters at their ends
+        return count, False
     told = _count_named_columns(rows, wishes)
     if told and (delimiter == BLANKS or told <= count):
         return told, True
@@ -474,16 +488,30 @@ def _fit_header(
     """Return one name a column; a delimiter at the end of rows or header makes no column."""
     if header is None or len(header) == count:
         return header or []
-    if len(header) == count - 1 and not any(row[-1] for row in body):
+    if len(header) == count - 1 and header[-1] and not any(row[-1] for row in body):
         return [*header, ""]
     if len(header) == count + 1 and not header[-1]:
         return header[:-1]
-    if wishes.columns is not None and not isinstance(wishes.columns, Mapping):
+    n_told = _count_told_columns(wishes)
+    is_known = find_columns_by_header(header, strict=False) is not None
+    if n_told and (n_told >= count or not is_known):
         return []
     raise ReadError(
         f"the header names {len(header)} columns ({list_names(header)}), but rows have {count}: "
-        "say with the option columns what they are, and check delimiter and decimal mark."
+        "say with the option columns what all of them are, and check delimiter and decimal mark."
     )
+
+
+def _join_units(header: Sequence[str]) -> list[str]:
+    """Join units in brackets, where blanks split them off, to the names before them."""
+    joined: list[str] = []
+    for cell in header:
+        is_behind_name = bool(joined) and not joined[-1].startswith(("(", "["))
+        if is_behind_name and cell.startswith(("(", "[")) and find_unit_word(cell) is not None:
+            joined[-1] = f"{joined[-1]} {cell}"
+        else:
+            joined.append(cell)
+    return joined
 
 
 def _find_columns_by_name(

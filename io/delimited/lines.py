@@ -126,6 +126,15 @@ class TextLines:
         places = np.flatnonzero(is_mark & is_digit[:-2] & is_digit[2:]) + 1
         return np.intersect1d(np.searchsorted(self.starts, places, side="right") - 1, lines)
 
+    def find_with_exponents(self, lines: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return the places of those of the chosen lines in which e+ or E+ stands."""
+        if b"E+" not in self.data and b"e+" not in self.data:
+            return np.empty(0, np.int64)
+        codes = self.codes
+        is_exponent = ((codes[:-1] | 32) == ord("e")) & (codes[1:] == ord("+"))
+        found = np.searchsorted(self.starts, np.flatnonzero(is_exponent), side="right") - 1
+        return np.flatnonzero(np.isin(lines, found))
+
     def join(self, lines: NDArray[np.int64]) -> bytes:
         """Return the chosen lines (ascending numbers) as one text."""
         if len(lines) == 0:

@@ -23,6 +23,8 @@ __all__ = [
     "looks_like_table",
     "parse_decimal_mark",
     "parse_delimiter",
+    "require_no_blank_groups",
+    "require_no_delimiter",
     "require_one_kind_of_comma",
     "split_header",
 ]
@@ -31,6 +33,7 @@ _TOP_LINES = 100
 _DELIMITERS = ("\t", ";", "|", ",", BLANKS)
 _VISIBLE = (",", ";", "|")
 _COMMA_WITH_OTHER = re.compile(r"[ \t]+,[ \t]*|,[ \t]+|,[ \t]*[|;]|[|;][ \t]*,")
+_WIDE_BLANK = re.compile(r"[ \t]{2,}|\t")
 _SPOKEN = {
     "comma": ",",
     "semicolon": ";",
@@ -165,6 +168,21 @@ def _is_header(row: Sequence[str]) -> bool:
     return find_columns_by_header(row, strict=False) is not None
 
 
+def require_no_delimiter(mark: str, delimiter: str, cells: Sequence[Sequence[str]]) -> None:
+    """Raise if the decimal mark that the caller names is the delimiter, and stands in no cell.
+
+    Raises
+    ------
+    ReadError
+        If so: 525,20,1072,77 may be two numbers or four, and quotes would have told.
+    """
+    if mark == delimiter and not any(mark in cell for row in cells for cell in row):
+        raise ReadError(
+            f"its columns are separated by '{delimiter}', and no cell holds one, though the option "
+            "decimal names it: write the table with another delimiter, or quote its numbers."
+        )
+
+
 def require_one_kind_of_comma(sample: Sequence[str]) -> None:
     """Raise if commas with others beside them separate columns, and single ones may group digits.
 
@@ -183,6 +201,40 @@ def require_one_kind_of_comma(sample: Sequence[str]) -> None:
             "other letter that the other commas have beside them): delimiter=',' takes each as a "
             "delimiter."
         )
+
+
+def require_no_blank_groups(sample: Sequence[str], n_told: int) -> None:
+    """Raise if blanks separate columns, and single ones among wider ones may group digits.
+
+    Parameters
+    ----------
+    sample : sequence of str
+        Lines of the file.
+    n_told : int
+        Columns that the caller names: as many as there are between blanks of any width leave
+        nothing open.
+
+    Raises
+    ------
+    ReadError
+        If every row is like "525.7  1 049.882  5.9", which may be three columns or four.
+    """
+    rows = [row for row in sample if _count_numbers(split_line(row, BLANKS), BLANKS) >= 2]
+    grouped = [
+        next((cell for cell in _WIDE_BLANK.split(row.strip()) if _is_grouped_by_blanks(cell)), None)
+        for row in rows
+    ]
+    is_told = any(len(split_line(row, BLANKS)) <= n_told for row in rows)
+    if rows and all(grouped) and not is_told:
+        raise ReadError(
+            f"its blanks may separate columns or thousands ('{grouped[0]}', beside wider blanks): "
+            "write the table with another delimiter, or say with the option columns what all of "
+            "them are."
+        )
+
+
+def _is_grouped_by_blanks(cell: str) -> bool:
+    return " " in cell and (is_grouped(cell, ".") or is_grouped(cell, ","))
 
 
 def _is_grouped_by_commas(cell: str) -> bool:

@@ -25,7 +25,12 @@ from .findings import (
     describe_left_out,
     find_odd_elevations,
     find_repeated_numbers,
+    find_rounded_coordinates,
+    find_summary_rows,
+    find_unit_words,
+    find_units_above,
     require_in_area,
+    require_one_header,
     require_unit_of_crs,
 )
 from .layout import find_layout
@@ -149,6 +154,7 @@ def read(
     table = read_table(cells, layout, meaning, lines)
     table, told_cut = leave_out_cut_row(table, lines, layout, meaning, path, skip_bad=skip_bad)
     _require_few_faults(table.faults, lines, layout, path, skip_bad=skip_bad)
+    require_one_header(table.faults, lines, layout.delimiter, meaning, path)
     told = _account_for_rows(table, left_out, path)
     notes = [
         *layout.notes,
@@ -157,8 +163,7 @@ def read(
         *told_cut,
         *told.notes,
         *require_in_area(told.points, told.rows, meaning, area, path),
-        *find_odd_elevations(told.points),
-        *find_repeated_numbers(told.attributes.get("number"), told.rows),
+        *_find_odd(told, lines, layout, meaning),
     ]
     unit = settle_unit(Unit.of(z_unit), _find_header_unit(layout), path)
     placed = place(told.points, source=source, target=target, path=path, unit=unit)
@@ -172,6 +177,17 @@ def read(
         skipped_lines=told.lines,
         notes=[*notes, *placed.notes],
     )
+
+
+def _find_odd(told: _Accounted, lines: TextLines, layout: Layout, columns: Columns) -> list[str]:
+    numbers, names = (told.attributes.get(role) for role in ("number", "description"))
+    return [
+        *find_odd_elevations(told.points),
+        *find_repeated_numbers(numbers, told.rows),
+        *find_rounded_coordinates(lines, told.rows, layout.delimiter, columns),
+        *find_summary_rows(told.points, told.rows, (numbers, names)),
+        *find_units_above(lines, int(layout.rows[0])),
+    ]
 
 
 def _find_header_unit(layout: Layout) -> Unit | None:
@@ -237,7 +253,7 @@ def _account_for_rows(table: Table, nodata: NDArray[np.float64], path: Path) -> 
     if (is_flat | is_nodata).all():
         raise ReadError(f"'{path}': of {counted(len(z), 'row')}, none has an elevation.", path=path)
     lines: dict[str, tuple[int, ...]] = {}
-    notes: list[str] = []
+    notes = find_unit_words(table.attributes)
     if table.n_grouped:
         notes.append(f"Thousands separators were taken out of {table.n_grouped:,} coordinates.")
     if table.faults:

@@ -28,7 +28,7 @@ from .cells import (
     proves_groups,
     split_line,
 )
-from .columns import COORDINATES
+from .columns import COORDINATES, find_unit_word
 from .content import Column
 from .parsing import parse_column
 
@@ -270,7 +270,8 @@ def _may_be_split_numbers(cells: Sequence[str], layout: Layout) -> bool:
     """
     before, first, second = [cell.strip() for cell in (*cells, "", "")][:3]
     mark = layout.decimal
-    if not is_number(first, mark):
+    first, _, rest = first.partition(" ")  # 083 m
+    if not is_number(first, mark) or (rest and find_unit_word(f"({rest})") is None):
         return False
     is_group = len(first.partition(mark)[0]) == _GROUP_DIGITS and before.lstrip("+-").isdecimal()
     return is_group or layout.delimiter != BLANKS or is_number(second, mark)
@@ -408,7 +409,8 @@ def read_table(cells: Cells, layout: Layout, columns: Columns, lines: TextLines)
 def _describe_fault(lines: TextLines, layout: Layout, columns: Columns, line: int, k: int) -> str:
     """Say which cell of a row is at fault, and what is in it."""
     column = columns.coordinates[k]
-    cell = split_line(lines.decode_line(line), layout.delimiter)[column]
+    cells = split_line(lines.decode_line(line), layout.delimiter)
+    cell = cells[column] if column < len(cells) else ""
     value = f"is '{cell[:40]}'" if cell else "is empty"
     return f"{COORDINATES[k]} in {columns.label(column)} {value}"
 

@@ -17,13 +17,13 @@ from ..._progress import Progress
 from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError
+from ...terrain.gridding.voids import trace_rings
 from ...terrain.nodata import describe_suspects, find_suspect_elevations, parse_nodata
 from ...tin import Bounds, Survey
 from ..isolated import Limits, choose_limits, run_isolated, stream_isolated
 from ..isolated.free_memory import measure_free_memory
 from ..reprojection.placement import place, settle_unit
 from .virtual import is_virtual, require_plain_sources
-from .voids import trace_rings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -38,7 +38,21 @@ if TYPE_CHECKING:
 
     OpenStrips: TypeAlias = Callable[[dict[str, Any]], AbstractContextManager[Iterator[Answer]]]
 
-__all__ = ["LEFT_OUT", "Affine", "Header", "is_raster", "make_survey", "read", "read_georeference"]
+__all__ = [
+    "LEFT_OUT",
+    "Affine",
+    "Header",
+    "choose_band",
+    "find_elevation_unit",
+    "find_middle",
+    "is_raster",
+    "make_survey",
+    "read",
+    "read_georeference",
+    "read_header",
+    "require_elevation_band",
+    "stream_strips",
+]
 
 _STRIP_CELLS = 4_000_000
 """Cells read at a time, so that memory holds little but the points."""
@@ -149,10 +163,10 @@ def read(
     Scale and offset of the band are applied. The raster is read in strips; memory is 48 bytes
     for each valid cell at most, and a strip.
     """
-    header = _read_header(path)
+    header = read_header(path)
     return make_survey(
         header,
-        partial(_stream_strips, header),
+        partial(stream_strips, header),
         crs=crs,
         z_unit=z_unit,
         band=band,
@@ -190,15 +204,15 @@ def make_survey(
         As of :func:`read`.
     """
     path = dataset.path
-    number = _choose_band(dataset, band, path)
-    _require_elevation_band(dataset, number, band is not None, path)
+    number = choose_band(dataset, band, path)
+    require_elevation_band(dataset, number, band is not None, path)
     target, source = CRS.of(crs), CRS.of(dataset.crs)
-    unit, said = _find_elevation_unit(dataset, number, source, Unit.of(z_unit))
+    unit, said = find_elevation_unit(dataset, number, source, Unit.of(z_unit))
     cells = _choose_cells(dataset, window, stride, path, most_cells)
     left_out = 0 if most_cells is None else cells.width * cells.height - cells.count
     marks = parse_nodata(nodata)
     _require_few_cells(cells, path)
-    place(_find_middle(dataset), source=source, target=target, path=path)
+    place(find_middle(dataset), source=source, target=target, path=path)
     points, valid, n_nodata = _read_points(dataset, open_strips, number, cells, marks, progress)
     if len(points) == 0:
         raise ReadError(
@@ -248,7 +262,7 @@ def read_georeference(
     MissingExtraError
         If rasterio is not installed.
     """
-    dataset = _read_header(path)
+    dataset = read_header(path)
     _require_position(dataset, path)
     return tuple(dataset.transform), (dataset.height, dataset.width), dataset.crs
 
@@ -278,7 +292,7 @@ def is_raster(path: Path) -> bool:
         If rasterio is not installed.
     """
     try:
-        _read_header(path)
+        read_header(path)
     except ReadError:
         return False
     return True
@@ -347,7 +361,7 @@ class Header:
         return float(x.min()), float(y.min()), float(x.max()), float(y.max())
 
 
-def _read_header(path: Path) -> Header:
+def read_header(path: Path) -> Header:
     """Let a child open a raster, and return what it says of itself."""
     _optional.require("rasterio", "Reading a raster")
     limits = choose_limits(_measure_files(path))
@@ -373,7 +387,8 @@ def _measure_files(path: Path) -> int:
     return sum(one.stat().st_size for one in [path, *sources] if one.is_file())
 
 
-def _choose_band(dataset: Header, band: int | None, path: Path) -> int:
+def choose_band(dataset: Header, band: int | None, path: Path) -> int:
+    """Return the number of the band that was asked for, the first by default."""
     if dataset.count == 0:
         parts = ", ".join(dataset.subdatasets[:5])
         raise ReadError(
@@ -390,7 +405,7 @@ def _choose_band(dataset: Header, band: int | None, path: Path) -> int:
     return int(number)
 
 
-def _require_elevation_band(dataset: Header, band: int, is_told: bool, path: Path) -> None:
+def require_elevation_band(dataset: Header, band: int, is_told: bool, path: Path) -> None:
     """Refuse pictures, complex numbers and rasters whose place is unknown."""
     meaning = dataset.colours[band - 1]
     if meaning in _COLOURS and not is_told:
@@ -424,7 +439,7 @@ def _require_position(dataset: Header, path: Path) -> None:
         )
 
 
-def _find_elevation_unit(
+def find_elevation_unit(
     dataset: Header, band: int, source: CRS | None, declared: Unit | None
 ) -> tuple[Unit | None, list[str]]:
     """Return the unit that band, vertical axis or caller give, and a note on one not understood."""
@@ -446,7 +461,8 @@ def _find_elevation_unit(
     )
 
 
-def _find_middle(dataset: Header) -> NDArray[np.float64]:
+def find_middle(dataset: Header) -> NDArray[np.float64]:
+    """Return the middle of a raster as a (1, 3) array."""
     x, y = dataset.transform.apply(dataset.width / 2, dataset.height / 2)
     return np.array([[x, y, 0.0]])
 
@@ -562,7 +578,7 @@ def _require_few_cells(cells: _Cells, path: Path) -> None:
 # ------------------------------------------------------------------ points
 
 
-def _stream_strips(
+def stream_strips(
     dataset: Header, where: dict[str, Any]
 ) -> AbstractContextManager[Iterator[Answer]]:
     """Let a child read the strips of a file."""

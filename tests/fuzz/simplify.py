@@ -1,12 +1,15 @@
-"""Simplifications of small TINs: sound, near every point, with lines and boundary as they were."""
+"""Simplifications of small TINs and rasters: sound, near every point, lines as they were."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
+import pytest
 
 import tinsmith as ts
+from tinsmith.terrain.simplification.rasters import simplify_raster
+from tinsmith.tin.meshing.simplification import Goal
 
 from .campaign import Campaign, Case
 from .linework import list_lines, surface, triangulate
@@ -66,4 +69,75 @@ def require_same_in_any_order(case: Case, simple: Any) -> None:
     assert sets[0] == sets[1], "another order of the points, other points are left"
 
 
-CAMPAIGNS = (Campaign("simplify", "simplifications of small TINs with lines", generate, examine),)
+# ------------------------------------------------------------------------ rasters
+
+
+def generate_raster(rng: np.random.Generator) -> Case:
+    """A small raster with voids or without, simplified whole or in blocks."""
+    rows, columns = (int(side) for side in rng.integers(2, 30, 2))
+    z = rng.normal(size=(rows, columns)).cumsum(axis=0).cumsum(axis=1)
+    if rng.random() < 0.3:
+        z = np.round(z)
+    share = float(rng.choice([0, 0, 0.02, 0.1, 0.3]))
+    is_void = rng.random(z.shape) < share
+    at = rng.uniform(-5e6, 5e6, 2) if rng.random() < 0.5 else np.zeros(2)
+    return {
+        "z": np.where(is_void, -9999.0, z).tolist(),
+        "west_north": at.tolist(),
+        "spacing": float(rng.choice([1, 0.1, 30, 1 / 3])),
+        "tolerance": float(rng.choice([0, 0.01, 0.1, 0.5])) * float(np.ptp(z)),
+        "block_side": int(rng.integers(2, 12)) if rng.random() < 0.6 else 0,
+        "threads": int(rng.integers(1, 4)),
+    }
+
+
+def examine_raster(case: Case) -> str:
+    """Simplify it, and measure every cell; the area is that of the TIN of all cells."""
+    raster = make_raster(case)
+    whole = 0 if case["block_side"] else 2**24
+    goal = Goal.of(case["tolerance"], None)
+    try:
+        simple = simplify_raster(
+            raster,
+            goal,
+            (),
+            case["threads"],
+            largest_whole=whole,
+            block_side=case["block_side"] or 1,
+        )
+    except ts.PointsError:
+        with pytest.raises(ts.TinsmithError):
+            ts.triangulate(ts.from_raster(raster))
+        return "refused: no surface"
+    found = ts.check(simple)
+    assert found.ok, [one.sentence for one in found.problems]
+    tin = ts.triangulate(ts.from_raster(raster))
+    used = np.unique(tin.triangles)
+    error = np.abs(simple.interpolate(tin.points[used, :2]) - tin.points[used, 2])
+    rounding = np.abs(tin.points[:, 2]).max() * 1e-9 + 1e-9
+    told = simple.report.simplification
+    assert error.max() <= case["tolerance"] + rounding, "a cell is beyond the tolerance"
+    assert abs(error.max() - told.largest_error) <= rounding, "another error is told"
+    assert told.points == len(used)
+    assert np.isclose(simple.area, tin.area, rtol=1e-9), "another area"
+    return "in blocks" if case["block_side"] else "whole"
+
+
+def make_raster(case: Case) -> ts.Raster:
+    """Return the raster of a case."""
+    z = np.array(case["z"])
+    (west, north), spacing = case["west_north"], case["spacing"]
+    sides = z.shape[1] * spacing, z.shape[0] * spacing
+    bounds = ts.Bounds(west, north - sides[1], west + sides[0], north)
+    return ts.Raster({"elevation": z}, ts.Grid(bounds, z.shape, spacing), nodata=-9999.0)
+
+
+CAMPAIGNS = (
+    Campaign(
+        "simplify rasters",
+        "simplifications of small rasters, in blocks or whole",
+        generate_raster,
+        examine_raster,
+    ),
+    Campaign("simplify", "simplifications of small TINs with lines", generate, examine),
+)

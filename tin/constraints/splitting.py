@@ -18,6 +18,11 @@ __all__ = ["Segments", "Splitting", "drop_repeats", "interpolate_linearly", "is_
 
 MOST_ROUNDS = 1000  # cascades of roundings end after a few
 
+_FREE_ROUNDS = 12
+"""Rounds after which lines that cross near an end of one of them meet at that end."""
+_NEAR = 4.0
+"""How near that is: spacings of the largest coordinate, along x and along y."""
+
 
 class Segments(NamedTuple):
     """Segments of all polylines, and the distinct edges along which they run.
@@ -166,13 +171,13 @@ class Splitting:
             Makes the error of pairs of edges that cross, if they must not.
         """
         self.split_at_touches()
-        for _ in range(MOST_ROUNDS):
+        for number in range(MOST_ROUNDS):
             pairs = self.find_crossings()
             if len(pairs) == 0:
                 return
             if refuse is not None:
                 raise refuse(pairs)
-            self.split_at_crossings(pairs)
+            self.split_at_crossings(pairs, at_ends=number >= _FREE_ROUNDS)
             self.split_at_touches()
         raise explain_endless()
 
@@ -264,9 +269,12 @@ class Splitting:
         crossing: NDArray[np.int64] = np.sort(order[pairs], axis=1)
         return crossing
 
-    def split_at_crossings(self, pairs: NDArray[np.int64]) -> None:
-        """Split the edges of all pairs where they cross."""
-        vertex = np.repeat(self._find_or_make_vertices(self.find_crossing_points(pairs)), 2)
+    def split_at_crossings(self, pairs: NDArray[np.int64], *, at_ends: bool = False) -> None:
+        """Split the edges of all pairs where they cross, or at an end that is near to it."""
+        points = self.find_crossing_points(pairs)
+        if at_ends:
+            points = self._move_to_ends(pairs, points)
+        vertex = np.repeat(self._find_or_make_vertices(points), 2)
         edge = pairs.ravel()
         inside = (self.segments.ends[edge] != vertex[:, None]).all(axis=1)
         split, at = _split_keys(np.unique(_make_keys(edge[inside], vertex[inside])))
@@ -276,6 +284,23 @@ class Splitting:
         self._uncrossed = self.segments.keys[uncrossed]
         self._split(split, at.astype(np.int32), bends=False)
         self._is_rounded = True
+
+    def _move_to_ends(
+        self, pairs: NDArray[np.int64], points: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Replace crossings a few roundings from ends of their edges by the nearest of these ends.
+
+        Three lines can pass a crossing on for ever, each time by one rounding: where a bends onto
+        b, c crosses what is left of a, where c bends onto b, a crosses what is left of c.
+        """
+        ends = self.xy[self.segments.ends[pairs]].reshape(-1, 4, 2)
+        spacing = np.spacing(np.abs(ends).max(axis=(1, 2)))[:, None]
+        far = np.abs(ends - points[:, None]).max(axis=2) / spacing
+        nearest = np.lexsort((ends[..., 1], ends[..., 0], far), axis=1)[:, 0]
+        rows = np.arange(len(points))
+        is_near = far[rows, nearest] <= _NEAR
+        moved: NDArray[np.float64] = np.where(is_near[:, None], ends[rows, nearest], points)
+        return moved
 
     def find_crossing_points(self, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
         """Return where the edges of each pair cross, (c, 2)."""

@@ -29,7 +29,14 @@ if TYPE_CHECKING:
 
     from ..constraints.breaklines import Lines
 
-__all__ = ["Errors", "Goal", "find_rounding", "insert_until_near", "simplify_tin"]
+__all__ = [
+    "Errors",
+    "Goal",
+    "are_straight",
+    "find_rounding",
+    "insert_until_near",
+    "simplify_tin",
+]
 
 _ROUNDING_BITS = 46
 """Elevations that differ in digits beyond these count as equal: 1e-11 m at 1000 m."""
@@ -165,12 +172,12 @@ def _find_required(tin: TIN, keep: ArrayLike) -> NDArray[np.bool_]:
     visits = np.zeros(len(tin.points), np.int64)
     for ring in tin.rings:
         np.add.at(visits, ring, 1)
-        is_required[ring[~_are_straight(tin.points[ring])]] = True
+        is_required[ring[~are_straight(tin.points[ring])]] = True
     is_required[visits > 1] = True
     return is_required
 
 
-def _are_straight(ring: NDArray[np.float64]) -> NDArray[np.bool_]:
+def are_straight(ring: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Tell which corners of a ring lie on the line between the two beside them."""
     xy = np.ascontiguousarray(ring[:, :2])
     before, after = np.roll(xy, 1, axis=0), np.roll(xy, -1, axis=0)

@@ -7,6 +7,7 @@
 #include "bind_inspection.hpp"
 #include "bind_isolines.hpp"
 #include "bind_relief.hpp"
+#include "bind_simplification.hpp"
 #include "bind_sight.hpp"
 
 NB_MODULE(_core, m) {
@@ -17,5 +18,6 @@ NB_MODULE(_core, m) {
   tinsmith::python::bind_relief(m);
   tinsmith::python::bind_inspection(m);
   tinsmith::python::bind_ground(m);
+  tinsmith::python::bind_simplification(m);
   tinsmith::python::bind_sight(m);
 }

@@ -274,7 +274,7 @@ def test_a_decimal_mark_that_is_told_is_known_to_be(decimal, is_told):
             "E,N,Z,Q,R\n1.5,2.5,3.5\n",
             {},
             "'a.csv': the header names 5 columns (E, N, Z, Q, R), but rows have 3: say with the "
-            "option columns what they are, and check delimiter and decimal mark.",
+            "option columns what all of them are, and check delimiter and decimal mark.",
         ),
         (
             "E,Q,Z\n1.5,2.5,3.5\n",

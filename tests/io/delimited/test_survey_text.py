@@ -1199,3 +1199,150 @@ def test_a_last_number_with_fewer_decimals_than_any_is_told_or_no_doubt(tmp_path
         assert ts.read(path).notes == []
     path.write_text(CUT.replace("n,e,z", "n,e,z,d").replace("375\n", "375,GS\n")[:-1])
     assert len(ts.read(path)) == 6
+
+
+# ------------------------------------------------- what random tables in random dialects found
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [
+        ("Z / us-ft", "US survey foot"),
+        ("Elevation US survey ft", "US survey foot"),
+        ("Elev. - ft", "foot"),
+        ("Z, m", "metre"),
+    ],
+)
+def test_units_are_read_behind_any_mark(survey, name, unit):
+    found = survey(f'"E","N","{name}"\n1.5,2.5,3.5\n2.5,7.5,4.5\n')
+    assert found.elevation_unit.name == unit
+
+
+def test_a_header_that_does_not_fit_is_refused_though_columns_are_told(survey):
+    text = "E  N  Z\n525.786  1 049.882  5.947\n540.529  1 007.253  3.530\n"
+    with pytest.raises(ReadError, match="its blanks may separate columns or thousands"):
+        survey(text, columns="ENZ")
+    text = "E,N,Z,Q\n12,228,60,15,11,93,0,90\n42,267,68,157,9,82,0,5\n"
+    with pytest.raises(ReadError, match=r"names 4 columns .* but rows have 8"):
+        survey(text, columns="ENZ-")
+
+
+@pytest.mark.parametrize("options", [{}, {"columns": "ENZ"}, {"columns": "ENZD"}])
+def test_blanks_within_numbers_are_no_delimiters(survey, options):
+    text = "525.786  1 049.882  5.947\n540.529  1 007.253  3.530\n534.517  1 060.075  5.027\n"
+    if options.get("columns") == "ENZD":  # as many as there are
+        assert survey(text, **options).points[0].tolist() == [525.786, 1.0, 49.882]
+        return
+    with pytest.raises(ReadError, match=r"columns or thousands \('1 049.882'"):
+        survey(text, **options)
+
+
+def test_a_decimal_mark_that_is_the_delimiter_is_refused(survey):
+    text = "525,20 , 1072,77 , 5,12\n538,10 , 1040,58 , 9,07\n567,79 , 1083,27 , 7,50\n"
+    with pytest.raises(ReadError, match="separated by ',', and no cell holds one"):
+        survey(text, columns="ENZ", decimal=",")
+    quoted = '"525,20","1072,77","5,12"\n"538,10","1040,58","9,07"\n'
+    found = survey(quoted, columns="ENZ", decimal=",", delimiter="comma")
+    assert found.points[0].tolist() == [525.2, 1072.77, 5.12]
+
+
+def test_a_row_short_of_a_number_with_its_unit_is_at_fault(survey):
+    rows = [f"{i};328,5 m;4024258,757 m;752720,{i}00 m" for i in range(1, 6)]
+    rows[2] = "3;328,081 m;4024312,136 m"
+    with pytest.raises(ReadError, match=r"line 4: easting in column 4 .* is empty"):
+        survey("NR;Z;N;E\n" + "\n".join(rows))
+
+
+def test_delimiters_at_the_end_of_rows_are_no_text(survey):
+    rows = [
+        f"{i},{10 + i}.5,{20 + i}.5,{5 + i / 10},{'12' if i < 3 else 'GS'}," for i in range(1, 9)
+    ]
+    rows[5] += "7.5,"
+    found = survey("P,E,N,Z,Code,\n" + "\n".join(rows) + "\n", skip_bad=True)
+    assert found.attributes["description"].tolist() == ["12", "12", "GS", "GS", "GS", "GS", "GS"]
+    assert found.skipped_lines == {"bad rows": (7,)}
+
+
+def test_a_header_and_rows_that_both_end_with_delimiters_have_one_count(survey):
+    rows = [f"{i},1,0{i}2.874,322.375,542.227,\n" for i in range(1, 9)]
+    with pytest.raises(ReadError, match=r"names 5 columns .* but rows have 6"):
+        survey("P,N,Z,E,\n" + "".join(rows))
+
+
+def test_units_that_blanks_split_off_belong_to_their_names(survey):
+    text = "P N E Elevation [ft] Code\n1 5.5 6.5 7.5 GS\n2 8.5 9.5 7.25 EP\n"
+    found = survey(text)
+    assert found.elevation_unit.name == "foot"
+    assert found.attributes["description"].tolist() == ["GS", "EP"]
+
+
+def test_a_unit_in_every_row_is_told(survey):
+    found = survey("E,N,Z,Unit\n1.5,2.5,3.5,ft\n2.5,7.5,4.5,ft\n")
+    assert found.elevation_unit is None
+    assert found.notes == [
+        "'Unit' begins with 'ft' in every row: if this is the unit of the elevations, the option "
+        "z_unit says so."
+    ]
+
+
+def test_numbers_with_units_are_no_text_that_holds_the_delimiter(survey):
+    rows = [f"{i},752765,119,6,083 m,4024287,230,EP\n" for i in range(1, 9)]
+    with pytest.raises(ReadError, match="do not have 5 columns"):
+        survey("P,E,Z,N,Code\n" + "".join(rows))
+
+
+def test_another_header_below_is_no_bad_row(survey):
+    rows = [f"{i},{10 + i}.5,{20 + i}.5,{5 + i / 10}\n" for i in range(1, 9)]
+    text = "P,N,E,Z\n" + "".join(rows) + "{}\n" + "".join(rows)
+    again = survey(text.format("P,N,E,Z"), skip_bad=True)
+    assert len(again) == 16
+    with pytest.raises(
+        ReadError, match=r"line 10: a header \(P, E, N, Z\) names other columns or units"
+    ):
+        survey(text.format("P,E,N,Z"), skip_bad=True)
+
+
+def test_another_unit_below_is_no_bad_row(survey):
+    rows = [f"{i},{10 + i}.5,{20 + i}.5,{5 + i / 10}\n" for i in range(1, 9)]
+    with pytest.raises(ReadError, match="names other columns or units"):
+        survey("P,N,E,Z\n" + "".join(rows) + "P,N,E,Z (ft)\n" + "".join(rows), skip_bad=True)
+
+
+@pytest.mark.parametrize("northing", ["4.02E+06", "4e+06", "4.02424e+06"])
+def test_coordinates_that_a_spreadsheet_rounded_are_told(survey, northing):
+    rows = [
+        "1,4024240.1,752700.2,322.5",
+        f"2,{northing},752701.2,322.6",
+        "3,4024244.1,752704.2,3.229E2",
+    ]
+    found = survey("P,N,E,Z\n" + "\n".join(rows) + "\n", crs="EPSG:32616")
+    assert found.notes == [
+        f"1 coordinate has an exponent and no digits below the tens (line 3: '{northing}'): check "
+        "that no spreadsheet has rounded them."
+    ]
+    exact = survey("P,N,E,Z\n" + "\n".join(rows).replace(northing, "4.0242401E+06") + "\n")
+    assert exact.notes == []
+
+
+NUMBERED = [(f"{i}", f"{10 + i}.5", f"{20 + i * i}.25", f"{5 + i / 10}") for i in range(1, 6)]
+WITH_HEADER = "P,N,E,Z\n" + "".join(",".join(row) + "\n" for row in NUMBERED)
+
+
+def test_statistics_below_the_points_are_told(survey):
+    found = survey(WITH_HEADER + "Min,11.5,21.25,5.1\nMean:,13.5,31.25,5.3\n")
+    assert found.notes == [
+        "2 rows are read as points and may be statistics of the others ('Min', 'Mean:', lines 7, "
+        "8)."
+    ]
+    total = ",".join(f"{sum(float(row[k]) for row in NUMBERED):.6f}" for k in (1, 2, 3))
+    found = survey(WITH_HEADER + f",{total}\n")
+    assert found.notes == ["The last row (line 7) is the sum of all others, and read as a point."]
+
+
+@pytest.mark.parametrize("line", ["Units;US Survey Feet", "# units: ft", "Unit = m"])
+def test_a_unit_above_the_table_is_told(survey, line):
+    found = survey(f"{line}\n{WITH_HEADER}")
+    assert found.elevation_unit is None
+    (note,) = found.notes
+    assert note.startswith(f"Line 1 ('{line}') tells a unit")
+    assert survey(f"United we stand\nUnits: many\n{WITH_HEADER}").notes == []

@@ -67,7 +67,7 @@ def test_centres_lie_half_a_cell_in_and_the_middle_in_the_middle():
     x, y = dem._compute_centres(raster, np.array([0, 6]), np.array([0, 2, 4]))
     assert x.tolist() == [[101, 113]] * 3
     assert y.T.tolist() == [[498.5, 492.5, 486.5]] * 2
-    assert dem._find_middle(raster).tolist() == [[107.0, 492.5, 0.0]]
+    assert dem.find_middle(raster).tolist() == [[107.0, 492.5, 0.0]]
 
 
 # -------------------------------------------------------------------- cells
@@ -267,11 +267,11 @@ BANDS = "Invalid band {}: it must be one of the bands 1 to 2 of 'ground.tif'."
     ],
 )
 def test_a_band_that_is_not_there_is_refused(given, band, kind, sentence):
-    assert sentence_of(kind, dem._choose_band, header(**given), band, PATH) == sentence
+    assert sentence_of(kind, dem.choose_band, header(**given), band, PATH) == sentence
 
 
 def test_the_first_band_is_the_default():
-    assert [dem._choose_band(header(), band, PATH) for band in (None, 1, 2)] == [1, 1, 2]
+    assert [dem.choose_band(header(), band, PATH) for band in (None, 1, 2)] == [1, 1, 2]
 
 
 @pytest.mark.parametrize(
@@ -293,9 +293,9 @@ def test_the_first_band_is_the_default():
 def test_what_has_no_elevations_or_no_place_is_refused(given, band, is_told, words):
     raster = header(**given)
     if words is None:
-        dem._require_elevation_band(raster, band, is_told, PATH)
+        dem.require_elevation_band(raster, band, is_told, PATH)
     else:
-        said = sentence_of(ReadError, dem._require_elevation_band, raster, band, is_told, PATH)
+        said = sentence_of(ReadError, dem.require_elevation_band, raster, band, is_told, PATH)
         assert words in said
 
 
@@ -323,7 +323,7 @@ FEET_UP = CRS.of("EPSG:32616+6360")
 )
 def test_the_unit_is_that_of_band_axis_or_caller(word, crs, declared, unit, n_notes):
     raster = header(units=[None, word])
-    found, notes = dem._find_elevation_unit(raster, 2, crs, declared)
+    found, notes = dem.find_elevation_unit(raster, 2, crs, declared)
     assert (found, len(notes)) == (unit, n_notes)
     if notes:
         assert notes == ["The unit of band 2, 'counts', is no length: the elevations have none."]
@@ -331,7 +331,7 @@ def test_the_unit_is_that_of_band_axis_or_caller(word, crs, declared, unit, n_no
 
 def test_two_units_are_refused_until_one_is_declared():
     raster = header(units=["m", None])
-    said = sentence_of(ReadError, dem._find_elevation_unit, raster, 1, FEET_UP, None)
+    said = sentence_of(ReadError, dem.find_elevation_unit, raster, 1, FEET_UP, None)
     assert said == (
         "'ground.tif' gives its elevations two units: metre (of band 1) and US survey foot (of the "
         "vertical axis of its CRS); declare the one that is right."

@@ -324,6 +324,16 @@ def test_cascade_of_nearly_parallel_lines(unit):
     require_sound(xy, lines, result)
 
 
+def test_lines_that_pass_a_crossing_on_end_it():
+    """On cells of 30.1 m: each crossing of three lines makes the next one, a rounding further."""
+    columns = [0, 0, 0, 0, 1, 1, 2, 2, 2, 4, 4], [0, 1, 3, 5, 0, 1, 0, 1, 3, 4, 5]
+    lines = [[7, 10, 3, 9], [7, 1, 10, 2], [3, 5, 0, 9, 5], [1, 6, 0, 1]]
+    xy = np.transpose(columns) * 30.1 + UTM
+    result = require_same_for_any_order(xy, lines, np.random.default_rng(1))
+    require_sound(xy, lines, result)
+    assert len(result.new_points) < 50
+
+
 def test_cascade_that_is_cut_short_says_so(monkeypatch):
     monkeypatch.setattr(splitting, "MOST_ROUNDS", 1)
     with pytest.raises(LinesError, match="still meet at new places after"):

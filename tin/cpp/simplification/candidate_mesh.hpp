@@ -61,6 +61,7 @@ class CandidateMesh {
   const Candidate& candidate(CandidateId c) const {
     return candidates_[static_cast<std::size_t>(c)];
   }
+  Point place(CandidateId c) const { return candidate(c).point.at; }
   std::int32_t row(Vertex v) const { return row_of_[static_cast<std::size_t>(number(v))]; }
   SurfacePoint surface_point(Vertex v) const {
     return {editor_.point(v), elevation_[static_cast<std::size_t>(number(v))]};
@@ -80,6 +81,9 @@ class CandidateMesh {
     for (const Triangle t : mesh().triangles()) measure(t);
     return true;
   }
+
+  // A candidate of the triangle is likely to be the next.
+  void expect(Triangle) const {}
 
   // Make a candidate a vertex; `visit` is called for every triangle that is new.
   template <typename Visit>

@@ -14,6 +14,7 @@ from ..paths import INPUT, Named
 from ..request import surface_options
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -51,7 +52,8 @@ def simplify(
     """Leave out points of the TIN in FILE, or of that of the points in it, that it can do without.
 
     None of the points is farther than --tolerance from the new surface in elevation. Boundary,
-    holes, breaklines and water stay; voids of a raster stay voids.
+    holes, breaklines and water stay; voids of a raster stay voids. A raster may be larger than
+    memory: it is read and simplified in blocks.
 
     \b
     Example:
@@ -60,39 +62,50 @@ def simplify(
     from ...errors import OptionError
     from ...terrain import simplify as simplify_surface
     from ..output.line_summaries import mesh_counts
+    from ..raster_input import count_cells, find_cells, read_cells
 
     if (tolerance is None) == (points is None):
-        given = "give one of them" if points is None else "not both"
-        raise click.UsageError(f"The options are --tolerance or --points: {given}.")
+        wrong = "give one of them" if points is None else "not both"
+        raise click.UsageError(f"The options are --tolerance or --points: {wrong}.")
     more = [] if keep is None else [Named(keep, "--keep")]
     planned = request.plan(request.list_inputs(file, more=more), "TIN")
-    tin = request.read_tin(file)
-    kept = () if keep is None else _find_kept(tin, keep, request)
-    with request.step(f"Simplifying {counted(len(tin.points), 'point')}"):
+    raster = read_cells(file, request)
+    given = request.read_tin(file) if raster is None else raster
+    find = _find_vertices if raster is None else find_cells
+    kept = () if keep is None else _find_kept(given, find, keep, request)
+    size = counted(len(given.points), "point") if raster is None else count_cells(raster)
+    with request.step(f"Simplifying {size}"):
         try:
             simple = simplify_surface(
-                tin, tolerance=tolerance, points=points, keep=kept, threads=request.how.threads
+                given, tolerance=tolerance, points=points, keep=kept, threads=request.how.threads
             )
         except OptionError as error:
             raise refuse_option(error) from error
     planned.write("TIN", simple)
     rows = [
-        ("Read", mesh_counts(tin)),
+        ("Read", mesh_counts(given) if raster is None else size),
         ("Left", mesh_counts(simple)),
         *_summarise_errors(simple),
     ]
     request.finish(planned, rows, lambda: _describe_simplification(file, simple))
 
 
-def _find_kept(tin: TIN, path: Path, request: Request) -> NDArray[Any]:
-    """Return the vertices at the points of a file."""
+def _find_vertices(tin: TIN, places: NDArray[Any]) -> list[int]:
+    """Return the vertices at places, -1 where there is none."""
+    vertex_at = {place: row for row, place in enumerate(map(tuple, tin.points[:, :2].tolist()))}
+    return [vertex_at.get(place, -1) for place in map(tuple, places.tolist())]
+
+
+def _find_kept(
+    surface: Any, find: Callable[[Any, NDArray[Any]], list[int]], path: Path, request: Request
+) -> NDArray[Any]:
+    """Return the vertices or cells at the points of a file."""
     import numpy as np
 
     from ..files import read_input
 
     places = read_input(path, request.reading, request.console).points[:, :2]
-    vertex_at = {place: row for row, place in enumerate(map(tuple, tin.points[:, :2].tolist()))}
-    found = [vertex_at.get(place, -1) for place in map(tuple, places.tolist())]
+    found = find(surface, places)
     missing = [row for row, vertex in enumerate(found) if vertex < 0]
     if missing:
         x, y = places[missing[0]].tolist()

@@ -15,7 +15,11 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["trace_rings"]
+__all__ = ["find_border", "find_surface", "trace_cycles", "trace_rings"]
+
+
+_CORNERS = ((0, 0), (0, 1), (1, 0), (1, 1))
+"""Of a square of cells: rows and columns from its northwest."""
 
 
 def trace_rings(valid: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
@@ -36,13 +40,40 @@ def trace_rings(valid: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
     >>> [ring.tolist() for ring in trace_rings(np.array([[True, True], [True, False]]))]
     [[0, 2, 1]]
     """
-    start, end = _find_border(valid)
+    start, end = find_border(valid)
     number = np.cumsum(valid.ravel()) - 1
-    return [number[ring] for ring in _trace_cycles(start, end)]
+    return [number[ring] for ring in trace_cycles(start, end)]
 
 
-def _find_border(valid: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the directed edges between cells that have surface on their left only."""
+def find_surface(valid: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Tell which cells are corners of a square or of half a square of surface.
+
+    Examples
+    --------
+    >>> find_surface(np.array([[True, True, False], [True, False, True]])).astype(int)
+    array([[1, 1, 0],
+           [1, 0, 0]])
+    """
+    squares = [valid[i : len(valid) - 1 + i, j : valid.shape[1] - 1 + j] for i, j in _CORNERS]
+    is_part = sum(part.astype(np.int8) for part in squares) >= 3
+    found = np.zeros_like(valid)
+    for i, j in _CORNERS:
+        found[i : len(valid) - 1 + i, j : valid.shape[1] - 1 + j] |= is_part
+    return found & valid
+
+
+def find_border(valid: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the directed edges between cells that have surface on their left only.
+
+    Parameters
+    ----------
+    valid : (rows, columns) bool array
+
+    Returns
+    -------
+    start, end : (k,) int64 arrays
+        Cells, row by row.
+    """
     cells = np.arange(valid.size).reshape(valid.shape)
     a, b = cells[:-1, :-1], cells[:-1, 1:]  # northwest, northeast
     d, c = cells[1:, :-1], cells[1:, 1:]  # southwest, southeast
@@ -78,7 +109,7 @@ def _shift_flags(flags: NDArray[np.bool_], *, rows: int = 0, columns: int = 0) -
     return moved
 
 
-def _trace_cycles(start: NDArray[np.int64], end: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
+def trace_cycles(start: NDArray[np.int64], end: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
     """Walk directed edges, as many into a cell as out of it, as cycles without a cell twice."""
     order = np.argsort(start, kind="stable")
     ends = end[order].tolist()
@@ -88,10 +119,10 @@ def _trace_cycles(start: NDArray[np.int64], end: NDArray[np.int64]) -> Iterator[
     following = {cell: ends[low:high] for cell, (low, high) in slots.items()}
     for begin in cells.tolist():
         while following[begin]:
-            yield from _trace_cycles_from(begin, following)
+            yield from _trace_from(begin, following)
 
 
-def _trace_cycles_from(begin: int, following: dict[int, list[int]]) -> Iterator[NDArray[np.int64]]:
+def _trace_from(begin: int, following: dict[int, list[int]]) -> Iterator[NDArray[np.int64]]:
     """Follow edges from a cell until there are none, cutting off a cycle at each cell met again."""
     path, place_of = [begin], {begin: 0}
     while following[path[-1]]:

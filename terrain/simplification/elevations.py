@@ -1,0 +1,185 @@
+"""The elevations of a raster, read block by block, and where its cells are."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...errors import OptionError, PointsError
+from ...tin.types import seal
+from ..results.gridded import locate_centers
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from ...crs import Unit
+    from ..results import Raster
+
+__all__ = ["Block", "Elevations", "Heights", "cut_blocks"]
+
+_LARGEST = 2**31 - 8
+"""Cells of one block at most: the core numbers them with 32 bits."""
+
+
+class Block(NamedTuple):
+    """A part of a raster; neighbours share a row or a column of cells.
+
+    Attributes
+    ----------
+    rows, columns : slice
+    """
+
+    rows: slice
+    columns: slice
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns of cells."""
+        return self.rows.stop - self.rows.start, self.columns.stop - self.columns.start
+
+    def widen(self) -> Block:
+        """Return the block with the row and the column before it."""
+        return Block(
+            slice(max(0, self.rows.start - 1), self.rows.stop),
+            slice(max(0, self.columns.start - 1), self.columns.stop),
+        )
+
+    def own(self, shape: tuple[int, int]) -> Block:
+        """Return the part that the blocks after it do not have, of a raster of some shape."""
+        rows, columns = (
+            slice(part.start, part.stop - (part.stop < side))
+            for part, side in zip((self.rows, self.columns), shape, strict=True)
+        )
+        return Block(rows, columns)
+
+    def within(self, other: Block) -> tuple[slice, slice]:
+        """Return rows and columns of the block in one that holds it."""
+        row, column = other.rows.start, other.columns.start
+        return (
+            slice(self.rows.start - row, self.rows.stop - row),
+            slice(self.columns.start - column, self.columns.stop - column),
+        )
+
+    def to_raster(self, cells: NDArray[np.int64], width: int) -> NDArray[np.int64]:
+        """Return cells of the block as cells of a raster with so many columns."""
+        row, column = np.divmod(cells, self.shape[1])
+        found: NDArray[np.int64] = (row + self.rows.start) * width + column + self.columns.start
+        return found
+
+    def find(self, cells: NDArray[np.int64], width: int) -> NDArray[np.int64]:
+        """Return the cells of a raster that lie in the block, as cells of the block."""
+        row, column = np.divmod(cells, width)
+        row, column = row - self.rows.start, column - self.columns.start
+        height, across = self.shape
+        inside = (row >= 0) & (row < height) & (column >= 0) & (column < across)
+        found: NDArray[np.int64] = (row * across + column)[inside]
+        return found
+
+
+class Elevations:
+    """The elevations of a raster: row 0 is the northernmost, NaN where there is none.
+
+    Attributes
+    ----------
+    shape : tuple of int
+    x, y : float64 arrays
+        Centres of columns and rows.
+    unit : Unit or None
+    spacing : float
+    """
+
+    def __init__(self, raster: Raster) -> None:
+        name = _choose_band(raster)
+        self._band, self._nodata = raster.bands[name], raster.nodata
+        self._last: tuple[Block, NDArray[np.float64]] | None = None
+        unit = raster.units.get(name)
+        self.unit: Unit | str | None = unit
+        self.shape = (int(raster.shape[0]), int(raster.shape[1]))
+        self.x, self.y = locate_centers(raster.grid)
+        self.spacing = raster.grid.spacing
+        if min(self.shape) < 2:
+            raise PointsError(
+                f"A raster of {self.shape[0]:,} by {self.shape[1]:,} cells has no surface: two "
+                "rows and columns are the least."
+            )
+
+    def read(self, block: Block) -> NDArray[np.float64]:
+        """Return the elevations of a block, not to be changed; the last one is kept."""
+        if self._last is None or self._last[0] != block:
+            self._last = block, seal(self._read(block))
+        return self._last[1]
+
+    def _read(self, block: Block) -> NDArray[np.float64]:
+        band = np.asarray(self._band[block.rows, block.columns])
+        z = np.array(band, np.float64)
+        is_finite = np.isfinite(z)
+        if not is_finite.all():
+            z[~is_finite] = np.nan
+        if not np.isnan(self._nodata):
+            z[band == self._nodata] = np.nan
+        return z
+
+    def is_rectangle(self, rings: Sequence[NDArray[np.int64]]) -> bool:
+        """Whether rings are the outer cells of the raster."""
+        if len(rings) != 1:
+            return False
+        row, column = np.divmod(rings[0], self.shape[1])
+        is_outer = (row == 0) | (row == self.shape[0] - 1)
+        is_outer |= (column == 0) | (column == self.shape[1] - 1)
+        return bool(is_outer.all()) and len(row) == 2 * sum(self.shape) - 4
+
+    def points(self, cells: NDArray[np.int64], z: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the points of cells."""
+        row, column = np.divmod(cells, self.shape[1])
+        return np.column_stack([self.x[column], self.y[row], z])
+
+
+class Heights:
+    """Elevations of some cells."""
+
+    def __init__(self, cells: NDArray[np.int64], z: NDArray[np.float64]) -> None:
+        self._cells, first = np.unique(cells, return_index=True)
+        self._z = z[first]
+
+    def of(self, cells: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Return the elevations of cells, which are some of them."""
+        return self._z[np.searchsorted(self._cells, cells)]
+
+    def join(self, cells: NDArray[np.int64], z: NDArray[np.float64]) -> Heights:
+        """Return the elevations of these cells and others."""
+        return Heights(np.append(self._cells, cells), np.append(self._z, z))
+
+
+def _choose_band(raster: Raster) -> str:
+    names = list(raster.bands)
+    if len(names) == 1:
+        return names[0]
+    if "elevation" in names:
+        return "elevation"
+    raise OptionError("raster", raster, "one with one band, or with a band 'elevation'")
+
+
+def cut_blocks(shape: tuple[int, int], side: int | None) -> Iterator[Block]:
+    """Cut a raster into blocks with a side of so many cells, row by row; None for a single one.
+
+    Examples
+    --------
+    >>> [block.columns for block in cut_blocks((4, 6), 3)]
+    [slice(0, 4, None), slice(3, 6, None)]
+    """
+    height, width = shape
+    if side is None and height * width > _LARGEST:
+        raise OptionError("number of cells", height * width, f"at most {_LARGEST:,}")
+    for rows in _cut(height, side):
+        for columns in _cut(width, side):
+            yield Block(rows, columns)
+
+
+def _cut(count: int, side: int | None) -> list[slice]:
+    if side is None or count <= side + 1:
+        return [slice(0, count)]
+    starts = [start for start in range(0, count, side) if start + 1 < count]
+    return [slice(start, min(start + side + 1, count)) for start in starts]
