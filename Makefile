@@ -78,16 +78,37 @@ slow: $(READY) ## Run the tests of many seconds that `make test` leaves to CI
 
 # dist/ gets the same bytes for the same commit: times are those of the commit. The wheel is for this
 # machine; those of all platforms are made by cibuildwheel.
-DIST := SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct) $(BIN)/python -m pip wheel --quiet --no-deps
-.PHONY: dist
-dist: $(READY) ## Build the source distribution and a wheel of it into dist/
+BUILD_WHEEL := -m pip wheel --quiet --no-deps
+DIST := SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct) $(BIN)/python $(BUILD_WHEEL)
+.PHONY: dist dist-source
+dist-source: $(READY)
 	@rm -rf dist && mkdir dist
 	SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct) $(BIN)/python -c "from scikit_build_core.build import build_sdist as b; b('dist')"
+dist: dist-source ## Build the source distribution and a wheel of it into dist/
 	$(DIST) --wheel-dir dist dist/*.tar.gz
 
 .PHONY: dist-check
 dist-check: dist ## Test what is in dist/: contents, installation without a compiler, small jobs
 	TINSMITH_DIST=$(CURDIR)/dist $(BIN)/python -m pytest -q -m slow tests/packaging
+
+# make wheels PYTHONS="python3.11 python3.12": that of 3.12 is abi3, for every later Python.
+PYTHONS ?= $(BIN)/python
+WHEELS := build/wheelhouse
+.PHONY: wheels
+wheels: dist-source ## Build wheels with their manylinux tags into build/wheelhouse: PYTHONS=
+	$(BIN)/python -m pip install --quiet --group dist
+	@rm -rf $(WHEELS) && mkdir -p $(WHEELS)/raw
+	@set -e; for python in $(PYTHONS); do \
+	  SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct) $$python $(BUILD_WHEEL) --wheel-dir $(WHEELS)/raw dist/*.tar.gz; \
+	done
+	PATH="$(CURDIR)/$(BIN):$$PATH" auditwheel repair --wheel-dir $(WHEELS) $(WHEELS)/raw/*.whl
+
+# Root, debootstrap and a network are needed; a machine with Python and no compiler is made of each suite.
+SUITES ?= bookworm trixie
+.PHONY: machines
+machines: ## Try the wheels of build/wheelhouse, and the Dockerfile, on clean Debian machines: SUITES=
+	@set -e; for suite in $(SUITES); do $(PYTHON) packaging/try_wheel.py $(WHEELS) $$suite; done
+	$(PYTHON) packaging/run_dockerfile.py
 
 proof: $(READY) ## Run the long proofs
 	$(BIN)/python -m pytest -q -m proof

@@ -11,7 +11,7 @@ from typing import IO, TYPE_CHECKING, Any, NamedTuple, cast, overload
 from .._atomic import as_path
 from .._plug_ins import describe_failure, warn_of_plug_in
 from .._progress import Progress
-from .._sentences import printable
+from .._sentences import counted, inflect, printable
 from ..crs import CRS, Unit
 from ..errors import (
     CrsError,
@@ -231,7 +231,8 @@ def _name_folder(survey: Survey, folder: Path, tiles: Sequence[Path]) -> Survey:
     if not names:
         return replace(survey, source=folder.name)
     more = f" and {len(names) - _SHOWN:,} more" if len(names) > _SHOWN else ""
-    note = f"In '{folder.name}' {len(tiles):,} files were read, and not {', '.join(names[:_SHOWN])}"
+    read = inflect(f"{counted(len(tiles), 'file')} [was|were] read", len(tiles))
+    note = f"In '{folder.name}' {read}, and not {', '.join(names[:_SHOWN])}"
     return replace(survey, source=folder.name, notes=[*survey.notes, f"{printable(note)}{more}."])
 
 

@@ -135,6 +135,14 @@ def fit_quadratics(
     up: float,
     threads: int = ...,
 ) -> Doubles: ...
+def find_seen_parts(
+    points: Doubles,
+    triangles: Ints,
+    neighbors: Ints,
+    eye: Doubles,
+    target_height: float,
+    threads: int = ...,
+) -> tuple[Bytes, Longs, Ints, Bytes, Doubles, Longs]: ...
 def find_seen_vertices(
     points: Doubles,
     triangles: Ints,

@@ -20,6 +20,7 @@ __all__ = [
     "OverlayMesh",
     "densify",
     "fill_bands",
+    "find_seen_parts",
     "find_seen_vertices",
     "fit_quadratics",
     "leave_one_out",
@@ -54,6 +55,7 @@ measure_neighbors = _core.measure_neighbors
 densify = _core.densify
 simplify_cells = _core.simplify_cells
 measure_cells = _core.measure_cells
+find_seen_parts = _core.find_seen_parts
 find_seen_vertices = _core.find_seen_vertices
 
 trace_contours = _core.trace_contours

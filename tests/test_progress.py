@@ -66,6 +66,8 @@ CALLS = {
     "difference": (lambda _, tins, **to: ts.difference(tins[1], tins[1], **to), 4),
     "refine": (lambda _, tins, **to: ts.refine(tins[1], max_area=40.0, **to), 6),
     "ground": (lambda p, _, **to: ts.ground(p, cell=2.0, **to), 15),
+    "catchments": (lambda _, tins, **to: ts.catchments(cut_corner(tins[1]), **to), 4),
+    "flow": (lambda _, tins, **to: ts.flow_accumulation(cut_corner(tins[1]), **to), 4),
     "blunders": (lambda p, _, **to: ts.blunders(ts.Survey(points=p), **to), 5),
     "blunders, TIN": (lambda _, tins, **to: ts.blunders(tins[1], **to), 4),
     "grade": (lambda _, tins, **to: ts.grade(tins[0], PAD, 10.0, **SLOPES, **to), 6),
@@ -76,6 +78,11 @@ CALLS = {
 def cut_middle(points):
     """Return the TIN of the points in the middle, raised."""
     return ts.triangulate(points[np.abs(points[:, :2] - 500).max(axis=1) < 200] + [0, 0, 2])
+
+
+def cut_corner(tin):
+    """Return the TIN of the first points."""
+    return ts.triangulate(tin.points[:2000])
 
 
 def assert_same(one, other):

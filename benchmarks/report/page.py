@@ -37,7 +37,9 @@ HOW_TO_REPEAT = """\
 
 `make bench` runs everything at 100,000 points in some minutes; this page was made by
 
-    {command}
+```sh
+{command}
+```
 
 CGAL is a C++ library: with `g++` and its headers (Debian: `libcgal-dev`) the command compiles a
 small harness; without them, and without any other peer, it says so and goes on. Data sets are

@@ -42,7 +42,7 @@ def main(folder: pathlib.Path = FOLDER) -> None:
     axes.set(aspect="equal", xticks=[], yticks=[])
     axes.autoscale_view()
     axes.set_title(f"Seen from {HEIGHT:g} m above a hill; contours every 20 m")
-    axes.legend(loc="upper right")
+    axes.legend(loc="lower right")
     save(draw(figure, 110), folder / "sight.png")
 
 

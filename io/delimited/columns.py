@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from ..._sentences import counted
 from ...errors import OptionError, ReadError
 
 if TYPE_CHECKING:
@@ -394,7 +395,8 @@ def find_columns_by_word(
         raise OptionError("columns", word, f"a layout that does not name the {twice} twice")
     roles = _require_coordinates({one: i for i, one in enumerate(given) if one in _ROLES}, word)
     if len(given) > count:
-        allowed = f"a layout of the {count} columns of the file, not of {len(given)} columns"
+        there, named_there = counted(count, "column"), counted(len(given), "column")
+        allowed = f"a layout of the {there} of the file, not of {named_there}"
         raise OptionError("columns", word, allowed)
     names = tuple(_choose_name(given, header, i) for i in range(count))
     notes = _describe_contradictions(header, roles)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..._sentences import counted, inflect
 from ...errors import ReadError
 from .columns import Columns, find_columns_by_word
 
@@ -152,9 +153,9 @@ def _propose_layouts(columns: Sequence[Column]) -> list[_Candidate]:
     """Return the customary layouts that columns of numbers and text could have."""
     is_text = [column.is_text for column in columns]
     if len(columns) < 3 or len(columns) - sum(is_text) < 3:
+        does = inflect(f"{counted(len(columns), 'column')} [does|do]", len(columns))
         raise ReadError(
-            f"its {len(columns)} columns do not hold three of numbers: easting, northing and "
-            "elevation are needed."
+            f"its {does} not hold three of numbers: easting, northing and elevation are needed."
         )
     found: list[_Candidate] = []
     if len(columns) > 3 and not any(is_text[1:4]) and _may_number(columns[0]):

@@ -228,7 +228,7 @@ def find_unit_words(attributes: Mapping[str, NDArray[Any]]) -> list[str]:
 
 
 def _count(number: int, total: int = 0) -> str:
-    of_all = f" of {total:,} points" if total else ""
+    of_all = f" of {counted(total, 'point')}" if total else ""
     return f"{number:,}{of_all} {'lies' if number == 1 else 'lie'}"
 
 

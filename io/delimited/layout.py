@@ -497,7 +497,8 @@ def _fit_header(
     if n_told and (n_told >= count or not is_known):
         return []
     raise ReadError(
-        f"the header names {len(header)} columns ({list_names(header)}), but rows have {count}: "
+        f"the header names {counted(len(header), 'column')} ({list_names(header)}), but rows have "
+        f"{count}: "
         "say with the option columns what all of them are, and check delimiter and decimal mark."
     )
 

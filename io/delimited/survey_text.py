@@ -255,7 +255,8 @@ def _account_for_rows(table: Table, nodata: NDArray[np.float64], path: Path) -> 
     lines: dict[str, tuple[int, ...]] = {}
     notes = find_unit_words(table.attributes)
     if table.n_grouped:
-        notes.append(f"Thousands separators were taken out of {table.n_grouped:,} coordinates.")
+        grouped = counted(table.n_grouped, "coordinate")
+        notes.append(f"Thousands separators were taken out of {grouped}.")
     if table.faults:
         lines["bad rows"] = tuple(fault.line + 1 for fault in table.faults)
         notes.append(describe_faults(table.faults))

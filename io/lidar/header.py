@@ -14,6 +14,7 @@ from typing import IO, TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..._sentences import counted, inflect
 from ...errors import ReadError
 from ..isolated.spooling import describe_system_error
 
@@ -219,9 +220,8 @@ def _find_count(whole: bytes, version: int, legacy: int, path: Path) -> int:
         return legacy
     (count,) = struct.unpack_from("<Q", whole, 247)
     if legacy not in (0, count):
-        raise _describe_fault(
-            path, f"it is said to have {count:,} points, and in another place {legacy:,}"
-        )
+        said = counted(count, "point")
+        raise _describe_fault(path, f"it is said to have {said}, and in another place {legacy:,}")
     return int(count)
 
 
@@ -256,7 +256,11 @@ def _read_records(
     if count * form.size > end - start:
         raise _describe_fault(
             path,
-            f"{count:,} variable-length records are said to lie in {max(0, end - start):,} bytes",
+            inflect(
+                f"{counted(count, 'variable-length record')} [is|are] said to lie in "
+                f"{counted(max(0, end - start), 'byte')}",
+                count,
+            ),
         )
     records = []
     place = start
@@ -312,8 +316,11 @@ def _require_room(header: Header, file: IO[bytes]) -> None:
     elif header.count * header.point_bytes > room:
         raise _describe_fault(
             header.path,
-            f"{header.count:,} points of {header.point_bytes} bytes are said to be in {room:,} "
-            "bytes",
+            inflect(
+                f"{counted(header.count, 'point')} of {header.point_bytes} bytes [is|are] said to "
+                f"be in {counted(room, 'byte')}",
+                header.count,
+            ),
         )
 
 
@@ -331,7 +338,11 @@ def _require_chunks(header: Header, file: IO[bytes]) -> None:
     if not (n_chunks - 1) * chunk_size < header.count <= n_chunks * chunk_size:
         raise _describe_fault(
             header.path,
-            f"{header.count:,} points are said to be in {n_chunks:,} chunks of {chunk_size:,}",
+            inflect(
+                f"{counted(header.count, 'point')} [is|are] said to be in "
+                f"{counted(n_chunks, 'chunk')} of {chunk_size:,}",
+                header.count,
+            ),
         )
 
 

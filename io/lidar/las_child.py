@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..._sentences import inflect
 from ..isolated import Answer, Refusal
 
 __all__ = ["ENVIRONMENT", "prepare", "read_points"]
@@ -100,7 +101,8 @@ def _iterate_chunks(path: str, shown: str, wanted: dict[str, Any]) -> Iterator[A
         while left > 0:
             points = reader.read_points(_CHUNK)
             if len(points) != min(left, _CHUNK):
-                raise RuntimeError(f"{left - len(points):,} of its points are missing")
+                missing = inflect("[is|are] missing", left - len(points))
+                raise RuntimeError(f"{left - len(points):,} of its points {missing}")
             left -= len(points)
             yield points
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import _optional
-from ..._sentences import counted
+from ..._sentences import counted, inflect
 from ...crs import CRS, Unit
 from ...errors import CrsError, OptionError, ReadError
 from ...tin import Bounds, Survey
@@ -389,9 +389,9 @@ def _describe_outside(points: NDArray[np.float64], header: Header) -> list[str]:
         return []
     box = [f"{name} {a:.10g} to {b:.10g}" for name, a, b in zip("xyz", low, high, strict=True)]
     return [
-        f"{count:,} of {len(some):,} points looked at lie outside the bounds that "
-        f"'{header.path.name}' gives ({', '.join(box)}): these, its scales or its offsets are "
-        "wrong."
+        f"{count:,} of {counted(len(some), 'point')} looked at {inflect('[lies|lie]', count)} "
+        f"outside the bounds that '{header.path.name}' gives ({', '.join(box)}): these, "
+        "its scales or its offsets are wrong."
     ]
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ... import _optional
+from ..._sentences import counted
 from ...errors import PointsError, ReadError
 from ...terrain.lift import choose_origin
 from ...tin import TIN
@@ -288,7 +289,8 @@ def _restore_points(found: _Found) -> NDArray[np.float64]:
             points[:, 2] /= factor
     origin = np.ravel(np.asarray(found.about.get("origin", np.zeros(3)), np.float64))
     if origin.shape != (3,):
-        raise PointsError(f"The origin of the mesh has {len(origin)} numbers: three are needed.")
+        has = counted(len(origin), "number")
+        raise PointsError(f"The origin of the mesh has {has}: three are needed.")
     moved: NDArray[np.float64] = points + origin
     return moved
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._sentences import counted
 from ..isolated import Answer, Refusal
 
 if TYPE_CHECKING:
@@ -157,8 +158,8 @@ def _read_numbers(variable: Any, shown: str) -> NDArray[np.float64]:
     """Return the numbers of a variable of one dimension, NaN where it has none."""
     if variable.ndim != 1 or np.dtype(variable.dtype).kind not in "iuf":
         raise Refusal(
-            f"'{shown}': the variable '{variable.name}' has {variable.ndim} dimensions and type "
-            f"{variable.dtype}: one row of numbers is needed, one for each node."
+            f"'{shown}': the variable '{variable.name}' has {counted(variable.ndim, 'dimension')} "
+            f"and type {variable.dtype}: one row of numbers is needed, one for each node."
         )
     return np.ma.filled(np.ma.asarray(variable[:]).astype(np.float64), np.nan)
 
@@ -169,7 +170,8 @@ def _read_coordinates(
     x, y = (_read_numbers(one, shown) for one in _find_coordinates(data, mesh, shown))
     if len(x) != len(y):
         raise Refusal(
-            f"'{shown}' is a damaged UGRID file: {len(x)} eastings and {len(y)} northings."
+            f"'{shown}' is a damaged UGRID file: {counted(len(x), 'easting')} and "
+            f"{counted(len(y), 'northing')}."
         )
     return x, y
 

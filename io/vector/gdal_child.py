@@ -29,6 +29,7 @@ _ANY_KIND, _SURFACES = 0, (15, 16, 17)
 _ANY_WITH_Z = 2**31
 """Numbers of kinds of geometry, as GDAL has them."""
 
+_UNDEFINED_CARTESIAN = re.compile(r'(LOCAL_CS|ENGCRS|ENGINEERINGCRS)\["Undefined Cartesian SRS"')
 _GDAL_SOURCE = re.compile(r"^\S+\.cpp, \d+: ")
 
 
@@ -107,8 +108,9 @@ def read_features(path: str, shown: str, *, layer: str | None, where: str | None
         if not is_numeric(column)
     }
     names = [str(name) for name in meta["fields"]]
-    notes += _describe_missing_crs(path, shown, meta["crs"])
-    value = {"layer": chosen, "crs": meta["crs"], "names": names, "texts": texts, "notes": notes}
+    crs = _take_crs(meta["crs"])
+    notes += _describe_missing_crs(path, shown, crs)
+    value = {"layer": chosen, "crs": crs, "names": names, "texts": texts, "notes": notes}
     return Answer(value | {"elevation_unit": metadata.get("elevation_unit")}, arrays)
 
 
@@ -146,6 +148,14 @@ def _is_misread(text: str) -> bool:
     except UnicodeError:
         return False
     return True
+
+
+def _take_crs(crs: str | None) -> str | None:
+    """Return the CRS of a layer; None for what GDAL makes of "undefined" in a GeoPackage.
+
+    It gives the undefined Cartesian CRS (srs_id -1) the unit metre, of which the file says nothing.
+    """
+    return None if crs is not None and _UNDEFINED_CARTESIAN.match(crs) else crs
 
 
 def _describe_missing_crs(path: str, shown: str, crs: str | None) -> list[str]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from ... import _optional
 from ..._atomic import as_path
+from ..._sentences import counted, inflect
 from ...crs import CRS
 from ...errors import ReadError
 from ...terrain.results import Features
@@ -104,8 +105,9 @@ def _require_finite(coordinates: NDArray[np.float64], read: Layer) -> None:
     wrong = ~np.isfinite(coordinates).all(axis=1)
     if wrong.any():
         row = int(np.argmax(wrong))
+        are = inflect(f"{counted(int(wrong.sum()), 'coordinate')} that [is|are]", int(wrong.sum()))
         raise ReadError(
-            f"'{read.path}' has {int(wrong.sum())} coordinates that are not finite (first: "
+            f"'{read.path}' has {are} not finite (first: "
             f"{tuple(coordinates[row].tolist())}): every coordinate must be a finite number.",
             path=read.path,
         )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import _optional
+from ..._sentences import counted, inflect
 from ...errors import ReadError
 
 if TYPE_CHECKING:
@@ -48,9 +49,11 @@ def note_nesting(polygons: Sequence[Sequence[NDArray[np.float64]]], path: Path) 
     wrong = ((shared > _ROUNDING * smaller) & ~is_within) | is_equal
     if wrong.any():
         a, b = int(one[np.argmax(wrong)]), int(other[np.argmax(wrong)])
+        count = int(wrong.sum())
+        pairs = inflect(f"{counted(count, 'pair')} of boundary polygons [overlaps|overlap]", count)
         raise ReadError(
-            f"'{path}': {int(wrong.sum())} pairs of boundary polygons overlap (first: number {a} "
-            f"and {b}, counted from 0): unite them, or cut one along the other.",
+            f"'{path}': {pairs} (first: number {a} and {b}, counted from 0): unite "
+            "them, or cut one along the other.",
             path=path,
         )
     return _describe_nesting(int(is_within.sum()), path)
@@ -63,7 +66,7 @@ _ROUNDING = 1e-9
 def _describe_nesting(count: int, path: Path) -> list[str]:
     if count == 0:
         return []
-    what = "1 polygon lies" if count == 1 else f"{count} polygons lie"
+    what = inflect(f"{counted(count, 'polygon')} [lies|lie]", count)
     return [f"'{path.name}': {what} within another of the boundary: the surface is cut out there."]
 
 

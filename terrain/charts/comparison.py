@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import _optional
+from ..._sentences import counted
 from ...tin.paper.comparison import Comparison
 from ...tin.validation.options import require_type
 from .arguments import parse_title
@@ -91,7 +92,7 @@ def comparison_picture(comparison: Comparison, *, title: str | None = None) -> A
 def _describe_outcome(outcome: Outcome, expected: int) -> str:
     count = len(outcome.triangles)
     stopped = ", stopped" if outcome.is_stopped else ""
-    first = f"{outcome.name}: {count:,} of {expected:,} triangles{stopped}"
+    first = f"{outcome.name}: {count:,} of {counted(expected, 'triangle')}{stopped}"
     violating, overlapping = int(outcome.violating.sum()), int(outcome.overlapping.sum())
     return f"{first}\n{violating:,} with a point in the circle, {overlapping:,} overlapping"
 

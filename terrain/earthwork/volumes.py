@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..._progress import Progress
+from ..._sentences import inflect
 from ...errors import OptionError
 from ...tin.validation.threads import thread_count
 from .. import _kernel
@@ -206,9 +207,11 @@ def _describe_overlaps(parts: Pieces | None, names: list[str]) -> list[str]:
     doubled = _subtract(sums[:, 0], _measure_areas(parts, len(names)))
     if not doubled.any():
         return []
+    count = int(np.count_nonzero(doubled))
+    overlap = inflect(f"{count} of the regions [overlaps|overlap]", count)
     return [
-        f"{np.count_nonzero(doubled)} of the regions overlap others, by {doubled.sum() / 2:.6g} in "
-        "all: what lies in several is counted in each."
+        f"{overlap} others, by {doubled.sum() / 2:.6g} in all: what lies in several is counted in "
+        "each."
     ]
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._progress import Progress
 from ...errors import OptionError, PointsError
 from ...tin.validation.options import as_flag, is_finite_number
 from ..earthwork.reference import find_reference
@@ -24,6 +25,8 @@ from .water import gather_polygons
 from .water_bodies import BOUNDARY_NOTE
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from ...tin import TIN
@@ -33,7 +36,13 @@ if TYPE_CHECKING:
 __all__ = ["catchments", "flow_accumulation"]
 
 
-def catchments(tin: TIN, outlets: Any = None, *, fill_depressions: bool = False) -> Features:
+def catchments(
+    tin: TIN,
+    outlets: Any = None,
+    *,
+    fill_depressions: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> Features:
     """Find which part of a surface drains into each pit, or through each outlet.
 
     Parameters
@@ -44,6 +53,9 @@ def catchments(tin: TIN, outlets: Any = None, *, fill_depressions: bool = False)
         that a drop comes to there, as to the lower end of a channel.
     fill_depressions : bool, optional
         Depressions are full, so that water goes on from where they spill, as of :func:`flow_path`.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0, between the stages. What it raises ends
+        the call.
 
     Returns
     -------
@@ -94,9 +106,9 @@ def catchments(tin: TIN, outlets: Any = None, *, fill_depressions: bool = False)
     (array([4]), array([36.]))
     """
     is_filled = as_flag("fill_depressions", fill_depressions)
-    reference = find_reference(tin, "Catchments")
+    reference, done = find_reference(tin, "Catchments"), Progress(progress)
     notes: tuple[str, ...] = (FILLED_NOTE,) if is_filled else ()
-    network = build_network(tin, fill(tin) if is_filled else None)
+    network = build_network(tin, fill(tin) if is_filled else None, done.stage(0.1, 0.7))
     if outlets is not None:
         named, told = _place_outlets(tin, network, outlets)
         notes += told
@@ -116,6 +128,7 @@ def catchments(tin: TIN, outlets: Any = None, *, fill_depressions: bool = False)
     places = np.full(len(named) + 1, NOWHERE)
     places[kept[order]] = np.arange(len(kept))
     drawn = gather_polygons(cut_at_divides(network, places[labels], places[level]))
+    done.end()
     return Features.of_polygons(
         drawn.points,
         drawn.ring_offsets,
@@ -131,7 +144,11 @@ def catchments(tin: TIN, outlets: Any = None, *, fill_depressions: bool = False)
 
 
 def flow_accumulation(
-    tin: TIN, *, min_area: float = 0.0, fill_depressions: bool = False
+    tin: TIN,
+    *,
+    min_area: float = 0.0,
+    fill_depressions: bool = False,
+    progress: Callable[[float], None] | None = None,
 ) -> Features:
     """Measure the area that drains through each channel of a surface.
 
@@ -142,6 +159,9 @@ def flow_accumulation(
         Leave out channels through which less drains, in the square of CRS units.
     fill_depressions : bool, optional
         Depressions are full, so that water goes on from where they spill, as of :func:`flow_path`.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0, between the stages. What it raises ends
+        the call.
 
     Returns
     -------
@@ -178,9 +198,9 @@ def flow_accumulation(
     if not is_finite_number(min_area) or min_area < 0:
         raise OptionError("min_area", min_area, allowed="a number from 0 on")
     is_filled = as_flag("fill_depressions", fill_depressions)
-    reference = find_reference(tin, "Flow accumulation")
+    reference, done = find_reference(tin, "Flow accumulation"), Progress(progress)
     filling = fill(tin) if is_filled else None
-    network = build_network(tin, filling)
+    network = build_network(tin, filling, done.stage(0.1, 0.9))
     total = accumulate(network)
     nodes = np.flatnonzero(network.uppers != NOWHERE)
     start, end = network.uppers[nodes], network.nexts[nodes] - network.first_vertex
@@ -203,6 +223,7 @@ def flow_accumulation(
         columns["kind"] = _find_kinds(filling, start, end)
         coordinates[:, 2] = filling.levels[pairs[chosen]].ravel()
         notes += (FILLED_NOTE,)
+    done.end()
     return Features.of_lines(
         coordinates,
         2 * np.arange(len(chosen) + 1),

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..._progress import Progress
 from ..relief.dissolving import join_components
 from .descent import BOUNDARY, MOVING, Walker, make_drops
 from .falls import find_falls
@@ -15,6 +16,7 @@ from .vertices import NOWHERE
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ..._progress import Tell
     from ...tin import TIN
     from .descent import Drops
     from .filling import Filling
@@ -74,7 +76,9 @@ class Network(NamedTuple):
         return np.append(self.first_vertex + vertices[leaves], len(self.nexts) - 1)
 
 
-def build_network(tin: TIN, filling: Filling | None = None) -> Network:
+def build_network(
+    tin: TIN, filling: Filling | None = None, progress: Tell | None = None
+) -> Network:
     """Find the way of all water of a surface, or of a filled one.
 
     Raises
@@ -82,10 +86,13 @@ def build_network(tin: TIN, filling: Filling | None = None) -> Network:
     PointsError
         If fall lines cross too many triangles, or elevations are too large to decide exactly.
     """
+    done = Progress(progress)
     walker = Walker(find_falls(tin), filling)
+    done(0.2)
     falls = walker.falls
     bases = find_bases(falls)
     strips = cut_strips(falls, bases)
+    done(0.4)
     grounds = _connect_level_ground(tin)
     u, v = (falls.points[falls.triangles[:, k], :2] for k in (1, 2))
     origin = falls.points[falls.triangles[:, 0], :2]
@@ -95,6 +102,7 @@ def build_network(tin: TIN, filling: Filling | None = None) -> Network:
     nexts, uppers = np.arange(count + 2 * vertices + 1), np.full(count + vertices, NOWHERE)
     found = Network(walker, bases, strips, grounds, nexts, uppers, areas)
     _link_vertices(found)
+    done(0.6)
     left = leave_strips(walker, bases, strips)
     _link(found, np.arange(count), left)
     on = np.flatnonzero(_runs_on(left))

@@ -348,7 +348,8 @@ def _make_caption(
 def _describe_strips(strips: Strips, ground: Ground) -> str:
     length = format_number(strips.length, step=1.0 if strips.length >= 100 else 0.01)
     unit = f" {ground.unit.symbol}" if ground.unit.symbol else ""
-    return f"{len(strips.lows)} strips of {length}{unit}, to read from left to right, then down"
+    strip = counted(len(strips.lows), "strip")
+    return f"{strip} of {length}{unit}, to read from left to right, then down"
 
 
 def _warn(tin: TIN, look: Look, shown: ElevationRange) -> str:
@@ -374,6 +375,5 @@ def describe_far_off(tin: TIN, shown: ElevationRange) -> str:
         return ""
     worst = far[np.abs(far - (shown.low + shown.high) / 2).argmax()]
     number = f"{worst:,.12g}"
-    if len(far) == 1:
-        return f"1 elevation far off all others: {number}"
-    return f"{len(far):,} elevations far off all others, such as {number}"
+    such = ":" if len(far) == 1 else ", such as"
+    return f"{counted(len(far), 'elevation')} far off all others{such} {number}"

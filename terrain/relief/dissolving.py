@@ -99,10 +99,14 @@ def make_polygons(
     units: Units,
     name: str,
     notes: Sequence[str],
+    points: NDArray[np.float64] | None = None,
 ) -> Features:
-    """Return the polygons of classes as features, in the plane of the CRS of their TIN."""
+    """Return the polygons of classes as features, in the plane of the CRS of their TIN.
+
+    ``points`` are their vertices; default those of the TIN.
+    """
     return Features.of_polygons(
-        tin.points[found.vertices, :2],
+        (tin.points if points is None else points)[found.vertices, :2],
         found.ring_offsets,
         found.polygon_offsets,
         found.feature_offsets,

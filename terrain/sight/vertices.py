@@ -20,7 +20,13 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .eyes import View
 
-__all__ = ["judge_vertices", "look_one_by_one", "see_vertices", "visible_vertices"]
+__all__ = [
+    "are_heights_exact",
+    "judge_vertices",
+    "look_one_by_one",
+    "see_vertices",
+    "visible_vertices",
+]
 
 _HIDDEN, _SEEN, _UNKNOWN = 0, 1, 2
 """What the kernel says of a vertex."""
@@ -98,10 +104,7 @@ def judge_vertices(
     tin: TIN, view: View, wanted: NDArray[np.bool_], threads: int | None = None
 ) -> NDArray[np.uint8]:
     """Return ``_SEEN``, ``_HIDDEN`` or ``_UNKNOWN`` for each vertex."""
-    heights = [tin.points[:, 2], tin.points[:, 2] + view.target_height, view.eye[2:]]
-    smallest, largest = EXACT_RANGE
-    sizes = np.abs(np.concatenate(heights))
-    if not ((sizes == 0.0) | ((sizes >= smallest) & (sizes <= largest))).all():
+    if not are_heights_exact(tin, view):
         return np.where(wanted, _UNKNOWN, _HIDDEN).astype(np.uint8)
     verdicts: NDArray[np.uint8] = _kernel.find_seen_vertices(
         tin.points,
@@ -118,6 +121,14 @@ def judge_vertices(
         own = tin.triangles[_find_triangles_at(tin, view.eye)].ravel()
         verdicts[own[verdicts[own] == _SEEN]] = _UNKNOWN
     return verdicts
+
+
+def are_heights_exact(tin: TIN, view: View) -> bool:
+    """Tell whether exact arithmetic of doubles has room for all elevations."""
+    heights = [tin.points[:, 2], tin.points[:, 2] + view.target_height, view.eye[2:]]
+    smallest, largest = EXACT_RANGE
+    sizes = np.abs(np.concatenate(heights))
+    return bool(((sizes == 0.0) | ((sizes >= smallest) & (sizes <= largest))).all())
 
 
 def look_one_by_one(tin: TIN, view: View, wanted: NDArray[np.int64]) -> NDArray[np.bool_]:

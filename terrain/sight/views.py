@@ -6,20 +6,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...tin.validation.options import as_flag
 from ..earthwork.reference import find_reference
 from ..georeference import find_plane_units
 from ..relief.dissolving import dissolve, make_polygons
-from ..results import Features
-from ..slope import measure_plane_areas
 from .eyes import as_view, measure_distances
+from .parts import divide
 from .rays import find_curvature
-from .vertices import see_vertices
+from .vertices import are_heights_exact, see_vertices
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...tin import TIN
-    from ..earthwork.reference import Reference
+    from ..relief.dissolving import Mesh
+    from ..results import Features
+    from .eyes import View
+
+    _Numbers = NDArray[np.int64]
 
 __all__ = ["viewshed"]
 
@@ -38,6 +42,7 @@ def viewshed(
     radius: float | None = None,
     curvature: bool = False,
     refraction: float | None = None,
+    whole_triangles: bool = False,
 ) -> Features:
     """Divide a surface into what is seen from a place, and what is hidden.
 
@@ -45,14 +50,17 @@ def viewshed(
     ----------
     tin, eye, eye_height, target_height, radius, curvature, refraction
         As in :func:`visible_vertices`.
+    whole_triangles : bool, optional
+        Do not divide triangles: each is "visible" if all three corners are seen, "partly" if one or
+        two are, "hidden" if none is, or with ``target_height`` 0 if its upper side is turned away.
+        So they are judged with curvature, too.
 
     Returns
     -------
     Features
-        Polygons of the triangles of each class, with the columns ``class``: "visible" if all three
-        corners are seen, "partly" if one or two are, "hidden" if none is; ``triangles``, ``area``
-        in the plane, ``share`` of it, and ``color`` for a legend. With a radius triangles without
-        a corner in it are left out.
+        Polygons of what is visible and what is hidden, with the columns ``class``, ``triangles``
+        (that have a part in it), ``area`` in the plane, ``share`` of it, and ``color`` for a
+        legend. They tile the surface. With a radius triangles without a corner in it are left out.
 
     Raises
     ------
@@ -61,10 +69,11 @@ def viewshed(
 
     Notes
     -----
-    Vertices are decided exactly, triangles by their corners alone: of a visible one a part may be
-    hidden behind something narrow, of a hidden one a part may be seen between its corners. The
-    triangles are as fine as the survey; for finer answers refine the surface first. With
-    ``target_height`` 0 a triangle whose upper side is turned away from the eye is hidden.
+    Triangles are taken from the eye outwards. The horizon of the edges before each throws a shadow
+    on it, which ends in straight lines; these and rays from the eye along the ends of edges bound
+    the visible parts. They are computed in doubles: what comes within 1e-12 of heights of touching
+    counts as visible, and corners are rounded. Vertices of the surface are decided exactly by
+    :func:`visible_vertices`.
 
     Examples
     --------
@@ -74,16 +83,35 @@ def viewshed(
     >>> seen.columns["class"].tolist(), seen.columns["area"].tolist()
     (['visible', 'hidden'], [16.0, 16.0])
     """
+    as_whole = as_flag("whole_triangles", whole_triangles)
     reference = find_reference(tin, "Viewsheds")
     fall = find_curvature(reference, curvature, refraction)
-    view, notes = as_view(tin, eye, (eye_height, target_height), radius, fall)
+    view, said = as_view(tin, eye, (eye_height, target_height), radius, fall)
+    notes = [*reference.notes, *said]
+    if not as_whole and (fall != 0.0 or not are_heights_exact(tin, view)):
+        as_whole = True
+        why = "Over a curved earth" if fall != 0.0 else "With such elevations"
+        notes.append(f"{why} triangles are not divided: they are judged by their corners.")
+    mesh, classes, owners = _judge_triangles(tin, view) if as_whole else _divide(tin, view)
+    near = (measure_distances(tin.points, view.eye) <= view.radius)[tin.triangles]
+    is_near: NDArray[np.bool_] = near.any(axis=1)
+    classes[~is_near[owners]] = -1
+    return _as_features(tin, mesh, classes, owners, notes)
+
+
+def _judge_triangles(tin: TIN, view: View) -> tuple[Mesh, _Numbers, _Numbers]:
+    """Return the surface, the class of each triangle by its corners, and their numbers."""
     seen = see_vertices(tin, view)
     classes = np.array([2, 1, 1, 0])[seen[tin.triangles].sum(axis=1)]
-    if view.target_height == 0.0 and fall == 0.0:
+    if view.target_height == 0.0 and view.fall == 0.0:
         classes[_faces_away(tin, view.eye)] = 2
-    near = measure_distances(tin.points, view.eye) <= view.radius
-    classes[~near[tin.triangles].any(axis=1)] = -1
-    return _as_features(tin, classes.astype(np.int64), reference, notes)
+    return tin, classes.astype(np.int64), np.arange(len(classes))
+
+
+def _divide(tin: TIN, view: View) -> tuple[Mesh, _Numbers, _Numbers]:
+    """Return parts of triangles, the class of each, and the triangle that it is a part of."""
+    parts = divide(tin, view)
+    return parts, np.where(parts.is_seen, 0, 2), parts.owners
 
 
 def _faces_away(tin: TIN, eye: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -97,13 +125,14 @@ def _faces_away(tin: TIN, eye: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 
 def _as_features(
-    tin: TIN, classes: NDArray[np.int64], reference: Reference, notes: tuple[str, ...]
+    tin: TIN, mesh: Mesh, classes: _Numbers, owners: _Numbers, notes: list[str]
 ) -> Features:
-    found = dissolve(tin, classes)
-    ground = measure_plane_areas(tin)
+    found = dissolve(mesh, classes)
+    ground = _measure_areas(mesh)
     inside = classes >= 0
     measured = np.bincount(classes[inside], ground[inside], len(_CLASSES))[found.classes]
-    counts = np.bincount(classes[inside], minlength=len(_CLASSES))[found.classes]
+    pairs = np.unique(np.column_stack([classes, owners])[inside], axis=0)
+    counts = np.bincount(pairs[:, 0], minlength=len(_CLASSES))[found.classes]
     columns = {
         "class": np.array(_CLASSES, object)[found.classes],
         "triangles": counts,
@@ -117,5 +146,13 @@ def _as_features(
         columns=columns,
         units={"area": find_plane_units(tin.crs).area, "share": "%"},
         name="viewshed",
-        notes=[*reference.notes, *notes],
+        notes=notes,
+        points=mesh.points,
     )
+
+
+def _measure_areas(mesh: Mesh) -> NDArray[np.float64]:
+    a, b, c = (mesh.points[mesh.triangles[:, k], :2] for k in range(3))
+    one, other = b - a, c - a
+    measured: NDArray[np.float64] = 0.5 * (one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
+    return measured

@@ -480,6 +480,7 @@ def test_answers_have_a_page_of_their_own_that_says_what_is_compared(tmp_path):
     assert list(tmp_path.iterdir()) == written
     page = written[0].read_text(encoding="utf-8")
     assert "| contours: 72 levels | matplotlib | 1,000,000 | 1.50 s | 7.50 |" in page
+    assert "```sh\na command\n```" in page
     assert "- Contours beside matplotlib on the same TIN" in page
     assert "The same lines must come of the TIN: as many, as long." in " ".join(page.split())
     reached = [row[-2:] for row in goals_of(outcome.results)]

@@ -129,7 +129,7 @@ def test_more_points_than_the_limit_name_the_way_out(tmp_path):
     [
         (("--sample", "41"), 1, "40 points there are"),
         (("--sample", "2"), 2, "x>=3"),
-        (("-o", "out.svg"), 1, "must end in .png"),
+        (("-o", "out.svg"), 2, "must end in .png"),
         (("-o", "none/out.png"), 1, "none"),
     ],
 )

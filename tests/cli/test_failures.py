@@ -252,8 +252,6 @@ def test_missing_input_and_folder_as_input(folder, command, name, word):
     ("output", "words"),
     [
         ("none/out.ply", ["none"]),
-        ("out.zzz", [".zzz", ".ply"]),
-        ("out", ["no suffix"]),
         ("out.tif", [".tif"]),
         ("sub.ply", ["folder"]),
     ],
@@ -375,7 +373,7 @@ def test_an_error_that_cannot_be_told_keeps_its_exit_code(folder, streams):
         (["info", "none.csv", "--json"], 1, "There is no file 'none.csv'."),
         (["--json", "info"], 2, "--json"),
         (["check", "in.csv", "--level", "9", "--json"], 2, "'--level'"),
-        (["build", "in.csv", "-o", "out.zzz", "--json"], 1, ".zzz"),
+        (["build", "in.csv", "-o", "out.zzz", "--json"], 2, ".zzz"),
     ],
 )
 def test_failures_are_json_on_request(folder, arguments, code, word):
@@ -466,6 +464,18 @@ def test_format_that_cannot_be_written_is_refused_by_name(folder):
 
 
 # ------------------------------------------------------------------ wrong usage
+
+
+@pytest.mark.parametrize(
+    ("name", "fault"), [("out.foo", "has the unknown suffix '.foo'"), ("out", "has no suffix")]
+)
+def test_an_output_of_no_known_suffix_is_wrong_usage(folder, name, fault):
+    Path("in.csv").write_text(SQUARE)
+    result = CliRunner().invoke(main, ["build", "in.csv", "-o", name])
+    assert result.exit_code == 2
+    assert f"Error: '{name}' {fault}: .csv, " in result.stderr
+    assert result.stderr.endswith("; --output-format names one whatever the suffix.\n")
+    assert names() == ["in.csv"]
 
 
 @pytest.mark.parametrize(

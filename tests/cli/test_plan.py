@@ -91,4 +91,4 @@ def test_inputs_are_never_overwritten(road, tmp_path):
     copy.write_bytes(road.read_bytes())
     said = refuse("plan", copy, "--format", "ply", "-o", copy, code=2)
     assert "cannot be the output too" in said
-    assert refuse("plan", road, "-o", tmp_path / "plan.docx", code=1).count("must end in") == 1
+    assert refuse("plan", road, "-o", tmp_path / "plan.docx", code=2).count("must end in") == 1

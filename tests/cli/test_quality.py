@@ -82,8 +82,8 @@ def test_plot_writes_a_picture_and_says_so(surface, tmp_path):
 @pytest.mark.parametrize(
     ("name", "says", "code"),
     [
-        ("plot.gif", "its name must end in .png", 1),
-        ("plot", "its name must end in .png", 1),
+        ("plot.gif", "its name must end in .png", 2),
+        ("plot", "its name must end in .png", 2),
         ("surface.ply", "is the input", 2),
         ("nowhere/plot.png", "there is no folder 'nowhere'", 1),
     ],

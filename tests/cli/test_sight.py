@@ -66,9 +66,26 @@ def test_each_place_is_given_once_and_by_points(site, tmp_path):
     assert not (tmp_path / "a.csv").exists()
 
 
+def test_triangles_are_judged_as_wholes_if_asked(tmp_path):
+    rng = np.random.default_rng(3)
+    path = tmp_path / "hills.ply"
+    ts.write(
+        ts.triangulate(rng.uniform(0, [50, 50, 9], (90, 3)), crs="EPSG:32616", z_unit="m"), path
+    )
+    start = ("sight", path, "--from", 25, 25, "--eye-height", 3, "--json", "-o")
+    divided = run(*start, tmp_path / "a.geojson")
+    assert [row["class"] for row in json.loads(divided.stdout)["found"]] == ["visible", "hidden"]
+    whole = run(*start, tmp_path / "b.geojson", "--whole-triangles")
+    classes = [row["class"] for row in json.loads(whole.stdout)["found"]]
+    assert classes == ["visible", "partly", "hidden"]
+
+
 def test_wrong_usage_exits_2_and_places_outside_1(site, tmp_path):
     out = ("-o", tmp_path / "a.csv")
     assert run("sight", site, *out).exit_code == 2
     assert run("sight", site, "--from", 1, 2, "--to", 7, 2, "--radius", 3, *out).exit_code == 2
     assert run("sight", site, "--from", 1, 2, "--sight-refraction", 0.2, *out).exit_code == 2
+    assert (
+        run("sight", site, "--from", 1, 2, "--to", 7, 2, "--whole-triangles", *out).exit_code == 2
+    )
     assert run("sight", site, "--from", 99, 2, *out).exit_code == 1

@@ -39,6 +39,8 @@ CALLS = {
     "smooth": lambda g, to: ts.contours(g["tin"], 0.4, smooth=0.1, **to),
     "volume": lambda g, to: ts.volume(g["tin"], g["patch"], regions=[g["pad"]], **to),
     "difference": lambda g, to: ts.difference(g["tin"], g["patch"], **to),
+    "catchments": lambda g, to: ts.catchments(g["tin"], **to),
+    "flow": lambda g, to: ts.flow_accumulation(g["tin"], fill_depressions=True, **to),
     "read": lambda g, to: ts.read(g["files"], columns=g["columns"], format="delimited", **to),
     "write": lambda g, to: ts.write(g["tin"], g["folder"] / f"made{g['suffix']}", **to),
     "write points": lambda g, to: ts.write(

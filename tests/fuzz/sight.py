@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from support.sight_oracle import find_first_block
+from support.sight_oracle import find_first_block, require_parts_as_lines
 
 import tinsmith as ts
 
@@ -33,9 +33,21 @@ def examine(case: Case) -> str:
     for row, (start, end) in enumerate(found.coordinates.reshape(-1, 2, 3)):
         block = find_first_block(tin.points, tin.edges, start, end)
         assert found.columns["visible"][row] == (block is None), f"{start} to {end}"
-    areas = ts.viewshed(tin, eye, eye_height=above).columns["area"]
-    assert np.isclose(areas.sum(), tin.area), "the classes do not tile the surface"
+    seen = ts.visible_vertices(tin, eye, eye_height=above, target_height=target_above)
+    vertices = np.unique(tin.triangles)
+    apart = vertices[(tin.points[vertices, :2] != eye).any(axis=1)]
+    lines = found.columns["visible"][len(targets) - len(apart) :]
+    assert seen[apart].tolist() == lines.tolist(), "vertices are not seen as by lines of sight"
+    _require_parts(tin, eye, case)
     return "sight"
+
+
+def _require_parts(tin: ts.TIN, eye: np.ndarray, case: Case) -> None:
+    """From above the ground: on it, next to an edge, doubles decide otherwise than fractions."""
+    above, target_above = case["heights"]
+    shares = np.array([[a, b] for a, _ in case["starts"] for _, b in case["starts"]])
+    low, high = tin.points[:, :2].min(axis=0), tin.points[:, :2].max(axis=0)
+    require_parts_as_lines(tin, eye, low + shares * (high - low), (max(above, 0.5), target_above))
 
 
 CAMPAIGNS = (Campaign("sight", "lines of sight and viewsheds", generate, examine),)

@@ -95,6 +95,12 @@ def test_a_folder_of_files_is_one_survey(files, tmp_path):
     assert f"In '{tmp_path.name}' 3 files were read, and not site.prj." in survey.notes
 
 
+def test_a_folder_of_one_file_says_so_in_the_singular(tmp_path):
+    (tmp_path / "a.csv").write_text(HEAD + "9,1,2,3,\n")
+    (tmp_path / "site.prj").write_text("nothing that is read")
+    assert f"In '{tmp_path.name}' 1 file was read, and not site.prj." in ts.read(tmp_path).notes
+
+
 def test_a_folder_of_several_formats_is_refused_until_one_is_named(files, tmp_path):
     survey = ts.read(files[0], crs="EPSG:32616")
     ts.write(ts.triangulate(survey), tmp_path / "t.gpkg")  # holds no points

@@ -108,7 +108,7 @@ def check_sight(told, tin, folder):
     seen = ts.viewshed(tin, EYE, eye_height=1.7)
     assert read_layer(folder / "seen.gpkg") == read_layer(ts.write(seen, folder / "wanted.gpkg"))
     layer = told["seen"]["layers"]["Sight"]
-    assert layer["legend"] == ["visible", "partly", "hidden"]
+    assert layer["legend"] == seen.columns["class"].tolist()
     assert layer["colors"] == seen.columns["color"].tolist()
     assert layer["unclassified"] == 0
     targets = read_survey().points[:300, :2]

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..._sentences import inflect
 from ...errors import PointsError
 from ...policies import DuplicatePolicy
 from ..validation.points import SHOWN
@@ -132,8 +133,9 @@ def _refuse(
     x, y, _ = xyz[group[0]].tolist()
     elevations = ", ".join(f"{z:g}" for z in xyz[group[:SHOWN], 2])
     shown = ", ".join(str(row) for row in numbers[:SHOWN])
+    repeat = inflect(f"{surplus} of {len(xyz)} rows [repeats|repeat]", surplus)
     raise PointsError(
-        f"{surplus} of {len(xyz)} rows repeat the place of another "
+        f"{repeat} the place of another "
         f"(first: rows {shown} at x {x}, y {y} with "
         f'elevations {elevations}): duplicates="error" allows none.',
         rows=numbers[:SHOWN],

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._sentences import counted
 from ...crs import CRS, Unit, require_one_unit, require_same_unit
 from ...errors import CrsError, LinesError, choice
 from ...policies import CrossingPolicy, DuplicatePolicy, TrimPolicy
@@ -251,8 +252,9 @@ def _require_simple_rings(lines: LineSet) -> None:
         if len(crossings):
             x, y = _kernel.intersections(xy, segments, crossings[:1])[0]
             label = lines.label(line)
+            places = counted(len(crossings), "place")
             raise LinesError(
-                f"{label[0].upper() + label[1:]} crosses itself at {len(crossings)} places "
+                f"{label[0].upper() + label[1:]} crosses itself at {places} "
                 f"(first: x {x:.6g}, y {y:.6g}): a ring must not.",
                 lines=[line],
             )

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..._sentences import counted, inflect
 from ..report import LEFT_OUT
 from .boundary_sweep import find_sides
 from .chain_matching import UNSEEN_CUTS, Walk, distance, walk_along
@@ -45,9 +46,8 @@ def check_rows(tin: TIN, rows: NDArray[np.float64], found: Findings) -> None:
     surface, they are.
     """
     if len(rows) != len(tin.vertex_of):
-        found.fail(
-            "rows", f"There are {len(rows)} rows, but the TIN was made of {len(tin.vertex_of)}."
-        )
+        there = inflect(f"There [is|are] {counted(len(rows), 'row')}", len(rows))
+        found.fail("rows", f"{there}, but the TIN was made of {len(tin.vertex_of):,}.")
         return
     moved = np.abs(tin.points[tin.vertex_of, :2] - rows[:, :2])
     moved[tin.vertex_of < 0] = 0.0

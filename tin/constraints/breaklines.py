@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
-from ..._sentences import shown
+from ..._sentences import counted, inflect, shown
 from ...errors import LinesError, OptionError, PointsError, choice
 from ...policies import BreaklineKind, LineKind
 from ..types import Frozen
@@ -299,8 +299,10 @@ def as_coords(coords: ArrayLike, what: str, *, least: int) -> NDArray[np.float64
     if not np.isfinite(array).all():
         wrong = ~np.isfinite(array).all(axis=1)
         row = int(np.argmax(wrong))
+        count = int(wrong.sum())
+        are = inflect(f"{counted(count, 'vertex', 'vertices')} that [is|are]", count)
         raise LinesError(
-            f"{subject} has {int(wrong.sum())} vertices that are not finite "
+            f"{subject} has {are} not finite "
             f"(first: vertex {row}, {array[row].tolist()}): "
             "every coordinate must be a finite number."
         )
@@ -334,8 +336,8 @@ def _as_numbers(coords: Any, subject: str) -> NDArray[np.float64]:
         raise LinesError(str(error)) from None
     if is_masked is not None:
         raise LinesError(
-            f"{subject} has {int(is_masked.sum())} masked vertices (first: vertex "
-            f"{int(np.argmax(is_masked))}): a line needs all of its vertices."
+            f"{subject} has {counted(int(is_masked.sum()), 'masked vertex', 'masked vertices')} "
+            f"(first: vertex {int(np.argmax(is_masked))}): a line needs all of its vertices."
         )
     return values.copy()
 

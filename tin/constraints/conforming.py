@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._sentences import counted, inflect
 from ...errors import LinesError
 from .. import _kernel
 from ..topology import edge_keys
@@ -91,9 +92,10 @@ def conform(
 
 def _explain_hopeless(what: str, points: NDArray[np.float64], bad: NDArray[np.int32]) -> LinesError:
     x, y, _ = points[bad[0, 0]].tolist()
+    run = inflect("still [runs|run] too close to others, or [meets|meet] them", len(bad))
     return LinesError(
-        f"The lines are not conforming after {what}: {len(bad)} segments (first: at x {x!r}, "
-        f"y {y!r}) still run too close to others, or meet them under too small an angle."
+        f"The lines are not conforming after {what}: {counted(len(bad), 'segment')} (first: at "
+        f"x {x!r}, y {y!r}) {run} under too small an angle."
     )
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import shown
+from ..._sentences import counted, shown
 from ...errors import PointsError
 from ..constraints.breaklines import as_coords
 from ..validation.geometries import find_geometries
@@ -119,8 +119,8 @@ def as_vertex_elevations(z: ArrayLike, count: int) -> list[float]:
     elevations = as_elevations(z) + 0.0  # no -0.0
     if elevations.ndim == 1 and len(elevations) != count:
         raise PointsError(
-            f"{elevations.size} elevations for {count} vertices: one each, or one for all, is "
-            "needed."
+            f"{counted(elevations.size, 'elevation')} for {counted(count, 'vertex', 'vertices')}: "
+            "one each, or one for all, is needed."
         )
     values: list[float] = np.broadcast_to(elevations, count).tolist()
     return values

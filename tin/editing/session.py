@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from ..._sentences import counted, inflect
 from ...errors import PointsError, TinsmithError
 from ..report import Edit
 from ..validation.options import require_count
@@ -210,7 +211,8 @@ class Session:
         """
         require_count("count", count)
         if count > len(self.edits):
-            raise PointsError(f"{count} edits cannot be taken back: {len(self.edits)} were made.")
+            made = inflect(f"{len(self.edits)} [was|were] made", len(self.edits))
+            raise PointsError(f"{counted(count, 'edit')} cannot be taken back: {made}.")
         left = len(self.edits) - count
         inputs = self._begin.after(self._changes[:left])
         state = build_state(inputs)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from ..._sentences import counted
 from ...errors import PointsError
 from .. import _kernel
 from ..building.survey import Survey
@@ -201,7 +202,8 @@ class Comparison:
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{one.name} {len(one.triangles)}" for one in self.outcomes)
-        return f"<Comparison: {len(self.points)} points, {self.expected} triangles due; {counts}>"
+        due = counted(self.expected, "triangle")
+        return f"<Comparison: {len(self.points):,} points, {due} due; {counts}>"
 
 
 def compare(points: Survey | ArrayLike, *, limit: int = MOST_POINTS) -> Comparison:

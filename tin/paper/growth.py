@@ -39,6 +39,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..._sentences import counted
 from ...errors import PointsError, choice
 from ...policies import DistanceRule, EmptyCircleRule
 from ..predicates import columns
@@ -108,8 +109,8 @@ class Network:
 
     def __repr__(self) -> str:
         return (
-            f"<Network: {len(self.points)} points, {len(self.triangles)} triangles, "
-            f"{len(self.unextended)} edges not extended>"
+            f"<Network: {len(self.points):,} points, {counted(len(self.triangles), 'triangle')}, "
+            f"{counted(len(self.unextended), 'edge')} not extended>"
         )
 
 

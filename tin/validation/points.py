@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted
+from ..._sentences import counted, inflect
 from ...errors import PointsError
 from .. import _kernel
 from .tables import Table, as_table
@@ -59,8 +59,10 @@ def as_points(points: Any, *, threads: int | None = 1) -> NDArray[np.float64]:
     xyz, is_masked = as_masked_points(points, threads=threads)
     if is_masked is not None:
         rows = np.flatnonzero(is_masked)
+        are = inflect("[is masked|are masked]", len(rows))
         raise PointsError(
-            f"{len(rows)} of {len(xyz)} points are masked (first: row {rows[0]}): leave them out.",
+            f"{len(rows)} of {counted(len(xyz), 'point')} {are} (first: row {rows[0]}): leave "
+            f"{inflect('[it|them]', len(rows))} out.",
             rows=rows[:SHOWN],
         )
     return xyz
@@ -166,8 +168,9 @@ def _require_finite(xyz: NDArray[np.float64]) -> None:
         row = int(rows[0])
         column = int(np.argmax(~np.isfinite(xyz[row])))
         name = ("easting", "northing", "elevation")[column]
+        are = inflect("[is|are] not finite", len(rows))
         raise PointsError(
-            f"{len(rows)} of {len(xyz)} points are not finite (first: row {row}, "
+            f"{len(rows)} of {counted(len(xyz), 'point')} {are} (first: row {row}, "
             f"{name} {xyz[row, column]}): every coordinate must be a finite number.",
             rows=rows[:SHOWN],
         )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...._sentences import counted
 from ....errors import ReadError
 
 if TYPE_CHECKING:
@@ -90,9 +91,8 @@ def parse_list(text: str, line: int, *, width: int, what: str, path: Path) -> ND
             _require_word(word, line, "f", what, path)
         raise fault(path, line, f"{what} cannot be read as numbers")
     if count % width:
-        raise fault(
-            path, line, f"{what} has {count} numbers, and {width} for each point are needed"
-        )
+        has = counted(count, "number")
+        raise fault(path, line, f"{what} has {has}, and {width} for each point are needed")
     return found.reshape(-1, width)
 
 
@@ -137,7 +137,8 @@ def _require_row(text: str, line: int, width: int, letter: str, what: str, path:
         _require_word(word, line, letter, what, path)
     if len(words) != width:
         shown = _shorten(" ".join(words))
-        raise fault(path, line, f"{what} has {len(words)} numbers ('{shown}'), not {width}")
+        has = counted(len(words), "number")
+        raise fault(path, line, f"{what} has {has} ('{shown}'), not {width}")
 
 
 def _require_word(word: str, line: int, letter: str, what: str, path: Path) -> None:

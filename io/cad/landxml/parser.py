@@ -13,6 +13,7 @@ from xml.parsers import expat
 
 import numpy as np
 
+from ...._sentences import counted
 from ....errors import ReadError
 from ...isolated.spooling import describe_system_error
 from .content import Content, Line, Surface
@@ -422,7 +423,8 @@ class _Parser:
         """Return northing, easting, elevation; NaN for an elevation, or all, that is not there."""
         row = parse_words(text, self._now, what="a survey point", path=self.path)
         if len(row) not in (0, 2, 3):
-            raise fault(self.path, self._now, f"a survey point has {len(row)} numbers, not 2 or 3")
+            has = counted(len(row), "number")
+            raise fault(self.path, self._now, f"a survey point has {has}, not 2 or 3")
         if not all(map(math.isfinite, row)):
             raise fault(self.path, self._now, "a survey point has a number that is not finite")
         return row + [math.nan] * (3 - len(row))

@@ -53,7 +53,7 @@ def make_mesh(found: Content, surface: Surface, path: Path) -> Mesh:
             path=path,
         )
     if not surface.faces:
-        hidden = f", but {surface.n_hidden:,} invisible ones" if surface.n_hidden else ""
+        hidden = f", but {counted(surface.n_hidden, 'invisible one')}" if surface.n_hidden else ""
         raise ReadError(
             f"'{path}': surface {surface.label} has no visible faces{hidden}.", path=path
         )

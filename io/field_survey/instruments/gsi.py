@@ -18,6 +18,7 @@ import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
+from ...._sentences import counted, inflect
 from ....crs import METRE
 from ....errors import OptionError, ReadError
 from ...delimited.lines import read_lines
@@ -191,8 +192,11 @@ def _assign_codes(blocks: list[_Block], where: str | None, book: Book) -> dict[i
     step = _find_step(blocks, where)
     if step == 0:
         book.notes.append(
-            f"{len(coded):,} blocks of codes are not read: nothing shows whether they stand before "
-            "or after their points, and the option code_blocks says it."
+            inflect(
+                f"{counted(len(coded), 'block')} of codes [is|are] not read: nothing shows whether "
+                "codes stand before or after their points, and the option code_blocks says it.",
+                len(coded),
+            )
         )
         return found
     for i in coded:

@@ -13,6 +13,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 from xml.parsers import expat
 
+from ...._sentences import counted, inflect
 from ....errors import ReadError
 from .record_lines import parse_coordinate
 from .records import Book
@@ -183,8 +184,9 @@ class _Reader:
         lost = [one for one in observed if reduced and one.texts.get("Name", "") not in names]
         lost = [one for one in lost if one.texts.get("Deleted", "").lower() != "true"]
         if lost:
+            beginning = f"{counted(len(lost), 'point')} of the field book [is|are]"
             book.notes.append(
-                f"{len(lost):,} points of the field book are not in the reductions, and not read: "
+                f"{inflect(beginning, len(lost))} not in the reductions, and not read: "
                 f"{', '.join(one.texts.get('Name', '?') for one in lost[:5])}"
                 f"{' ...' if len(lost) > 5 else ''}."
             )

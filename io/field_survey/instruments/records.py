@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...._sentences import counted
+from ...._sentences import counted, inflect
 from ....crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit, require_same_unit
 from ....errors import CrsError, OptionError, ReadError
 from ....tin import Survey
@@ -184,10 +184,8 @@ class Book:
         count = self.methods.count("reduced")
         if count == 0:
             return []
-        points = "point is" if count == 1 else "points are"
-        return [
-            f"{count:,} {points} reduced from angles and distances, with {NOT_APPLIED} applied."
-        ]
+        points = inflect(f"{counted(count, 'point')} [is|are]", count)
+        return [f"{points} reduced from angles and distances, with {NOT_APPLIED} applied."]
 
 
 def _describe_left_out(what: str, lines: Sequence[int]) -> str:

@@ -22,9 +22,9 @@ class SightAlgorithm(CommandAlgorithm):
     title = "Sight"
     summary = "Finds what is seen from a place on a TIN: the viewshed, or lines of sight."
     explanation = (
-        "Without targets the viewshed: triangles whose corners are all seen, some of them, or "
-        "none. With targets a line to each, visible or blocked, and where. Ground that only "
-        "touches a line of sight does not block it."
+        "Without targets the viewshed: what is visible and what is hidden. With targets a line to "
+        "each, visible or blocked, and where. Ground that only touches a line of sight does not "
+        "block it."
     )
     surfaces = (Surface(),)
     lines = (

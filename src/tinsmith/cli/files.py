@@ -12,6 +12,7 @@ from typing import IO, TYPE_CHECKING, Any
 import click
 
 from .._sentences import counted, suggest
+from .flags import name_flags
 from .output.console import emit_file
 from .output.failures import Failure, note_written
 from .parameters import refuse_value
@@ -318,13 +319,13 @@ def require_picture(
     Raises
     ------
     click.UsageError
-        If the picture is an input.
-    Failure, WriteError
-        If its name ends otherwise, or it cannot be written there.
+        If the picture is an input, or its name ends otherwise.
+    WriteError
+        If it cannot be written there.
     """
     require_separate(inputs, [Named(path, place)])
     if path.suffix.lower() not in suffixes:
-        raise Failure(
+        raise click.UsageError(
             f"Cannot write a picture to '{path}': its name must end in {', '.join(suffixes)}."
         )
 
@@ -383,12 +384,19 @@ def _require_format(flag: str, name: str | None) -> None:
 
 
 def _choose_output_formats(path: Path, name: str | None, kinds: Sequence[str]) -> dict[str, Format]:
-    from ..io.registry import find_writers
+    from ..errors import FormatError
+    from ..io.registry import find_writers, known_formats, list_claims
 
     _require_format("--output-format", name)
     if name is None and path == STANDARD:
         raise click.UsageError("'-o -' needs --output-format: standard output has no suffix.")
-    return find_writers(path, name, kinds)
+    try:
+        return find_writers(path, name, kinds)
+    except FormatError as error:
+        if name is not None or list_claims(known_formats(), path):
+            raise
+        sentence = name_flags(str(error), format="--output-format")
+        raise click.UsageError(sentence) from error
 
 
 def write_outputs(obj: Product, outputs: Sequence[Output], console: Console) -> None:

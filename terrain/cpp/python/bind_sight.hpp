@@ -2,12 +2,16 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/tuple.h>
 
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "../../../tin/cpp/python/conversion.hpp"
+#include "../sight/seen_parts.hpp"
 #include "../sight/seen_vertices.hpp"
 
 namespace tinsmith::python {
@@ -16,15 +20,19 @@ using GivenEye = Given<double, 3>;
 using GivenMask = Given<bool, -1>;
 using Verdicts = Made<std::uint8_t, -1>;
 
+inline Surface seen_surface(const GivenXyz& points, const GivenTriples& triangles,
+                            const GivenTriples& neighbors) {
+  const Surface surface = surface_of(points, triangles, &neighbors);
+  require_exact_points(surface);
+  if (surface.has_sound_neighbors()) return surface;
+  throw std::invalid_argument("neighbors must be triangles or -1");
+}
+
 inline Verdicts find_seen_vertices(const GivenXyz& points, const GivenTriples& triangles,
                                    const GivenTriples& neighbors, const GivenMask& wanted,
                                    const GivenEye& eye, double target_height, double radius,
                                    double fall, int threads) {
-  const Surface surface = surface_of(points, triangles, &neighbors);
-  require_exact_points(surface);
-  if (!surface.has_sound_neighbors()) {
-    throw std::invalid_argument("neighbors must be triangles or -1");
-  }
+  const Surface surface = seen_surface(points, triangles, neighbors);
   if (wanted.shape(0) != points.shape(0)) {
     throw std::invalid_argument("there must be one flag for each point");
   }
@@ -41,11 +49,37 @@ inline Verdicts find_seen_vertices(const GivenXyz& points, const GivenTriples& t
   return hand_over<Verdicts>(std::move(numbers), {points.shape(0)});
 }
 
+// Parts of triangles; offsets, triangles, flags, corners and lines of the cells of divided ones.
+using SeenParts = std::tuple<Verdicts, Offsets, Numbers, Verdicts, Xy, Offsets>;
+
+inline SeenParts find_seen_parts(const GivenXyz& points, const GivenTriples& triangles,
+                                 const GivenTriples& neighbors, const GivenEye& eye,
+                                 double target_height, int threads) {
+  const Surface surface = seen_surface(points, triangles, neighbors);
+  const double* const at = eye.data();
+  const double infinite = std::numeric_limits<double>::infinity();
+  const sight::View view{{{at[0], at[1]}, at[2]}, target_height, infinite};
+  std::vector<sight::Part> parts(triangles.shape(0), sight::Part::kNone);
+  sight::Cells cells;
+  run_unlocked(threads, [&](Team& team) {
+    sight::find_seen_parts(surface, view, parts.data(), cells, team);
+  });
+  return {copy_over<Verdicts, std::uint8_t>(parts, {parts.size()}),
+          copy_over<Offsets, std::int64_t>(cells.offsets, {cells.offsets.size()}),
+          hand_over(cells.triangles),
+          copy_over<Verdicts, std::uint8_t>(cells.seen, {cells.seen.size()}),
+          copy_over<Xy, double>(cells.corners, {cells.corners.size(), 2}),
+          copy_over<Offsets, std::int64_t>(cells.lines, {cells.lines.size()})};
+}
+
 inline void bind_sight(nb::module_& m) {
   m.def("find_seen_vertices", &find_seen_vertices, "points"_a.noconvert(),
         "triangles"_a.noconvert(), "neighbors"_a.noconvert(), "wanted"_a.noconvert(),
         "eye"_a.noconvert(), "target_height"_a, "radius"_a, "fall"_a, "threads"_a = 1,
         "Of the vertices wanted: 0 hidden, 1 seen, 2 not known (with a fall alone).");
+  m.def("find_seen_parts", &find_seen_parts, "points"_a.noconvert(), "triangles"_a.noconvert(),
+        "neighbors"_a.noconvert(), "eye"_a.noconvert(), "target_height"_a, "threads"_a = 1,
+        "Of triangles: 0 hidden, 1 seen, 2 divided, 3 too thin; cells of the divided ones.");
 }
 
 }  // namespace tinsmith::python

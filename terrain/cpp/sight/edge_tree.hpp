@@ -34,6 +34,11 @@ class EdgeTree {
   double highest(Handle h) const { return h == kNone ? kNothing : nodes_[h].highest; }
   Handle nearer(Handle h) const { return nodes_[h].child[kNearer]; }
   Handle farther(Handle h) const { return nodes_[h].child[kFarther]; }
+  std::uint32_t number(Handle h) const { return nodes_[h].number; }
+
+  // The edge next to one, nearer or farther; kNone if there is none.
+  Handle next_nearer(Handle h) const { return next(h, kNearer); }
+  Handle next_farther(Handle h) const { return next(h, kFarther); }
 
   void clear() {
     nodes_.clear();
@@ -87,14 +92,27 @@ class EdgeTree {
     SightEdge edge;
     double highest;  // of the bounds of it and of all below
     Handle child[2], parent;
-    std::uint32_t priority;
+    std::uint32_t priority, number;
   };
+
+  Handle next(Handle h, int side) const {
+    Handle at = nodes_[h].child[side];
+    if (at != kNone) {
+      while (nodes_[at].child[1 - side] != kNone) at = nodes_[at].child[1 - side];
+      return at;
+    }
+    for (at = nodes_[h].parent; at != kNone && nodes_[at].child[side] == h;) {
+      h = at;
+      at = nodes_[h].parent;
+    }
+    return at;
+  }
 
   Handle make(const SightEdge& edge, std::uint32_t number) {
     std::uint32_t mixed = number * 0x9e3779b9u;  // bits of the number, mixed (MurmurHash3)
     mixed = (mixed ^ (mixed >> 16)) * 0x85ebca6bu;
     mixed = (mixed ^ (mixed >> 13)) * 0xc2b2ae35u;
-    const Node node{edge, edge.bound, {kNone, kNone}, kNone, mixed ^ (mixed >> 16)};
+    const Node node{edge, edge.bound, {kNone, kNone}, kNone, mixed ^ (mixed >> 16), number};
     if (free_.empty()) {
       nodes_.push_back(node);
       return static_cast<Handle>(nodes_.size()) - 1;

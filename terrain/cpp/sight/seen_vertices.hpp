@@ -244,13 +244,14 @@ inline std::vector<Vertex> list_ends(const Surface& surface, const View& view) {
 // `seen` is kSeen for the vertices that are asked for, which have triangles and are not at the
 // eye; it becomes kHidden where one is hidden. Check `team.is_stopped()` afterwards.
 template <typename Rule>
-void find_seen(const Surface& surface, const View& view, const Rule& rule, bool with_reach,
-               Sight* seen, Team& team) {
+void find_seen(const Surface& surface, const View& view, const Rule& rule, Sight* seen,
+               Team& team) {
   const auto ends = list_ends(surface, view);
   if (ends.empty() || !team.keeps_going(0)) return;
   const Directions directions(surface, view.eye.at, ends, team);
   if (!team.keeps_going(0)) return;
-  const SightEdges edges(surface, view.eye.at, view.radius, directions, with_reach);
+  const SightEdges edges(surface, view.eye.at, view.radius, directions,
+                         Rule::kIsExact ? SightEdges::Extra::kNothing : SightEdges::Extra::kReach);
   if (!team.keeps_going(0)) return;
   const auto crossing = list_crossing(directions, edges);
   const auto& sectors = directions.sectors();
@@ -267,9 +268,9 @@ void find_seen(const Surface& surface, const View& view, const Rule& rule, bool 
 inline void find_seen_vertices(const Surface& surface, const View& view, double fall, Sight* seen,
                                Team& team) {
   if (fall == 0.0) {
-    find_seen(surface, view, PlaneRule(view.eye), false, seen, team);
+    find_seen(surface, view, PlaneRule(view.eye), seen, team);
   } else {
-    find_seen(surface, view, CurvedRule(view.eye, fall), true, seen, team);
+    find_seen(surface, view, CurvedRule(view.eye, fall), seen, team);
   }
 }
 

@@ -39,8 +39,10 @@ void visit_edges(const Surface& surface, Point eye, double radius, Visit&& visit
 // Edges are numbered by the positions at which they begin.
 class SightEdges {
  public:
+  enum class Extra { kNothing, kReach, kHalfEdges };
+
   SightEdges(const Surface& surface, Point eye, double radius, const Directions& directions,
-             bool with_reach)
+             Extra extra = Extra::kNothing)
       : begins_(static_cast<std::size_t>(directions.size()) + 1, 0),
         end_begins_(static_cast<std::size_t>(directions.size()) + 1, 0) {
     visit_edges(surface, eye, radius, [&](Vertex from, Vertex to, HalfEdge) {
@@ -51,13 +53,15 @@ class SightEdges {
     add_up(end_begins_);
     to_ = scratch_array<Vertex>(count);
     ending_ = scratch_array<std::uint32_t>(count);
-    if (with_reach) reach_ = scratch_array<float>(count);
+    if (extra == Extra::kReach) reach_ = scratch_array<float>(count);
+    if (extra == Extra::kHalfEdges) half_edges_ = scratch_array<HalfEdge>(count);
     // Filled from the ends of the ranges, so that they begin where they are said to.
     visit_edges(surface, eye, radius, [&](Vertex from, Vertex to, HalfEdge e) {
       const std::uint32_t edge = --begins_[directions.position(from)];
       to_[edge] = to;
       ending_[--end_begins_[directions.position(to)]] = edge;
-      if (with_reach) reach_[edge] = measure_reach(surface, e);
+      if (reach_) reach_[edge] = measure_reach(surface, e);
+      if (half_edges_) half_edges_[edge] = e;
     });
   }
 
@@ -65,6 +69,8 @@ class SightEdges {
   std::uint32_t begin(std::int32_t position) const { return begins_[position]; }
   std::uint32_t end(std::int32_t position) const { return begins_[position + 1]; }
   Vertex to(std::uint32_t edge) const { return to_[edge]; }
+  std::uint32_t size() const { return begins_.back(); }
+  HalfEdge half_edge(std::uint32_t edge) const { return half_edges_[edge]; }
   double reach(std::uint32_t edge) const { return reach_ ? reach_[edge] : 0.0; }
 
   // visit(edge) for those that end at a position.
@@ -100,6 +106,7 @@ class SightEdges {
   ScratchArray<Vertex> to_;
   ScratchArray<std::uint32_t> ending_;
   ScratchArray<float> reach_;
+  ScratchArray<HalfEdge> half_edges_;
 };
 
 }  // namespace tinsmith::sight

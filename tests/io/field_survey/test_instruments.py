@@ -95,6 +95,8 @@ def test_gsi_codes_before_or_after_their_points(tmp_path):
     doubtful = read(tmp_path, "a.gsi", both)
     assert "description" not in doubtful.attributes
     assert "2 blocks of codes are not read" in doubtful.notes[0]
+    between = read(tmp_path, "a.gsi", "\n".join([points[0], CODE, points[1]]))
+    assert "1 block of codes is not read" in between.notes[0]
     found = read(tmp_path, "a.gsi", both, code_blocks="after")
     assert found.attributes["description"].tolist() == ["", told]
     refused(
@@ -460,6 +462,9 @@ def test_jobxml_reductions_are_read_before_the_field_book(tmp_path):
     assert "2 points of the field book are not in the reductions, and not read: 2, 4" in str(
         reduced.notes
     )
+    both = point("Point", "1", grid=(10.5, 20.5, 5.5)) + point("Point", "2", grid=(11, 21, 6))
+    (note,) = read(tmp_path, "a.jxl", job(field, both)).notes
+    assert note.startswith("1 point of the field book is not in the reductions, and not read: 4")
 
 
 def test_jobxml_is_in_metres_whatever_it_shows(tmp_path):

@@ -1,6 +1,8 @@
 """Points, lines and triangles of vector layers become surveys and TINs, in any CRS."""
 
+import contextlib
 import json
+import sqlite3
 import warnings
 
 import numpy as np
@@ -342,6 +344,24 @@ def test_a_crs_of_null_is_not_known(tmp_path):
     )
     (found,) = ts.io.read_lines(tmp_path / "l.geojson", crs=UTM)
     assert np.array_equal(found.coords, survey.points[:3])
+
+
+def test_the_undefined_cartesian_crs_of_a_geopackage_has_no_unit(tmp_path):
+    survey = ts.Survey(points=make_points())
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        write(survey, tmp_path / "s.gpkg")
+    with contextlib.closing(sqlite3.connect(tmp_path / "s.gpkg")) as base:
+        for table in ("gpkg_contents", "gpkg_geometry_columns"):
+            base.execute(f"UPDATE {table} SET srs_id = -1")
+        base.commit()
+    found = read(tmp_path / "s.gpkg")
+    assert np.array_equal(found.points, survey.points)
+    assert found.crs is None
+    assert found.elevation_unit is None
+    told = read(tmp_path / "s.gpkg", crs=UTM, z_unit="ft")
+    assert told.crs == UTM
+    assert told.elevation_unit.name == "foot"
 
 
 def test_a_sequence_with_separators(tmp_path):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from support.sight_oracle import find_first_block
+from support.sight_oracle import find_first_block, require_parts_as_lines
 
 import tinsmith as ts
 from tinsmith.terrain.sight.eyes import as_view, measure_distances
@@ -115,7 +115,11 @@ def test_classes_tile_the_surface_and_a_radius_limits_them():
     tin = ts.triangulate(points, crs="EPSG:32616", z_unit="m")
     found = ts.viewshed(tin, [45, 45], eye_height=5)
     assert found.columns["area"].sum() == pytest.approx(tin.area)
-    assert found.columns["triangles"].sum() == len(tin.triangles)
+    assert found.columns["triangles"].sum() >= len(tin.triangles)
+    whole = ts.viewshed(tin, [45, 45], eye_height=5, whole_triangles=True)
+    assert whole.columns["class"].tolist() == ["visible", "partly", "hidden"]
+    assert whole.columns["triangles"].sum() == len(tin.triangles)
+    assert whole.columns["area"].sum() == pytest.approx(tin.area)
     seen = ts.visible_vertices(tin, [45, 45], eye_height=5, radius=20)
     far = np.hypot(*(tin.points[:, :2] - 45).T) > 20
     assert not seen[far].any()
@@ -129,6 +133,59 @@ def test_a_slope_behind_a_crest_is_hidden_and_the_one_before_it_seen():
     found = ts.viewshed(ts.triangulate(ridge), [1, 2], eye_height=0.5)
     assert found.columns["class"].tolist() == ["visible", "hidden"]
     assert found.columns["area"].tolist() == [16.0, 16.0]
+
+
+def test_a_target_above_the_ground_is_seen_as_far_as_the_line_over_the_crest():
+    ridge = [[0, 0, 0], [0, 4, 0], [4, 0, 2], [4, 4, 2], [8, 0, 0], [8, 4, 0]]
+    found = ts.viewshed(ts.triangulate(ridge), [1, 2], eye_height=0.5, target_height=1)
+    # 1 + (x - 1) / 3 = 5 - x / 2, of the line and of what stands on the slope behind.
+    assert found.columns["area"] == pytest.approx([5.2 * 4, 2.8 * 4])
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    st.integers(0, 2**32 - 1),
+    st.sampled_from(["grid", "ramp", "scattered"]),
+    st.sampled_from([None, 8.0]),
+    st.sampled_from([0.5, 2.0]),
+    st.sampled_from([0.0, 0.5]),
+)
+def test_parts_of_triangles_are_those_of_lines_of_sight(seed, kind, max_edge, above, target_above):
+    rng = np.random.default_rng(seed)
+    tin = ts.triangulate(make_surface(rng, kind), max_edge=max_edge)
+    eye = tin.points[rng.choice(np.unique(tin.triangles)), :2]
+    if rng.random() < 0.5:
+        eye = rng.dirichlet([1, 1, 1]) @ tin.points[tin.triangles[0], :2]
+    weights = rng.dirichlet([1, 1, 1], 3 * len(tin.triangles))
+    corners = np.tile(tin.points[tin.triangles, :2], (3, 1, 1))
+    places = (weights[:, :, None] * corners).sum(axis=1)
+    assert require_parts_as_lines(tin, eye, places, (above, target_above)) > 50
+
+
+def test_parts_go_around_holes_and_along_breaklines():
+    rng = np.random.default_rng(6)
+    angle = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    ring = np.column_stack([np.cos(angle), np.sin(angle)])
+    lines = [[[5, 5, 9], [95, 30, 9]], [[5, 90, 3], [95, 80, 9], [60, 20, 1]]]
+    points = rng.uniform(0, [100, 100, 5], (300, 3))
+    tin = ts.triangulate(points, breaklines=lines, holes=[50 + 9 * ring, [30, 70] + 5 * ring])
+    places = rng.uniform(0, 100, (800, 2))
+    for eye in ([10.0, 10.0], [50.0, 61.0], [80.0, 50.0]):
+        assert require_parts_as_lines(tin, np.array(eye), places, (2.0, 0.0)) > 400
+
+
+def test_triangles_are_judged_as_wholes_where_they_cannot_be_divided():
+    rng = np.random.default_rng(9)
+    points = make_surface(rng, "grid")
+    for tin, options, words in (
+        (ts.triangulate(points, crs="EPSG:32616", z_unit="m"), {"curvature": True}, "curved earth"),
+        (ts.triangulate(points * [1, 1, 1e-90]), {}, "With such elevations"),
+    ):
+        found = ts.viewshed(tin, [4, 4], **options)
+        assert any(f"{words} triangles are not divided" in note for note in found.notes)
+        whole = ts.viewshed(tin, [4, 4], whole_triangles=True, **options)
+        assert found.columns["area"].tolist() == whole.columns["area"].tolist()
+        assert not any("not divided" in note for note in whole.notes)
 
 
 @pytest.mark.skipif(shutil.which("gdal_viewshed") is None, reason="needs gdal_viewshed")
@@ -162,5 +219,7 @@ def test_wrong_options_are_refused():
     for radius in (0, -1, float("nan"), "far"):
         with pytest.raises(ts.OptionError, match="radius"):
             ts.viewshed(tin, [1, 1], radius=radius)
+    with pytest.raises(ts.OptionError, match="whole_triangles"):
+        ts.viewshed(tin, [1, 1], whole_triangles="yes")
     with pytest.raises(ts.PointsError, match="a viewshed has one"):
         ts.visible_vertices(tin, [[1, 1], [1, 2]])

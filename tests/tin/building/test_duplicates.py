@@ -305,7 +305,7 @@ def test_error_policy_with_snap_or_lines_and_no_duplicates(options):
     points = [[0, 0, 1], [5, 0, 1], [0, 5, 1], [5, 5, 1]]
     tin = ts.triangulate(points, duplicates="error", **options)
     assert len(tin.points) == 4
-    with pytest.raises(ts.PointsError, match="1 of 5 rows repeat the place"):
+    with pytest.raises(ts.PointsError, match="1 of 5 rows repeats the place"):
         ts.triangulate([*points, [5, 5, 2]], duplicates="error", **options)
 
 

@@ -108,7 +108,7 @@ def test_magnitudes_far_apart_come_to_an_end():
 def test_lines_that_would_need_too_many_vertices_are_refused(monkeypatch):
     monkeypatch.setattr(conforming, "_LEAST_LIMIT", 200)
     monkeypatch.setattr(conforming, "_NEW_PER_VERTEX", 1)
-    with pytest.raises(ts.LinesError, match=r"not conforming after 200 new vertices: \d+ segments"):
+    with pytest.raises(ts.LinesError, match=r"not conforming after 200 new vertices: \d+ segment"):
         ts.triangulate(NONE, breaklines=FAR_APART, conforming=True)
 
 

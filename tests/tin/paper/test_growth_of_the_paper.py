@@ -429,7 +429,7 @@ def test_unknown_reading_is_refused():
 
 def test_repr_is_one_line():
     network = paper.original(flat([(0, 0), (1, 0), (0, 1)]))
-    assert repr(network) == "<Network: 3 points, 1 triangles, 0 edges not extended>"
+    assert repr(network) == "<Network: 3 points, 1 triangle, 0 edges not extended>"
 
 
 def test_measure_cotangents_are_those_of_the_angles():

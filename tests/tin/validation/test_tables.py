@@ -68,10 +68,10 @@ def test_masks_in_structured_arrays_and_lists_of_rows():
 @pytest.mark.parametrize(
     ("act", "error", "sentence"),
     [
-        (lambda tin: ts.Breakline(masked()), ts.LinesError, "1 masked vertices"),
+        (lambda tin: ts.Breakline(masked()), ts.LinesError, "1 masked vertex"),
         (lambda tin: ts.Water(masked()[:, :2], 1.0), None, ""),
         (lambda tin: ts.Water(masked(column=0)[:, :2], 1.0), ts.LinesError, "masked"),
-        (lambda tin: tin.insert(masked()), ts.PointsError, "1 of 5 points are masked"),
+        (lambda tin: tin.insert(masked()), ts.PointsError, "1 of 5 points is masked"),
         (lambda tin: tin.move(0, masked()[4]), ts.PointsError, "masked"),
         (lambda tin: tin.set_elevation([0, 1], masked()[3:, 2]), ts.PointsError, "masked"),
         (lambda tin: ts.TIN.from_triangles(masked(), [[0, 1, 2]]), ts.PointsError, "masked"),

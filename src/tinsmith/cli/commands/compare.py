@@ -108,7 +108,8 @@ def _summarise_comparison(file: Path, result: Comparison, output: Path | None) -
     from ..output.summaries import describe_file_size
 
     hull = f"{len(result.points):,} points, {len(result.hull):,} of them on the hull"
-    due = f"2n - 2 - h = {result.expected:,} triangles make a triangulation"
+    make = "makes" if result.expected == 1 else "make"
+    due = f"2n - 2 - h = {counted(result.expected, 'triangle')} {make} a triangulation"
     rows = [("File", name_file(file)), ("Points", f"{hull}: {due}"), ("", "")]
     rows += [_make_row(label, result, text) for label, text in _ROWS]
     if output is not None:

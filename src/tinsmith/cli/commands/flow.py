@@ -15,6 +15,7 @@ from ..request import surface_options
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...terrain import Features
     from ...tin import TIN
     from ..output.console import Row
@@ -82,8 +83,8 @@ def flow(file: Path, find: FlowProduct, request: Request, **asked: Any) -> None:
     inputs = request.list_inputs(file, more=name_places(asked["points"], "--points"))
     planned = request.plan_products(inputs, "Features", "Table")
     tin = request.read_tin(file)
-    with request.step("Finding"):
-        found = _find(tin, find, asked)
+    with request.step("Finding") as progress:
+        found = _find(tin, find, asked, progress)
     planned.write("Features", found)
     planned.write("Table", tabulate_columns(found))
     request.finish(
@@ -103,7 +104,7 @@ def _require_fitting(find: str, asked: dict[str, Any]) -> None:
         raise click.UsageError("A level is needed for ponds: --level ELEVATION.")
 
 
-def _find(tin: TIN, find: str, asked: dict[str, Any]) -> Features:
+def _find(tin: TIN, find: str, asked: dict[str, Any], progress: Tell) -> Features:
     from ... import terrain
 
     is_full = asked["fill_depressions"]
@@ -116,10 +117,12 @@ def _find(tin: TIN, find: str, asked: dict[str, Any]) -> Features:
     if find == "catchments":
         given = asked["begins"] or asked["points"] is not None
         outlets = _list_places(tin, asked) if given else None
-        return terrain.catchments(tin, outlets, fill_depressions=is_full)
+        return terrain.catchments(tin, outlets, fill_depressions=is_full, progress=progress)
     if find == "accumulation":
         least = asked["min_area"] or 0.0
-        return terrain.flow_accumulation(tin, min_area=least, fill_depressions=is_full)
+        return terrain.flow_accumulation(
+            tin, min_area=least, fill_depressions=is_full, progress=progress
+        )
     if find == "ridges":
         return terrain.ridges_and_valleys(tin, min_angle=asked["min_angle"] or 0.0)
     return terrain.depressions(tin, nested=asked["nested"], min_depth=asked["min_depth"] or 0.0)

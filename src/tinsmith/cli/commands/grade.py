@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..._sentences import counted
 from ..flags import name_flags
 from ..options import writing_options
 from ..output.failures import Failure, refuse_option
@@ -102,7 +103,8 @@ def _read_pad(path: Path, tin: TIN, elevation: float | None) -> Any:
     )
     if len(found) != 1 or len(found[0]) != 1:
         rings = sum(map(len, found))
-        raise Failure(f"'{file}' holds {len(found)} polygons of {rings} rings: a pad is one ring.")
+        held = f"{counted(len(found), 'polygon')} of {counted(rings, 'ring')}"
+        raise Failure(f"'{file}' holds {held}: a pad is one ring.")
     return found[0][0]
 
 

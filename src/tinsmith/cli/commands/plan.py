@@ -135,7 +135,7 @@ def _require_plans(outputs: Sequence[Path], inputs: Sequence[Named]) -> None:
     require_separate(inputs, [Named(path, "--output") for path in outputs])
     for path in outputs:
         if path.suffix.lower() not in PLAN_SUFFIXES:
-            raise Failure(
+            raise click.UsageError(
                 f"Cannot write a plan to '{path}': its name must end in {', '.join(PLAN_SUFFIXES)}."
             )
 

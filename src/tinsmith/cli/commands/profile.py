@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..._sentences import counted
 from ..output.failures import Failure
 from ..parameters import Command, number_option, output_files
 from ..paths import INPUT, LINES, Named, make_title
@@ -117,7 +118,8 @@ def _choose_names(files: Sequence[Path], given: Sequence[str]) -> list[str]:
     names = list(given) or [make_title(file) or "surface" for file in files]
     if len(names) != len(files):
         raise click.UsageError(
-            f"--name is given {len(names)} times for {len(files)} surfaces: name each once."
+            f"--name is given {counted(len(names), 'time')} for "
+            f"{counted(len(files), 'surface')}: name each once."
         )
     repeated = next((name for name in names if names.count(name) > 1), None)
     if repeated is not None:

@@ -46,14 +46,17 @@ _SHOWN = 12
 @number_option("--radius", "LENGTH", "Of the viewshed; any distance if absent.")
 @click.option("--curvature", is_flag=True, help="Mind that the earth is a sphere.")
 @number_option("--sight-refraction", "COEFFICIENT", "With --curvature; 0.13 if absent.")
+@click.option(
+    "--whole-triangles", is_flag=True, help="Judge triangles by their corners: do not divide them."
+)
 @surface_options()
 def sight(file: Path, request: Request, **asked: Any) -> None:
     """Find what is seen from a place on the TIN in FILE, or on that of the points in it.
 
-    Without targets the viewshed: triangles whose corners are all seen, some of them, or none.
-    Vector files get the features, tables (.csv, .json) their columns. Ground that only touches a
-    line of sight does not block it. Points of files are reprojected; several eyes go with as many
-    targets.
+    Without targets the viewshed: what is visible and what is hidden, as polygons that divide
+    triangles. Vector files get the features, tables (.csv, .json) their columns. Ground that only
+    touches a line of sight does not block it. Points of files are reprojected; several eyes go
+    with as many targets.
 
     \b
     Example:
@@ -82,6 +85,8 @@ def _require_fitting(asked: dict[str, Any]) -> None:
         raise click.UsageError("Targets are given by --to X Y, or by --targets FILE: not by both.")
     if (asked["targets"] or has_targets) and asked["radius"] is not None:
         raise click.UsageError("--radius is for a viewshed, without --to.")
+    if (asked["targets"] or has_targets) and asked["whole_triangles"]:
+        raise click.UsageError("--whole-triangles is for a viewshed, without --to.")
     coefficient = asked["sight_refraction"]
     if coefficient is not None and not asked["curvature"]:
         raise click.UsageError("--sight-refraction is for --curvature.")
@@ -101,7 +106,8 @@ def _look(tin: TIN, asked: dict[str, Any]) -> Features:
     if asked["targets"]:
         targets = [list(one) for one in asked["targets"]]
         return terrain.line_of_sight(tin, eye, targets, **how)
-    return terrain.viewshed(tin, eye, radius=asked["radius"], **how)
+    of_viewshed = {name: asked[name] for name in ("radius", "whole_triangles")}
+    return terrain.viewshed(tin, eye, **of_viewshed, **how)
 
 
 def _summarise(tin: TIN, found: Features) -> list[Row]:
