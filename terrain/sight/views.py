@@ -94,7 +94,7 @@ def viewshed(
         notes.append(f"{why} triangles are not divided: they are judged by their corners.")
     mesh, classes, owners = _judge_triangles(tin, view) if as_whole else _divide(tin, view)
     near = (measure_distances(tin.points, view.eye) <= view.radius)[tin.triangles]
-    is_near: NDArray[np.bool_] = near.any(axis=1)
+    is_near: NDArray[np.bool_] = np.logical_or.reduce(near, axis=1)
     classes[~is_near[owners]] = -1
     return _as_features(tin, mesh, classes, owners, notes)
 
