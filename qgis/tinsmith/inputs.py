@@ -9,7 +9,9 @@ from typing import Any
 
 from qgis.core import (
     QgsCoordinateTransformContext,
+    QgsFeature,
     QgsFeatureRequest,
+    QgsGeometry,
     QgsMeshLayer,
     QgsProcessing,
     QgsProcessingException,
@@ -18,8 +20,10 @@ from qgis.core import (
     QgsProcessingParameterField,
     QgsProcessingParameterFile,
     QgsProcessingParameterMapLayer,
+    QgsProcessingParameterPoint,
     QgsProviderRegistry,
     QgsRasterLayer,
+    QgsReferencedPointXY,
     QgsVectorFileWriter,
     QgsVectorLayer,
     QgsWkbTypes,
@@ -106,16 +110,21 @@ class Surface:
         Of the parameter of the layer; those of the file and the field begin with it.
     words : str
     is_required : bool
+    is_mesh : bool
+        Whether it may be a mesh.
     """
 
     name: str = "INPUT"
     words: str = "Surface"
     is_required: bool = True
+    is_mesh: bool = True
 
     def define(self) -> list[Any]:
         """Return the parameters."""
         kinds = [QgsProcessing.TypeMesh, QgsProcessing.TypeVectorPoint, QgsProcessing.TypeRaster]
-        words = f"{self.words}: a mesh, points or a DEM"
+        kinds = kinds if self.is_mesh else kinds[1:]
+        mesh = "a mesh, " if self.is_mesh else ""
+        words = f"{self.words}: {mesh}points or a DEM"
         layer = QgsProcessingParameterMapLayer(self.name, words, None, True, kinds)
         column = QgsProcessingParameterField(
             f"{self.name}_Z_FIELD",
@@ -136,7 +145,7 @@ class Surface:
             ANY_FILE,
         )
         return [
-            describe(layer, "A mesh layer (a TIN), a layer of points with Z, or a DEM."),
+            describe(layer, f"A layer: {mesh}points with Z, or a DEM."),
             describe(column, "Without it the Z of the geometry is taken.", "--z-field"),
             describe(
                 file,
@@ -305,3 +314,43 @@ class Lines:
             return []
         source = require_features(algorithm, parameters, self.name, context)
         return [f"{self.flag}={files.write_source(source, feedback)}"]
+
+
+@dataclass(frozen=True)
+class Place:
+    """A point that is clicked on the map or typed, which the command reads by an option.
+
+    Attributes
+    ----------
+    flag : str
+        Takes a file of points, with their CRS.
+    plain_flag : str
+        Takes two coordinates in the CRS of the surface: for those without a CRS.
+    """
+
+    name: str
+    words: str
+    flag: str
+    plain_flag: str
+    help_text: str
+
+    def define(self) -> Any:
+        """Return the parameter."""
+        return describe(
+            QgsProcessingParameterPoint(self.name, self.words), self.help_text, self.flag
+        )
+
+    def list_arguments(
+        self, algorithm: Any, parameters: dict[str, Any], context: Any, files: Files, feedback: Any
+    ) -> list[str]:
+        """Return the option with the place."""
+        place = algorithm.parameterAsPoint(parameters, self.name, context)
+        given = parameters.get(self.name)
+        if not isinstance(given, QgsReferencedPointXY) and "[" not in str(given):
+            return [self.plain_flag, repr(place.x()), repr(place.y())]
+        layer = QgsVectorLayer("Point", self.words, "memory")
+        layer.setCrs(algorithm.parameterAsPointCrs(parameters, self.name, context))
+        feature = QgsFeature()
+        feature.setGeometry(QgsGeometry.fromPointXY(place))
+        layer.dataProvider().addFeatures([feature])
+        return [f"{self.flag}={files.write_source(layer, feedback)}"]

@@ -46,12 +46,14 @@ def number(
     least: float | None = None,
     integer: bool = False,
     advanced: bool = False,
+    required: bool = False,
 ) -> Option:
-    """Return the option for a number; without a default it may be left out."""
+    """Return the option for a number; without a default it may be left out unless required."""
     kind = QgsProcessingParameterNumber.Integer if integer else QgsProcessingParameterNumber.Double
 
     def define() -> Any:
-        made = QgsProcessingParameterNumber(name, words, kind, default, default is None)
+        is_optional = default is None and not required
+        made = QgsProcessingParameterNumber(name, words, kind, default, is_optional)
         if least is not None:
             made.setMinimum(least)
         return describe(made, help_text, flag, advanced)

@@ -115,9 +115,11 @@ def run_program(arguments: list[str], speaker: Speaker, feedback: Any) -> str:
     Failed
         With the program's own sentence.
     QgsProcessingException
-        If the user cancels; the process has then ended.
+        If the user cancels; the process has then ended, or was not started.
     """
     feedback.pushCommandInfo(" ".join(map(shlex.quote, arguments)))
+    if feedback.isCanceled():
+        raise QgsProcessingException(CANCELLED)
     process = subprocess.Popen(
         arguments,
         stdin=subprocess.DEVNULL,

@@ -1,4 +1,4 @@
-"""Styles of results: contours with labels, classes in their colours, ramps of elevations."""
+"""Styles of results: contours with labels, classes in their colours, water, ramps of elevations."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from qgis.core import (
     QgsGradientColorRamp,
     QgsGradientStop,
     QgsLineSymbol,
+    QgsMarkerSymbol,
     QgsMeshDatasetIndex,
     QgsPalLayerSettings,
     QgsProperty,
@@ -20,6 +21,8 @@ from qgis.core import (
     QgsRendererCategory,
     QgsSingleBandGrayRenderer,
     QgsSingleBandPseudoColorRenderer,
+    QgsSingleSymbolRenderer,
+    QgsSymbolLayer,
     QgsTextBufferSettings,
     QgsTextFormat,
     QgsUnitTypes,
@@ -36,6 +39,15 @@ _TINTS = (
     (1.0, "#f4f1ec"),
 )
 """Hypsometric tints from low to high."""
+_WATER = "#2f6fb0"
+_CERTAINTIES = {"high": "#c62828", "medium": "#ef8f1c", "low": "#f4d03f"}
+_SEEN = {True: "#2e8b3d", False: "#c4533f"}
+_VIEWS = ("visible", "partly", "hidden")
+_RIDGES = {"ridge": _BROWN, "valley": _WATER}
+_GOLDEN_ANGLE = 137.5
+"""Degrees between the hues of neighbours in a row, which makes them differ."""
+_THINNEST, _THICKEST = 0.15, 1.8
+"""Millimetres, of channels."""
 _EARTHWORK = {"cut": "#c4533f", "fill": "#3b77b0", "unchanged": "#dddddd"}
 
 
@@ -122,11 +134,11 @@ def _make_contour_labels(layer: Any) -> Any:
     return labels
 
 
-def _make_text_format() -> Any:
+def _make_text_format(color: str = _BROWN) -> Any:
     text = QgsTextFormat()
     text.setSize(7)
     text.setSizeUnit(QgsUnitTypes.RenderPoints)
-    text.setColor(QColor(_BROWN))
+    text.setColor(QColor(color))
     halo = QgsTextBufferSettings()
     halo.setEnabled(True)
     halo.setSize(0.7)
@@ -184,3 +196,104 @@ def style_earthwork(layer: Any) -> None:
 def _categorise(value: Any, label: str, color: str) -> Any:
     symbol = QgsFillSymbol.createSimple({"color": color, "outline_style": "no"})
     return QgsRendererCategory(value, symbol, label)
+
+
+# ---------------------------------------------------------------- points and sight
+
+
+def style_suspects(layer: Any) -> None:
+    """Mark points that look like blunders by how certain that is, with the reason."""
+    categories = [
+        QgsRendererCategory(
+            certainty,
+            QgsMarkerSymbol.createSimple(
+                {"color": color, "size": "3.4", "outline_color": "#3a3a3a", "outline_width": "0.3"}
+            ),
+            f"{certainty} certainty",
+        )
+        for certainty, color in _CERTAINTIES.items()
+    ]
+    layer.setRenderer(QgsCategorizedSymbolRenderer("certainty", categories))
+    labels = QgsPalLayerSettings()
+    labels.fieldName = "reason"
+    labels.setFormat(_make_text_format("#3a3a3a"))
+    layer.setLabeling(QgsVectorLayerSimpleLabeling(labels))
+    layer.setLabelsEnabled(True)
+
+
+def style_ground(layer: Any) -> None:
+    """Draw the points of the ground as small dots."""
+    symbol = {"color": _BROWN, "size": "0.7", "outline_style": "no"}
+    layer.setRenderer(QgsSingleSymbolRenderer(QgsMarkerSymbol.createSimple(symbol)))
+
+
+def style_viewshed(layer: Any) -> None:
+    """Color what is seen, in part, and what is hidden, as the command's own legend does."""
+    colors = {one["class"]: one["color"] for one in layer.getFeatures()}
+    categories = [_categorise(name, name, colors[name]) for name in _VIEWS if name in colors]
+    layer.setRenderer(QgsCategorizedSymbolRenderer("class", categories))
+
+
+def style_sight_lines(layer: Any) -> None:
+    """Draw lines of sight that are free, and those that something blocks."""
+    labels = {True: "visible", False: "blocked"}
+    categories = [
+        QgsRendererCategory(seen, _make_line(color, 0.5), labels[seen])
+        for seen, color in _SEEN.items()
+    ]
+    layer.setRenderer(QgsCategorizedSymbolRenderer("visible", categories))
+
+
+def _make_line(color: str, width: float) -> Any:
+    return QgsLineSymbol.createSimple({"color": color, "width": str(width), "capstyle": "round"})
+
+
+# ---------------------------------------------------------------- water
+
+
+def style_water(layer: Any) -> None:
+    """Fill standing water, with its shore."""
+    symbol = {"color": "47,111,176,120", "outline_color": _WATER, "outline_width": "0.4"}
+    layer.setRenderer(QgsSingleSymbolRenderer(QgsFillSymbol.createSimple(symbol)))
+
+
+def style_paths(layer: Any) -> None:
+    """Draw the paths of drops."""
+    layer.setRenderer(QgsSingleSymbolRenderer(_make_line(_WATER, 0.6)))
+
+
+def style_pits(layer: Any) -> None:
+    """Mark pits by triangles that point down."""
+    symbol = {"name": "triangle", "angle": "180", "color": _WATER, "size": "2.6"}
+    symbol |= {"outline_color": "white", "outline_width": "0.2"}
+    layer.setRenderer(QgsSingleSymbolRenderer(QgsMarkerSymbol.createSimple(symbol)))
+
+
+def style_ridges(layer: Any) -> None:
+    """Tell ridges from valleys."""
+    categories = [
+        QgsRendererCategory(kind, _make_line(color, 0.4), kind) for kind, color in _RIDGES.items()
+    ]
+    layer.setRenderer(QgsCategorizedSymbolRenderer("kind", categories))
+
+
+def style_catchments(layer: Any) -> None:
+    """Fill each catchment with a hue of its own."""
+    symbol = QgsFillSymbol.createSimple({"outline_color": "#4a4a4a", "outline_width": "0.3"})
+    hue = f"color_hsva(($id * {_GOLDEN_ANGLE}) % 360, 45, 90, 150)"
+    _set_by_expression(symbol, QgsSymbolLayer.PropertyFillColor, hue)
+    layer.setRenderer(QgsSingleSymbolRenderer(symbol))
+
+
+def style_channels(layer: Any) -> None:
+    """Draw channels the thicker, the more drains through them."""
+    symbol = _make_line(_WATER, _THINNEST)
+    largest = layer.maximumValue(layer.fields().lookupField("area")) or 1.0
+    width = f'{_THINNEST} + {_THICKEST - _THINNEST} * sqrt("area" / {largest!r})'
+    _set_by_expression(symbol, QgsSymbolLayer.PropertyStrokeWidth, width)
+    layer.setRenderer(QgsSingleSymbolRenderer(symbol))
+
+
+def _set_by_expression(symbol: Any, what: Any, expression: str) -> None:
+    """Have a property of a symbol follow the features."""
+    symbol.symbolLayer(0).setDataDefinedProperty(what, QgsProperty.fromExpression(expression))

@@ -13,8 +13,9 @@ from ...tin.constraints.polygons import gather_rings_of_regions
 from ...tin.validation.options import is_finite_number
 from ..earthwork.reference import find_reference
 from ..georeference import Agreement
+from .outlines import find_area
 from .pads import build_patch
-from .pasting import find_area, join_surfaces
+from .pasting import join_surfaces
 from .slopes import find_slope
 
 if TYPE_CHECKING:

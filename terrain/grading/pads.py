@@ -27,7 +27,10 @@ def build_patch(tin: TIN, pad: Any, level: float, slopes: list[Slope]) -> TIN:
     breaks = [line for slope in slopes for line in slope.find_breaks()]
     ends = np.concatenate([edge, *rims])
     lines = [Breakline(edge, name="pad edge", priority=1)]
-    lines += [Breakline(_snap(line, ends, tolerance), name="slope") for line in breaks]
+    snapped = [_snap(line, ends, tolerance) for line in breaks]
+    lines += [
+        Breakline(line, name="slope") for line in snapped if np.ptp(line[:, :2], axis=0).any()
+    ]
     return triangulate(
         np.concatenate(rings),
         breaklines=lines,

@@ -16,6 +16,7 @@ from ...tin.constraints.clipping import in_rings
 from ...tin.topology import edge_keys
 from ...tin.validation.options import require_tin
 from ..georeference import agree, find_plane_units
+from .outlines import arrange_rings, fills_hull, find_area
 from .seams import Seam, find_sides, measure_tolerance
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from ..georeference import Agreement
 
-__all__ = ["find_area", "join_surfaces", "paste"]
+__all__ = ["join_surfaces", "paste"]
 
 _SHARE = 1e-12
 """Of an area: less of it may lie beyond another one by rounding."""
@@ -116,9 +117,9 @@ def join_surfaces(
     seam.insert_cuts()
     lines += [Breakline(ring, name=name, priority=_PRIORITY) for ring in seam.rings]
     lines += seam.list_lines()
-    beyond = _measure_beyond(base, patch) if extend else 0.0
+    area = find_area(base)
+    beyond = float(seam.area.difference(area).area) if extend else 0.0
     reaches = beyond > seam.rounding
-    rings = _join_rings(base, patch, cut, seam) if reaches else _list_rings(base, ground)
     done(0.7)
     made = triangulate(
         Survey(
@@ -130,9 +131,9 @@ def join_surfaces(
         crs=agreed.crs,
         z_unit=agreed.elevation_unit,
         progress=done.stage(0.7, 1.0),
-        **rings,
+        **(_join_rings(area, cut, seam) if reaches else _list_rings(area, cut, seam)),
     )
-    gap = _describe_gap(base, agreed, np.concatenate(seam.rings))
+    gap = _describe_gap(base, area, agreed, seam)
     added = _describe_beyond(beyond, patch, agreed) if reaches else []
     notes = (*made.report.notes, *agreed.notes, *gap, *added)
     return made.replace(report=replace(made.report, notes=notes))
@@ -144,38 +145,15 @@ def _join_attributes(base: TIN, patch: TIN, is_kept: NDArray[np.bool_]) -> dict[
     return join_columns([kept, patch.attributes], [int(is_kept.sum()), len(patch.points)])
 
 
-def _list_rings(base: TIN, points: NDArray[np.float64]) -> dict[str, Any]:
+def _list_rings(area: Any, cut: _Base, seam: Seam) -> dict[str, Any]:
     """Return boundary and holes of the base, where it does not reach its hull."""
-    import shapely
-
-    area = find_area(base)
-    if shapely.convex_hull(area).area - area.area <= _SHARE * area.area:
+    if fills_hull(area):
         return {}
-    rings = [points[ring] for ring in base.boundary]
-    turns = [shapely.is_ccw(shapely.linearrings(ring[:, :2])) for ring in rings]
-    return {
-        "boundary": [ring for ring, turn in zip(rings, turns, strict=True) if turn],
-        "holes": [ring for ring, turn in zip(rings, turns, strict=True) if not turn],
-    }
+    return _join_rings(area, cut, seam) if seam.touches(area) else cut.list_rings(area)
 
 
-def find_area(tin: TIN) -> Any:
-    """Return what a surface covers as a geometry of shapely."""
-    import shapely
-
-    rings = [shapely.linearrings(tin.points[ring, :2]) for ring in tin.boundary]
-    return shapely.build_area(shapely.geometrycollections(rings))
-
-
-def _measure_beyond(base: TIN, patch: TIN) -> float:
-    """Return the area of a patch beyond the boundary of the base."""
-    import shapely
-
-    return float(shapely.difference(find_area(patch), find_area(base)).area)
-
-
-def _join_rings(base: TIN, patch: TIN, cut: _Base, seam: Seam) -> dict[str, Any]:
-    """Return boundary and holes of both surfaces together, where the patch reaches beyond.
+def _join_rings(area: Any, cut: _Base, seam: Seam) -> dict[str, Any]:
+    """Return boundary and holes of both surfaces together, where the patch meets the outline.
 
     They are made of the pieces of both boundaries as they were cut at each other, without new
     intersections: of the faces between them those in either surface.
@@ -183,27 +161,20 @@ def _join_rings(base: TIN, patch: TIN, cut: _Base, seam: Seam) -> dict[str, Any]
     import shapely
 
     paths = [*cut.list_boundary(), *(pair for ring in seam.rings for pair in _split(ring))]
-    wanted = shapely.union(find_area(base), find_area(patch))
+    wanted = shapely.union(area, seam.area)
     faces = shapely.get_parts(shapely.polygonize(shapely.linestrings(np.array(paths)[:, :, :2])))
     shapely.prepare(wanted)
-    joined = shapely.coverage_union_all(
-        faces[shapely.contains(wanted, shapely.point_on_surface(faces))]
-    )
+    inside = faces[shapely.contains(wanted, shapely.point_on_surface(faces))]
+    try:
+        joined = shapely.coverage_union_all(inside)
+    except shapely.GEOSException:  # faces lie over each other, by rounding
+        joined = shapely.MultiPolygon()
     if abs(joined.area - wanted.area) > 2 * seam.rounding:
         raise PointsError(
             "The patch cannot be joined to the base: their boundaries are so near to each other "
             "that they cross within the rounding of the coordinates."
         )
-    elevations = {(x, y): z for path in paths for x, y, z in path.tolist()}
-    rings = [
-        (np.array([[x, y, elevations[x, y]] for x, y in ring.coords]), number > 0)
-        for part in shapely.get_parts(joined)
-        for number, ring in enumerate([part.exterior, *part.interiors])
-    ]
-    return {
-        "boundary": [ring for ring, is_hole in rings if not is_hole],
-        "holes": [ring for ring, is_hole in rings if is_hole],
-    }
+    return arrange_rings(joined, {(x, y): z for path in paths for x, y, z in path.tolist()})
 
 
 def _split(ring: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -218,9 +189,14 @@ def _describe_beyond(beyond: float, patch: TIN, agreed: Agreement) -> list[str]:
     return [f"The patch {where} the base, which becomes larger by {beyond:.6g} {unit}."]
 
 
-def _describe_gap(base: TIN, agreed: Agreement, seam: NDArray[np.float64]) -> list[str]:
+def _describe_gap(base: TIN, area: Any, agreed: Agreement, cut: Seam) -> list[str]:
     """Say how far the surfaces are apart along the seam, if they are."""
-    own = base.interpolate(seam[:, :2]) * agreed.factors[0]
+    seam = np.concatenate(cut.rings)
+    own = base.interpolate(seam[:, :2])
+    lost = np.isnan(own)  # outside, or by rounding
+    lost[lost] = cut.lie_near(area, seam[lost])
+    own[lost] = base.interpolate(seam[lost, :2], method="linear", extrapolate="nearest")
+    own *= agreed.factors[0]
     gaps = np.nan_to_num(np.abs(own - seam[:, 2]))
     worst = int(gaps.argmax())
     if gaps[worst] <= _LEVEL * max(1.0, float(np.abs(seam[:, 2]).max())):
@@ -289,6 +265,11 @@ class _Base:
                 else:
                     runs.append([start, end])
         return runs
+
+    def list_rings(self, area: Any) -> dict[str, Any]:
+        """Return boundary and holes of the area, which no patch meets."""
+        rows = self._points[np.concatenate(self._tin.boundary)]
+        return arrange_rings(area, {(x, y): z for x, y, z in rows.tolist()})
 
     def list_boundary(self) -> Iterator[NDArray[np.float64]]:
         """Yield the parts of the boundary that the patch does not cover, (2, 3) each."""

@@ -9,6 +9,7 @@ import numpy as np
 from ..._progress import Progress
 from ...tin import Breakline
 from ...tin.topology import edge_keys
+from .outlines import build_area
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -51,6 +52,8 @@ class Seam:
     Attributes
     ----------
     rings : list of (k, 3) float64 array
+    area : shapely.Polygon or shapely.MultiPolygon
+        That the patch covers.
     rounding : float
         Area that the roundings of the boundary can take away or add.
     """
@@ -64,11 +67,27 @@ class Seam:
         self._pairs = np.concatenate([np.stack([r[:-1], r[1:]], 1) for r in self._numbers])
         self._ends = points[self._pairs]
         self._tree = shapely.STRtree(shapely.linestrings(self._ends[:, :, :2]))
-        closed = [shapely.linearrings(ring[:, :2]) for ring in self.rings]
-        self._area = shapely.build_area(shapely.geometrycollections(closed))
-        shapely.prepare(self._area)
-        self.rounding = tolerance * float(self._area.length)
+        self.area = build_area(points, patch.boundary)
+        shapely.prepare(self.area)
+        self.rounding = tolerance * float(self.area.length)
         self._cuts: dict[int, list[tuple[float, NDArray[np.float64]]]] = {}
+
+    def touches(self, area: Any) -> bool:
+        """Tell whether it meets the outline of an area but for rounding."""
+        import shapely
+
+        lines = shapely.multilinestrings([shapely.linestrings(ring[:, :2]) for ring in self.rings])
+        return bool(shapely.dwithin(shapely.boundary(area), lines, self._tolerance))
+
+    def lie_near(self, area: Any, places: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Tell which places are in an area but for rounding."""
+        import shapely
+
+        shapely.prepare(area)
+        is_near: NDArray[np.bool_] = shapely.dwithin(
+            area, shapely.points(places[:, :2]), self._tolerance
+        )
+        return is_near
 
     def find_near(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return which places lie on the seam but for rounding."""
@@ -94,7 +113,7 @@ class Seam:
         """Return the parts of segments, (k, 2, 3), outside; their new ends are on the seam."""
         import shapely
 
-        outside = shapely.difference(shapely.linestrings(ends[:, :, :2]), self._area)
+        outside = shapely.difference(shapely.linestrings(ends[:, :, :2]), self.area)
         done = Progress(progress)
         found = []
         for left, own, stays in zip(outside, ends, is_kept.tolist(), strict=True):

@@ -11,7 +11,7 @@ from ...tin import TIN, topology
 from ..earthwork import difference
 from ..earthwork.zones import classify, join_segments, number_zones
 from .distances import measure_distances
-from .pasting import find_area
+from .outlines import find_area
 from .seams import measure_tolerance
 
 if TYPE_CHECKING:

@@ -82,6 +82,28 @@ def test_a_clean_build_says_nothing(tmp_path):
 
 
 def test_a_format_that_holds_no_table_is_refused_before_any_work(site, tmp_path):
-    result = run("inspect", site, "-o", tmp_path / "a.gpkg", code=1)
+    result = run("inspect", site, "-o", tmp_path / "a.vtu", code=1)
     assert "Table" in result.stderr
-    assert not (tmp_path / "a.gpkg").exists()
+    assert not (tmp_path / "a.vtu").exists()
+
+
+@pytest.mark.parametrize("suffix", ["gpkg", "fgb"])
+def test_findings_are_points_of_gis(site, tmp_path, suffix):
+    out = tmp_path / f"a.{suffix}"
+    run("inspect", site, "--crs", "EPSG:32616", "-o", out)
+    found = ts.read(out, z_field="geometry")
+    points = ts.read(site, crs="EPSG:32616").points
+    assert str(found.crs) == "EPSG:32616"
+    np.testing.assert_array_equal(found.points, points[found.attributes["row"].astype(int)])
+    assert set(found.attributes["certainty"]) <= {"high", "medium", "low"}
+    assert set(found.attributes["reason"]) == {"spike", "factor", "isolated"}
+
+
+def test_no_finding_is_an_empty_layer(tmp_path):
+    pyogrio = pytest.importorskip("pyogrio")
+    points = np.random.default_rng(2).random((200, 3)) * [100, 100, 1]
+    ts.write(ts.Survey(points=points), tmp_path / "clean.csv")
+    run("inspect", tmp_path / "clean.csv", "--crs", "EPSG:32616", "-o", tmp_path / "a.gpkg")
+    told = pyogrio.read_info(tmp_path / "a.gpkg")
+    assert (told["features"], told["geometry_type"]) == (0, "Point Z")
+    assert "certainty" in told["fields"]

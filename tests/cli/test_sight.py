@@ -32,6 +32,40 @@ def test_lines_and_the_viewshed_are_written(site, tmp_path):
     assert (tmp_path / "a.geojson").exists()
 
 
+def write_places(path, places, crs="EPSG:32616"):
+    return ts.write(ts.Features.of_points(places, crs=crs), path)
+
+
+def test_places_of_files_are_reprojected(site, tmp_path):
+    degrees = ts.CRS("EPSG:4326")
+    points = ts.Survey(points=[[1, 2, 0], [3, 2, 0], [7, 2, 0]], crs="EPSG:32616")
+    around = ts.reproject(points, degrees).points[:, :2]
+    eye = write_places(tmp_path / "eye.gpkg", around[:1], degrees)
+    targets = write_places(tmp_path / "targets.gpkg", around[1:], degrees)
+    start = ("sight", site, "--eye-height", "0.5", "--json", "-o", tmp_path / "a.csv")
+    plain = json.loads(run(*start, "--from", 1, 2, "--to", 3, 2, "--to", 7, 2).stdout)["found"]
+    done = run(*start, "--eye", eye, "--targets", targets)
+    for found, wanted in zip(json.loads(done.stdout)["found"], plain, strict=True):
+        assert found["visible"] == wanted["visible"]
+        assert found["distance"] == pytest.approx(wanted["distance"], abs=1e-6)
+    seen = json.loads(run(*start, "--eye", eye).stdout)["found"]
+    assert [row["class"] for row in seen] == ["visible", "hidden"]
+
+
+def test_each_place_is_given_once_and_by_points(site, tmp_path):
+    eye = write_places(tmp_path / "eye.gpkg", [[1, 2]])
+    line = ts.Features.of_lines([[1, 2], [3, 2]], [0, 2], crs="EPSG:32616")
+    lines = ts.write(line, tmp_path / "lines.gpkg")
+    out = ("-o", tmp_path / "a.csv")
+    assert run("sight", site, "--from", 1, 2, "--eye", eye, *out).exit_code == 2
+    double = ("--to", 3, 2, "--targets", eye)
+    assert run("sight", site, "--from", 1, 2, *double, *out).exit_code == 2
+    done = run("sight", site, "--eye", lines, *out)
+    assert done.exit_code == 1
+    assert "has lines: points are needed" in done.output
+    assert not (tmp_path / "a.csv").exists()
+
+
 def test_triangles_are_judged_as_wholes_if_asked(tmp_path):
     rng = np.random.default_rng(3)
     path = tmp_path / "hills.ply"

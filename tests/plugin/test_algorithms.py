@@ -11,19 +11,27 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click import Choice
+from support.qgis_jobs import (
+    CUT,
+    DEM,
+    KERB,
+    RING,
+    SURVEY,
+    UTM,
+    assert_same_tin,
+    job,
+    make_inputs,
+    make_layer,
+    read_layer,
+    read_survey,
+    require_done,
+)
 from support.qgis_plugin import drive
 
 import tinsmith as ts
 from tinsmith.cli import main
 
-ROOT = Path(__file__).parents[2]
-UTM = "EPSG:32616"
-SURVEY = ROOT / "sample_data" / "site_survey.csv"
-DEM = ROOT / "sample_data" / "jacksboro.tif"
-KERB = [[752700.0, 4024240.0, 322.0], [752740.0, 4024250.0, 323.5]]
-RING = [[752660, 4024210], [752860, 4024210], [752860, 4024310], [752660, 4024310]]
 UP = np.array([0.0, 0.0, 1.0])
-CUT = [[752690.0, 4024225.0], [752850.0, 4024330.0]]
 
 UNSOUND = "v 0 0 0\nv 1 0 0\nv 1.4 1.4 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"
 """Two triangles with the longer diagonal between them."""
@@ -31,56 +39,7 @@ UNSOUND = "v 0 0 0\nv 1 0 0\nv 1.4 1.4 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"
 
 @pytest.fixture
 def survey():
-    return ts.read(SURVEY, crs=UTM)
-
-
-def write_wkt(kind, rows):
-    vertices = ", ".join(" ".join(map(repr, map(float, row))) for row in rows)
-    return f"{kind}({'(' * (kind == 'Polygon')}{vertices}{')' * (kind == 'Polygon')})"
-
-
-def make_layer(kind, rows, *, columns=(), crs=UTM, **more):
-    """Return a layer in memory: each row has its geometry and its attributes."""
-    return {"kind": kind, "crs": crs, "columns": list(columns), "features": rows, **more}
-
-
-def make_inputs(folder, survey):
-    """Write a survey and its TIN; return the layers of a project."""
-    ts.write(survey, folder / "points.gpkg")
-    tin = ts.triangulate(survey)
-    ts.write(tin, folder / "ground.ply")
-    ts.write(tin, folder / "ground.2dm")
-    flat = [
-        [write_wkt("Point", [row[:2]]), [row[2] + 1.0, k]] for k, row in enumerate(survey.points)
-    ]
-    closed = [*RING, RING[0]]
-    return tin, {
-        "points": {"kind": "vector", "path": str(folder / "points.gpkg")},
-        "ground": {"kind": "mesh", "path": str(folder / "ground.ply")},
-        "no crs": {"kind": "mesh", "path": str(folder / "ground.2dm"), "crs": UTM},
-        "dem": {"kind": "raster", "path": str(DEM)},
-        "flat": make_layer(
-            "Point", flat, columns=["high:double", "fid:integer"], selected=list(range(1, 301))
-        ),
-        "kerb": make_layer(
-            "LineStringZ", [[write_wkt("LineString Z", KERB), ["k1"]]], columns=["name:string"]
-        ),
-        "site": make_layer("Polygon", [[write_wkt("Polygon", closed), []]]),
-        "cut": make_layer("LineString", [[write_wkt("LineString", CUT), []]]),
-    }
-
-
-def require_done(told):
-    for name, one in told.items():
-        if name != "provider":
-            assert one["error"] is None, (name, one["error"], one["log"])
-            assert "not correctly generated" not in str(one["log"]), (name, one["log"])
-
-
-def assert_same_tin(found, wanted):
-    np.testing.assert_array_equal(found.points, wanted.points)
-    np.testing.assert_array_equal(found.triangles, wanted.triangles)
-    assert str(found.crs) == str(wanted.crs)
+    return read_survey()
 
 
 @pytest.mark.slow
@@ -149,12 +108,6 @@ def check_lines(answer, survey, folder):
     assert max(answer["fractions"]) == 100
 
 
-def job(name, *, load=True, **parameters):
-    """Return an algorithm with its parameters."""
-    plain = {key: str(one) if isinstance(one, Path) else one for key, one in parameters.items()}
-    return {"algorithm": f"tinsmith:{name}", "parameters": plain, "load": load}
-
-
 @pytest.mark.slow
 @pytest.mark.timeout(900)
 def test_products_are_those_of_the_package(tmp_path, survey):
@@ -202,13 +155,6 @@ def check_contours(told, tin, folder):
     labels = ts.contour_labels(ts.contours(tin, interval=2))
     layer = told["labels"]["layers"]["Contours"]
     assert (layer["count"], layer["labels"]) == (len(labels), True)
-
-
-def read_layer(path):
-    import pyogrio
-
-    columns, _, shapes, values = pyogrio.raw.read(path)
-    return list(columns["fields"]), list(shapes), [one.tolist() for one in values]
 
 
 def check_slope(answer, tin, folder):

@@ -14,6 +14,7 @@ from pathlib import Path
 from qgis.core import (
     QgsApplication,
     QgsCoordinateReferenceSystem,
+    QgsExpression,
     QgsFeature,
     QgsGeometry,
     QgsMeshLayer,
@@ -150,6 +151,8 @@ def describe_layer(layer):
         told["count"] = layer.featureCount()
         told["labels"] = layer.labelsEnabled()
         told["renderer"] = renderer.type() if renderer else None
+        if told["renderer"] == "singleSymbol":
+            told["properties"] = describe_properties(renderer.symbol().symbolLayer(0))
         if told["renderer"] == "categorizedSymbol":
             told["field"] = renderer.classAttribute()
             rows = renderer.categories()  # kept while their symbols are asked
@@ -172,6 +175,15 @@ def describe_layer(layer):
         renderer = layer.renderer()
         told["renderer"] = renderer.type()
     return told
+
+
+def describe_properties(layer):
+    """Return the expressions that a layer of a symbol follows; they must be sound."""
+    found = layer.dataDefinedProperties()
+    properties = [found.property(key) for key in found.propertyKeys()]
+    expressions = [one.expressionString() for one in properties if one.isActive()]
+    assert not any(QgsExpression(one).hasParserError() for one in expressions), expressions
+    return expressions
 
 
 def describe_provider(registry):

@@ -6,10 +6,16 @@ from .build import BuildAlgorithm
 from .check import CheckAlgorithm
 from .contours import ContoursAlgorithm
 from .convert import ConvertAlgorithm
+from .flow import FlowAlgorithm
+from .grade import GradeAlgorithm
+from .ground import GroundAlgorithm
+from .inspect import InspectAlgorithm
 from .install import InstallAlgorithm
+from .paste import PasteAlgorithm
 from .profile import ProfileAlgorithm
 from .raster import RasterAlgorithm
 from .refine import RefineAlgorithm
+from .sight import SightAlgorithm
 from .simplify import SimplifyAlgorithm
 from .slope import SlopeAlgorithm
 from .volume import StorageAlgorithm, VolumeAlgorithm
@@ -17,12 +23,18 @@ from .volume import StorageAlgorithm, VolumeAlgorithm
 __all__ = ["ALGORITHMS"]
 
 ALGORITHMS = (
+    InspectAlgorithm,
+    GroundAlgorithm,
     BuildAlgorithm,
     ContoursAlgorithm,
     SlopeAlgorithm,
     ProfileAlgorithm,
     VolumeAlgorithm,
     StorageAlgorithm,
+    FlowAlgorithm,
+    SightAlgorithm,
+    GradeAlgorithm,
+    PasteAlgorithm,
     RasterAlgorithm,
     RefineAlgorithm,
     SimplifyAlgorithm,

@@ -11,15 +11,17 @@ from typing import Any
 from qgis.core import (
     QgsProcessingAlgorithm,
     QgsProcessingException,
+    QgsProcessingOutputNumber,
     QgsProcessingParameterBoolean,
     QgsProcessingParameterFileDestination,
     QgsProcessingParameterString,
+    QgsProcessingParameterVectorDestination,
     QgsProcessingUtils,
 )
 
 from ..command import find_command
 from ..icons import load_icon
-from ..inputs import Files, Found, Lines, Surface
+from ..inputs import Files, Found, Lines, Place, Surface
 from ..options import Option, describe
 from ..process import Failed, Speaker, run_program
 from ..results import load_file
@@ -90,8 +92,8 @@ class Run:
         self.run([verb, path, *options, f"--output={made}"])
         return [made]
 
-    def list_lines(self, lines: tuple[Lines, ...]) -> list[str]:
-        """Return the options with the layers of lines that are given, as files."""
+    def list_lines(self, lines: tuple[Lines | Place, ...]) -> list[str]:
+        """Return the options with the layers of lines and the places that are given, as files."""
         given = (self.algorithm, self.parameters, self.context, self.files, self.feedback)
         return [part for one in lines for part in one.list_arguments(*given)]
 
@@ -155,7 +157,7 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
     summary = ""
     explanation = ""
     surfaces: tuple[Surface, ...] = ()
-    lines: tuple[Lines, ...] = ()
+    lines: tuple[Lines | Place, ...] = ()
     options: tuple[Option, ...] = ()
 
     def __init__(self) -> None:
@@ -225,6 +227,20 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
             name, words, kinds, None, optional, not optional
         )
         self.addParameter(describe(made, help_text))
+
+    def add_layer_output(self, words: str, kind: Any) -> None:
+        """Add a vector layer as the output."""
+        made = QgsProcessingParameterVectorDestination("OUTPUT", words, kind)
+        self.addParameter(describe(made, "GeoPackage, GeoJSON, FlatGeobuf or Shapefile."))
+
+    def add_counts(self) -> None:
+        """Add the counts of a TIN, for models."""
+        self.add_numbers({"VERTICES": "Vertices", "TRIANGLES": "Triangles"})
+
+    def add_numbers(self, names: dict[str, str]) -> None:
+        """Add numbers for models, by their names, with their words."""
+        for name, words in names.items():
+            self.addOutput(QgsProcessingOutputNumber(name, words))
 
     def add_mesh_output(self, words: str) -> None:
         """Add a TIN as an output, and whether it is loaded."""
@@ -299,9 +315,10 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
         if self.parameterAsBool(run.parameters, LOAD, run.context):
             self._to_load.append((path, name, "OUTPUT"))
 
-    def make_mesh(self, run: Run, name: str) -> dict[str, Any]:
-        """Run a command that makes a TIN of a surface; return the output and its counts."""
+    def make_mesh(self, run: Run, name: str, volumes: tuple[str, ...] = ()) -> dict[str, Any]:
+        """Run a command that makes a TIN; return the output, its counts and some volumes."""
         paths, named = run.list_outputs("OUTPUT")
-        counts = run.run([*self.list_inputs(run), *named])["tin"]
+        told = run.run([*self.list_inputs(run), *named])
         self.load_later(run, paths["OUTPUT"], name)
-        return {**paths, "VERTICES": counts["vertices"], "TRIANGLES": counts["triangles"]}
+        counts = {one.upper(): told["tin"][one] for one in ("vertices", "triangles")}
+        return {**paths, **counts, **{one.upper(): told["volume"][one] for one in volumes}}

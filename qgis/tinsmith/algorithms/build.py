@@ -7,7 +7,6 @@ from typing import Any
 from qgis.core import (
     QgsProcessing,
     QgsProcessingException,
-    QgsProcessingOutputNumber,
     QgsProcessingParameterFeatureSource,
     QgsProcessingParameterField,
     QgsProcessingParameterFile,
@@ -161,8 +160,7 @@ class BuildAlgorithm(CommandAlgorithm):
             "Accounts for every row that is merged or left out, and every crossing of lines."
         )
         self.add_file_output("REPORT", "Report", "JSON (*.json)", help_text, optional=True)
-        self.addOutput(QgsProcessingOutputNumber("VERTICES", "Vertices"))
-        self.addOutput(QgsProcessingOutputNumber("TRIANGLES", "Triangles"))
+        self.add_counts()
 
     def look(self, parameters: dict[str, Any], context: Any) -> None:
         """Find the one source of points that is given."""

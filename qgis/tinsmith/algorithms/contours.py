@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from qgis.core import (
-    QgsProcessing,
-    QgsProcessingParameterEnum,
-    QgsProcessingParameterVectorDestination,
-)
+from qgis.core import QgsProcessing, QgsProcessingParameterEnum
 
 from ..inputs import Surface
 from ..options import describe, number, text
@@ -69,10 +65,7 @@ class ContoursAlgorithm(CommandAlgorithm):
             "PRODUCT", "Make", list(_PRODUCTS), False, "lines", False, True
         )
         self.addParameter(describe(product, "Contour lines, the bands between them, or labels."))
-        made = QgsProcessingParameterVectorDestination(
-            "OUTPUT", "Contours", QgsProcessing.TypeVectorAnyGeometry
-        )
-        self.addParameter(describe(made, "GeoPackage, GeoJSON, FlatGeobuf or Shapefile."))
+        self.add_layer_output("Contours", QgsProcessing.TypeVectorAnyGeometry)
 
     def make(self, run: Run) -> dict[str, Any]:
         """Trace."""

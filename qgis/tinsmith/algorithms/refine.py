@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from qgis.core import QgsProcessingOutputNumber
-
 from ..inputs import Surface
 from ..options import number
 from .base import CommandAlgorithm, Run
@@ -31,8 +29,7 @@ class RefineAlgorithm(CommandAlgorithm):
     def add_outputs(self) -> None:
         """Add the mesh, and counts for models."""
         self.add_mesh_output("Refined TIN")
-        self.addOutput(QgsProcessingOutputNumber("VERTICES", "Vertices"))
-        self.addOutput(QgsProcessingOutputNumber("TRIANGLES", "Triangles"))
+        self.add_counts()
 
     def make(self, run: Run) -> dict[str, Any]:
         """Refine."""

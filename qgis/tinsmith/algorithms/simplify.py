@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from qgis.core import QgsProcessingOutputNumber
-
 from ..inputs import POINTS, Lines, Surface
 from ..options import number
 from .base import CommandAlgorithm, Run
@@ -46,8 +44,7 @@ class SimplifyAlgorithm(CommandAlgorithm):
     def add_outputs(self) -> None:
         """Add the TIN, and counts for models."""
         self.add_mesh_output("Simplified TIN")
-        self.addOutput(QgsProcessingOutputNumber("VERTICES", "Vertices"))
-        self.addOutput(QgsProcessingOutputNumber("TRIANGLES", "Triangles"))
+        self.add_counts()
 
     def make(self, run: Run) -> dict[str, Any]:
         """Simplify."""

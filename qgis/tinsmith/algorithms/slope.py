@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from qgis.core import QgsProcessing, QgsProcessingParameterVectorDestination
+from qgis.core import QgsProcessing
 
 from ..inputs import Surface
-from ..options import choice, describe, switch, text
+from ..options import choice, switch, text
 from ..results import style_on_loading
 from ..styles import style_classes
 from .base import TABLE_FILES, CommandAlgorithm, Run
@@ -40,10 +40,7 @@ class SlopeAlgorithm(CommandAlgorithm):
 
     def add_outputs(self) -> None:
         """Add the polygons and the table."""
-        made = QgsProcessingParameterVectorDestination(
-            "OUTPUT", "Slope classes", QgsProcessing.TypeVectorPolygon
-        )
-        self.addParameter(describe(made, "GeoPackage, GeoJSON, FlatGeobuf or Shapefile."))
+        self.add_layer_output("Slope classes", QgsProcessing.TypeVectorPolygon)
         self.add_file_output(
             "TABLE", "Table of areas", TABLE_FILES, "A row a class.", optional=True
         )

@@ -185,6 +185,44 @@ def test_surfaces_side_by_side_become_one():
     assert merged.interpolate([[2.5, 2.5], [4.0, 3.0], [5.5, 2.5]]).tolist() == [1.0, 2.0, 2.0]
 
 
+def make_square(low, high):
+    return np.array([[low, low], [high, low], [high, high], [low, high]], float)
+
+
+def test_an_island_in_a_hole_of_the_base_stays():
+    rings = [make_square(20, 80) + UTM, make_square(40, 60) + UTM]
+    base = make_base(holes=[rings])
+    pasted = ts.paste(base, ts.triangulate(np.column_stack([make_square(5, 15) + UTM, [9] * 4])))
+    assert ts.check(pasted).ok
+    assert pasted.area == pytest.approx(base.area) == pytest.approx(200**2 - 60**2 + 20**2)
+    assert np.isfinite(pasted.interpolate(UTM + 50))
+    assert pasted.lines.kinds.count("hole") == 2
+
+
+def test_a_boundary_that_touches_itself_stays():
+    """Two squares that share a corner: one ring runs twice through that."""
+    squares = [make_square(0, 4), make_square(4, 8)]
+    rows = np.unique(np.concatenate([*squares, squares[0] / 2, squares[1] / 2 + 4]), axis=0)
+    base = ts.triangulate(np.pad(rows, [(0, 0), (0, 1)]), boundary=squares)
+    assert base.area == 32
+    patch = ts.triangulate(np.column_stack([make_square(1, 3), [5] * 4]))
+    pasted = ts.paste(base, patch)
+    assert ts.check(pasted).ok
+    assert pasted.area == base.area
+    assert np.isnan(pasted.interpolate([[6, 2], [2, 6]])).all()
+
+
+def test_a_patch_beside_a_hole_keeps_its_own_elevations():
+    """The ring of the hole has vertices at elevations of the base, on the edge of the patch."""
+    base = make_base(holes=[make_square(100, 150) + UTM])
+    corners = make_square(100, 150) - [50, 0]
+    patch = ts.triangulate(np.column_stack([corners + UTM, [300, 310, 320, 330]]))
+    pasted = ts.paste(base, patch)
+    xy = np.random.default_rng(1).uniform([50.01, 100.01], [99.99, 149.99], (500, 2)) + UTM
+    assert np.abs(pasted.interpolate(xy) - patch.interpolate(xy)).max() < 1e-6
+    assert pasted.area == pytest.approx(base.area)
+
+
 def find_attributes(tin, name):
     """Return the values of a column by place."""
     return dict(zip(map(tuple, tin.points[:, :2].tolist()), tin.attributes[name], strict=True))

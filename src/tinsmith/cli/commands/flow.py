@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...policies import FlowProduct
-from ..output.failures import Failure
 from ..parameters import Command, choice_option, input_file, number_option, output_files
-from ..paths import LINES, Named
+from ..paths import LINES
+from ..places import name_places, read_places
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -80,8 +80,8 @@ def flow(file: Path, find: FlowProduct, request: Request, **asked: Any) -> None:
     from ..output.line_summaries import describe_features
 
     _require_fitting(find, asked)
-    more = [] if asked["points"] is None else [_name_points(asked["points"])]
-    planned = request.plan_products(request.list_inputs(file, more=more), "Features", "Table")
+    inputs = request.list_inputs(file, more=name_places(asked["points"], "--points"))
+    planned = request.plan_products(inputs, "Features", "Table")
     tin = request.read_tin(file)
     with request.step("Finding") as progress:
         found = _find(tin, find, asked, progress)
@@ -102,12 +102,6 @@ def _require_fitting(find: str, asked: dict[str, Any]) -> None:
         raise click.UsageError("Outlets are given by --from X Y, or by --points FILE: not by both.")
     if find == "ponds" and asked["level"] is None:
         raise click.UsageError("A level is needed for ponds: --level ELEVATION.")
-
-
-def _name_points(path: Path) -> Named:
-    from ...io.vector.survey_lines import split_layer
-
-    return Named(split_layer(path)[0], "the file of --points")
 
 
 def _find(tin: TIN, find: str, asked: dict[str, Any], progress: Tell) -> Features:
@@ -135,17 +129,10 @@ def _find(tin: TIN, find: str, asked: dict[str, Any], progress: Tell) -> Feature
 
 
 def _list_places(tin: TIN, asked: dict[str, Any]) -> Any:
-    """Return the places given, or those of a file, reprojected to the CRS of the TIN."""
-    from ...io.vector.geometries import read_geometries
-    from ...io.vector.survey_lines import split_layer
-
+    """Return the places given, or those of a file."""
     if asked["points"] is None:
         return [list(place) for place in asked["begins"]]
-    path, layer = split_layer(asked["points"])
-    found = read_geometries(path, crs=tin.crs, layer=layer)
-    if found.kind != "points":
-        raise Failure(f"'{path}' has {found.kind}: points are needed.")
-    return found
+    return read_places(asked["points"], tin)
 
 
 # ---------------------------------------------------------------- for people

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ...terrain import Table
+    from ...terrain import Features, Table
     from ...tin import TIN
     from ..output.console import Row
     from ..request import Request
@@ -26,7 +26,7 @@ _SHOWN = 12
 
 @click.command(cls=Command)
 @input_files("points")
-@output_option("Table (.csv, .json) or map (.png) to write.")
+@output_option("Table (.csv, .json), points (.gpkg, .geojson, .shp, .fgb) or map (.png) to write.")
 @click.option("--title", metavar="TEXT", help="Of the map; default the name of the file.")
 @surface_options()
 def inspect(points: tuple[Path, ...], title: str | None, request: Request) -> None:
@@ -40,20 +40,40 @@ def inspect(points: tuple[Path, ...], title: str | None, request: Request) -> No
     \b
     Example:
       tinsmith inspect sample_data/site_survey.csv --crs EPSG:32616
-      tinsmith inspect sample_data/site_survey.csv --codes -o suspects.csv -o suspects.png
+      tinsmith inspect sample_data/site_survey.csv --codes -o suspects.gpkg -o suspects.png
     """  # noqa: D301 - click reads the control character
     from ...terrain import blunder_map, blunders
     from ..files import read_tin_of_files
 
-    planned = request.plan_products(request.list_inputs(*points), "Table", "picture")
+    planned = request.plan_products(request.list_inputs(*points), "Table", "Features", "picture")
     tin = read_tin_of_files(points, request.reading, request.how, request.console)[0]
     with request.step("Checking points") as progress:
         table = blunders(tin, progress=progress)
     planned.write("Table", table)
+    if planned.holds("Features"):
+        planned.write("Features", _place_suspects(table, tin))
     title = title or f"{make_title(points[0])}: points that look like blunders"
     planned.draw(lambda: blunder_map(tin, table, title=title))
     rows = _summarise_blunders(points, tin, table)
     request.finish(planned, rows, lambda: _describe_inspection(points, table))
+
+
+def _place_suspects(table: Table, tin: TIN) -> Features:
+    """Return the rows of the table as points."""
+    import numpy as np
+
+    from ...terrain import Features
+
+    columns = {name: values for name, values in table.columns.items() if name not in "xyz"}
+    return Features.of_points(
+        np.column_stack([table[name] for name in "xyz"]),
+        columns=columns,
+        units={name: unit for name, unit in table.units.items() if name in columns},
+        crs=tin.crs,
+        elevation_unit=tin.elevation_unit,
+        name="suspects",
+        notes=table.notes,
+    )
 
 
 def _summarise_blunders(points: Sequence[Path], tin: TIN, table: Table) -> list[Row]:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..parameters import Command, input_file, number_option, output_files
+from ..paths import LINES
+from ..places import name_places, read_places
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -25,7 +27,8 @@ _SHOWN = 12
 @click.command(cls=Command)
 @input_file("file")
 @output_files
-@click.option("--from", "eye", metavar="X Y", nargs=2, type=float, required=True, help="The eye.")
+@click.option("--from", "eye", metavar="X Y", nargs=2, type=float, help="The eye.")
+@click.option("--eye", "eyes", metavar="FILE", type=LINES, help="In its place: a file of points.")
 @click.option(
     "--to",
     "targets",
@@ -34,6 +37,9 @@ _SHOWN = 12
     type=float,
     multiple=True,
     help="A target, for a line of sight; without one the viewshed. May be given several times.",
+)
+@click.option(
+    "--targets", "points", metavar="FILE", type=LINES, help="In its place: a file of points."
 )
 @number_option("--eye-height", "HEIGHT", "Of the eye above the ground.", default=0.0)
 @number_option("--target-height", "HEIGHT", "Of targets above the ground.", default=0.0)
@@ -44,44 +50,64 @@ _SHOWN = 12
     "--whole-triangles", is_flag=True, help="Judge triangles by their corners: do not divide them."
 )
 @surface_options()
-def sight(file: Path, eye: tuple[float, float], request: Request, **asked: Any) -> None:
+def sight(file: Path, request: Request, **asked: Any) -> None:
     """Find what is seen from a place on the TIN in FILE, or on that of the points in it.
 
-    Without --to the viewshed: what is visible and what is hidden, as polygons that divide
+    Without targets the viewshed: what is visible and what is hidden, as polygons that divide
     triangles. Vector files get the features, tables (.csv, .json) their columns. Ground that only
-    touches a line of sight does not block it.
+    touches a line of sight does not block it. Points of files are reprojected; several eyes go
+    with as many targets.
 
     \b
     Example:
       tinsmith sight site.ply --from 752700 4024300 --eye-height 1.7 -o viewshed.gpkg
       tinsmith sight site.ply --from 752700 4024300 --to 752800 4024300 -o line.csv
     """  # noqa: D301 - click reads the control character
-    from ... import terrain
     from ...terrain.results.table import tabulate_columns
     from ..output.line_summaries import describe_features
 
-    if asked["targets"] and asked["radius"] is not None:
+    _require_fitting(asked)
+    more = name_places(asked["eyes"], "--eye") + name_places(asked["points"], "--targets")
+    planned = request.plan_products(request.list_inputs(file, more=more), "Features", "Table")
+    tin = request.read_tin(file)
+    with request.step("Looking"):
+        found = _look(tin, asked)
+    planned.write("Features", found)
+    planned.write("Table", tabulate_columns(found))
+    request.finish(planned, _summarise(tin, found), lambda: describe_features(file, found))
+
+
+def _require_fitting(asked: dict[str, Any]) -> None:
+    if (asked["eye"] is None) == (asked["eyes"] is None):
+        raise click.UsageError("One eye is needed: --from X Y, or --eye FILE.")
+    has_targets = asked["points"] is not None
+    if asked["targets"] and has_targets:
+        raise click.UsageError("Targets are given by --to X Y, or by --targets FILE: not by both.")
+    if (asked["targets"] or has_targets) and asked["radius"] is not None:
         raise click.UsageError("--radius is for a viewshed, without --to.")
-    if asked["targets"] and asked["whole_triangles"]:
+    if (asked["targets"] or has_targets) and asked["whole_triangles"]:
         raise click.UsageError("--whole-triangles is for a viewshed, without --to.")
     coefficient = asked["sight_refraction"]
     if coefficient is not None and not asked["curvature"]:
         raise click.UsageError("--sight-refraction is for --curvature.")
     if coefficient is not None and not -1.0 <= coefficient <= 1.0:
         raise click.UsageError("--sight-refraction is a coefficient from -1 to 1.")
-    planned = request.plan_products(request.list_inputs(file), "Features", "Table")
-    tin = request.read_tin(file)
-    targets = asked.pop("targets")
-    of_viewshed = {name: asked.pop(name) for name in ("radius", "whole_triangles")}
-    asked["refraction"] = asked.pop("sight_refraction")
-    with request.step("Looking"):
-        if targets:
-            found = terrain.line_of_sight(tin, list(eye), [list(one) for one in targets], **asked)
-        else:
-            found = terrain.viewshed(tin, list(eye), **of_viewshed, **asked)
-    planned.write("Features", found)
-    planned.write("Table", tabulate_columns(found))
-    request.finish(planned, _summarise(tin, found), lambda: describe_features(file, found))
+
+
+def _look(tin: TIN, asked: dict[str, Any]) -> Features:
+    """Return lines of sight, or the viewshed where no targets are given."""
+    from ... import terrain
+
+    names = ("eye_height", "target_height", "curvature")
+    how = {name: asked[name] for name in names} | {"refraction": asked["sight_refraction"]}
+    eye = list(asked["eye"]) if asked["eyes"] is None else read_places(asked["eyes"], tin)
+    if asked["points"] is not None:
+        return terrain.line_of_sight(tin, eye, read_places(asked["points"], tin), **how)
+    if asked["targets"]:
+        targets = [list(one) for one in asked["targets"]]
+        return terrain.line_of_sight(tin, eye, targets, **how)
+    of_viewshed = {name: asked[name] for name in ("radius", "whole_triangles")}
+    return terrain.viewshed(tin, eye, **of_viewshed, **how)
 
 
 def _summarise(tin: TIN, found: Features) -> list[Row]:

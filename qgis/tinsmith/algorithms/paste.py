@@ -1,0 +1,36 @@
+"""Paste a TIN into another one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..inputs import Surface
+from .base import CommandAlgorithm, Run
+
+
+class PasteAlgorithm(CommandAlgorithm):
+    """Put one TIN in the place of a part of another."""
+
+    verb = "paste"
+    title = "Paste TIN"
+    summary = "Puts a TIN in the place of a part of another: a new survey in an old one, a design."
+    explanation = (
+        "Within the boundary of the patch the surface is that of the patch, elsewhere that of the "
+        "base; beyond the base it adds to it. Elevations along the seam are those of the patch; "
+        "the log tells by how much they differ."
+    )
+    surfaces = (Surface("BASE", "Base"), Surface("PATCH", "Patch"))
+
+    def add_outputs(self) -> None:
+        """Add the TIN, and counts for models."""
+        self.add_mesh_output("Pasted TIN")
+        self.add_counts()
+
+    def make(self, run: Run) -> dict[str, Any]:
+        """Paste."""
+        return self.make_mesh(run, "Pasted TIN")
+
+    def list_inputs(self, run: Run) -> list[str]:
+        """Return all arguments but the outputs."""
+        base, patch = self.surfaces
+        return [self.verb, *run.list_tin(base), *run.list_tin(patch), *run.list_extra()]
