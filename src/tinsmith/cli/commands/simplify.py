@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ...terrain import Raster
     from ...tin import TIN
     from ..output.console import Row
     from ..request import Request
@@ -62,7 +63,7 @@ def simplify(
     from ...errors import OptionError
     from ...terrain import simplify as simplify_surface
     from ..output.line_summaries import mesh_counts
-    from ..raster_input import count_cells, find_cells, read_cells
+    from ..raster_input import find_cells, read_cells
 
     if (tolerance is None) == (points is None):
         wrong = "give one of them" if points is None else "not both"
@@ -73,7 +74,7 @@ def simplify(
     given = request.read_tin(file) if raster is None else raster
     find = _find_vertices if raster is None else find_cells
     kept = () if keep is None else _find_kept(given, find, keep, request)
-    size = counted(len(given.points), "point") if raster is None else count_cells(raster)
+    size, counts = _count(given)
     with request.step(f"Simplifying {size}"):
         try:
             simple = simplify_surface(
@@ -83,11 +84,22 @@ def simplify(
             raise refuse_option(error) from error
     planned.write("TIN", simple)
     rows = [
-        ("Read", mesh_counts(given) if raster is None else size),
+        ("Read", counts),
         ("Left", mesh_counts(simple)),
         *_summarise_errors(simple),
     ]
     request.finish(planned, rows, lambda: _describe_simplification(file, simple))
+
+
+def _count(given: TIN | Raster) -> tuple[str, str]:
+    """Return what there is to simplify, and what was read, in words."""
+    from ...terrain import Raster
+    from ..output.line_summaries import mesh_counts
+    from ..raster_input import count_cells
+
+    if isinstance(given, Raster):
+        return count_cells(given), count_cells(given)
+    return counted(len(given.points), "point"), mesh_counts(given)
 
 
 def _find_vertices(tin: TIN, places: NDArray[Any]) -> list[int]:
