@@ -40,6 +40,7 @@ LINE = [[200, 150], [500, 600], [700, 800]]
 GRID = {"spacing": 1.0, "threads": 2}
 
 PAD = [[400, 400], [600, 400], [600, 600], [500, 540], [400, 600]]
+EYE = [500, 500]
 SLOPES = {"cut_slope": 2, "fill_slope": 3}
 
 # What is called with the points, two TINs and progress; the least number of fractions told.
@@ -71,6 +72,8 @@ CALLS = {
     "blunders": (lambda p, _, **to: ts.blunders(ts.Survey(points=p), **to), 5),
     "blunders, TIN": (lambda _, tins, **to: ts.blunders(tins[1], **to), 4),
     "grade": (lambda _, tins, **to: ts.grade(tins[0], PAD, 10.0, **SLOPES, **to), 6),
+    "simplify": (lambda _, tins, **to: ts.simplify(tins[1], tolerance=1.0, **to), 4),
+    "viewshed": (lambda _, tins, **to: ts.viewshed(cut_corner(tins[1]), EYE, **to), 3),
     "paste": (lambda p, tins, **to: ts.paste(tins[0], cut_middle(p), **to), 5),
 }
 

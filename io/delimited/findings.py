@@ -190,7 +190,9 @@ def find_summary_rows(
                 f"{counted(len(found), 'row')} {'is' if len(found) == 1 else 'are'} read as points "
                 f"and may be statistics of the others ({words}, {_name_lines(rows[found])})."
             )
-    if len(points) > _FEW_POINTS and np.allclose(points[:-1].sum(axis=0), points[-1], rtol=1e-9):
+    with np.errstate(over="ignore", invalid="ignore"):  # a sum may be beyond all doubles
+        is_sum = np.allclose(points[:-1].sum(axis=0), points[-1:], rtol=1e-9)
+    if len(points) > _FEW_POINTS and is_sum:
         notes.append(
             f"The last row (line {rows[-1] + 1}) is the sum of all others, and read as a point."
         )

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._progress import Progress
 from ...tin.validation.options import as_flag
 from ..earthwork.reference import find_reference
 from ..georeference import find_plane_units
@@ -16,6 +17,8 @@ from .rays import find_curvature
 from .vertices import are_heights_exact, see_vertices
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from ...tin import TIN
@@ -43,6 +46,7 @@ def viewshed(
     curvature: bool = False,
     refraction: float | None = None,
     whole_triangles: bool = False,
+    progress: Callable[[float], None] | None = None,
 ) -> Features:
     """Divide a surface into what is seen from a place, and what is hidden.
 
@@ -54,6 +58,9 @@ def viewshed(
         Do not divide triangles: each is "visible" if all three corners are seen, "partly" if one or
         two are, "hidden" if none is, or with ``target_height`` 0 if its upper side is turned away.
         So they are judged with curvature, too.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0, as triangles are judged and joined. What it
+        raises ends the call.
 
     Returns
     -------
@@ -83,6 +90,7 @@ def viewshed(
     >>> seen.columns["class"].tolist(), seen.columns["area"].tolist()
     (['visible', 'hidden'], [16.0, 16.0])
     """
+    done = Progress(progress)
     as_whole = as_flag("whole_triangles", whole_triangles)
     reference = find_reference(tin, "Viewsheds")
     fall = find_curvature(reference, curvature, refraction)
@@ -92,11 +100,15 @@ def viewshed(
         as_whole = True
         why = "Over a curved earth" if fall != 0.0 else "With such elevations"
         notes.append(f"{why} triangles are not divided: they are judged by their corners.")
+    done(0.05)
     mesh, classes, owners = _judge_triangles(tin, view) if as_whole else _divide(tin, view)
+    done(0.7)
     near = (measure_distances(tin.points, view.eye) <= view.radius)[tin.triangles]
     is_near: NDArray[np.bool_] = np.logical_or.reduce(near, axis=1)
     classes[~is_near[owners]] = -1
-    return _as_features(tin, mesh, classes, owners, notes)
+    found = _as_features(tin, mesh, classes, owners, notes)
+    done.end()
+    return found
 
 
 def _judge_triangles(tin: TIN, view: View) -> tuple[Mesh, _Numbers, _Numbers]:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..._progress import Progress
 from ..._sentences import counted
 from ...errors import OptionError, PointsError
 from ...tin import Survey, triangulate
@@ -30,6 +31,7 @@ from .seams import Frame, find_frame, trace_block
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from ..._progress import Tell
     from ...tin import TIN
     from ..results import Raster
 
@@ -40,6 +42,9 @@ _LARGEST_WHOLE = 2**24
 
 _BLOCK_SIDE = 2048
 """Rows and columns of a block of a larger one."""
+
+_CHOOSING = 0.75
+"""Of the work as it is told, choosing the cells of all blocks."""
 
 
 class _Chosen(NamedTuple):
@@ -65,19 +70,26 @@ def simplify_raster(
     keep: ArrayLike,
     threads: int | None,
     *,
+    progress: Tell | None = None,
     largest_whole: int = _LARGEST_WHOLE,
     block_side: int = _BLOCK_SIDE,
 ) -> TIN:
     """Return the TIN of few cells of a raster; :func:`tinsmith.simplify` tells what is promised."""
+    done = Progress(progress)
     elevations = Elevations(raster)
     count = elevations.shape[0] * elevations.shape[1]
     is_whole = count <= largest_whole or goal.points is not None
     blocks = list(cut_blocks(elevations.shape, None if is_whole else block_side))
     kept = _as_cells(keep, count)
     work = _Work(elevations, goal, thread_count(threads, count), blocks, kept)
-    rows, needless = work.choose_cells()
+    rows, needless = work.choose_cells(done)
     tin, errors = insert_until_near(
-        goal, work.frame.rounding, rows, build=work.build, measure=work.measure
+        goal,
+        work.frame.rounding,
+        rows,
+        build=work.build,
+        measure=work.measure,
+        progress=done,
     )
     found = Simplification(
         points=work.n_points,
@@ -141,9 +153,12 @@ class _Work:
 
     # ------------------------------------------------------------- which cells are left
 
-    def choose_cells(self) -> tuple[NDArray[np.int64], int]:
+    def choose_cells(self, progress: Tell) -> tuple[NDArray[np.int64], int]:
         """Return the cells that are left, and how many were removed again."""
-        chosen = list(self._simplify_blocks())
+        chosen = []
+        for block in self._simplify_blocks():
+            chosen.append(block)
+            progress(_CHOOSING * len(chosen) / len(self.blocks))
         kept = np.unique(np.concatenate([one.kept for one in chosen]))
         if len(kept) < len(self.kept):
             cell = int(np.setdiff1d(self.kept, kept)[0])

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ..._progress import Progress
 from ...tin.meshing.simplification import Goal, simplify_tin
 from ..results import Raster
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike
 
     from ...tin import TIN
@@ -22,6 +25,7 @@ def simplify(
     points: int | None = None,
     keep: ArrayLike = (),
     threads: int | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> TIN:
     """Leave out the points of a surface that the others tell well enough.
 
@@ -49,6 +53,9 @@ def simplify(
     threads : int, optional
         For blocks of a raster, and for triangulating what is left. The result is the same for any
         number.
+    progress : callable, optional
+        Called with the fraction done, ascending to 1.0, by stages and by blocks of a raster. What
+        it raises ends the call.
 
     Returns
     -------
@@ -98,8 +105,12 @@ def simplify(
     >>> ts.simplify(tin, points=60)
     <TIN: 60 vertices, ...>
     """
+    done, goal = Progress(progress), Goal.of(tolerance, points)
     if isinstance(surface, Raster):
         from .rasters import simplify_raster
 
-        return simplify_raster(surface, Goal.of(tolerance, points), keep, threads)
-    return simplify_tin(surface, Goal.of(tolerance, points), keep, threads)
+        simple = simplify_raster(surface, goal, keep, threads, progress=done.stage(0.0, 1.0))
+    else:
+        simple = simplify_tin(surface, goal, keep, threads, progress=done.stage(0.0, 1.0))
+    done.end()
+    return simple

@@ -32,6 +32,8 @@ CALLS = {
     "ground": lambda g, to: ts.ground(g["points"], cell=g["size"] / 20, building=g["size"], **to),
     "blunders": lambda g, to: ts.blunders(ts.Survey(points=g["points"]), **to),
     "grade": lambda g, to: ts.grade(g["tin"], g["pad"], 1.0, cut_slope=1, fill_slope=1, **to),
+    "simplify": lambda g, to: ts.simplify(g["tin"], tolerance=0.3, **to),
+    "viewshed": lambda g, to: ts.viewshed(g["tin"], g["points"][0][:2], eye_height=1, **to),
     "paste": lambda g, to: ts.paste(g["tin"], g["patch"], **to),
     "mend_flats": lambda g, to: ts.mend_flats(g["flat"], **to),
     "rasterize": lambda g, to: ts.rasterize(g["tin"], spacing=g["size"] / 30, **to),

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..._progress import Progress
 from ...errors import LinesError, OptionError, PointsError
 from .. import _kernel, topology
 from ..constraints.clipping import Surface
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from ..._progress import Tell
     from ..constraints.breaklines import Lines
 
 __all__ = [
@@ -111,19 +113,25 @@ def find_rounding(z: NDArray[np.float64]) -> float:
     return float(np.abs(z).max()) * 2.0**-_ROUNDING_BITS
 
 
-def simplify_tin(tin: TIN, goal: Goal, keep: ArrayLike, threads: int | None) -> TIN:
+def simplify_tin(
+    tin: TIN, goal: Goal, keep: ArrayLike, threads: int | None, *, progress: Tell | None = None
+) -> TIN:
     """Return the TIN of few vertices; :func:`tinsmith.simplify` tells what is promised."""
+    done = Progress(progress)
     require_tin(tin)
     is_required = _find_required(tin, keep)
     goal.require_count(int(is_required.sum()), len(tin.points))
     skeleton = _Part(tin, np.flatnonzero(is_required), thread_count(threads, len(tin.points)))
+    done(0.05)
     rows, needless = _find_rows(tin, skeleton, goal)
+    done(0.75)
     part, errors = insert_until_near(
         goal,
         find_rounding(tin.points[:, 2]),
         rows,
         build=lambda rows: _Part(tin, rows, skeleton.threads),
         measure=lambda part, limit: part.measure(limit),
+        progress=done,
     )
     found = Simplification(
         points=len(tin.points),
@@ -145,6 +153,7 @@ def insert_until_near(
     *,
     build: Callable[[NDArray[np.int64]], Any],
     measure: Callable[[Any, float], Errors],
+    progress: Tell,
 ) -> tuple[Any, Errors]:
     """Build the surface of some rows; add those that are beyond the tolerance, until none is.
 
@@ -153,6 +162,7 @@ def insert_until_near(
     limit = np.inf if goal.tolerance is None else max(goal.tolerance, rounding)
     while True:
         built = build(rows)
+        progress(0.9)
         errors = measure(built, limit)
         if len(errors.far) == 0:
             return built, errors

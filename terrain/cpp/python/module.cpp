@@ -6,8 +6,8 @@
 #include "bind_ground.hpp"
 #include "bind_inspection.hpp"
 #include "bind_isolines.hpp"
+#include "bind_raster_simplification.hpp"
 #include "bind_relief.hpp"
-#include "bind_simplification.hpp"
 #include "bind_sight.hpp"
 
 NB_MODULE(_core, m) {
@@ -18,6 +18,6 @@ NB_MODULE(_core, m) {
   tinsmith::python::bind_relief(m);
   tinsmith::python::bind_inspection(m);
   tinsmith::python::bind_ground(m);
-  tinsmith::python::bind_simplification(m);
+  tinsmith::python::bind_raster_simplification(m);
   tinsmith::python::bind_sight(m);
 }

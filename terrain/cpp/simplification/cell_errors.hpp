@@ -44,8 +44,7 @@ class CellErrors {
 
  private:
   bool meets(const CellTriangle& t) const {
-    const auto [west, east] =
-        std::minmax({t.cell[0].column, t.cell[1].column, t.cell[2].column});
+    const auto [west, east] = std::minmax({t.cell[0].column, t.cell[1].column, t.cell[2].column});
     const auto [south, north] = std::minmax({t.cell[0].row, t.cell[1].row, t.cell[2].row});
     return east >= 0 && west < columns_ && north >= 0 && south < rows_;
   }

@@ -244,8 +244,8 @@ class CellMesh {
   MeshEditor& editor_;
   CellElevations grid_;
   double least_;
-  ScratchVector<double> open_;     // elevations of the cells that are no vertices; no number elsewhere
-  std::vector<double> steps_;    // 0, 1, 2, ...
+  ScratchVector<double> open_;  // elevations of the cells that are no vertices; no number elsewhere
+  std::vector<double> steps_;   // 0, 1, 2, ...
   std::vector<VertexCell> cell_;  // of each vertex
   std::vector<WorstCell> worst_;  // by triangle
   FindFarRow find_far_row_ = fastest_search();

@@ -183,7 +183,8 @@ class GreedyRemoval {
   MeasuredMesh& mesh_;
   Vertex first_;
   double tolerance_;
-  std::vector<bool> is_changed_;  // of each vertex, whether its triangles have since it was measured
+  std::vector<bool>
+      is_changed_;  // of each vertex, whether its triangles have since it was measured
   std::vector<Vertex> changed_;
   std::priority_queue<Entry> queue_;
 };

@@ -12,6 +12,7 @@ from ..places import name_places, read_places
 from ..request import surface_options
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from ...terrain import Features
@@ -70,8 +71,8 @@ def sight(file: Path, request: Request, **asked: Any) -> None:
     more = name_places(asked["eyes"], "--eye") + name_places(asked["points"], "--targets")
     planned = request.plan_products(request.list_inputs(file, more=more), "Features", "Table")
     tin = request.read_tin(file)
-    with request.step("Looking"):
-        found = _look(tin, asked)
+    with request.step("Looking") as progress:
+        found = _look(tin, asked, progress)
     planned.write("Features", found)
     planned.write("Table", tabulate_columns(found))
     request.finish(planned, _summarise(tin, found), lambda: describe_features(file, found))
@@ -94,7 +95,7 @@ def _require_fitting(asked: dict[str, Any]) -> None:
         raise click.UsageError("--sight-refraction is a coefficient from -1 to 1.")
 
 
-def _look(tin: TIN, asked: dict[str, Any]) -> Features:
+def _look(tin: TIN, asked: dict[str, Any], progress: Callable[[float], None]) -> Features:
     """Return lines of sight, or the viewshed where no targets are given."""
     from ... import terrain
 
@@ -107,7 +108,7 @@ def _look(tin: TIN, asked: dict[str, Any]) -> Features:
         targets = [list(one) for one in asked["targets"]]
         return terrain.line_of_sight(tin, eye, targets, **how)
     of_viewshed = {name: asked[name] for name in ("radius", "whole_triangles")}
-    return terrain.viewshed(tin, eye, **of_viewshed, **how)
+    return terrain.viewshed(tin, eye, progress=progress, **of_viewshed, **how)
 
 
 def _summarise(tin: TIN, found: Features) -> list[Row]:

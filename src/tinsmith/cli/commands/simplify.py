@@ -75,10 +75,15 @@ def simplify(
     find = _find_vertices if raster is None else find_cells
     kept = () if keep is None else _find_kept(given, find, keep, request)
     size, counts = _count(given)
-    with request.step(f"Simplifying {size}"):
+    with request.step(f"Simplifying {size}") as progress:
         try:
             simple = simplify_surface(
-                given, tolerance=tolerance, points=points, keep=kept, threads=request.how.threads
+                given,
+                tolerance=tolerance,
+                points=points,
+                keep=kept,
+                threads=request.how.threads,
+                progress=progress,
             )
         except OptionError as error:
             raise refuse_option(error) from error

@@ -73,12 +73,11 @@ inline auto measure_cell_arrays(const GivenRows& z, const GivenPairs& cells,
   return hand_over<Made<double, -1, -1>>(std::move(errors), {rows, columns});
 }
 
-inline void bind_simplification(nb::module_& m) {
+inline void bind_raster_simplification(nb::module_& m) {
   m.def("simplify_cells", &simplify_cell_arrays, "x"_a.noconvert(), "y"_a.noconvert(),
         "z"_a.noconvert(), "vertex_cells"_a.noconvert(), "vertices"_a.noconvert(),
-        "triangles"_a.noconvert(), "neighbors"_a.noconvert(), "fixed"_a.noconvert(),
-        "tolerance"_a, "most"_a, "prunes"_a,
-        "Cells that are left, ascending, and how many were removed again.");
+        "triangles"_a.noconvert(), "neighbors"_a.noconvert(), "fixed"_a.noconvert(), "tolerance"_a,
+        "most"_a, "prunes"_a, "Cells that are left, ascending, and how many were removed again.");
   m.def("measure_cells", &measure_cell_arrays, "z"_a.noconvert(), "cells"_a.noconvert(),
         "elevations"_a.noconvert(), "triangles"_a.noconvert(),
         "How far cells are from a surface between cells in elevation; NaN where there is none.");
