@@ -34,6 +34,7 @@ __all__ = [
     "find_odd_elevations",
     "find_repeated_numbers",
     "find_rounded_coordinates",
+    "find_split_thousands",
     "find_summary_rows",
     "find_unit_words",
     "find_units_above",
@@ -213,6 +214,26 @@ def find_units_above(lines: TextLines, first_row: int) -> list[str]:
                 "looked at: the option z_unit says that of the elevations."
             ]
     return []
+
+
+def find_split_thousands(
+    points: NDArray[np.float64], attributes: Mapping[str, NDArray[Any]], delimiter: str
+) -> list[str]:
+    """Say which of the columns behind a layout may come of coordinates that commas have split."""
+    is_head = ((points >= 0) & (points < 1000) & (points == np.floor(points))).all(axis=0)
+    ends = [
+        name
+        for name, values in attributes.items()
+        if values.dtype.kind in "iuf"
+        and len(values)
+        and bool(((values >= 0) & (values < 1000)).all())
+    ]
+    if delimiter != "," or not ends or not is_head.any():
+        return []
+    return [
+        f"The layout does not name {list_names(ends)} (numbers below 1000, kept as attributes): if "
+        "commas group thousands, check the columns and put quotes around such numbers."
+    ]
 
 
 def find_unit_words(attributes: Mapping[str, NDArray[Any]]) -> list[str]:

@@ -26,6 +26,7 @@ from .findings import (
     find_odd_elevations,
     find_repeated_numbers,
     find_rounded_coordinates,
+    find_split_thousands,
     find_summary_rows,
     find_unit_words,
     find_units_above,
@@ -187,7 +188,14 @@ def _find_odd(told: _Accounted, lines: TextLines, layout: Layout, columns: Colum
         *find_rounded_coordinates(lines, told.rows, layout.delimiter, columns),
         *find_summary_rows(told.points, told.rows, (numbers, names)),
         *find_units_above(lines, int(layout.rows[0])),
+        *(() if layout.columns is None else _find_split(told, layout, columns)),
     ]
+
+
+def _find_split(told: _Accounted, layout: Layout, columns: Columns) -> list[str]:
+    unnamed = {f"column {i + 1}" for i in range(max(columns.coordinates) + 1, layout.count)}
+    beyond = {name: values for name, values in told.attributes.items() if name in unnamed}
+    return find_split_thousands(told.points, beyond, layout.delimiter)
 
 
 def _find_header_unit(layout: Layout) -> Unit | None:

@@ -285,6 +285,13 @@ def test_columns_by_the_callers_word(survey, columns, order):
     assert found.notes == []
 
 
+def test_thousands_that_commas_have_split_are_told(survey):
+    """Under a layout of three columns the ends of numbers are further columns."""
+    found = survey("518.6,1,077.2,1,033.9\n565.2,1,053.2,1,039.3\n", columns="ENZ")
+    assert any("if commas group thousands, check the columns" in note for note in found.notes)
+    assert survey("518.6,1.5,77.2,5\n565.2,2.5,53.2,6\n", columns="ENZ").notes == []
+
+
 def test_columns_by_names_in_a_header_that_says_nothing(survey):
     content = "a;b;c;d\n1;2;3;4\n5;6;7;8\n"
     found = survey(content, columns={"easting": "C", "northing": "b", "elevation": 1})
