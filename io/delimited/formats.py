@@ -12,11 +12,12 @@ FORMATS = (
         read="tinsmith.io.delimited.survey_text:read",
         write="tinsmith.io.delimited.survey_text:write",
         precision="Every number comes back bit for bit.",
-        losses="Points alone: of a TIN its vertices, without triangles and lines. The CRS is not "
-        "kept; in .xyz and .pts neither attributes nor the unit of elevations.",
+        losses="Points alone: of a TIN its vertices, without triangles and lines; of a survey no "
+        "lines. The CRS is not kept; in .xyz and .pts neither attributes nor the unit of "
+        "elevations.",
         loses=(
             *("crs", "elevation unit", "triangles", "constrained", "lines"),
-            *("attributes", "notes", "report"),
+            *("survey lines", "attributes", "notes", "report"),
         ),
     ),
 )

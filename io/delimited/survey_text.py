@@ -345,8 +345,6 @@ def _choose_written_columns(
     obj: TIN | Survey, letters: str | None, is_bare: bool, path: Path
 ) -> dict[str, NDArray[Any]]:
     attributes = dict(obj.attributes) if isinstance(obj, Survey) else {}
-    if isinstance(obj, Survey):
-        _require_no_lines(obj, path)
     coordinates = dict(zip(("easting", "northing", "elevation"), obj.points.T, strict=True))
     if letters is None and {"number", "description"} <= attributes.keys() and not is_bare:
         others = {name: attributes[name] for name in attributes}
@@ -376,15 +374,6 @@ def _choose_by_letters(
             )
         chosen[role] = available[role]
     return chosen
-
-
-def _require_no_lines(survey: Survey, path: Path) -> None:
-    if survey.has_lines:
-        raise WriteError(
-            f"Cannot write '{path}': the survey holds breaklines, boundaries, holes or water, "
-            "which a list of points would lose.",
-            path=path,
-        )
 
 
 def _iterate_rows(

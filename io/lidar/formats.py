@@ -20,12 +20,12 @@ FORMATS = (
         rounding=5.1e-7,
         relative_rounding=1.2e-9,
         losses=(
-            "Of a TIN all but its vertices; texts among the attributes of a survey; the unit of "
-            "elevations where the CRS has no vertical axis."
+            "Of a TIN all but its vertices; lines of a survey, and texts among its attributes; the "
+            "unit of elevations where the CRS has no vertical axis."
         ),
         loses=(
-            *("elevation unit", "triangles", "constrained", "lines", "attributes", "notes"),
-            "report",
+            *("elevation unit", "triangles", "constrained", "lines", "survey lines"),
+            *("attributes", "notes", "report"),
         ),
         extra="lidar",
         sniff=is_lidar,

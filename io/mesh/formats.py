@@ -42,9 +42,9 @@ FORMATS = (
         module="ply.file",
         sniff=signatures.is_ply,
         precision=_EXACT,
-        losses="The report and its notes, and what undoing edits needs; of points, attributes that "
-        "are no numbers.",
-        loses=("attributes", "notes", "report"),
+        losses="The report and its notes, and what undoing edits needs; of points, their lines and "
+        "attributes that are no numbers.",
+        loses=("survey lines", "attributes", "notes", "report"),
     ),
     _make(
         *("obj", "Wavefront OBJ mesh", ".obj"),

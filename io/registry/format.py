@@ -31,6 +31,8 @@ Loss = Literal[
     "order",  # the numbers of vertices and triangles, and vertices of no triangle
     "constrained",  # which edges are constrained
     "lines",  # breaklines, boundary, holes and water: their names and kinds
+    "survey lines",  # all lines of a survey: breaklines, boundary, holes, erased areas and water
+    "erased areas",  # those of a survey alone
     "attributes",  # some columns of a survey, such as texts
     "notes",  # notes of what was guessed
     "report",  # what became of each row that was given, and what undoing edits needs

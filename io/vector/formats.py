@@ -21,7 +21,10 @@ _LOSSES = (
     "Of a TIN what the kind that is written does not show: lines and attributes beside triangles, "
     "the report, vertices of no triangle; of a survey its lines."
 )
-_LOSES: tuple[Loss, ...] = ("order", "constrained", "lines", "attributes", "notes", "report")
+_LOSES: tuple[Loss, ...] = (
+    *("order", "constrained", "lines", "survey lines"),
+    *("attributes", "notes", "report"),
+)
 
 
 def _make(name: str, description: str, *suffixes: str, writer: str = "", **more: Any) -> Format:
@@ -65,6 +68,7 @@ FORMATS = (
         writes=("Features", "Survey"),
         precision=_EXACT,
         losses="Of a survey its lines.",
+        loses=("survey lines",),
         extra="vector",
         sniff=is_geopackage,
     ),

@@ -30,20 +30,39 @@ def make_survey():
     )
 
 
+def _place(*xy):
+    return (np.array(xy, float) + SITE).tolist()
+
+
+def make_survey_with_lines():
+    """Return the same with lines of every kind."""
+    return replace(
+        make_survey(),
+        breaklines=[
+            ts.Breakline([[*_place(10, 10), 302], [*_place(200, 120), 306]], name="kerb"),
+            ts.Breakline(
+                [[*_place(20, 150), 304], [*_place(190, 40), 308]], kind="soft", name="ridge"
+            ),
+            ts.Breakline([_place(40, 170), _place(90, 160)], name="draped"),
+        ],
+        boundary=[_place((0, 0), (225, 5), (228, 185), (2, 188))],
+        holes=[_place((60, 20), (80, 22), (70, 40))],
+        erase=[_place((160, 140), (180, 142), (170, 160))],
+        water=[ts.Water(_place((120, 120), (150, 122), (140, 150)), 299.5, name="pond")],
+    )
+
+
 def make_tin():
     """Return a constrained TIN with attributes, lines of every kind, CRS and unit."""
-    survey = make_survey()
-    place = lambda *xy: (np.array(xy, float) + SITE).tolist()  # noqa: E731
+    survey = make_survey_with_lines()
     return ts.triangulate(
-        replace(survey, notes=["the unit was guessed"]),
-        breaklines=[
-            ts.Breakline([[*place(10, 10), 302], [*place(200, 120), 306]], name="kerb"),
-            ts.Breakline(
-                [[*place(20, 150), 304], [*place(190, 40), 308]], kind="soft", name="ridge"
-            ),
-        ],
-        boundary=[place((0, 0), (225, 5), (228, 185), (2, 188))],
-        water=[ts.Water(place((120, 120), (150, 122), (140, 150)), 299.5, name="pond")],
+        replace(
+            survey,
+            breaklines=survey.breaklines[:2],
+            holes=(),
+            erase=(),
+            notes=["the unit was guessed"],
+        )
     )
 
 
@@ -94,7 +113,33 @@ def find_losses_of_survey(given, found):
     for name, column in given.attributes.items():
         if name not in found.attributes or list(found.attributes[name]) != list(column):
             lost.add("attributes")
-    return lost
+    return lost | _find_lost_lines(given, found)
+
+
+def _find_lost_lines(given, found):
+    """Compare what each line is by its coordinates, bit for bit."""
+    kinds = ("breaklines", "boundary", "holes", "erase", "water")
+    lost = {kind for kind in kinds if _list_lines(given, kind) != _list_lines(found, kind)}
+    if lost == {"erase"}:
+        return {"erased areas"}
+    return {"survey lines"} if lost else set()
+
+
+def _list_lines(survey, kind):
+    lines = []
+    for line in getattr(survey, kind):
+        match line:
+            case ts.Breakline():
+                lines.append((line.name, line.kind, line.is_draped, _list_places(line.coords)))
+            case ts.Water():
+                lines.append((line.name, line.z, _list_places(line.ring)))
+            case _:
+                lines.append(_list_places(line))
+    return lines
+
+
+def _list_places(line):
+    return [tuple(row[:2]) for row in np.asarray(line, float).tolist()]
 
 
 def _find_losses_of_attributes(given, found):

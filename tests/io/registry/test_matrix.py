@@ -42,7 +42,7 @@ FINEST_DEGREES = 0.5e-9 + 1e-12
 
 def make(kind):
     if kind == "Survey":
-        return matrix.make_survey()
+        return matrix.make_survey_with_lines()
     tin = matrix.make_tin()
     makers = {
         "TIN": lambda: tin,
@@ -87,6 +87,31 @@ def test_nothing_is_said_to_be_lost_that_is_not(one, tmp_path):
             rounding = max(rounding, matrix.measure_rounding(given.points, found.points))
     assert lost <= set(one.loses) <= lost | LOST_ELSEWHERE
     assert (rounding > 0) == (one.rounding + one.relative_rounding > 0)
+
+
+@pytest.mark.parametrize(
+    "one",
+    [one for one in FORMATS if one.write and "Survey" in one.writes],
+    ids=lambda one: one.name,
+)
+def test_lines_of_a_survey_are_kept_or_told(one, tmp_path):
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", ts.LossWarning)
+        ts.write(matrix.make_survey_with_lines(), tmp_path / f"a{one.suffixes[0]}", format=one.name)
+    words = {
+        "survey lines": "(3 breaklines, 1 boundary, 1 hole, 1 erased area, 1 water body)",
+        "erased areas": "(1 erased area)",
+    }
+    wanted = [sentence for word, sentence in words.items() if word in one.loses]
+    about_lines = [str(one.message) for one in told if "lines of the survey" in str(one.message)]
+    assert len(about_lines) == len(wanted)
+    assert all(sentence in text for sentence, text in zip(wanted, about_lines, strict=True))
+
+
+def test_points_that_are_asked_for_have_no_lines_to_lose(tmp_path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ts.write(matrix.make_survey_with_lines(), tmp_path / "a.fgb", kind="points")
 
 
 @pytest.mark.parametrize("one", FORMATS, ids=lambda one: one.name)
