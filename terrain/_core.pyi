@@ -36,6 +36,11 @@ class GriddedSurface:
         progress: Callable[[float], None] | None = ...,
     ) -> Doubles: ...
 
+class LeaveOneOut:
+    def __init__(self, points: Doubles, triangles: Ints, neighbors: Ints) -> None: ...
+    def interpolate(self, vertices: Ints, threads: int = ...) -> Doubles: ...
+    def list_neighbors(self, vertices: Ints) -> tuple[Longs, Ints]: ...
+
 def trace_contours(
     points: Doubles,
     triangles: Ints,
@@ -154,19 +159,6 @@ def find_seen_vertices(
     fall: float,
     threads: int = ...,
 ) -> Bytes: ...
-def leave_one_out(
-    points: Doubles,
-    triangles: Ints,
-    neighbors: Ints,
-    vertices: Ints,
-    threads: int = ...,
-) -> Doubles: ...
-def list_neighbors(
-    points: Doubles,
-    triangles: Ints,
-    neighbors: Ints,
-    vertices: Ints,
-) -> tuple[Longs, Ints]: ...
 def measure_neighbors(points: Doubles, triangles: Ints) -> Doubles: ...
 def shade_planes(
     normals: Doubles,

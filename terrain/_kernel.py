@@ -17,14 +17,13 @@ __all__ = [
     "SUMS",
     "TILE_SIDE",
     "GriddedSurface",
+    "LeaveOneOut",
     "OverlayMesh",
     "densify",
     "fill_bands",
     "find_seen_parts",
     "find_seen_vertices",
     "fit_quadratics",
-    "leave_one_out",
-    "list_neighbors",
     "measure_cells",
     "measure_neighbors",
     "overlay",
@@ -49,8 +48,7 @@ vertex_normals = _core.vertex_normals
 shade_planes = _core.shade_planes
 fit_quadratics = _core.fit_quadratics
 
-leave_one_out = _core.leave_one_out
-list_neighbors = _core.list_neighbors
+LeaveOneOut = _core.LeaveOneOut
 measure_neighbors = _core.measure_neighbors
 densify = _core.densify
 simplify_cells = _core.simplify_cells

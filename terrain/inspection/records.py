@@ -26,22 +26,29 @@ def find_repeated_numbers(tin: TIN, rows: Rows) -> tuple[list[Suspect], list[str
     numbers = tin.row_attributes.get("number")
     if numbers is None:
         return [], []
-    texts = np.array([_write(value) for value in numbers[rows.numbers].tolist()], object)
-    named = np.flatnonzero(texts != "")
+    own = _as_names(numbers[rows.numbers])
+    named = np.flatnonzero(own != "") if own.dtype.kind == "U" else np.arange(len(own))
     if len(named) == 0:
         return [], []
-    _, first, counts = np.unique(texts[named].astype(str), return_inverse=True, return_counts=True)
+    _, first, counts = np.unique(own[named], return_inverse=True, return_counts=True)
     repeated = named[counts[first] > 1]
     if len(repeated) > max(2, _USUAL_SHARE * len(named)):
         return [], [f"{len(repeated):,} of {len(named):,} point numbers are repeated."]
     groups: dict[str, list[int]] = {}
     for i in repeated.tolist():
-        groups.setdefault(texts[i], []).append(i)
+        groups.setdefault(str(own[i]), []).append(i)
     return [
         rows.suspect(i, "number", _name_others(text, rows.numbers[same], rows.numbers[i]), "high")
         for text, same in groups.items()
         for i in same
     ], []
+
+
+def _as_names(numbers: NDArray[Any]) -> NDArray[Any]:
+    """Return whole numbers as they are, others as texts."""
+    if numbers.dtype.kind in "iu":
+        return numbers
+    return np.array([_write(value) for value in numbers.tolist()], str)
 
 
 def _write(value: Any) -> str:

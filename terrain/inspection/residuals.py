@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,6 +41,12 @@ class Residuals:
     xyz: NDArray[np.float64]
     on_line: NDArray[np.bool_]
     chords: NDArray[np.int32]
+    _without: _kernel.LeaveOneOut = field(init=False)
+
+    def __post_init__(self) -> None:
+        surface = self.surface
+        without = _kernel.LeaveOneOut(self.xyz, surface.triangles, surface.neighbors)
+        object.__setattr__(self, "_without", without)
 
     @classmethod
     def of(cls, surface: Triangulation) -> Residuals:
@@ -84,16 +90,12 @@ class Residuals:
         return self.xyz[vertices, 2] - found[:, 0], found[:, 1]
 
     def _interpolate(self, vertices: NDArray[np.int32]) -> NDArray[np.float64]:
-        surface = self.surface
         found = np.full((len(vertices), 2), np.nan)
         on_line = self.on_line[vertices]
         has_chord = self.chords[vertices, 0] >= 0
         found[has_chord] = self._interpolate_chords(vertices[has_chord])
         free = np.ascontiguousarray(vertices[~on_line])
-        workers = thread_count(None, len(free))
-        found[~on_line] = _kernel.leave_one_out(
-            self.xyz, surface.triangles, surface.neighbors, free, workers
-        )
+        found[~on_line] = self._without.interpolate(free, thread_count(None, len(free)))
         return found
 
     def _interpolate_chords(self, vertices: NDArray[np.int32]) -> NDArray[np.float64]:
@@ -107,10 +109,9 @@ class Residuals:
 
     def _extrapolate(self, vertices: NDArray[np.int32]) -> NDArray[np.float64]:
         """Return elevations of planes through the vertices within two edges of some."""
-        offsets, near = self.list_neighbors(vertices)
         found = np.full((len(vertices), 2), np.nan)
         for i, vertex in enumerate(vertices.tolist()):
-            ring = near[offsets[i] : offsets[i + 1]]
+            ring = self.list_neighbors(vertices[i : i + 1])[1]
             around = np.setdiff1d(np.append(ring, self.list_neighbors(ring)[1]), [vertex])
             if len(around) > _TERMS:
                 apart = self.xyz[around, :2] - self.xyz[vertex, :2]
@@ -122,10 +123,7 @@ class Residuals:
         self, vertices: NDArray[np.int32]
     ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
         """Return the vertices joined to some by edges, as offsets and vertices."""
-        surface = self.surface
-        return _kernel.list_neighbors(
-            self.xyz, surface.triangles, surface.neighbors, np.ascontiguousarray(vertices)
-        )
+        return self._without.list_neighbors(np.ascontiguousarray(vertices))
 
 
 def fit_plane(

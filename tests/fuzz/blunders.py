@@ -55,7 +55,8 @@ def examine(case: Case) -> str:
 
 def examine_residuals(tin: Any, xyz: Any) -> None:
     every = np.arange(len(xyz), dtype=np.int32)
-    found = _kernel.leave_one_out(tin.points, tin.triangles, tin.neighbors, every)[:, 0]
+    without = _kernel.LeaveOneOut(tin.points, tin.triangles, tin.neighbors)
+    found = without.interpolate(every)[:, 0]
     slack = rounding_of(xyz)
     for row in every.tolist():
         expected = interpolate_without(xyz, row)

@@ -219,11 +219,11 @@ class LeaveOneOut {
 };
 
 // At some vertices. Check `team.is_stopped()` afterwards.
-inline void leave_one_out(const Surface& surface, const std::int32_t* vertices, std::int32_t count,
-                          Interpolated* found, Team& team) {
-  const auto corners = find_corners(surface);
+inline void leave_one_out(const Surface& surface, const HalfEdge* corners,
+                          const std::int32_t* vertices, std::int32_t count, Interpolated* found,
+                          Team& team) {
   team.run([&](int part) {
-    LeaveOneOut local(surface, corners.get());
+    LeaveOneOut local(surface, corners);
     Pulse pulse(team, part);
     const Range range = part_of(count, part, team.size());
     for (std::int32_t i = range.begin; i < range.end && pulse.goes_on(); ++i) {

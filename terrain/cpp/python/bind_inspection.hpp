@@ -15,49 +15,67 @@
 
 namespace tinsmith::python {
 
-inline Surface joined_surface(const GivenXyz& points, const GivenTriples& triangles,
-                              const GivenTriples& neighbors, const GivenNumbers& vertices) {
-  const Surface surface = surface_of(points, triangles, &neighbors);
-  require_exact_points(surface);
-  if (!surface.has_sound_neighbors()) {
-    throw std::invalid_argument("neighbors must be triangles or -1");
-  }
-  if (!are_all(vertices, [&](std::int32_t v) { return v >= 0 && v < surface.point_count; })) {
-    throw std::invalid_argument("vertices must be numbers from 0 to n - 1");
-  }
-  return surface;
-}
+// A surface prepared for any number of questions about a few of its vertices. Its elevations may
+// be changed between them.
+class HeldLeaveOneOut {
+ public:
+  HeldLeaveOneOut(const GivenXyz& points, const GivenTriples& triangles,
+                  const GivenTriples& neighbors)
+      : points_(points),
+        triangles_(triangles),
+        neighbors_(neighbors),
+        surface_(joined_surface(points_, triangles_, neighbors_)),
+        corners_(find_corners(surface_)) {}
 
-inline Xy leave_one_out(const GivenXyz& points, const GivenTriples& triangles,
-                        const GivenTriples& neighbors, const GivenNumbers& vertices, int threads) {
-  const Surface surface = joined_surface(points, triangles, neighbors, vertices);
-  const std::int32_t count = row_count(vertices.shape(0));
-  auto found = streamed_array<Interpolated>(vertices.shape(0));
-  run_unlocked(threads, [&](Team& team) {
-    tinsmith::leave_one_out(surface, vertices.data(), count, found.get(), team);
-  });
-  StreamedArray<double> numbers(reinterpret_cast<double*>(found.release()));
-  return hand_over<Xy>(std::move(numbers), {vertices.shape(0), 2});
-}
+  Xy interpolate(const GivenNumbers& vertices, int threads) const {
+    require_vertices(vertices);
+    auto found = streamed_array<Interpolated>(vertices.shape(0));
+    run_unlocked(threads, [&](Team& team) {
+      leave_one_out(surface_, corners_.get(), vertices.data(), row_count(vertices.shape(0)),
+                    found.get(), team);
+    });
+    StreamedArray<double> numbers(reinterpret_cast<double*>(found.release()));
+    return hand_over<Xy>(std::move(numbers), {vertices.shape(0), 2});
+  }
 
-inline std::pair<Offsets, Numbers> list_neighbors(const GivenXyz& points,
-                                                  const GivenTriples& triangles,
-                                                  const GivenTriples& neighbors,
-                                                  const GivenNumbers& vertices) {
-  const Surface surface = joined_surface(points, triangles, neighbors, vertices);
-  std::vector<std::int64_t> offsets{0};
-  std::vector<std::int32_t> found;
-  {
-    nb::gil_scoped_release release;
-    const auto corners = find_corners(surface);
-    const LeaveOneOut local(surface, corners.get());
-    for (std::size_t i = 0; i < vertices.shape(0); ++i) {
-      local.list_neighbors(Vertex{vertices.data()[i]}, found);
-      offsets.push_back(static_cast<std::int64_t>(found.size()));
+  std::pair<Offsets, Numbers> list_neighbors(const GivenNumbers& vertices) const {
+    require_vertices(vertices);
+    std::vector<std::int64_t> offsets{0};
+    std::vector<std::int32_t> found;
+    {
+      nb::gil_scoped_release release;
+      const LeaveOneOut local(surface_, corners_.get());
+      for (std::size_t i = 0; i < vertices.shape(0); ++i) {
+        local.list_neighbors(Vertex{vertices.data()[i]}, found);
+        offsets.push_back(static_cast<std::int64_t>(found.size()));
+      }
+    }
+    return {copy_over<Offsets, std::int64_t>(offsets, {offsets.size()}), hand_over(found)};
+  }
+
+ private:
+  static Surface joined_surface(const GivenXyz& points, const GivenTriples& triangles,
+                                const GivenTriples& neighbors) {
+    const Surface surface = surface_of(points, triangles, &neighbors);
+    require_exact_points(surface);
+    if (!surface.has_sound_neighbors()) {
+      throw std::invalid_argument("neighbors must be triangles or -1");
+    }
+    return surface;
+  }
+
+  void require_vertices(const GivenNumbers& vertices) const {
+    const std::int32_t count = surface_.point_count;
+    if (!are_all(vertices, [&](std::int32_t v) { return v >= 0 && v < count; })) {
+      throw std::invalid_argument("vertices must be numbers from 0 to n - 1");
     }
   }
-  return {copy_over<Offsets, std::int64_t>(offsets, {offsets.size()}), hand_over(found)};
-}
+
+  GivenXyz points_;
+  GivenTriples triangles_, neighbors_;
+  Surface surface_;
+  ScratchArray<HalfEdge> corners_;
+};
 
 inline Xyz measure_neighbors(const GivenXyz& points, const GivenTriples& triangles) {
   const Surface surface = surface_of(points, triangles);
@@ -70,12 +88,13 @@ inline Xyz measure_neighbors(const GivenXyz& points, const GivenTriples& triangl
 }
 
 inline void bind_inspection(nb::module_& m) {
-  m.def("leave_one_out", &leave_one_out, "points"_a.noconvert(), "triangles"_a.noconvert(),
-        "neighbors"_a.noconvert(), "vertices"_a.noconvert(), "threads"_a = 1,
-        "The elevation at some vertices without each, and the mean square to what gives it.");
-  m.def("list_neighbors", &list_neighbors, "points"_a.noconvert(), "triangles"_a.noconvert(),
-        "neighbors"_a.noconvert(), "vertices"_a.noconvert(),
-        "The vertices that edges join to some, counter-clockwise: offsets and vertices.");
+  nb::class_<HeldLeaveOneOut>(m, "LeaveOneOut", "Tells of a surface without single vertices.")
+      .def(nb::init<const GivenXyz&, const GivenTriples&, const GivenTriples&>(),
+           "points"_a.noconvert(), "triangles"_a.noconvert(), "neighbors"_a.noconvert())
+      .def("interpolate", &HeldLeaveOneOut::interpolate, "vertices"_a.noconvert(), "threads"_a = 1,
+           "The elevation at vertices without each, and the mean square to what gives it.")
+      .def("list_neighbors", &HeldLeaveOneOut::list_neighbors, "vertices"_a.noconvert(),
+           "The vertices that edges join to some, counter-clockwise: offsets and vertices.");
   m.def("measure_neighbors", &measure_neighbors, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "Lowest and highest neighbour of each vertex, and the squared distance to the nearest.");
 }

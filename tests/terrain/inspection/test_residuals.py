@@ -12,6 +12,10 @@ from tinsmith.terrain.inspection.residuals import Residuals
 from tinsmith.terrain.inspection.scales import NORMAL, find_rounding, measure_scales
 
 
+def prepare(tin):
+    return _kernel.LeaveOneOut(tin.points, tin.triangles, tin.neighbors)
+
+
 def scattered(rng, count):
     return rng.random((count, 2)) * 10
 
@@ -41,7 +45,7 @@ def test_every_residual_is_that_of_a_surface_built_without_the_point(kind):
         except ts.PointsError:
             continue
         every = np.arange(len(points), dtype=np.int32)
-        found = _kernel.leave_one_out(tin.points, tin.triangles, tin.neighbors, every)[:, 0]
+        found = prepare(tin).interpolate(every)[:, 0]
         expected = [interpolate_without(points, row) for row in every]
         np.testing.assert_allclose(found, expected, rtol=0, atol=rounding_of(points))
         told += int(np.isfinite(found).sum())
@@ -86,7 +90,7 @@ def test_the_moment_is_half_the_error_on_a_quadratic_surface():
     points = np.column_stack([xy, (xy**2).sum(axis=1)])
     tin = ts.triangulate(points)
     every = np.arange(60, dtype=np.int32)
-    elevation, moment = _kernel.leave_one_out(tin.points, tin.triangles, tin.neighbors, every).T
+    elevation, moment = prepare(tin).interpolate(every).T
     inside = np.isfinite(elevation)
     np.testing.assert_allclose(elevation[inside] - points[inside, 2], moment[inside], atol=1e-11)
 
@@ -103,15 +107,16 @@ def test_a_corner_of_the_hull_is_compared_with_the_plane_around_it():
 @pytest.mark.parametrize("bad", [[-1], [4], [2**31 - 1]])
 def test_the_kernel_refuses_vertices_that_are_not_there(bad):
     tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
-    with pytest.raises(ValueError, match="vertices must be numbers from 0 to n - 1"):
-        _kernel.leave_one_out(tin.points, tin.triangles, tin.neighbors, np.array(bad, np.int32))
+    for ask in (prepare(tin).interpolate, prepare(tin).list_neighbors):
+        with pytest.raises(ValueError, match="vertices must be numbers from 0 to n - 1"):
+            ask(np.array(bad, np.int32))
 
 
 def test_neighbors_are_those_of_the_surface():
     rng = np.random.default_rng(2)
     tin = ts.triangulate(np.column_stack([rng.random((50, 2)), rng.random(50)]))
     every = np.arange(50, dtype=np.int32)
-    offsets, near = _kernel.list_neighbors(tin.points, tin.triangles, tin.neighbors, every)
+    offsets, near = prepare(tin).list_neighbors(every)
     measured = _kernel.measure_neighbors(tin.points, tin.triangles)
     for v in range(50):
         ring = near[offsets[v] : offsets[v + 1]]
