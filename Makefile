@@ -122,8 +122,10 @@ fuzz: $(READY) ## Run random campaigns: MINUTES= or CASES=, SEED=, CAMPAIGN=
 # The tests of tin and a slice of the campaigns about it with ASan and UBSan, those of threads with
 # TSan. SANITIZE_CASES= makes the slice longer. Python alone captures: reports go past it.
 SANITIZE_CASES ?= 200
-SANITIZE_CAMPAIGNS ?= points lines edits refine voronoi contours volumes sections interpolation rasters
-SANITIZE_PRODUCTS := $(addprefix tests/terrain/,isolines earthwork gridding relief sections)
+SANITIZE_CAMPAIGNS ?= points lines edits refine voronoi contours volumes sections interpolation rasters \
+  blunders ground sight simplify hydrology
+SANITIZE_PRODUCTS := $(addprefix tests/terrain/,isolines earthwork gridding relief sections inspection \
+  ground_filter sight hydrology test_simplification.py test_raster_simplification.py)
 SANITIZE := tests/sanitizers/run.sh $(BIN)/python
 SANITIZE_PYTEST := -m pytest -q -p no:cacheprovider --capture=sys --timeout 1800
 .PHONY: sanitize sanitize-address sanitize-thread
