@@ -102,20 +102,21 @@ def grade(
     cut = 1.0 / (_require_ratio("cut_slope", cut_slope) * up)
     fill = -1.0 / (_require_ratio("fill_slope", fill_slope) * up)
     polygon, level = _read_pad(pad, elevation)
-    _require_on_ground(tin, polygon)
+    area = find_area(tin)
+    _require_on_ground(area, polygon)
     local = tin.replace(crs=None, elevation_unit=None)
     used = tin.points[tin.triangles, 2]
     farthest = {cut: (used.max() - level) / cut, fill: (used.min() - level) / fill}
     slopes = []
     for number, (rate, reach) in enumerate(farthest.items(), 1):
         if reach > 0:
-            slopes.append(find_slope(local, polygon, level, rate, float(reach)))
+            slopes.append(find_slope(local, area, polygon, level, rate, float(reach)))
         done(number * _SLOPE)
     patch = build_patch(tin, polygon, level, slopes)
-    _require_within(tin, patch)
+    _require_within(area, patch)
     done(0.5)
     agreed = Agreement(tin.crs, tin.elevation_unit, (1.0, 1.0), reference.notes)
-    graded = join_surfaces(tin, patch, agreed, "daylight", progress=done.stage(0.5, 1.0))
+    graded = join_surfaces(tin, patch, agreed, area, "daylight", progress=done.stage(0.5, 1.0))
     done.end()
     return graded
 
@@ -158,19 +159,19 @@ def _find_level(ring: NDArray[np.float64]) -> float:
     return low
 
 
-def _require_within(tin: TIN, patch: TIN) -> None:
+def _require_within(area: Any, patch: TIN) -> None:
     import shapely
 
-    beyond = shapely.difference(find_area(patch), find_area(tin))
+    beyond = shapely.difference(find_area(patch), area)
     if beyond.area > _SHARE * patch.area:
         place = shapely.point_on_surface(beyond)
         raise PointsError(f"A slope reaches beyond the ground, at {place.x:.10g} {place.y:.10g}.")
 
 
-def _require_on_ground(tin: TIN, pad: Any) -> None:
+def _require_on_ground(area: Any, pad: Any) -> None:
     import shapely
 
-    beyond = shapely.difference(pad, find_area(tin))
+    beyond = shapely.difference(pad, area)
     if not beyond.is_empty:
         place = shapely.point_on_surface(beyond)
         raise PointsError(f"The pad lies off the ground, at {place.x:.10g} {place.y:.10g}.")

@@ -90,7 +90,8 @@ def paste(base: TIN, patch: TIN, *, progress: Callable[[float], None] | None = N
     require_tin(patch)
     done = Progress(progress)
     found = agree((base, patch), ("the base", "the patch"))
-    pasted = join_surfaces(base, patch, found, extend=True, progress=done.stage(0.0, 1.0))
+    area = find_area(base)
+    pasted = join_surfaces(base, patch, found, area, extend=True, progress=done.stage(0.0, 1.0))
     done.end()
     return pasted
 
@@ -99,12 +100,26 @@ def join_surfaces(
     base: TIN,
     patch: TIN,
     agreed: Agreement,
+    area: Any,
     name: str = "seam",
     *,
     extend: bool = False,
     progress: Tell | None = None,
 ) -> TIN:
-    """Paste a surface into another one, name the seam, and extend the base where it is told to."""
+    """Paste a surface into another one, name the seam, and extend the base where it is told to.
+
+    Parameters
+    ----------
+    base, patch : TIN
+    agreed : Agreement
+        Their CRS and units.
+    area : geometry of shapely
+        What the base covers.
+    name : str
+    extend : bool
+        Whether the patch may reach beyond the base.
+    progress : callable, optional
+    """
     done = Progress(progress)
     ground, insert = (
         one.triangulation.points * (1.0, 1.0, factor)
@@ -117,7 +132,6 @@ def join_surfaces(
     seam.insert_cuts()
     lines += [Breakline(ring, name=name, priority=_PRIORITY) for ring in seam.rings]
     lines += seam.list_lines()
-    area = find_area(base)
     beyond = float(seam.area.difference(area).area) if extend else 0.0
     reaches = beyond > seam.rounding
     done(0.7)

@@ -11,7 +11,6 @@ from ...tin import TIN, topology
 from ..earthwork import difference
 from ..earthwork.zones import classify, join_segments, number_zones
 from .distances import measure_distances
-from .outlines import find_area
 from .seams import measure_tolerance
 
 if TYPE_CHECKING:
@@ -76,8 +75,28 @@ class Slope(NamedTuple):
         return [shapely.get_coordinates(one, include_z=True) for one in shapely.get_parts(merged)]
 
 
-def find_slope(tin: TIN, pad: Any, level: float, rate: float, reach: float) -> Slope:
-    """Follow a slope from the pad until daylight, at most as far as the ground's relief needs."""
+def find_slope(tin: TIN, area: Any, pad: Any, level: float, rate: float, reach: float) -> Slope:
+    """Follow a slope from the pad until daylight, at most as far as the ground's relief needs.
+
+    Parameters
+    ----------
+    tin : TIN
+        The ground, without a CRS.
+    area : geometry of shapely
+        What it covers.
+    pad : shapely.Polygon
+    level : float
+        Of the pad.
+    rate : float
+        Rise of the slope for a unit along, negative over a fill.
+    reach : float
+        How far it can go on the highest, or lowest, of the ground.
+
+    Raises
+    ------
+    PointsError
+        If the ground ends before.
+    """
     far: float = min(reach, _estimate_reach(tin, pad, level, rate))
     tolerance = measure_tolerance(tin.points)
     while True:
@@ -92,7 +111,7 @@ def find_slope(tin: TIN, pad: Any, level: float, rate: float, reach: float) -> S
         ends = middles[~_lie_on(pad, middles, tolerance)]
         if not len(ends):
             return Slope(found, is_made, elevations)
-        lost = ends if far >= reach else ends[_lie_on(find_area(tin), ends, tolerance)]
+        lost = ends if far >= reach else ends[_lie_on(area, ends, tolerance)]
         if len(lost):
             x, y = lost[0]
             raise PointsError(
