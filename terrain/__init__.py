@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from .charts.relief import relief_map
     from .charts.sections import section_picture
     from .charts.triangles import to_matplotlib
+    from .drawing.models import lift
     from .earthwork import Difference, difference, stage_storage, volume
-    from .flats import flats, mend_flats
-    from .grading import grade, paste
+    from .earthwork.grading import grade, paste
     from .gridding import height_above, rasterize
     from .ground_filter import GroundPoints, ground
     from .hydrology import (
@@ -27,17 +27,20 @@ if TYPE_CHECKING:
         ponds,
         ridges_and_valleys,
     )
-    from .inspection import blunders
+    from .inspection.findings import blunders
+    from .inspection.flat_triangles import flats, mend_flats
     from .isolines import ContourCheck, check_contours, contour_bands, contour_labels, contours
-    from .lift import lift
     from .preview import Preview, preview
-    from .relief import aspect_classes, curvature, hillshade, slope_classes, slope_statistics
+    from .relief.classes import aspect_classes, slope_classes
+    from .relief.curvatures import curvature
+    from .relief.gradients import aspect, slope
+    from .relief.shading import hillshade
+    from .relief.statistics import slope_statistics
     from .results import Features, Raster, Table
     from .sections import cross_sections, drape, profile, section_lines
     from .sheets import Plan, plan
     from .sight import line_of_sight, viewshed, visible_vertices
     from .simplification import simplify
-    from .slope import aspect, slope
 else:  # a type checker takes every name for one that such a __getattr__ has
     from .._lazy import lazy_names
 
@@ -55,9 +58,9 @@ else:  # a type checker takes every name for one that such a __getattr__ has
             ".charts.relief": ("relief_map",),
             ".charts.sections": ("section_picture",),
             ".earthwork": ("Difference", "difference", "stage_storage", "volume"),
-            ".flats": ("flats", "mend_flats"),
+            ".inspection.flat_triangles": ("flats", "mend_flats"),
             ".gridding": ("height_above", "rasterize"),
-            ".inspection": ("blunders",),
+            ".inspection.findings": ("blunders",),
             ".ground_filter": ("GroundPoints", "ground"),
             ".isolines": (
                 "ContourCheck",
@@ -66,21 +69,18 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "contour_labels",
                 "contours",
             ),
-            ".grading": ("grade", "paste"),
-            ".lift": ("lift",),
+            ".earthwork.grading": ("grade", "paste"),
+            ".drawing.models": ("lift",),
             ".preview": ("Preview", "preview"),
-            ".relief": (
-                "aspect_classes",
-                "curvature",
-                "hillshade",
-                "slope_classes",
-                "slope_statistics",
-            ),
+            ".relief.classes": ("aspect_classes", "slope_classes"),
+            ".relief.curvatures": ("curvature",),
+            ".relief.shading": ("hillshade",),
+            ".relief.statistics": ("slope_statistics",),
             ".results": ("Features", "Raster", "Table"),
             ".sections": ("cross_sections", "drape", "profile", "section_lines"),
             ".sheets": ("Plan", "plan"),
             ".simplification": ("simplify",),
-            ".slope": ("aspect", "slope"),
+            ".relief.gradients": ("aspect", "slope"),
             ".charts.triangles": ("to_matplotlib",),
             ".hydrology": (
                 "catchments",

@@ -64,9 +64,9 @@ if TYPE_CHECKING:
         section_picture,
         to_matplotlib,
     )
+    from .terrain.drawing.models import lift
     from .terrain.earthwork import Difference, difference, stage_storage, volume
-    from .terrain.flats import flats, mend_flats
-    from .terrain.grading import grade, paste
+    from .terrain.earthwork.grading import grade, paste
     from .terrain.gridding import height_above, rasterize
     from .terrain.ground_filter import GroundPoints, ground
     from .terrain.hydrology import (
@@ -78,7 +78,8 @@ if TYPE_CHECKING:
         ponds,
         ridges_and_valleys,
     )
-    from .terrain.inspection import blunders
+    from .terrain.inspection.findings import blunders
+    from .terrain.inspection.flat_triangles import flats, mend_flats
     from .terrain.isolines import (
         ContourCheck,
         check_contours,
@@ -86,21 +87,17 @@ if TYPE_CHECKING:
         contour_labels,
         contours,
     )
-    from .terrain.lift import lift
     from .terrain.preview import Preview, preview
-    from .terrain.relief import (
-        aspect_classes,
-        curvature,
-        hillshade,
-        slope_classes,
-        slope_statistics,
-    )
+    from .terrain.relief.classes import aspect_classes, slope_classes
+    from .terrain.relief.curvatures import curvature
+    from .terrain.relief.gradients import aspect, slope
+    from .terrain.relief.shading import hillshade
+    from .terrain.relief.statistics import slope_statistics
     from .terrain.results import Features, Raster, Table
     from .terrain.sections import cross_sections, drape, profile, section_lines
     from .terrain.sheets import Plan, plan
     from .terrain.sight import line_of_sight, viewshed, visible_vertices
     from .terrain.simplification import simplify
-    from .terrain.slope import aspect, slope
     from .tin import (
         TIN,
         Bounds,
@@ -132,11 +129,11 @@ else:  # a type checker takes every name for one that such a __getattr__ has
     register_methods(
         {
             "TIN._repr_html_": "tinsmith.terrain.preview.card:make_card",
-            "Survey._repr_html_": "tinsmith.terrain.cards.survey:make_survey_card",
-            "Report._repr_html_": "tinsmith.terrain.cards.survey:make_report_card",
-            "Features._repr_html_": "tinsmith.terrain.cards.results:make_features_card",
-            "Raster._repr_html_": "tinsmith.terrain.cards.results:make_raster_card",
-            "Table._repr_html_": "tinsmith.terrain.cards.results:make_table_card",
+            "Survey._repr_html_": "tinsmith.terrain.drawing.cards.survey:make_survey_card",
+            "Report._repr_html_": "tinsmith.terrain.drawing.cards.survey:make_report_card",
+            "Features._repr_html_": "tinsmith.terrain.drawing.cards.results:make_features_card",
+            "Raster._repr_html_": "tinsmith.terrain.drawing.cards.results:make_raster_card",
+            "Table._repr_html_": "tinsmith.terrain.drawing.cards.results:make_table_card",
             "TIN.plot": "tinsmith.terrain.charts.triangles:plot_tin",
             "TIN.to_crs": "tinsmith.io.reprojection.surfaces:reproject",
             "TIN.to_geodataframe": "tinsmith.io.vector.libraries:build_frame",
@@ -237,13 +234,10 @@ else:  # a type checker takes every name for one that such a __getattr__ has
                 "ridges_and_valleys",
             ),
             ".terrain.ground_filter": ("GroundPoints", "ground"),
-            ".terrain.relief": (
-                "aspect_classes",
-                "curvature",
-                "hillshade",
-                "slope_classes",
-                "slope_statistics",
-            ),
+            ".terrain.relief.classes": ("aspect_classes", "slope_classes"),
+            ".terrain.relief.curvatures": ("curvature",),
+            ".terrain.relief.shading": ("hillshade",),
+            ".terrain.relief.statistics": ("slope_statistics",),
             ".terrain.sections": ("cross_sections", "drape", "profile", "section_lines"),
             ".terrain.sheets": ("Plan", "plan"),
             ".terrain.results": ("Features", "Raster", "Table"),
