@@ -633,11 +633,12 @@ def _is_gdal_raster(path: Path) -> bool:
 
 def _read_head(path: Path) -> bytes:
     """Return the first bytes of a file that is there, permitted and not empty."""
-    try:
-        with translate_system_errors(path), path.open("rb") as file:
-            head = file.read(signatures.HEAD_BYTES)
-    except ValueError as error:
-        raise ReadError(f"Cannot read {str(path)!r}: {error}.", path=path) from error
+    with translate_system_errors(path):
+        try:
+            with path.open("rb") as file:
+                head = file.read(signatures.HEAD_BYTES)
+        except ValueError as error:
+            raise ReadError(f"Cannot read {str(path)!r}: {error}.", path=path) from error
     if not head:
         raise ReadError(f"'{path}' is empty: there are no points in it.", path=path)
     return head
