@@ -26,22 +26,23 @@ from .sections import (
     writers,
 )
 
-SIMPLE = {
+SECTIONS: dict[str, Any] = {
     module.SECTION: module
-    for module in (variants, edits, readers, writers, answers, products, startup)
+    for module in (
+        kernel,
+        variants,
+        lines,
+        edits,
+        locate,
+        readers,
+        writers,
+        answers,
+        products,
+        startup,
+    )
 }
-SECTIONS = (
-    kernel.SECTION,
-    variants.SECTION,
-    lines.SECTION,
-    edits.SECTION,
-    locate.SECTION,
-    readers.SECTION,
-    writers.SECTION,
-    answers.SECTION,
-    products.SECTION,
-    startup.SECTION,
-)
+"""Modules by the names of their sections, in the order of the page."""
+
 RESULTS = Path(__file__).parent / "results"
 LEAST_POINTS = 200
 
@@ -130,7 +131,7 @@ def _measure_section(section: str, given: argparse.Namespace) -> Outcome:
         return lines.run(n, names=names, repeats=given.repeats, limit=given.limit or 40.0)
     if section == locate.SECTION:
         return locate.run(n, n, repeats=given.repeats)
-    return SIMPLE[section].run(n, repeats=given.repeats)
+    return SECTIONS[section].run(n, repeats=given.repeats)
 
 
 if __name__ == "__main__":

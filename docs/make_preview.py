@@ -18,7 +18,7 @@ import numpy as np
 import rasterio
 
 import tinsmith as ts
-from tinsmith.terrain.linework import find_line_edges
+from tinsmith.terrain.drawing.linework import find_line_edges
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -24,7 +24,12 @@ from ..errors import (
 from ..tin import TIN, Survey
 from .isolated.archives import unpack
 from .isolated.local_files import require_local
-from .isolated.spooling import describe_system_error, open_ordinary_file, spool
+from .isolated.spooling import (
+    describe_system_error,
+    open_ordinary_file,
+    spool,
+    translate_system_errors,
+)
 from .raster.virtual import is_virtual
 from .registry import (
     Format,
@@ -628,13 +633,12 @@ def _is_gdal_raster(path: Path) -> bool:
 
 def _read_head(path: Path) -> bytes:
     """Return the first bytes of a file that is there, permitted and not empty."""
-    try:
-        with path.open("rb") as file:
-            head = file.read(signatures.HEAD_BYTES)
-    except OSError as error:
-        raise describe_system_error(path, error) from error
-    except ValueError as error:
-        raise ReadError(f"Cannot read {str(path)!r}: {error}.", path=path) from error
+    with translate_system_errors(path):
+        try:
+            with path.open("rb") as file:
+                head = file.read(signatures.HEAD_BYTES)
+        except ValueError as error:
+            raise ReadError(f"Cannot read {str(path)!r}: {error}.", path=path) from error
     if not head:
         raise ReadError(f"'{path}' is empty: there are no points in it.", path=path)
     return head

@@ -16,7 +16,7 @@ import tinsmith as ts
 from tinsmith import TIN, OptionError, Survey, Unit
 from tinsmith.cli import main
 from tinsmith.crs import FOOT, METRE, US_SURVEY_FOOT
-from tinsmith.terrain.units import find_ground
+from tinsmith.terrain.georeference.units import find_ground
 
 CORNER = np.array([742_000.0, 4_030_000.0, 300.0])
 TRIANGLES = [[0, 1, 2]]

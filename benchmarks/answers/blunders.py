@@ -12,7 +12,7 @@ import numpy as np
 
 import tinsmith as ts
 from tinsmith.terrain import _kernel
-from tinsmith.terrain.inspection import screen
+from tinsmith.terrain.inspection.findings import screen
 from tinsmith.tin import TIN
 
 from ..measure import OURS, Outcome, Result, alternate, find_median

@@ -13,24 +13,13 @@ from ..measure import OURS, Outcome, Result, is_installed
 from ..peers.answers import AS_MANY, EQUAL
 from ..peers.line_tools import ALL_LINE_TOOLS
 from ..peers.triangulators import CGAL, KERNEL
-from ..sections import (
-    answers,
-    edits,
-    kernel,
-    lines,
-    locate,
-    products,
-    readers,
-    startup,
-    variants,
-    writers,
-)
+from ..sections import answers, kernel
 from .goals import judge_goals
 
 __all__ = ["write_report"]
 
 NAME = "benchmarks"
-PLOTS = {kernel.SECTION: ".png", lines.SECTION: "-lines.png"}
+PLOTS = {"kernel": ".png", "lines": "-lines.png"}
 LEAST_FOR_MEMORY = 50_000
 """Below this many points memory is that of the libraries, not of the points."""
 
@@ -428,36 +417,36 @@ def _format_item(text: str) -> str:
 
 
 SECTIONS: dict[str, Callable[[list[Result], str], str]] = {
-    kernel.SECTION: _format_kernel_part,
-    variants.SECTION: _make_part_formatter(
+    "kernel": _format_kernel_part,
+    "variants": _make_part_formatter(
         "Variants of the kernel",
         "points",
         "Vector instructions, the two methods between which the kernel chooses, and small inputs;\n"
         "all in one process and in turn, each with the same arrays as the others.\n",
     ),
-    lines.SECTION: _format_lines_part,
-    edits.SECTION: _make_part_formatter(
+    "lines": _format_lines_part,
+    "edits": _make_part_formatter(
         "Edits",
         "edits",
         EDITS_NOTES,
     ),
-    locate.SECTION: _make_part_formatter(
+    "locate": _make_part_formatter(
         "Queries",
         "places",
         "Random places on a TIN of uniform points, near the origin of coordinates so that SciPy\n"
         "can take part; ratios are per place. To prepare is from points to the first answer.\n",
     ),
-    readers.SECTION: _make_part_formatter(
+    "readers": _make_part_formatter(
         "Readers",
         "rows",
         "One file of each kind, in the cache of the system; equal numbers read.\n",
     ),
-    writers.SECTION: _make_part_formatter(
+    "writers": _make_part_formatter(
         "Writers", "triangles", "From the TIN to the file; every file is read back and compared.\n"
     ),
-    answers.SECTION: _format_answers_part,
-    products.SECTION: _format_products_part,
-    startup.SECTION: _make_part_formatter(
+    "answers": _format_answers_part,
+    "products": _format_products_part,
+    "startup": _make_part_formatter(
         "Starting up",
         "points",
         "The command line on so little that starting takes most of the time; fresh processes.\n",

@@ -7,9 +7,7 @@ compared with the TIN of the points as they are then, built afresh.
 from __future__ import annotations
 
 import sys
-import tempfile
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +23,7 @@ from ..peers.answers import Verdict, judge_answer, number_corners, rank_triangle
 from ..peers.edit_tools import ALL_EDIT_TOOLS, BUILD, EDIT_TOOLS, OPENED
 from ..peers.tool_process import ToolProcess, make_task_command
 from ..peers.triangulators import CGAL, is_cgal
-from .kernel import run_in_turn
+from .kernel import run_tools
 from .lines import find_line_tools
 
 __all__ = ["SECTION", "run"]
@@ -86,12 +84,7 @@ def _measure_edits(
 ) -> Iterator[Result]:
     tin = ts.triangulate(task.afterwards())
     ts.check(tin, level=3).raise_if_failed()
-    with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
-        processes: dict[str, ToolProcess] = {
-            tool: stack.enter_context(EditProcess(tool, task, Path(folder), limit))
-            for tool in tools
-        }
-        failures = run_in_turn(processes, repeats)
+    with run_tools(EditProcess, tools, task, repeats, limit) as (processes, failures):
         verdicts = {
             tool: Verdict(False, failures[tool])
             if tool in failures

@@ -10,7 +10,7 @@ from __future__ import annotations
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -37,7 +37,7 @@ __all__ = [
     "list_cases",
     "make_result",
     "run",
-    "run_in_turn",
+    "run_tools",
 ]
 
 SECTION = "kernel"
@@ -103,12 +103,7 @@ def find_tools(tools: Sequence[str], outcome: Outcome) -> list[str]:
 def _measure_case(case: Case, tools: list[str], repeats: int, limit: float) -> Iterator[Result]:
     points = make_points(case.name, case.n)
     fitting = [tool for tool in tools if len(points) <= _find_largest(tool)]
-    with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
-        processes = {
-            tool: stack.enter_context(ToolProcess(tool, points, Path(folder), limit))
-            for tool in fitting
-        }
-        failures = run_in_turn(processes, repeats)
+    with run_tools(ToolProcess, fitting, points, repeats, limit) as (processes, failures):
         verdicts = _judge_all(points, processes, failures)
     for tool, process in processes.items():
         yield make_result(SECTION, case.name, tool, len(points), process, verdicts[tool])
@@ -119,7 +114,19 @@ def _find_largest(tool: str) -> int:
     return TOOLS[tool].largest if tool in TOOLS else TOOLS[OURS].largest
 
 
-def run_in_turn(processes: Mapping[str, ToolProcess], repeats: int) -> dict[str, str]:
+@contextmanager
+def run_tools(
+    kind: type[ToolProcess], tools: Iterable[str], task: Any, repeats: int, limit: float
+) -> Iterator[tuple[dict[str, ToolProcess], dict[str, str]]]:
+    """Run tools in turn, each in a process of ``kind``; yield these, and what failed by tool."""
+    with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
+        processes = {
+            tool: stack.enter_context(kind(tool, task, Path(folder), limit)) for tool in tools
+        }
+        yield processes, _run_in_turn(processes, repeats)
+
+
+def _run_in_turn(processes: Mapping[str, ToolProcess], repeats: int) -> dict[str, str]:
     """Run A B C A B C; return what went wrong by tool."""
     failures: dict[str, str] = {}
     for turn in range(repeats):

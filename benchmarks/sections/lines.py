@@ -7,9 +7,7 @@ checked by ``ts.check``, and its lines against edges found in whole numbers.
 from __future__ import annotations
 
 import sys
-import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -26,7 +24,7 @@ from ..peers.answers import Verdict, encode_edges, judge_answer, number_corners,
 from ..peers.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
 from ..peers.tool_process import ToolFailedError, ToolProcess, make_task_command
 from ..peers.triangulators import is_cgal
-from .kernel import make_result, run_in_turn
+from .kernel import make_result, run_tools
 
 __all__ = ["SECTION", "find_line_tools", "run"]
 
@@ -98,12 +96,7 @@ def _measure_lines(
     name: str, task: LineTask, tools: list[str], repeats: int, limit: float
 ) -> Iterator[Result]:
     wanted = _prepare_wanted(task)
-    with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
-        processes = {
-            tool: stack.enter_context(LineProcess(tool, task, Path(folder), limit))
-            for tool in tools
-        }
-        failures = run_in_turn(processes, repeats)
+    with run_tools(LineProcess, tools, task, repeats, limit) as (processes, failures):
         verdicts = {
             tool: Verdict(False, failures[tool])
             if tool in failures

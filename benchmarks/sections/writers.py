@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 import tinsmith as ts
 from tinsmith.io import transform_points
-from tinsmith.terrain.slope import aspect, slope
+from tinsmith.terrain.relief.gradients import aspect, slope
 from tinsmith.tin import TIN
 
 from ..datasets.points import make_points

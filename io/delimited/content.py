@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ...terrain.area_of_use import AreaOfUse
+    from ...terrain.georeference.area_of_use import AreaOfUse
 
 __all__ = [
     "Column",

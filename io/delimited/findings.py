@@ -11,7 +11,7 @@ import numpy as np
 from ..._sentences import counted
 from ...crs import FOOT, Unit
 from ...errors import CrsError, OptionError, ReadError
-from ...terrain.nodata import describe_suspects, find_suspect_elevations
+from ...terrain.inspection.nodata import describe_suspects, find_suspect_elevations
 from .cells import split_line
 from .columns import COORDINATES, find_columns_by_header, find_unit_word, list_names
 from .content import are_plausible_elevations, is_too_steep, measure_relief_and_extent
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...crs import CRS
-    from ...terrain.area_of_use import AreaOfUse
+    from ...terrain.georeference.area_of_use import AreaOfUse
     from .columns import Columns
     from .lines import TextLines
     from .table import Fault

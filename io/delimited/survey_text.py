@@ -13,8 +13,8 @@ from ..._progress import Progress
 from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError, WriteError
-from ...terrain.area_of_use import AreaOfUse
-from ...terrain.nodata import parse_nodata
+from ...terrain.georeference.area_of_use import AreaOfUse
+from ...terrain.inspection.nodata import parse_nodata
 from ...tin import TIN, Survey
 from ..reprojection.placement import place, settle_unit
 from ..reprojection.transformation import is_geographic

@@ -18,7 +18,7 @@ from typing import IO, TYPE_CHECKING
 
 from ..._sentences import counted
 from ...errors import ReadError, TinsmithError
-from .spooling import describe_system_error, rename_in_error
+from .spooling import rename_in_error, translate_system_errors
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -46,6 +46,15 @@ _SIDE_FILES = frozenset(
     )
 )
 """Suffixes of files that stand beside others; ``.txt`` counts where nothing else is there."""
+
+_DAMAGES = (
+    gzip.BadGzipFile,
+    zipfile.BadZipFile,
+    zlib.error,
+    EOFError,
+    ValueError,
+    RuntimeError,
+)
 
 _OFFICE = "[Content_Types].xml"
 
@@ -75,16 +84,13 @@ def unpack(path: Path) -> Iterator[Path]:
         return
     with tempfile.TemporaryDirectory(prefix="tinsmith-") as folder:
         unpacker = _unpack_gzip if start.startswith(_GZIP) else _unpack_zip
-        try:
-            inner = unpacker(path, Path(folder))
-        except OSError as error:
-            if isinstance(error, gzip.BadGzipFile):
-                raise _describe_damage(path, error) from error
-            raise describe_system_error(path, error) from error
-        except (EOFError, zlib.error, zipfile.BadZipFile, ValueError, RuntimeError) as error:
-            if isinstance(error, TinsmithError):
+        with translate_system_errors(path):
+            try:
+                inner = unpacker(path, Path(folder))
+            except TinsmithError:
                 raise
-            raise _describe_damage(path, error) from error
+            except _DAMAGES as error:
+                raise _describe_damage(path, error) from error
         try:
             yield inner
         except TinsmithError as error:

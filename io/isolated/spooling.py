@@ -14,7 +14,15 @@ from ...errors import ReadError, TinsmithError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["describe_system_error", "open_ordinary_file", "rename_in_error", "spool"]
+__all__ = [
+    "describe_system_error",
+    "is_pipe",
+    "open_ordinary_file",
+    "rename_in_error",
+    "require_readable",
+    "spool",
+    "translate_system_errors",
+]
 
 _CHUNK = 1 << 20
 
@@ -38,10 +46,10 @@ def open_ordinary_file(path: Path) -> Iterator[Path]:
     ReadError
         If there is a device or a socket, or the pipe cannot be read.
     """
-    if not _is_pipe(path):
+    if not is_pipe(path):
         yield path
         return
-    with _translate_errors(path):
+    with translate_system_errors(path):
         stream = path.open("rb")
     with stream, spool(stream, path) as copy:
         yield copy
@@ -65,7 +73,7 @@ def spool(stream: IO[bytes], path: Path) -> Iterator[Path]:
     """
     with tempfile.TemporaryDirectory(prefix="tinsmith-") as folder:
         copy = Path(folder) / f"piped{path.suffix or '.txt'}"
-        with _translate_errors(path), copy.open("wb") as file:
+        with translate_system_errors(path), copy.open("wb") as file:
             shutil.copyfileobj(stream, file, _CHUNK)
         try:
             yield copy
@@ -83,8 +91,31 @@ def describe_system_error(path: Path, error: OSError) -> ReadError:
     return ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path)
 
 
-def _is_pipe(path: Path) -> bool:
-    """Whether a path is a pipe; files, folders and what is missing are left to the reader."""
+@contextmanager
+def translate_system_errors(path: Path) -> Iterator[None]:
+    """Raise errors of the system as sentences about ``path``; those of the toolkit pass."""
+    try:
+        yield
+    except TinsmithError:
+        raise
+    except OSError as error:
+        raise describe_system_error(path, error) from error
+
+
+def require_readable(path: Path) -> None:
+    """Raise a ReadError where no file is there, or it may not be read."""
+    with translate_system_errors(path):
+        path.open("rb").close()
+
+
+def is_pipe(path: Path) -> bool:
+    """Whether a path is a pipe; files, folders and what is missing are left to the reader.
+
+    Raises
+    ------
+    ReadError
+        If there is a device or a socket.
+    """
     try:
         mode = path.stat().st_mode
     except (OSError, ValueError):
@@ -93,14 +124,6 @@ def _is_pipe(path: Path) -> bool:
         what = "a socket" if stat.S_ISSOCK(mode) else "a device or a terminal"
         raise ReadError(f"'{path}' is {what}: a file or a pipe is needed.", path=path)
     return stat.S_ISFIFO(mode)
-
-
-@contextmanager
-def _translate_errors(path: Path) -> Iterator[None]:
-    try:
-        yield
-    except OSError as error:
-        raise describe_system_error(path, error) from error
 
 
 def rename_in_error(error: TinsmithError, copy: Path, path: Path) -> None:

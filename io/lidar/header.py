@@ -16,7 +16,7 @@ import numpy as np
 
 from ..._sentences import counted, inflect
 from ...errors import ReadError
-from ..isolated.spooling import describe_system_error
+from ..isolated.spooling import translate_system_errors
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -121,11 +121,8 @@ def parse_header(path: Path) -> Header:
         If it is no LAS file of a version that is read, or says what cannot be: more points or
         records than the file has bytes for, a scale of 0, an unknown format of points.
     """
-    try:
-        with path.open("rb") as file:
-            return _parse(file, path, path.stat().st_size)
-    except OSError as error:
-        raise describe_system_error(path, error) from error
+    with translate_system_errors(path), path.open("rb") as file:
+        return _parse(file, path, path.stat().st_size)
 
 
 def _parse(file: IO[bytes], path: Path, size: int) -> Header:

@@ -10,7 +10,7 @@ import numpy as np
 from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import CrsError, FormatError, OptionError, PointsError, ReadError
-from ...terrain.nodata import find_suspect_elevations
+from ...terrain.inspection.nodata import find_suspect_elevations
 from ...tin import TIN, Survey
 from ...tin.checking.overlaps import describe_overlaps
 from ...tin.validation.options import is_finite_number

@@ -11,7 +11,7 @@ import numpy as np
 from ... import _optional
 from ..._sentences import counted
 from ...errors import PointsError, ReadError
-from ...terrain.lift import choose_origin
+from ...terrain.drawing.models import choose_origin
 from ...tin import TIN
 from ...tin.checking.overlaps import describe_overlaps
 from ...tin.validation.options import require_tin

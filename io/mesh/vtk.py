@@ -17,7 +17,7 @@ import numpy as np
 from ... import _optional
 from ..._atomic import replacing_path
 from ...errors import ReadError, WriteError
-from ...terrain.slope import aspect, slope
+from ...terrain.relief.gradients import aspect, slope
 from ..isolated import run_isolated
 from . import common
 from .vtk_child import catch_errors, load_vtk_class

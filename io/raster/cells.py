@@ -11,7 +11,7 @@ from ... import terrain
 from ...crs import CRS
 from ...terrain.gridding.grids import Cells, to_grid
 from ..isolated.local_files import require_local
-from ..isolated.spooling import describe_system_error, open_ordinary_file
+from ..isolated.spooling import open_ordinary_file, require_readable
 from .dem import read_georeference
 
 if TYPE_CHECKING:
@@ -42,11 +42,7 @@ def read_cells(path: str | os.PathLike[str]) -> Cells:
     require_local(path)
     file = Path(path)
     with open_ordinary_file(file) as local:
-        try:
-            with local.open("rb"):
-                pass
-        except OSError as error:
-            raise describe_system_error(file, error) from error
+        require_readable(local)
         transform, shape, crs = read_georeference(local)
     return Cells(to_grid(transform, shape, os.fspath(path)), CRS.of(crs))
 

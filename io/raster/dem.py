@@ -18,7 +18,7 @@ from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError
 from ...terrain.gridding.voids import trace_rings
-from ...terrain.nodata import describe_suspects, find_suspect_elevations, parse_nodata
+from ...terrain.inspection.nodata import describe_suspects, find_suspect_elevations, parse_nodata
 from ...tin import Bounds, Survey
 from ..isolated import Limits, choose_limits, run_isolated, stream_isolated
 from ..isolated.free_memory import measure_free_memory

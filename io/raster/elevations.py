@@ -11,10 +11,10 @@ import numpy as np
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError
 from ...terrain.gridding.grids import as_parts, to_grid
-from ...terrain.nodata import parse_nodata
+from ...terrain.inspection.nodata import parse_nodata
 from ...terrain.results import Raster
 from ..isolated.local_files import require_local
-from ..isolated.spooling import describe_system_error, open_ordinary_file
+from ..isolated.spooling import is_pipe, require_readable
 from ..reprojection.placement import place
 from .dem import (
     Header,
@@ -74,8 +74,8 @@ def read_raster(
     Raises
     ------
     ReadError
-        If GDAL cannot read the file, it is a picture or has no georeference, or its CRS is in
-        degrees.
+        If GDAL cannot read the file, it is a pipe or a picture, it has no georeference, or its CRS
+        is in degrees.
     OptionError
         If its cells are turned or not square, ``crs`` is another than that of the file, or an
         option is not one that it has.
@@ -96,13 +96,19 @@ def read_raster(
     """
     require_local(path)
     file = Path(path)
-    with open_ordinary_file(file) as local:
-        try:
-            with local.open("rb"):
-                pass
-        except OSError as error:
-            raise describe_system_error(file, error) from error
+    _require_file(file)
     return _make_raster(read_header(file), CRS.of(crs), Unit.of(z_unit), band, parse_nodata(nodata))
+
+
+def _require_file(path: Path) -> None:
+    """Refuse what is missing, may not be read, or gives its bytes only once."""
+    if is_pipe(path):
+        raise ReadError(
+            f"'{path}' is a pipe, and rows of a raster are read as they are asked for: write it to "
+            "a file, and name that.",
+            path=path,
+        )
+    require_readable(path)
 
 
 def _make_raster(

@@ -15,7 +15,7 @@ from ...errors import CrsError, ReadError
 from ..cad.signatures import is_dxf
 from ..isolated import choose_limits, run_isolated
 from ..isolated.local_files import require_local
-from ..isolated.spooling import describe_system_error, open_ordinary_file
+from ..isolated.spooling import open_ordinary_file, translate_system_errors
 from ..registry.signatures import HEAD_BYTES, find_reference_kind
 from .drawings import read_drawing_features
 from .geojson.members import read_json_members
@@ -136,7 +136,7 @@ def _measure_folder(path: Path) -> int:
 
 def _require_whole_file(path: Path) -> bytes:
     """Return the first bytes; refuse a file that is missing, empty, or a shapefile cut short."""
-    try:
+    with translate_system_errors(path):
         if path.is_dir():
             if path.suffix.lower() in _FOLDERS:
                 return b""
@@ -144,10 +144,6 @@ def _require_whole_file(path: Path) -> bytes:
         size = path.stat().st_size
         with path.open("rb") as file:
             head = file.read(HEAD_BYTES)
-    except ReadError:
-        raise
-    except OSError as error:
-        raise describe_system_error(path, error) from error
     if size == 0:
         raise ReadError(f"'{path}' is empty: there are no lines in it.", path=path)
     kind = find_reference_kind(head)

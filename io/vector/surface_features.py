@@ -8,9 +8,9 @@ import numpy as np
 
 from ...errors import FormatError, choice
 from ...policies import FeatureKind
-from ...terrain.linework import EDGE_KINDS
+from ...terrain.drawing.linework import EDGE_KINDS
+from ...terrain.relief.gradients import aspect, measure_areas, measure_ring_area, slope
 from ...terrain.results import Features
-from ...terrain.slope import aspect, measure_areas, measure_ring_area, slope
 from ...tin import TIN, Survey
 from ..mesh.common import require_writable
 from .geojson.lines import find_edge_kinds, list_line_vertices, require_lines

@@ -142,14 +142,18 @@ def _find_target(path: Path) -> Path:
         raise WriteError(f"Cannot write {str(path)!r}: {error}.", path=path) from error
 
 
-def _require_replaceable(path: Path, target: Path) -> None:
-    if target.is_dir():
-        raise WriteError(f"Cannot write '{path}': it is a folder; name a file in it.", path=path)
+def _require_parent(path: Path, target: Path) -> None:
     if not target.parent.is_dir():
         raise WriteError(
             f"Cannot write '{path}': there is no folder '{path.parent}'; create it first.",
             path=path,
         )
+
+
+def _require_replaceable(path: Path, target: Path) -> None:
+    if target.is_dir():
+        raise WriteError(f"Cannot write '{path}': it is a folder; name a file in it.", path=path)
+    _require_parent(path, target)
     if target.exists() and not target.is_file():
         raise WriteError(
             f"Cannot write '{path}': it is a device or a pipe; name an ordinary file.", path=path
@@ -260,11 +264,7 @@ def replacing_folder(path: Path, *, marker: str) -> Iterator[Path]:
 
 
 def _require_replaceable_folder(path: Path, target: Path, marker: str) -> None:
-    if not target.parent.is_dir():
-        raise WriteError(
-            f"Cannot write '{path}': there is no folder '{path.parent}'; create it first.",
-            path=path,
-        )
+    _require_parent(path, target)
     if target.exists() and not target.is_dir():
         raise WriteError(
             f"Cannot write '{path}': a file is there, and a folder is written.", path=path

@@ -1,9 +1,12 @@
-"""Public names that are loaded when they are first used."""
+"""Public names that are loaded when they are first used, as the stub of a package lists them."""
 
 from __future__ import annotations
 
+import ast
 import sys
+from functools import cache
 from importlib import import_module
+from importlib.util import find_spec, resolve_name
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -18,8 +21,8 @@ __all__ = ["lazy_names"]
 class _Package(ModuleType):
     """A package whose public names are not hidden by modules of the same names.
 
-    Python binds a module to its package as soon as it is loaded: ``slope``, once the function
-    ``slope`` of the module ``slope`` is used.
+    Python binds a module to its package as soon as it is loaded: ``preview``, once the function
+    ``preview`` of the package ``preview`` is used.
     """
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -29,26 +32,33 @@ class _Package(ModuleType):
 
 
 def lazy_names(
-    package: str, names_of: Mapping[str, tuple[str, ...]]
-) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """Return ``__getattr__`` and ``__dir__`` of a package whose names are in other modules.
+    package: str, instead: Mapping[str, str] | None = None
+) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+    """Return ``__getattr__``, ``__dir__`` and ``__all__`` of a package.
+
+    Its stub, ``__init__.pyi``, is the one list of its public names, for type checkers and for use:
+    lines ``from .module import name as name``, or ``from .package import *`` for all names of the
+    stub of another package. The modules of the package that are named there can be used as
+    attributes, too.
 
     Parameters
     ----------
     package : str
         Its ``__name__``.
-    names_of : mapping
-        Names by the module that has them, relative to the package: ``".registry"``. A module
-        within the package can be used as an attribute, too.
+    instead : mapping of str to str, optional
+        Modules of names that are loaded from elsewhere than type checkers are told.
     """
-    module_of = {name: module for module, names in names_of.items() for name in names}
-    modules = {module.split(".")[1] for module in names_of if not module.startswith("..")}
+    module_of = _read_stub(package) | dict(instead or {})
+    modules = {name for name, module in module_of.items() if module == "."}
+    names = module_of.keys() - modules
+    near = {module_of[name] for name in names if not module_of[name].startswith("..")}
+    modules.update(module.split(".")[1] for module in near)
     this = sys.modules[package]
-    this.__dict__["_lazy_names"] = frozenset(module_of)
+    this.__dict__["_lazy_names"] = frozenset(names)
     this.__class__ = _Package
 
     def load(name: str) -> Any:
-        if name in module_of:
+        if name in names:
             try:
                 return getattr(import_module(module_of[name], package), name)
             except ModuleNotFoundError as error:
@@ -60,4 +70,27 @@ def lazy_names(
             return import_module(f".{name}", package)
         raise AttributeError(f"module '{package}' has no attribute '{name}'")
 
-    return load, lambda: sorted({*module_of, *modules})
+    return load, lambda: sorted({*names, *modules}), sorted(module_of)
+
+
+@cache
+def _read_stub(package: str) -> dict[str, str]:
+    """Return the module of each name in the stub of a package, relative to it."""
+    found: dict[str, str] = {}
+    for statement in ast.parse(_load_stub(package)).body:
+        if not isinstance(statement, ast.ImportFrom):
+            continue
+        module = "." * statement.level + (statement.module or "")
+        for alias in statement.names:
+            if alias.name == "*":
+                found |= dict.fromkeys(_read_stub(resolve_name(module, package)), module)
+            else:
+                found[alias.name] = module
+    return found
+
+
+def _load_stub(package: str) -> bytes:
+    """Return the stub that lies beside the source of a package, in a folder or an archive."""
+    spec: Any = find_spec(package)
+    data: bytes = spec.loader.get_data(f"{spec.origin.rpartition('.')[0]}.pyi")
+    return data

@@ -10,7 +10,7 @@ import numpy as np
 from ..._sentences import counted
 from ...errors import OptionError, TinsmithError
 from ...tin.validation.options import require_tin, require_type
-from ..inspection import DROPPED
+from ..inspection.findings import DROPPED
 from ..results import Table
 from .arguments import parse_title
 from .maps import INK, draw_shade, shade_for_map, start_map

@@ -9,11 +9,11 @@ import numpy as np
 from ... import _optional
 from ...tin import Bounds
 from ...tin.validation.options import require_tin, require_type
+from ..drawing.rounding import round_down
 from ..earthwork import Difference
 from ..gridding import rasterize
 from ..gridding.grids import cover
 from ..relief.shading import hillshade
-from ..rounding import round_down
 from .arguments import parse_title
 from .maps import INK, PIXELS, draw_scale, draw_shade, start_map
 

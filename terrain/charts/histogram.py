@@ -12,7 +12,7 @@ from ... import _optional
 from ..._sentences import counted
 from ...tin import Quality
 from ...tin.validation.options import require_type
-from ..rounding import choose_ticks
+from ..drawing.rounding import choose_ticks
 from .arguments import parse_text, parse_title
 
 if TYPE_CHECKING:

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...tin import TIN
+    from ..georeference.units import Ground
     from ..results import Features
-    from ..units import Ground
     from .maps import Map
 
 __all__ = ["contour_map"]

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import _optional
+from ..drawing.rounding import choose_ticks
+from ..georeference.units import find_ground
 from ..relief.shading import hillshade
-from ..rounding import choose_ticks
-from ..units import find_ground
 
 if TYPE_CHECKING:
     from ...tin import TIN
+    from ..georeference.units import Ground
     from ..results import Features, Raster
-    from ..units import Ground
 
 __all__ = [
     "INK",

@@ -11,8 +11,8 @@ from ... import _optional
 from ...crs import CRS
 from ...errors import OptionError
 from ...tin.validation.options import is_whole_number
+from ..drawing.rounding import choose_ticks, format_number, round_down
 from ..results import Table
-from ..rounding import choose_ticks, format_number, round_down
 from .arguments import parse_title
 from .curves import (
     INK,

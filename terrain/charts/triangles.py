@@ -9,15 +9,15 @@ import numpy as np
 from ... import _optional
 from ...errors import OptionError
 from ...tin.validation.options import require_tin
-from ..linework import EDGE_KINDS, find_line_edges
-from ..slope import slope
-from ..units import find_ground
+from ..drawing.linework import EDGE_KINDS, find_line_edges
+from ..georeference.units import find_ground
+from ..relief.gradients import slope
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...tin import TIN
-    from ..units import Ground
+    from ..georeference.units import Ground
 
 __all__ = ["plot_tin", "to_matplotlib"]
 

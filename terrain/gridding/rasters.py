@@ -9,7 +9,7 @@ from ...errors import OptionError, choice
 from ...policies import InterpolationMethod, RasterSample, RasterValue
 from ...tin.validation.options import as_flag, require_count, require_tin
 from ..georeference import describe_unknown
-from ..light import as_light
+from ..relief.light import as_light
 from ..results import Raster
 from .bands import SurfaceBand
 from .coverage import require_covered

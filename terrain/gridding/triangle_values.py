@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..light import shade
-from ..slope import aspect, compute_normals, slope
+from ..relief.gradients import aspect, compute_normals, slope
+from ..relief.light import shade
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...policies import RasterValue
     from ...tin import TIN
-    from ..light import Light
+    from ..relief.light import Light
 
 __all__ = ["measure_triangles"]
 

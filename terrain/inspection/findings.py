@@ -10,10 +10,10 @@ import numpy as np
 from ..._progress import Progress
 from ...errors import LinesError, OptionError, PointsError
 from ...tin import TIN, Survey, triangulate
-from ..gaps import describe_gaps
-from ..nodata import find_suspect_elevations, is_customary
 from ..results import Table
+from .gaps import describe_gaps
 from .heights import STRICT, find_heights, find_peaks_and_pits
+from .nodata import find_suspect_elevations, is_customary
 from .places import find_places
 from .records import find_crossings, find_repeated_numbers, find_repeated_places
 from .slips import name_factor

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..._sentences import counted
-from ..area_of_use import AreaOfUse
+from ..georeference.area_of_use import AreaOfUse
 from .slips import FACTORS
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..units import find_scales
+from ..georeference.units import find_scales
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...tin import Bounds
-from ..rounding import choose_ticks, format_number, round_down
+from ..drawing.rounding import choose_ticks, format_number, round_down
 from .camera import View, measure_pixels_per_unit, name_direction, project_ground_axes
 from .palette import Palette
 from .ramps import Legend, choose_ramp
@@ -17,7 +17,7 @@ from .titles import fit_title, shorten
 
 if TYPE_CHECKING:
     from ...crs import Unit
-    from ..light import Light
+    from ..relief.light import Light
     from .overlay import Overlay
     from .palette import Color
 
@@ -207,7 +207,7 @@ def _describe_light(sun: Light) -> str:
 
     Examples
     --------
-    >>> from ..light import Light
+    >>> from ..relief.light import Light
     >>> _describe_light(Light(250.0, 30.0))
     'Light from the west-southwest, 30° high'
     """

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..._sentences import counted
-from ..cards.frame import SIZE, describe_bounds, name_crs, name_units, write_card
-from ..units import find_ground
+from ..drawing.cards.frame import SIZE, describe_bounds, name_crs, name_units, write_card
+from ..georeference.units import find_ground
 from .scene import NORTHWEST, choose_exaggeration, measure_relief
 from .tints import interpolate_tints
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...tin import TIN
-    from ..units import Ground
+    from ..georeference.units import Ground
 
 __all__ = ["draw_map", "make_card"]
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...tin import TIN, Bounds
-    from ..units import Ground
+    from ..georeference.units import Ground
     from .camera import View
 
 __all__ = [

@@ -9,8 +9,8 @@ from typing import Any, TypedDict
 from ...errors import OptionError, choice
 from ...policies import Tint
 from ...tin.validation.options import as_flag, is_finite_number, is_whole_number
-from ..lift import parse_exaggeration
-from ..light import Light
+from ..drawing.models import parse_exaggeration
+from ..relief.light import Light
 from .camera import VIEWS, View
 from .palette import Palette, choose_palette
 from .scene import NORTHWEST

@@ -15,7 +15,7 @@ from ...errors import RenderError
 from ...tin import TIN, Survey
 from ...tin.validation.options import require_type
 from ..earthwork import difference
-from ..units import find_ground
+from ..georeference.units import find_ground
 from .alignment import Aligned, align
 from .look import Look, LookOptions, make_look
 from .ortho import Ortho, read_ortho
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ..units import Ground
+    from ..georeference.units import Ground
     from .elevations import ElevationRange
 
 __all__ = ["PREVIEW_SUFFIXES", "Preview", "preview"]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..slope import aspect, slope
+from ..relief.gradients import aspect, slope
 from .tints import interpolate_tints, mix_tints
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ import numpy as np
 
 from ... import _optional
 from ...tin.topology import edges_at
-from ..lift import choose_origin
-from ..light import Light
+from ..drawing.models import choose_origin
+from ..relief.light import Light
 from .elevations import ElevationRange, find_elevation_range
 from .ramps import PLAIN, choose_ramp, measure_tint
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from ...policies import Tint
     from ...tin import TIN
-    from ..units import Ground
+    from ..georeference.units import Ground
     from .ortho import Ortho
 
 __all__ = [

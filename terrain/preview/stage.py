@@ -10,11 +10,11 @@ import numpy as np
 from ... import _optional
 from ..._sentences import counted
 from ...tin import Bounds
+from ..drawing.linework import add_lines, add_polylines
+from ..drawing.models import choose_origin
+from ..drawing.rounding import format_number
+from ..georeference.units import find_ground
 from ..isolines import contours
-from ..lift import choose_origin
-from ..linework import add_lines, add_polylines
-from ..rounding import format_number
-from ..units import find_ground
 from .annotations import Caption, Sheet, annotate
 from .camera import aim, measure_pixels_per_unit, place_camera, project_ground_axes
 from .corridor import cut_into_strips, find_corridor, measure_mean_width
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...tin import TIN
-    from ..units import Ground
+    from ..georeference.units import Ground
     from .camera import View
     from .corridor import Corridor, Strips
     from .elevations import ElevationRange

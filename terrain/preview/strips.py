@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..rounding import format_number
+from ..drawing.rounding import format_number
 from .camera import place_camera
 from .corridor import STRIP_GAP
 from .scene import fade_edges

@@ -10,11 +10,11 @@ import numpy as np
 from ... import _optional
 from ...errors import TinsmithError
 from ...policies import Tint
-from ..lift import choose_origin
-from ..linework import add_polylines
-from ..rounding import round_down
+from ..drawing.linework import add_polylines
+from ..drawing.models import choose_origin
+from ..drawing.rounding import round_down
+from ..relief.gradients import slope
 from ..sections import profile
-from ..slope import slope
 from . import opengl
 from .overlay import Overlay
 from .picture import keep_vtk_plain

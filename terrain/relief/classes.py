@@ -11,9 +11,9 @@ from ...errors import OptionError, choice
 from ...policies import SlopeUnit
 from ..georeference import describe_unknown, find_plane_units
 from ..results import Features
-from ..slope import aspect, measure_plane_areas, slope
 from .colors import compass_colors, ramp_colors
 from .dissolving import dissolve, make_polygons
+from .gradients import aspect, measure_plane_areas, slope
 from .statistics import SYMBOLS
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from ...policies import CurvatureKind, SurfacePart
 from ...tin.validation.options import require_tin
 from ...tin.validation.threads import thread_count
 from .. import _kernel
-from ..units import find_scales
+from ..georeference.units import find_scales
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

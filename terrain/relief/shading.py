@@ -8,21 +8,21 @@ import numpy as np
 
 from ...errors import OptionError
 from ...tin.validation.options import is_finite_number, require_tin
+from ..drawing.rounding import round_down
 from ..georeference import describe_unknown
 from ..gridding.bands import SurfaceBand
 from ..gridding.coverage import require_covered
 from ..gridding.grids import as_grid
-from ..light import as_light, normalise, shade
 from ..results import Raster
 from ..results.gridded import locate_centers
-from ..rounding import round_down
-from ..slope import sum_normals
+from .gradients import sum_normals
+from .light import as_light, normalise, shade
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ...tin import TIN, Grid
-    from ..light import Light
+    from .light import Light
 
 __all__ = ["hillshade"]
 

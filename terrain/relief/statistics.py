@@ -10,7 +10,7 @@ from ...errors import OptionError, choice
 from ...policies import SlopeUnit
 from ..georeference import describe_unknown, find_plane_units
 from ..results import Table
-from ..slope import measure_plane_areas, slope
+from .gradients import measure_plane_areas, slope
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -11,11 +11,11 @@ import numpy as np
 from ..._sentences import counted
 from ...errors import OptionError
 from ...tin.topology import find_offsets
+from ..drawing.linework import EDGE_KINDS, LineEdges, find_line_edges
+from ..drawing.rounding import round_down
 from ..georeference import require_same_crs
 from ..isolines import contours
 from ..isolines.levels import elevation_range
-from ..linework import EDGE_KINDS, LineEdges, find_line_edges
-from ..rounding import round_down
 from .clipping import Paths, join_paths
 from .lettering import clean_text
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ... import _optional
-from ..linework import EDGE_KINDS, find_line_edges
+from ..drawing.linework import EDGE_KINDS, find_line_edges
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

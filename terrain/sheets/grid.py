@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..rounding import round_down
+from ..drawing.rounding import round_down
 from .canvas import Pen
 from .clipping import clip_paths, join_paths
 from .lettering import measure_text

@@ -24,7 +24,7 @@ from ...tin.topology import NO_NEIGHBOR
 from ...tin.validation.threads import thread_count
 from .. import _kernel
 from ..gridding.voids import find_surface
-from ..nodata import describe_suspects, find_suspect_elevations
+from ..inspection.nodata import describe_suspects, find_suspect_elevations
 from .elevations import Block, Elevations, Heights, cut_blocks
 from .seams import Frame, find_frame, trace_block
 

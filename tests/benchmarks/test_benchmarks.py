@@ -11,7 +11,7 @@ import pytest
 from support import oracles
 
 import tinsmith as ts
-from benchmarks.__main__ import main
+from benchmarks.__main__ import SECTIONS, main
 from benchmarks.answers import contours, interpolation, profiles, rasters, volumes
 from benchmarks.cgal import CgalMissingError, build, build_harness
 from benchmarks.datasets.edits import BATCH, EDIT_TASKS, INSERT_ALL, WHAT, make_edit_task
@@ -25,6 +25,7 @@ from benchmarks.peers.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
 from benchmarks.peers.programs import find_present, run_program
 from benchmarks.peers.tool_process import ToolFailedError, ToolProcess
 from benchmarks.peers.triangulators import CGAL, KERNEL, TOOLS
+from benchmarks.report import page
 from benchmarks.report.goals import judge_goals as goals_of
 from benchmarks.report.page import write_report
 from benchmarks.sections import edits, kernel, lines, locate, readers, writers
@@ -434,6 +435,10 @@ def test_a_raster_with_other_cells_is_an_error():
 
 
 # ------------------------------------------------------------------------- report
+
+
+def test_the_page_has_a_part_for_every_section():
+    assert list(page.SECTIONS) == list(SECTIONS)
 
 
 def test_report_is_a_page_data_and_a_plot(tmp_path, capsys):

@@ -11,15 +11,13 @@ from __future__ import annotations
 
 import math
 import re
-import tempfile
-import warnings
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import tinsmith as ts
 
+from . import delimited
 from .campaign import Campaign, Case
 
 ROLES = ("number", "easting", "northing", "elevation", "description", "quality")
@@ -258,14 +256,7 @@ def read(data: bytes, case: Case) -> ts.Survey | ts.TinsmithError:
         options["decimal"] = how["decimal"]
     if "delimiter" in case["told"]:
         options["delimiter"] = how["separator"][0]
-    with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
-        warnings.simplefilter("error")
-        path = Path(folder) / f"table{case['suffix']}"
-        path.write_bytes(data)
-        try:
-            return ts.read(path, format="delimited", **options)
-        except ts.TinsmithError as error:
-            return error
+    return delimited.read(data, case["suffix"], **options)
 
 
 def leave_out_told(found: ts.Survey, case: Case, kept: list[int]) -> list[int]:

@@ -12,7 +12,8 @@ import tinsmith as ts
 
 def public_objects():
     """Return name and object of everything that ``tinsmith`` offers, packages and version aside."""
-    things = [(name, getattr(ts, name)) for name in ts.__all__]
+    names = sorted(ts.__all__, key=lambda name: (not name.isupper(), name))
+    things = [(name, getattr(ts, name)) for name in names]
     return [(name, thing) for name, thing in things if callable(thing)]
 
 

@@ -12,7 +12,7 @@ from ...._sentences import counted
 from ....crs import CRS
 from ....errors import CrsError, OptionError, ReadError
 from ...isolated import Limits, choose_limits, run_isolated
-from ...isolated.spooling import describe_system_error
+from ...isolated.spooling import translate_system_errors
 from ..reference import Stated
 from .names import CRS_PROPERTY, ELEVATION_PROPERTY, UNKNOWN
 from .units import UNIT_OF_CODE
@@ -118,10 +118,8 @@ def read_drawing(
     """
     _optional.require("ezdxf", "Reading DXF drawings")
     _require_options(layer, tolerance)
-    try:
+    with translate_system_errors(path):
         size = path.stat().st_size
-    except OSError as error:
-        raise describe_system_error(path, error) from error
     usual = choose_limits(size)
     answer = run_isolated(
         f"{__package__}.dxf_child:read_drawing",

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...._sentences import counted
 from ....errors import ReadError
-from ...isolated.spooling import describe_system_error
+from ...isolated.spooling import translate_system_errors
 from .content import Content, Line, Surface
 from .numbers import fault, parse_list, parse_rows, parse_words
 
@@ -58,15 +58,10 @@ def parse(path: Path, *, surface: str | int | None = None, points_only: bool = F
         If it is no well-formed XML, no LandXML, or what an element holds is not what it should.
     """
     parser = _Parser(path, surface, points_only)
-    try:
-        with path.open("rb") as file:
-            while chunk := file.read(_CHUNK):
-                parser.feed(chunk)
+    with translate_system_errors(path), path.open("rb") as file:
+        while chunk := file.read(_CHUNK):
+            parser.feed(chunk)
         parser.close()
-    except OSError as error:
-        if isinstance(error, ReadError):
-            raise
-        raise describe_system_error(path, error) from error
     return parser.content
 
 

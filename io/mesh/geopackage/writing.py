@@ -12,7 +12,7 @@ import numpy as np
 
 from ...._atomic import replacing_path
 from ....errors import CrsError, WriteError
-from ....terrain.slope import aspect, slope
+from ....terrain.relief.gradients import aspect, slope
 from ..common import format_unit, require_tin
 from .digests import digest_arrays, digest_lines
 from .geometries import make_chain_blobs, make_point_blobs, make_triangle_blobs

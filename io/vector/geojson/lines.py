@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ....errors import FormatError
-from ....terrain.linework import EDGE_KINDS, find_line_edges
+from ....terrain.drawing.linework import EDGE_KINDS, find_line_edges
 from ....tin.topology import edge_keys, edges_at
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from ...._atomic import replacing
 from ...._sentences import counted
 from ....errors import FormatError, WriteError, choice
 from ....policies import FeatureKind
+from ....terrain.relief.gradients import aspect, measure_areas, measure_ring_area, slope
 from ....terrain.results import Features
-from ....terrain.slope import aspect, measure_areas, measure_ring_area, slope
 from ....tin import Survey
 from ...mesh.common import require_writable
 from .coordinates import Places, format_positions, keep_in_crs, project_to_wgs84, require_one_piece

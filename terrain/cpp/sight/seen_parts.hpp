@@ -304,18 +304,16 @@ class PartFinder {
 // Check `team.is_stopped()` afterwards.
 inline void find_seen_parts(const Surface& surface, const View& view, Part* parts, Cells& cells,
                             Team& team) {
-  const auto ends = list_ends(surface, view);
-  if (ends.empty() || !team.keeps_going(0)) return;
-  const Directions directions(surface, view.eye.at, ends, team);
-  if (!team.keeps_going(0)) return;
-  const SightEdges edges(surface, view.eye.at, view.radius, directions,
+  const auto directions = sort_ends(surface, view, team);
+  if (!directions) return;
+  const SightEdges edges(surface, view.eye.at, view.radius, *directions,
                          SightEdges::Extra::kHalfEdges);
   Pulse pulse(team);
-  Arcs arcs(surface, view, directions, edges);
+  Arcs arcs(surface, view, *directions, edges);
   const auto order = arcs.sort(pulse);
   if (team.is_stopped()) return;
   if (order.size() < arcs.size()) throw std::runtime_error("edges of the surface cross");
-  PartFinder(surface, view, directions, edges, arcs).run(order, parts, cells, pulse);
+  PartFinder(surface, view, *directions, edges, arcs).run(order, parts, cells, pulse);
 }
 
 }  // namespace tinsmith::sight

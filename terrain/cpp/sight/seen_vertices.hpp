@@ -15,7 +15,9 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "../../../tin/cpp/base/ids.hpp"
@@ -241,23 +243,30 @@ inline std::vector<Vertex> list_ends(const Surface& surface, const View& view) {
   return ends;
 }
 
+// Of the ends of edges; nothing where there are none, or the team is stopped.
+inline std::optional<Directions> sort_ends(const Surface& surface, const View& view, Team& team) {
+  const auto ends = list_ends(surface, view);
+  if (ends.empty() || !team.keeps_going(0)) return std::nullopt;
+  std::optional<Directions> directions(std::in_place, surface, view.eye.at, ends, team);
+  if (!team.keeps_going(0)) directions.reset();
+  return directions;
+}
+
 // `seen` is kSeen for the vertices that are asked for, which have triangles and are not at the
 // eye; it becomes kHidden where one is hidden. Check `team.is_stopped()` afterwards.
 template <typename Rule>
 void find_seen(const Surface& surface, const View& view, const Rule& rule, Sight* seen,
                Team& team) {
-  const auto ends = list_ends(surface, view);
-  if (ends.empty() || !team.keeps_going(0)) return;
-  const Directions directions(surface, view.eye.at, ends, team);
-  if (!team.keeps_going(0)) return;
-  const SightEdges edges(surface, view.eye.at, view.radius, directions,
+  const auto directions = sort_ends(surface, view, team);
+  if (!directions) return;
+  const SightEdges edges(surface, view.eye.at, view.radius, *directions,
                          Rule::kIsExact ? SightEdges::Extra::kNothing : SightEdges::Extra::kReach);
   if (!team.keeps_going(0)) return;
-  const auto crossing = list_crossing(directions, edges);
-  const auto& sectors = directions.sectors();
+  const auto crossing = list_crossing(*directions, edges);
+  const auto& sectors = directions->sectors();
   std::atomic<std::size_t> next{0};
   team.run([&](int part) {
-    Sweep<Rule> sweep(surface, view, rule, directions, edges);
+    Sweep<Rule> sweep(surface, view, rule, *directions, edges);
     Pulse pulse(team, part);
     for (std::size_t s; (s = next++) < crossing.size() && pulse.goes_on();) {
       sweep.run(sectors[s], sectors[s + 1], crossing[s], seen, pulse);

@@ -10,8 +10,8 @@ import numpy as np
 
 from ...._sentences import counted
 from ....errors import OptionError
-from ...linework import EDGE_KINDS, find_line_edges
-from ...units import find_ellipsoid
+from ...drawing.linework import EDGE_KINDS, find_line_edges
+from ...georeference.units import find_ellipsoid
 from ..ramps import choose_ramp
 from ..tints import mix_tints
 from .packing import pack_counts, pack_rows, pack_triangles, sort_in_morton_order
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from ....policies import Tint
     from ....tin import TIN, Survey
-    from ...units import Ground
+    from ...georeference.units import Ground
     from ..ortho import Ortho
 
 __all__ = ["Labels", "Start", "describe_page", "find_labels"]

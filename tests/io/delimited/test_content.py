@@ -15,7 +15,7 @@ from tinsmith.io.delimited.content import (
     measure_relief_and_extent,
     require_no_split_decimals,
 )
-from tinsmith.terrain.area_of_use import AreaOfUse
+from tinsmith.terrain.georeference.area_of_use import AreaOfUse
 
 RNG = np.random.default_rng(5)
 N = 40

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tinsmith import triangulate
+from tinsmith.terrain.georeference.units import METRE, find_ground
 from tinsmith.terrain.preview.annotations import (
     Caption,
     Sheet,
@@ -27,7 +28,6 @@ from tinsmith.terrain.preview.overlay import Overlay, _find_wide_font
 from tinsmith.terrain.preview.palette import Palette
 from tinsmith.terrain.preview.scene import add_lights, place_vertices
 from tinsmith.terrain.preview.tints import interpolate_tints
-from tinsmith.terrain.units import METRE, find_ground
 from tinsmith.tin import Bounds
 
 pv = pytest.importorskip("pyvista")

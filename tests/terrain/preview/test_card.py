@@ -13,7 +13,7 @@ from support.pages import open_page
 from support.processes import run_alone
 
 import tinsmith as ts
-from tinsmith.terrain.cards.frame import encode_png
+from tinsmith.terrain.drawing.cards.frame import encode_png
 from tinsmith.terrain.preview.card import draw_map
 from tinsmith.terrain.preview.tints import compute_lightness
 

@@ -11,6 +11,7 @@ from PIL import Image
 
 from tinsmith import triangulate
 from tinsmith.terrain import preview
+from tinsmith.terrain.georeference.units import find_ground
 from tinsmith.terrain.preview.annotations import Sheet
 from tinsmith.terrain.preview.camera import View
 from tinsmith.terrain.preview.corridor import (
@@ -22,7 +23,6 @@ from tinsmith.terrain.preview.corridor import (
 from tinsmith.terrain.preview.look import make_look
 from tinsmith.terrain.preview.stage import make_stage
 from tinsmith.terrain.preview.strips import place_strips
-from tinsmith.terrain.units import find_ground
 
 SHEET = Sheet(1600.0, 1000.0)
 

@@ -14,6 +14,8 @@ from support.pictures import make_dipping_plane, read_pixels
 from tinsmith import TIN, MissingExtraError, triangulate
 from tinsmith.crs import FOOT, METRE
 from tinsmith.terrain import OptionError, RenderError, preview, slope
+from tinsmith.terrain.drawing.rounding import choose_ticks, format_number, round_down
+from tinsmith.terrain.georeference.units import NOT_KNOWN, find_ground
 from tinsmith.terrain.preview import opengl
 from tinsmith.terrain.preview.annotations import Sheet, scale_bar_length
 from tinsmith.terrain.preview.camera import (
@@ -26,8 +28,6 @@ from tinsmith.terrain.preview.camera import (
 from tinsmith.terrain.preview.picture import PICTURE_SUFFIXES
 from tinsmith.terrain.preview.scene import choose_exaggeration, measure_relief
 from tinsmith.terrain.preview.tints import compute_lightness, interpolate_tints
-from tinsmith.terrain.rounding import choose_ticks, format_number, round_down
-from tinsmith.terrain.units import NOT_KNOWN, find_ground
 from tinsmith.tin import Bounds
 
 pv = pytest.importorskip("pyvista")

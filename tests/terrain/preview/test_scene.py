@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from tinsmith import TIN, Breakline, Water, triangulate
-from tinsmith.terrain.linework import add_lines
+from tinsmith.terrain.drawing.linework import add_lines
+from tinsmith.terrain.georeference.units import find_ground
 from tinsmith.terrain.preview.scene import (
     _average_normals,
     add_terrain,
@@ -19,7 +20,6 @@ from tinsmith.terrain.preview.scene import (
     place_vertices,
 )
 from tinsmith.terrain.preview.tints import interpolate_tints
-from tinsmith.terrain.units import find_ground
 
 pv = pytest.importorskip("pyvista")
 

@@ -13,7 +13,7 @@ from matplotlib.colors import to_hex
 
 import tinsmith as ts
 from tinsmith.terrain.relief.dissolving import dissolve
-from tinsmith.terrain.slope import measure_plane_areas
+from tinsmith.terrain.relief.gradients import measure_plane_areas
 
 
 def dissolved(tin, classes):

@@ -78,13 +78,18 @@ def test_the_sweep_sees_what_lines_see(seed, kind, max_edge, fall):
     require_same_as_lines(tin, eye, fall, heights, radius)
 
 
-def test_the_sweep_goes_around_holes_and_along_breaklines():
+def make_surface_with_holes():
+    """Return a surface of random points with two breaklines and two round holes."""
     rng = np.random.default_rng(6)
     angle = np.linspace(0, 2 * np.pi, 12, endpoint=False)
     ring = np.column_stack([np.cos(angle), np.sin(angle)])
     lines = [[[5, 5, 9], [95, 30, 9]], [[5, 90, 3], [95, 80, 9], [60, 20, 1]]]
     points = rng.uniform(0, [100, 100, 5], (300, 3))
-    tin = ts.triangulate(points, breaklines=lines, holes=[50 + 9 * ring, [30, 70] + 5 * ring])
+    return ts.triangulate(points, breaklines=lines, holes=[50 + 9 * ring, [30, 70] + 5 * ring])
+
+
+def test_the_sweep_goes_around_holes_and_along_breaklines():
+    tin = make_surface_with_holes()
     for eye in ([10, 10], [50, 61], [80, 50]):
         require_same_as_lines(tin, eye, heights=(2.0, 0.0))
 
@@ -163,13 +168,8 @@ def test_parts_of_triangles_are_those_of_lines_of_sight(seed, kind, max_edge, ab
 
 
 def test_parts_go_around_holes_and_along_breaklines():
-    rng = np.random.default_rng(6)
-    angle = np.linspace(0, 2 * np.pi, 12, endpoint=False)
-    ring = np.column_stack([np.cos(angle), np.sin(angle)])
-    lines = [[[5, 5, 9], [95, 30, 9]], [[5, 90, 3], [95, 80, 9], [60, 20, 1]]]
-    points = rng.uniform(0, [100, 100, 5], (300, 3))
-    tin = ts.triangulate(points, breaklines=lines, holes=[50 + 9 * ring, [30, 70] + 5 * ring])
-    places = rng.uniform(0, 100, (800, 2))
+    tin = make_surface_with_holes()
+    places = np.random.default_rng(7).uniform(0, 100, (800, 2))
     for eye in ([10.0, 10.0], [50.0, 61.0], [80.0, 50.0]):
         assert require_parts_as_lines(tin, np.array(eye), places, (2.0, 0.0)) > 400
 

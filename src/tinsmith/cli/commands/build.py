@@ -97,7 +97,8 @@ def build(
 
 def _find_blunders(tin: TIN, request: Request, *, drop: bool) -> Suspects:
     """Look for points that look like blunders, and leave them out where that is asked for."""
-    from ...terrain.inspection import blunders, drop_blunders, screen
+    from ...terrain.inspection.dropping import drop_blunders
+    from ...terrain.inspection.findings import blunders, screen
     from ..output.blunder_summaries import Suspects
 
     with request.step("Checking points") as progress:
@@ -109,7 +110,7 @@ def _find_blunders(tin: TIN, request: Request, *, drop: bool) -> Suspects:
 
 def _find_gaps(tin: TIN, request: Request) -> list[str]:
     """Describe gaps that the surface spans, unless the user has said how far it may."""
-    from ...terrain.gaps import describe_gaps
+    from ...terrain.inspection.gaps import describe_gaps
 
     if request.how.max_edge is not None:
         return []
@@ -154,7 +155,7 @@ def _summarise_build(
 
 def _summarise_flats(tin: TIN, *, is_mended: bool) -> list[Row]:
     """Tell what was mended, or else of flat triangles if the points look like contours."""
-    from ...terrain.flats.finding import describe_flats
+    from ...terrain.inspection.flat_triangles.finding import describe_flats
 
     if is_mended:
         return [("Contours", tin.report.notes[-1])]

@@ -114,13 +114,10 @@ def _read_script(path: Path) -> list[dict[str, Any]]:
 
 
 def _read_bytes(path: Path) -> bytes:
-    from ...io.isolated.spooling import describe_system_error, open_ordinary_file
+    from ...io.isolated.spooling import open_ordinary_file, translate_system_errors
     from ..files import open_standard_input
 
     if path == STANDARD:
         return open_standard_input().read()
-    with open_ordinary_file(path) as local:
-        try:
-            return local.read_bytes()
-        except OSError as error:
-            raise describe_system_error(path, error) from error
+    with open_ordinary_file(path) as local, translate_system_errors(path):
+        return local.read_bytes()

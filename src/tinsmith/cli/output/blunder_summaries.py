@@ -81,7 +81,7 @@ class Suspects(NamedTuple):
 
 def tell_suspects(found: Suspects) -> list[Row]:
     """Return the line of a build on points that look like blunders, but for doubtful ones."""
-    from ...terrain.inspection import list_wrong_rows
+    from ...terrain.inspection.dropping import list_wrong_rows
 
     rows = list_wrong_rows(found.table).tolist()
     if not rows:

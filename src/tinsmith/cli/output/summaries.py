@@ -12,7 +12,7 @@ from ..._sentences import counted
 from ...crs import assume_elevation_unit
 from ...io.reprojection.transformation import is_geographic, length_unit
 from ...terrain import slope
-from ...terrain.slope import measure_areas
+from ...terrain.relief.gradients import measure_areas
 from ...tin import TIN, Bounds, Survey, quality
 from .line_summaries import (
     count_constrained_edges,

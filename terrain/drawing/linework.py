@@ -1,0 +1,213 @@
+"""Linework: which edges of a TIN belong to lines, of what kind, and how they are drawn."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ... import _optional
+from ...tin.topology import edge_keys, edges_at
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+
+__all__ = ["EDGE_KINDS", "LineEdges", "add_lines", "add_polylines", "find_line_edges"]
+
+EDGE_KINDS = ("soft", "hard", "hole", "boundary", "water")
+"""Kinds of lines; where several share an edge it is of the last in this list."""
+
+_PURPOSE = "A preview"
+
+
+class _Pen(NamedTuple):
+    """How a kind is drawn; ``width`` is in design pixels."""
+
+    color: tuple[int, int, int]
+    width: float
+    is_dashed: bool = False
+
+
+_PENS = {
+    "soft": _Pen((64, 68, 72), 1.8, is_dashed=True),
+    "hard": _Pen((34, 34, 38), 1.7),
+    "hole": _Pen((150, 58, 34), 2.0),
+    "boundary": _Pen((150, 58, 34), 2.4),
+    "water": _Pen((24, 92, 152), 2.6),
+}
+_DASH_SHARE = 0.006
+"""Length of a dash, and of the gap after it, as a share of the extent."""
+
+_NEARER = -4.0
+"""Depth steps by which lines are drawn in front of the edges they run along."""
+
+
+class LineEdges(NamedTuple):
+    """Edges of lines, each once, in the order of the lines.
+
+    Attributes
+    ----------
+    pairs : (k, 2) int32 array
+        Vertices, in the direction of the line.
+    kinds : (k,) int8 array
+        Indices into ``EDGE_KINDS``.
+    """
+
+    pairs: NDArray[np.int32]
+    kinds: NDArray[np.int8]
+
+
+def find_line_edges(tin: TIN, *, guess: bool = True) -> LineEdges:
+    """Return the edges of all lines of a TIN.
+
+    Parameters
+    ----------
+    tin : TIN
+    guess : bool
+        Take constrained edges of which no line is known, as in a TIN from a file, for hard
+        breaklines within the surface and for rings on its boundary; else leave them out.
+
+    Returns
+    -------
+    LineEdges
+    """
+    lines = tin.lines
+    ranks = np.array([EDGE_KINDS.index(kind) for kind in lines.kinds], np.int8)
+    known = LineEdges(lines.segments(), ranks[lines.segment_chains()])
+    found = _find_constrained_edges(tin) if guess else LineEdges(known.pairs[:0], known.kinds[:0])
+    pairs = np.concatenate([known.pairs, found.pairs])
+    kinds = np.concatenate([known.kinds, found.kinds])
+    is_guess = np.arange(len(pairs)) >= len(known.pairs)
+    keys = edge_keys(pairs, len(tin.points))
+    order = np.lexsort((np.arange(len(pairs)), -kinds, is_guess, keys))
+    is_first = np.append(True, np.diff(keys[order]) != 0)[: len(order)]
+    chosen = np.sort(order[is_first])
+    return LineEdges(pairs[chosen], kinds[chosen])
+
+
+def _find_constrained_edges(tin: TIN) -> LineEdges:
+    pairs = edges_at(tin.triangles, tin.constrained)
+    on_rim = tin.neighbors[tin.constrained] < 0
+    ranks = EDGE_KINDS.index("hard"), EDGE_KINDS.index("boundary")
+    return LineEdges(pairs, np.where(on_rim, ranks[1], ranks[0]).astype(np.int8))
+
+
+# ----------------------------------------------------------------------- drawing
+
+
+def add_lines(
+    plotter: Any, tin: TIN, points: NDArray[np.float64], *, factor: float = 1.0
+) -> list[Any]:
+    """Draw the lines of a TIN: hard ones dark, soft ones dashed, rings brown, water blue.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+    tin : TIN
+    points : (n, 3) float64 array
+        Its vertices as drawn.
+    factor : float, optional
+        Window pixels for one design pixel.
+
+    Returns
+    -------
+    list of pyvista.Actor
+        One for each kind there is.
+    """
+    found = find_line_edges(tin)
+    actors = []
+    for rank, kind in enumerate(EDGE_KINDS):
+        pen, pairs = _PENS[kind], found.pairs[found.kinds == rank]
+        if len(pairs) == 0:
+            continue
+        ends = points[pairs]
+        if pen.is_dashed:
+            extent = float(np.ptp(points[:, :2], axis=0).max())
+            ends = cut_into_dashes(ends, pairs, _DASH_SHARE * extent)
+        actors.append(_draw_edges(plotter, ends, pen, factor))
+    return actors
+
+
+def cut_into_dashes(
+    ends: NDArray[np.float64], pairs: NDArray[np.int32], length: float
+) -> NDArray[np.float64]:
+    """Cut edges into dashes that run on from one edge to the next of the same line.
+
+    Parameters
+    ----------
+    ends : (k, 2, 3) float64 array
+    pairs : (k, 2) int32 array
+        Vertices of the edges; an edge that begins where the one before ends goes on with it.
+    length : float
+        Of a dash, and of the gap after it.
+
+    Returns
+    -------
+    (d, 2, 3) float64 array
+    """
+    spans = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    along = np.concatenate([[0.0], np.cumsum(spans)[:-1]])
+    starts = np.append(True, pairs[1:, 0] != pairs[:-1, 1])
+    along -= along[starts][np.cumsum(starts) - 1]
+    first = np.floor(along / (2 * length)).astype(np.int64)
+    counts = np.floor((along + spans) / (2 * length)).astype(np.int64) - first + 1
+    edge = np.repeat(np.arange(len(ends)), counts)
+    within = np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts)
+    begin = 2 * length * (first[edge] + within) - along[edge]
+    cut = np.stack([begin, begin + length], axis=1) / spans[edge, None]
+    cut = np.clip(cut, 0.0, 1.0)
+    kept = cut[:, 1] > cut[:, 0]
+    edge, cut = edge[kept], cut[kept, :, None]
+    made: NDArray[np.float64] = ends[edge, :1] + cut * (ends[edge, 1:] - ends[edge, :1])
+    return made
+
+
+def _draw_edges(plotter: Any, ends: NDArray[np.float64], pen: _Pen, factor: float) -> Any:
+    pv = _optional.load("pyvista", _PURPOSE)
+
+    count = len(ends)
+    cells = np.column_stack([np.full(count, 2), np.arange(2 * count).reshape(count, 2)])
+    mesh = pv.PolyData(ends.reshape(-1, 3), lines=cells.ravel())
+    return _draw(plotter, mesh, pen.color, pen.width * factor)
+
+
+def _draw(plotter: Any, mesh: Any, color: tuple[int, int, int], width: float) -> Any:
+    """Draw lines in front of the surface that they lie on."""
+    actor = plotter.add_mesh(mesh, color=color, lighting=False, line_width=width, pickable=False)
+    actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
+    actor.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(_NEARER, _NEARER)
+    return actor
+
+
+def add_polylines(
+    plotter: Any,
+    points: NDArray[np.float64],
+    offsets: NDArray[Any],
+    chosen: NDArray[np.int64],
+    *,
+    color: tuple[int, int, int],
+    width: float,
+) -> Any:
+    """Draw polylines over a surface.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+    points : (n, 3) float64 array
+        Of all polylines, as drawn.
+    offsets : (k + 1,) int array
+        Where each begins and ends among the points.
+    chosen : int array
+        Polylines to draw.
+    color : tuple of int
+    width : float
+        Window pixels.
+    """
+    pv = _optional.load("pyvista", _PURPOSE)
+
+    starts, stops = np.asarray(offsets)[chosen], np.asarray(offsets)[chosen + 1]
+    cells = [part for a, b in zip(starts, stops, strict=True) for part in (b - a, *range(a, b))]
+    mesh = pv.PolyData(points, lines=np.array(cells, np.int64))
+    return _draw(plotter, mesh, color, width)

@@ -1,0 +1,111 @@
+"""A pad and its side slopes as one surface."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ....tin import Breakline, triangulate
+from .seams import measure_tolerance
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ....tin import TIN
+    from .slopes import Slope
+
+__all__ = ["build_patch"]
+
+
+def build_patch(tin: TIN, pad: Any, level: float, slopes: list[Slope]) -> TIN:
+    """Return pad and slopes as one surface."""
+    tolerance = measure_tolerance(tin.points)
+    rims = [rim for slope in slopes for rim in slope.find_rim(pad, tolerance)]
+    edge = _insert(pad, level, rims, tolerance)
+    rings = _trace_outline(edge, rims, slopes)
+    breaks = [line for slope in slopes for line in slope.find_breaks()]
+    ends = np.concatenate([edge, *rims])
+    lines = [Breakline(edge, name="pad edge", priority=1)]
+    snapped = [_snap(line, ends, tolerance) for line in breaks]
+    lines += [
+        Breakline(line, name="slope") for line in snapped if np.ptp(line[:, :2], axis=0).any()
+    ]
+    return triangulate(
+        np.concatenate(rings),
+        breaklines=lines,
+        boundary=rings,
+        duplicates="last",
+        crs=tin.crs,
+        z_unit=tin.elevation_unit,
+    )
+
+
+def _insert(
+    pad: Any, level: float, rims: list[NDArray[np.float64]], tolerance: float
+) -> NDArray[np.float64]:
+    """Return the pad's edge with the ends of daylight lines, which are moved onto it."""
+    import shapely
+
+    ring = shapely.get_coordinates(pad.exterior)
+    stations = {float(pad.exterior.project(shapely.Point(xy))): xy for xy in ring[:-1]}
+    for rim in rims:
+        for end in (0, -1):
+            here = shapely.Point(rim[end, :2])
+            if pad.exterior.distance(here) > tolerance:
+                continue
+            station = float(pad.exterior.project(here))
+            near = [one for one in stations if abs(one - station) <= tolerance]
+            if not near and abs(station - pad.exterior.length) <= tolerance:
+                near = [0.0]
+            rim[end] = [*stations.setdefault(near[0] if near else station, rim[end, :2]), level]
+    path = np.array([stations[one] for one in sorted(stations)])
+    closed = np.vstack([path, path[:1]])
+    return np.column_stack([closed, np.full(len(closed), level)])
+
+
+def _trace_outline(
+    edge: NDArray[np.float64], rims: list[NDArray[np.float64]], slopes: list[Slope]
+) -> list[NDArray[np.float64]]:
+    """Return the rings around pad and slopes."""
+    import shapely
+
+    lines = shapely.union_all(shapely.linestrings(edge[:, :2]))
+    work = shapely.union_all([lines, *(shapely.linestrings(rim[:, :2]) for rim in rims)])
+    faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(work)))
+    pad = shapely.Polygon(edge[:, :2])
+    places = [shapely.point_on_surface(face) for face in faces]
+    kept = [
+        face
+        for face, place in zip(faces, places, strict=True)
+        if pad.contains(place) or any(slope.is_made_at(place) for slope in slopes)
+    ]
+    known = {(x, y): z for x, y, z in np.concatenate([edge, *rims]).tolist()}
+    joined = shapely.coverage_union_all(kept)
+    rings = [shapely.get_coordinates(ring) for ring in shapely.get_rings(joined)]
+    return [_lift(ring, known, slopes) for ring in rings]
+
+
+def _lift(
+    ring: NDArray[np.float64], known: dict[tuple[float, float], float], slopes: list[Slope]
+) -> NDArray[np.float64]:
+    """Return a ring with elevations: where lines cross but for rounding, those of the slope."""
+    z = [known.get((x, y), np.nan) for x, y in ring.tolist()]
+    for slope in slopes:
+        z = [
+            slope.interpolate(place) if np.isnan(own) else own
+            for own, place in zip(z, ring, strict=True)
+        ]
+    return np.column_stack([ring, z])
+
+
+def _snap(
+    line: NDArray[np.float64], places: NDArray[np.float64], tolerance: float
+) -> NDArray[np.float64]:
+    """Move the ends of a line onto places that are there."""
+    line = line.copy()
+    for end in (0, -1):
+        apart = np.hypot(*(places[:, :2] - line[end, :2]).T)
+        if apart.min() <= tolerance:
+            line[end] = places[int(apart.argmin())]
+    return line

@@ -1,0 +1,190 @@
+"""The seam of two surfaces: the boundary of the one that is pasted, with what is cut at it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...._progress import Progress
+from ....tin import Breakline
+from ....tin.topology import edge_keys
+from .outlines import build_area
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from ...._progress import Tell
+    from ....tin import TIN
+
+__all__ = ["Seam", "find_sides", "measure_tolerance"]
+
+_ROUNDINGS = 64.0
+"""Of the largest coordinate: places so near to each other are one."""
+_BATCH = 256
+"""Segments that are cut between two words of how far it is."""
+
+
+def measure_tolerance(*points: NDArray[np.float64]) -> float:
+    """Return the distance within which places are one."""
+    largest = max(float(np.abs(one[:, :2]).max()) for one in points)
+    return _ROUNDINGS * float(np.spacing(largest))
+
+
+def find_sides(triangles: NDArray[np.int32], n_vertices: int) -> NDArray[np.int64]:
+    """Return the keys of the edges opposite each corner, (m, 3)."""
+    corners = triangles[:, [1, 2, 2, 0, 0, 1]].reshape(-1, 2)
+    return edge_keys(corners, n_vertices).reshape(-1, 3)
+
+
+class Seam:
+    """The closed rings of a patch's boundary, (k, 3) each, to which places are added.
+
+    Parameters
+    ----------
+    patch : TIN
+    points : (n, 3) float64 array
+        Its vertices, in the unit of the other surface.
+    tolerance : float
+
+    Attributes
+    ----------
+    rings : list of (k, 3) float64 array
+    area : shapely.Polygon or shapely.MultiPolygon
+        That the patch covers.
+    rounding : float
+        Area that the roundings of the boundary can take away or add.
+    """
+
+    def __init__(self, patch: TIN, points: NDArray[np.float64], tolerance: float) -> None:
+        import shapely
+
+        self._patch, self._points, self._tolerance = patch, points, tolerance
+        self._numbers = [np.append(ring, ring[0]) for ring in patch.boundary]
+        self.rings = [points[ring] for ring in self._numbers]
+        self._pairs = np.concatenate([np.stack([r[:-1], r[1:]], 1) for r in self._numbers])
+        self._ends = points[self._pairs]
+        self._tree = shapely.STRtree(shapely.linestrings(self._ends[:, :, :2]))
+        self.area = build_area(points, patch.boundary)
+        shapely.prepare(self.area)
+        self.rounding = tolerance * float(self.area.length)
+        self._cuts: dict[int, list[tuple[float, NDArray[np.float64]]]] = {}
+
+    def touches(self, area: Any) -> bool:
+        """Tell whether it meets the outline of an area but for rounding."""
+        import shapely
+
+        lines = shapely.multilinestrings([shapely.linestrings(ring[:, :2]) for ring in self.rings])
+        return bool(shapely.dwithin(shapely.boundary(area), lines, self._tolerance))
+
+    def lie_near(self, area: Any, places: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Tell which places are in an area but for rounding."""
+        import shapely
+
+        shapely.prepare(area)
+        is_near: NDArray[np.bool_] = shapely.dwithin(
+            area, shapely.points(places[:, :2]), self._tolerance
+        )
+        return is_near
+
+    def find_near(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+        """Return which places lie on the seam but for rounding."""
+        import shapely
+
+        places = shapely.points(xy)
+        found = self._tree.query(places, predicate="dwithin", distance=self._tolerance)
+        return np.unique(found[0])
+
+    def find_crossing(self, ends: NDArray[np.float64]) -> NDArray[np.int64]:
+        """Return which segments, (k, 2, 2), cross or touch the seam."""
+        import shapely
+
+        every = np.concatenate(self.rings)[:, :2]
+        low, high = every.min(axis=0) - self._tolerance, every.max(axis=0) + self._tolerance
+        near = np.flatnonzero(((ends.max(axis=1) >= low) & (ends.min(axis=1) <= high)).all(axis=1))
+        segments = shapely.linestrings(ends[near])
+        return np.unique(near[self._tree.query(segments, predicate="intersects")[0]])
+
+    def cut(
+        self, ends: NDArray[np.float64], is_kept: NDArray[np.bool_], progress: Tell | None = None
+    ) -> list[list[NDArray[np.float64]]]:
+        """Return the parts of segments, (k, 2, 3), outside; their new ends are on the seam."""
+        import shapely
+
+        outside = shapely.difference(shapely.linestrings(ends[:, :, :2]), self.area)
+        done = Progress(progress)
+        found = []
+        for left, own, stays in zip(outside, ends, is_kept.tolist(), strict=True):
+            there = [part for part in shapely.get_parts(left) if not part.is_empty]
+            parts = [shapely.get_coordinates(part)[[0, -1]] for part in there]
+            fixed = own[stays]
+            off = [part for part in parts if self._is_off(part)]
+            ways = [np.array([self._place(xy, fixed) for xy in part]) for part in off]
+            found.append([way for way in ways if (way[0, :2] != way[1, :2]).any()])
+            if len(found) % _BATCH == 0:
+                done(len(found) / len(ends))
+        return found
+
+    def _is_off(self, part: NDArray[np.float64]) -> bool:
+        """Whether a part is longer than rounding, and does not run along the seam."""
+        is_long = float(np.hypot(*(part[1] - part[0]))) > self._tolerance
+        return is_long and not len(self.find_near(part.mean(axis=0)[None]))
+
+    def _place(self, xy: NDArray[np.float64], fixed: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the vertex that stays at a place, or else the place on the seam."""
+        for vertex in fixed:
+            if (vertex[:2] == xy).all():
+                return np.asarray(vertex)
+        import shapely
+
+        number = int(self._tree.nearest(shapely.Point(xy)))
+        a, b = self._ends[number]
+        taken = [a, b, *(place for _, place in self._cuts.get(number, ()))]
+        for vertex in taken:
+            if float(np.hypot(*(vertex[:2] - xy))) <= self._tolerance:
+                return np.asarray(vertex)
+        share = float((xy - a[:2]) @ (b - a)[:2] / ((b - a)[:2] @ (b - a)[:2]))
+        place = np.append(xy, a[2] + share * (b[2] - a[2]))
+        self._cuts.setdefault(number, []).append((share, place))
+        return place
+
+    def insert_cuts(self) -> None:
+        """Put the places at which something is cut into the rings."""
+        first = 0
+        rings = []
+        for ring in self.rings:
+            path = [ring[:1]]
+            for number in range(first, first + len(ring) - 1):
+                between = sorted(self._cuts.get(number, ()), key=lambda one: one[0])
+                path += [place[None] for _, place in between]
+                path.append(self._ends[number][1:])
+            first += len(ring) - 1
+            rings.append(np.concatenate(path))
+        self.rings = rings
+
+    def list_lines(self) -> Iterator[Breakline]:
+        """Yield the lines of the patch, and edges without which its triangles would change."""
+        n = len(self._points)
+        rim = set(edge_keys(self._pairs, n).tolist())
+        lines = self._patch.lines
+        for chain, kind, name in zip(lines.chains(), lines.kinds, lines.names, strict=True):
+            keys = edge_keys(np.stack([chain[:-1], chain[1:]], axis=1), n).tolist()
+            off = [i for i, key in enumerate(keys) if key not in rim]
+            shape: Any = "soft" if kind == "soft" else "hard"
+            runs = np.split(np.array(off, int), np.flatnonzero(np.diff(off) > 1) + 1)
+            for run in filter(len, runs):
+                path = self._points[chain[int(run[0]) : int(run[-1]) + 2]]
+                yield Breakline(path, kind=shape, name=name)
+        own = edge_keys(lines.segments().reshape(-1, 2), n).tolist()
+        for key in sorted(self._find_fixed() - rim - set(own)):
+            yield Breakline(self._points[list(divmod(key, n))], kind="soft", name="joint")
+
+    def _find_fixed(self) -> set[int]:
+        """Return the constrained edges, and those of triangles at which the seam is cut."""
+        mesh: Any = self._patch.triangulation
+        keys = find_sides(mesh.triangles, len(self._points))
+        cut = edge_keys(self._pairs[sorted(self._cuts)].reshape(-1, 2), len(self._points))
+        wanted = np.asarray(mesh.constrained | np.isin(keys, cut).any(axis=1, keepdims=True))
+        return set(keys[wanted].tolist())

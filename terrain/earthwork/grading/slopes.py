@@ -1,0 +1,193 @@
+"""Side slopes: a surface that rises or falls from a pad, as far as the ground is met."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ....errors import PointsError
+from ....tin import TIN, topology
+from ..differences import difference
+from ..zones import classify, join_segments, number_zones
+from .distances import measure_distances
+from .seams import measure_tolerance
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Slope", "find_slope"]
+
+_MARGIN = 1.01
+"""Slopes are made so much longer than they can be: at their end there is no daylight."""
+_PLANE = 1e-6
+"""Gradients that differ by less are those of one plane."""
+
+
+class Slope(NamedTuple):
+    """One of the slopes where it is made: cut or filled.
+
+    Attributes
+    ----------
+    surface : TIN
+        The difference to the ground, cut along all edges.
+    is_made : (m,) bool array
+        Its triangles that hang together with the pad.
+    elevations : (n,) float64 array
+        Of the slope at its vertices.
+    """
+
+    surface: TIN
+    is_made: NDArray[np.bool_]
+    elevations: NDArray[np.float64]
+
+    def find_rim(self, pad: Any, tolerance: float) -> list[NDArray[np.float64]]:
+        """Return the daylight lines, (k, 3) each."""
+        start, end = _find_outline(self.surface, self.is_made)
+        xy = self.surface.points[:, :2]
+        off = ~_lie_on(pad, (xy[start] + xy[end]) / 2, tolerance)
+        chains = join_segments(start[off], end[off])
+        return [np.column_stack([xy[chain], self.elevations[chain]]) for chain in chains]
+
+    def is_made_at(self, place: Any) -> bool:
+        """Tell whether the slope is made at a point of shapely."""
+        triangle = int(self.surface.locate([[place.x, place.y]])[0])
+        return triangle >= 0 and bool(self.is_made[triangle])
+
+    def interpolate(self, place: NDArray[np.float64]) -> float:
+        """Return the elevation of the slope nearest to a place."""
+        return float(self.elevations[self.surface.closest_vertex(place[None])[0]])
+
+    def find_breaks(self) -> list[NDArray[np.float64]]:
+        """Return the lines along which the slope breaks, (k, 3) each."""
+        import shapely
+
+        mesh = self.surface.triangulation
+        points = np.column_stack([mesh.points[:, :2], self.elevations])
+        gradients = _measure_gradients(points, mesh.triangles)
+        triangle, corner = np.nonzero(self.is_made[:, None] & (mesh.neighbors >= 0))
+        other = mesh.neighbors[triangle, corner]
+        apart = np.abs(gradients[triangle] - gradients[other]).max(axis=1)
+        chosen = self.is_made[other] & (triangle < other) & (apart > _PLANE)
+        start, end = topology.ends(mesh.triangles, triangle[chosen], corner[chosen])
+        segments = shapely.linestrings(points[np.stack([start, end], axis=1)])
+        merged = shapely.line_merge(shapely.multilinestrings(segments))
+        return [shapely.get_coordinates(one, include_z=True) for one in shapely.get_parts(merged)]
+
+
+def find_slope(tin: TIN, area: Any, pad: Any, level: float, rate: float, reach: float) -> Slope:
+    """Follow a slope from the pad until daylight, at most as far as the ground's relief needs.
+
+    Parameters
+    ----------
+    tin : TIN
+        The ground, without a CRS.
+    area : geometry of shapely
+        What it covers.
+    pad : shapely.Polygon
+    level : float
+        Of the pad.
+    rate : float
+        Rise of the slope for a unit along, negative over a fill.
+    reach : float
+        How far it can go on the highest, or lowest, of the ground.
+
+    Raises
+    ------
+    PointsError
+        If the ground ends before.
+    """
+    far: float = min(reach, _estimate_reach(tin, pad, level, rate))
+    tolerance = measure_tolerance(tin.points)
+    while True:
+        distances = measure_distances(pad, far * _MARGIN)
+        points = distances.points * (1.0, 1.0, rate) + (0.0, 0.0, level)
+        skirt = TIN.from_triangles(points, distances.triangles)
+        found = difference(_take_near(tin, skirt), skirt).tin
+        is_made = _find_made(found, pad, -np.sign(rate), tolerance)
+        elevations = _measure_elevations(found, distances, level, rate)
+        start, end = _find_outline(found, is_made, only_outer=True)
+        middles = (found.points[start, :2] + found.points[end, :2]) / 2
+        ends = middles[~_lie_on(pad, middles, tolerance)]
+        if not len(ends):
+            return Slope(found, is_made, elevations)
+        lost = ends if far >= reach else ends[_lie_on(area, ends, tolerance)]
+        if len(lost):
+            x, y = lost[0]
+            raise PointsError(
+                f"The {'cut' if rate > 0 else 'fill'} slope does not meet the ground before it "
+                f"ends, at {x:.10g} {y:.10g}: a larger ground is needed, or a steeper slope."
+            )
+        far = float(min(2.0 * far, reach))
+
+
+def _estimate_reach(tin: TIN, pad: Any, level: float, rate: float) -> float:
+    """Return how far a slope goes on ground as far from the level as that at the pad's edge."""
+    import shapely
+
+    ground = tin.interpolate(shapely.get_coordinates(shapely.segmentize(pad, pad.length / 64)))
+    rise = np.nanmax((ground - level) * np.sign(rate), initial=0.0)
+    return float(max(2.0 * rise / abs(rate), pad.length / 64))
+
+
+def _take_near(tin: TIN, skirt: TIN) -> TIN:
+    """Return the triangles of the ground in the box of a skirt."""
+    xy = tin.points[tin.triangles, :2]
+    low, high = skirt.points[:, :2].min(axis=0), skirt.points[:, :2].max(axis=0)
+    near = ((xy.max(axis=1) >= low) & (xy.min(axis=1) <= high)).all(axis=1)
+    used, corners = np.unique(tin.triangles[near], return_inverse=True)
+    return TIN.from_triangles(tin.points[used], corners.reshape(-1, 3))
+
+
+def _find_made(found: TIN, pad: Any, sign: float, tolerance: float) -> NDArray[np.bool_]:
+    """Tell which triangles of a difference are cut (or filled) and hang together with the pad."""
+    mesh = found.triangulation
+    classes = classify(mesh)
+    _, part = number_zones(mesh, classes)
+    triangle, corner = np.nonzero((mesh.neighbors < 0) & (classes == sign)[:, None])
+    start, end = topology.ends(mesh.triangles, triangle, corner)
+    middles = (mesh.points[start, :2] + mesh.points[end, :2]) / 2
+    at_pad = triangle[_lie_on(pad, middles, tolerance)]
+    return np.isin(part, part[at_pad])
+
+
+def _measure_elevations(
+    found: TIN, distances: TIN, level: float, rate: float
+) -> NDArray[np.float64]:
+    """Return the elevations of a slope at the vertices of its difference to the ground."""
+    xy = found.points[:, :2]
+    away: NDArray[np.float64] = distances.interpolate(xy)
+    lost = np.isnan(away)  # by rounding, at an edge
+    if lost.any():
+        away[lost] = distances.interpolate(xy[lost], method="linear", extrapolate="nearest")
+    return level + rate * away
+
+
+def _find_outline(
+    surface: TIN, chosen: NDArray[np.bool_], *, only_outer: bool = False
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the edges around some triangles; only those where the surface ends."""
+    mesh = surface.triangulation
+    is_outer = mesh.neighbors < 0
+    ends_here = is_outer if only_outer else is_outer | ~chosen[mesh.neighbors]
+    triangle, corner = np.nonzero(ends_here & chosen[:, None])
+    return topology.ends(mesh.triangles, triangle, corner)
+
+
+def _lie_on(area: Any, xy: NDArray[np.float64], tolerance: float) -> NDArray[np.bool_]:
+    """Tell which places are on the outline of an area."""
+    import shapely
+
+    outline = shapely.boundary(area)
+    shapely.prepare(outline)
+    is_near: NDArray[np.bool_] = shapely.dwithin(outline, shapely.points(xy), tolerance)
+    return is_near
+
+
+def _measure_gradients(
+    points: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> NDArray[np.float64]:
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    east, north, up = np.cross(b - a, c - a).T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.stack([-east / up, -north / up], axis=1)

@@ -1,0 +1,266 @@
+"""Agreement: the CRS and units of a surface, and of what is measured together with it.
+
+One rule for every product. What is not known of one surface is told. Several surfaces must be of
+one CRS, known of all or of none; elevations in units that are known and differ are converted; a
+unit that is not known is taken to be the usual one of the CRS, and never another.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+from ...crs import CRS, METRE, Unit, assume_elevation_unit
+from ...errors import CrsError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = [
+    "Agreement",
+    "PlaneUnits",
+    "Referenced",
+    "agree",
+    "describe_unknown",
+    "find_plane_units",
+    "require_same_crs",
+]
+
+
+class Referenced(Protocol):
+    """Whatever has a CRS and a unit of elevations: a TIN, a Survey."""
+
+    @property
+    def crs(self) -> CRS | None:
+        """None if it is not known."""
+
+    @property
+    def elevation_unit(self) -> Unit | None:
+        """None if it is not known."""
+
+
+class PlaneUnits(NamedTuple):
+    """Units of lengths, areas and volumes; None if they are not known."""
+
+    length: Unit | None
+    area: str | None
+    volume: str | None
+
+
+class Agreement(NamedTuple):
+    """The one CRS and the one unit of several surfaces.
+
+    Attributes
+    ----------
+    crs : CRS or None
+    elevation_unit : Unit or None
+        The one that is known; None if none is.
+    factors : tuple of float
+        From the elevations of each to that unit.
+    notes : tuple of str
+        What is not known, was assumed or converted.
+    """
+
+    crs: CRS | None
+    elevation_unit: Unit | None
+    factors: tuple[float, ...]
+    notes: tuple[str, ...]
+
+
+def find_plane_units(crs: CRS | None) -> PlaneUnits:
+    """Return the units that lengths, areas and volumes are measured in: the CRS's, of degrees m.
+
+    Examples
+    --------
+    >>> find_plane_units(CRS("EPSG:2274")).area
+    'US ft²'
+    """
+    unit = None if crs is None else METRE if crs.is_geographic else crs.horizontal_unit
+    if unit is None or unit.metres is None:
+        return PlaneUnits(unit, None, None)
+    return PlaneUnits(unit, f"{unit.symbol}²", f"{unit.symbol}³")
+
+
+def describe_unknown(crs: CRS | None, elevation_unit: Unit | None) -> tuple[str, ...]:
+    """Say what is not known of a surface, and what it is taken to be where it is needed.
+
+    Examples
+    --------
+    >>> describe_unknown(CRS("EPSG:32616"), None)
+    ('The unit of elevations is not known: taken to be the metre.',)
+    """
+    if crs is None:
+        return ("The CRS is not known: lengths are in its own unit, elevations taken as the same.",)
+    if elevation_unit is not None:
+        return ()
+    usual = assume_elevation_unit(crs, None)
+    taken = "that of the eastings" if usual is None else f"the {usual.name}"
+    return (f"The unit of elevations is not known: taken to be {taken}.",)
+
+
+# ---------------------------------------------------------------- several surfaces
+
+
+def agree(surfaces: Sequence[Referenced], names: Sequence[str]) -> Agreement:
+    """Find the one CRS and the one unit of surfaces, which are those of the first.
+
+    Parameters
+    ----------
+    surfaces : sequence of TIN or Survey
+    names : sequence of str
+        What each is called in a sentence: "the ground".
+
+    Raises
+    ------
+    CrsError
+        If CRSs differ, or are known of some only; if it cannot be told whether elevations are in
+        one unit.
+    """
+    for one, name in zip(surfaces, names, strict=True):
+        _require_one_crs(surfaces[0], names[0], one, name)
+    _require_one_datum(surfaces, names)
+    crs = surfaces[0].crs
+    units = [assume_elevation_unit(crs, one.elevation_unit) for one in surfaces]
+    known = [one.elevation_unit for one in surfaces if one.elevation_unit is not None]
+    unit = known[0] if known else None
+    notes = [*_describe_datum(surfaces, names), *_describe_units(surfaces, names, unit)]
+    factors = []
+    for own, one, name in zip(units, surfaces, names, strict=True):
+        factor = 1.0 if unit is None or own == unit else _convert(one, own, unit, name, names)
+        if factor != 1.0:
+            notes.append(f"The elevations of {name} were converted from {own} to {unit}.")
+        factors.append(factor)
+    return Agreement(crs, unit, tuple(factors), tuple(notes))
+
+
+def _require_one_crs(first: Referenced, its_name: str, other: Referenced, name: str) -> None:
+    one, two = first.crs, other.crs
+    if one is None and two is None:
+        return
+    if one is None or two is None:
+        known, unknown = (its_name, name) if two is None else (name, its_name)
+        crs = one or two
+        raise CrsError(
+            f"{_begin_sentence(known)} is in {crs.label if crs else ''} and the CRS of {unknown} "
+            "is not known: give that of both, for coordinates are never mixed on a guess.",
+            crs=crs,
+        )
+    if not one.horizontal.is_same(two.horizontal):
+        raise CrsError(
+            f"{_begin_sentence(its_name)} is in {one.label} and {name} in {two.label}: bring the "
+            "points of one into the CRS of the other and build the surface from them, for "
+            "triangles that are moved make another surface.",
+            crs=two,
+        )
+
+
+def _require_one_datum(surfaces: Sequence[Referenced], names: Sequence[str]) -> None:
+    """Refuse elevations that refer to different vertical CRSs."""
+    told = [
+        (one.crs, name)
+        for one, name in zip(surfaces, names, strict=True)
+        if one.crs is not None and one.crs.vertical_unit is not None
+    ]
+    for crs, name in told[1:]:
+        if not crs.is_same(told[0][0]):
+            raise CrsError(
+                f"The elevations of {told[0][1]} are those of {told[0][0].label}, of {name} those "
+                f"of {crs.label}: both must refer to one vertical CRS.",
+                crs=crs,
+            )
+
+
+def _describe_datum(surfaces: Sequence[Referenced], names: Sequence[str]) -> list[str]:
+    silent = [
+        name
+        for one, name in zip(surfaces, names, strict=True)
+        if one.crs is not None and one.crs.vertical_unit is None
+    ]
+    told = next((one.crs for one in surfaces if one.crs and one.crs.vertical_unit), None)
+    if told is None:
+        return []
+    return [
+        f"The vertical CRS of {name} is not known: taken to be that of {told.label}."
+        for name in silent
+    ]
+
+
+def _describe_units(
+    surfaces: Sequence[Referenced], names: Sequence[str], unit: Unit | None
+) -> list[str]:
+    """Say what is not known: of all of them once, else of each."""
+    crs = surfaces[0].crs
+    if crs is None or unit is None:
+        return list(describe_unknown(crs, unit))
+    return [
+        f"The unit of the elevations of {name} is not known: taken to be the {unit.name}."
+        for one, name in zip(surfaces, names, strict=True)
+        if one.elevation_unit is None
+    ]
+
+
+def _convert(
+    surface: Referenced, own: Unit | None, unit: Unit, name: str, names: Sequence[str]
+) -> float:
+    """Return the factor from one unit that is known to another one."""
+    if surface.elevation_unit is None:
+        usual = "" if own is None else f", and {own.name} is usual in the CRS"
+        others = " and ".join(one for one in names if one != name)
+        raise CrsError(
+            f"The unit of the elevations of {name} is not known{usual}, and there are elevations "
+            f"in {unit.name} ({others}): give the units of both, for elevations are never mixed on "
+            "a guess.",
+            crs=surface.crs,
+        )
+    if own is None or own.metres is None or unit.metres is None:
+        raise CrsError(
+            f"Elevations in {own} and in {unit} cannot be compared: the length of a unit is not "
+            "known.",
+            crs=surface.crs,
+        )
+    return own.metres / unit.metres
+
+
+# ---------------------------------------------------------------- what is laid on a surface
+
+
+def require_same_crs(
+    theirs: CRS | None, crs: CRS | None, what: str, *, is_plain: bool = False
+) -> tuple[str, ...]:
+    """Refuse what is in another CRS than the surface, and tell what was assumed.
+
+    Parameters
+    ----------
+    theirs : CRS or None
+    crs : CRS or None
+        Of the surface.
+    what : str
+        What it is called in sentences: "the lines".
+    is_plain : bool
+        Plain coordinates cannot name a CRS: they are in that of the surface.
+
+    Raises
+    ------
+    CrsError
+        If they differ in the plane, or that of the surface is not known.
+    """
+    if theirs is None:
+        if crs is None or is_plain:
+            return ()
+        return (f"The CRS of {what} is not known: taken to be that of the surface, {crs.label}.",)
+    if crs is None:
+        raise CrsError(
+            f"The CRS of {what} is {theirs.label} and that of the surface is not known: give that "
+            "of the surface, for coordinates are never mixed on a guess.",
+            crs=theirs,
+        )
+    if not theirs.horizontal.is_same(crs.horizontal):
+        raise CrsError(
+            f"The CRS of {what} is {theirs.label}, that of the surface {crs.label}: they must be "
+            "the same; reproject one of them first.",
+            crs=theirs,
+        )
+    return ()
+
+
+def _begin_sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]

@@ -1,0 +1,161 @@
+"""Do coordinates lie where their CRS applies? What tells northing from easting, and nonsense."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...crs import CRS
+
+if TYPE_CHECKING:
+    import pyproj
+    from numpy.typing import NDArray
+
+__all__ = ["AreaOfUse"]
+
+_WGS84 = "EPSG:4326"
+_MARGIN_DEGREES = 2.0
+"""Surveys at the edge of a zone keep its CRS some way beyond; two degrees are a third of a zone."""
+_SPREAD = 64
+_ORIGIN_METRES = 20_000.0
+"""Coordinates of a local grid, or degrees, are as small as this; UTM's begin at 166,000."""
+
+
+@dataclass(frozen=True, slots=True)
+class AreaOfUse:
+    """The areas of use of the CRS of some coordinates, and of the one that they are moved to.
+
+    Attributes
+    ----------
+    source : CRS
+        CRS of the coordinates.
+    targets : tuple of CRS
+        CRSs whose areas count, without those whose area is not known.
+    """
+
+    source: CRS
+    targets: tuple[CRS, ...]
+
+    @classmethod
+    def of(cls, source: CRS | None, target: CRS | None) -> AreaOfUse | None:
+        """Return the areas to look at; None if nothing is known of them."""
+        declared = source or target
+        if declared is None:
+            return None
+        targets = {crs: None for crs in (declared, target) if crs is not None}
+        known = tuple(crs for crs in targets if _find_area(crs) is not None)
+        return cls(declared, known) if known else None
+
+    @property
+    def label(self) -> str:
+        """The CRSs and the narrowest of their areas in degrees, for a sentence."""
+        names = " and ".join(crs.label for crs in self.targets)
+        area = min((_find_area(crs) for crs in self.targets), key=_measure_width)
+        return (
+            f"{names} (longitude {area.west:g} to {area.east:g}, "
+            f"latitude {area.south:g} to {area.north:g})"
+        )
+
+    def covers(
+        self, xy: NDArray[np.float64], *, margin: float = _MARGIN_DEGREES
+    ) -> NDArray[np.bool_]:
+        """Whether each point lies in all areas, a margin around them included.
+
+        Parameters
+        ----------
+        xy : (n, 2) float64 array
+            Easting (longitude), northing (latitude).
+        margin : float
+            Degrees.
+        """
+        longitude, latitude = _convert_to_degrees(self.source, xy)
+        inside: NDArray[np.bool_] = np.isfinite(longitude) & np.isfinite(latitude)
+        for crs in self.targets:
+            inside &= _is_within(_find_area(crs), longitude, latitude, margin)
+        return inside
+
+    def covers_most(self, xy: NDArray[np.float64]) -> bool:
+        """Whether more than half of some points, spread over all of them, lie in the areas."""
+        some = xy[:: max(1, len(xy) // _SPREAD)]
+        return bool(2 * self.covers(some).sum() > len(some))
+
+    def is_local(self, xy: NDArray[np.float64]) -> bool:
+        """Whether points lie about the origin of the coordinates, and in no area but its margin."""
+        if len(xy) == 0 or self.source.is_geographic:
+            return False
+        if np.abs(xy).max() * self.source.horizontal_unit.metres > _ORIGIN_METRES:
+            return False
+        return not self.covers(xy[_find_outermost(xy)], margin=0.0).any()
+
+    def find_outside(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+        """Return the rows that lie outside; all are looked at only if the outermost do not fit."""
+        if len(xy) == 0 or self.covers(xy[_find_outermost(xy)]).all():
+            return np.empty(0, np.int64)
+        return np.flatnonzero(~self.covers(xy))
+
+
+def _find_outermost(xy: NDArray[np.float64]) -> list[int]:
+    """Return the rows of the corners of the octagon around the points, and some between."""
+    x, y = xy.T
+    with np.errstate(over="ignore", invalid="ignore"):
+        sides = (x, y, x + y, x - y)
+        corners = [int(f(side)) for side in sides for f in (np.argmin, np.argmax)]
+    return [*corners, *range(0, len(xy), max(1, len(xy) // _SPREAD))]
+
+
+def _convert_to_degrees(source: CRS, xy: NDArray[np.float64]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return longitude from Greenwich and latitude, infinite where there is no image.
+
+    They are those of the CRS's own datum, which are found fast and near enough for a margin of
+    degrees.
+    """
+    to_angles, degrees, meridian = _make_angle_transformer(source)
+    longitude, latitude = to_angles.transform(xy[:, 0], xy[:, 1])
+    return np.asarray(longitude) * degrees + meridian, np.asarray(latitude) * degrees
+
+
+@lru_cache(maxsize=8)
+def _make_angle_transformer(source: CRS) -> tuple[pyproj.Transformer, float, float]:
+    """Return what makes longitude and latitude, the degrees of their unit, and the meridian."""
+    import pyproj
+
+    crs = source.to_pyproj()
+    crs = crs.sub_crs_list[0] if crs.is_compound else crs
+    base = crs.geodetic_crs or CRS.of(_WGS84).to_pyproj()
+    degrees = float(np.degrees(base.to_2d().axis_info[0].unit_conversion_factor))
+    prime = base.prime_meridian
+    meridian = 0.0
+    if prime is not None:
+        meridian = float(np.degrees(prime.longitude * float(prime.unit_conversion_factor)))
+    transformer = pyproj.Transformer.from_crs(crs.to_2d(), base.to_2d(), always_xy=True)
+    return transformer, degrees, meridian
+
+
+def _find_area(crs: CRS) -> Any:
+    """Return the area of use of a CRS, of its horizontal part if only that has one, or None."""
+    known = crs.to_pyproj()
+    if known.area_of_use is None and known.is_compound:
+        return known.sub_crs_list[0].area_of_use
+    return known.area_of_use
+
+
+def _measure_width(area: pyproj.aoi.AreaOfUse) -> float:
+    return (float(area.east - area.west) % 360.0 or 360.0) * float(area.north - area.south)
+
+
+def _is_within(
+    area: pyproj.aoi.AreaOfUse,
+    longitude: NDArray[Any],
+    latitude: NDArray[Any],
+    margin: float,
+) -> NDArray[np.bool_]:
+    span = (area.east - area.west) % 360.0 or 360.0
+    with np.errstate(invalid="ignore"):
+        is_between = (longitude - area.west + margin) % 360.0 <= span + 2 * margin
+        is_inside = is_between & (latitude >= area.south - margin)
+        is_inside &= (latitude <= area.north + margin) & (np.abs(latitude) <= 90.0)
+        inside: NDArray[np.bool_] = is_inside & (np.abs(longitude) <= 360.0)
+    return inside

@@ -1,0 +1,163 @@
+"""Ground: how the coordinates of a TIN are measured on the ground, each in its own unit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...crs import METRE, Unit, assume_elevation_unit, scale_elevations
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from ...crs import CRS
+    from ...tin import TIN
+
+__all__ = ["Ellipsoid", "Ground", "Scales", "find_ellipsoid", "find_ground", "find_scales"]
+
+NOT_KNOWN = Unit("unit", "", None)
+
+
+class Scales(NamedTuple):
+    """Factors from easting, northing and elevation to one unit of length.
+
+    Attributes
+    ----------
+    east, north : float or (k,) float64 array
+        Arrays, one value a place, above longitude and latitude.
+    up : float
+    """
+
+    east: Any
+    north: Any
+    up: float
+
+
+class Ellipsoid(NamedTuple):
+    """Shape of the earth under a geographic CRS.
+
+    Attributes
+    ----------
+    major : float
+        Half axis in the plane of the equator, metres.
+    squared : float
+        Squared eccentricity.
+    to_radians : float
+        Radians of a unit of the CRS.
+    """
+
+    major: float
+    squared: float
+    to_radians: float
+
+
+@dataclass(frozen=True, slots=True)
+class Ground:
+    """How a TIN's coordinates are drawn true to scale.
+
+    Attributes
+    ----------
+    crs_name : str
+        Name for a caption, for example "WGS 84 / UTM zone 16N (EPSG:32616)".
+    unit : Unit
+        Of horizontal lengths in the picture.
+    elevation_unit : Unit
+        The one that elevations are taken to have.
+    is_assumed : bool
+        Whether that unit is the usual one of the CRS, and not known.
+    scale : tuple of float
+        Factors from easting, northing and elevation to ``unit``.
+    """
+
+    crs_name: str
+    unit: Unit
+    elevation_unit: Unit
+    is_assumed: bool
+    scale: tuple[float, float, float]
+
+    @property
+    def elevation_caption(self) -> str:
+        """The unit of elevations behind their name: "m", "m assumed", or nothing."""
+        symbol = self.elevation_unit.symbol
+        return f"{symbol} assumed" if symbol and self.is_assumed else symbol
+
+
+def find_ground(tin: TIN) -> Ground:
+    """Read the units of a TIN from its CRS and its unit of elevations.
+
+    Parameters
+    ----------
+    tin : TIN
+
+    Returns
+    -------
+    Ground
+        Degrees are drawn as metres along the ellipsoid at the middle of the TIN, which holds for
+        small areas.
+    """
+    crs = tin.crs
+    up = assume_elevation_unit(crs, tin.elevation_unit) or NOT_KNOWN
+    scales = find_scales(crs, tin.elevation_unit, tin.bounds.center[1])
+    return Ground(
+        "CRS unknown" if crs is None else crs.caption,
+        _choose_drawn_unit(crs),
+        up,
+        tin.elevation_unit is None,
+        (float(scales.east), float(scales.north), scales.up),
+    )
+
+
+def _choose_drawn_unit(crs: CRS | None) -> Unit:
+    if crs is None:
+        return NOT_KNOWN
+    return METRE if crs.is_geographic else crs.horizontal_unit
+
+
+def find_scales(crs: CRS | None, unit: Unit | None, northing: ArrayLike) -> Scales:
+    """Return the factors that make all three coordinates lengths of one unit.
+
+    Parameters
+    ----------
+    crs : CRS or None
+    unit : Unit or None
+        Unit of elevations, if it is known; else the usual one of the CRS is taken.
+    northing : float or (k,) array
+        Where: the length of a degree of longitude depends on the latitude.
+
+    Returns
+    -------
+    Scales
+        To the unit of eastings, in a geographic CRS to metres along the ellipsoid. Where a unit is
+        not known it is taken to be the same as the other.
+    """
+    if crs is None or not crs.is_geographic:
+        return Scales(1.0, 1.0, scale_elevations(crs, unit))
+    up = assume_elevation_unit(crs, unit)
+    metres = None if up is None else up.metres
+    return Scales(*_measure_degrees(crs, northing), metres or 1.0)
+
+
+def _measure_degrees(
+    crs: CRS, latitude: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return metres per CRS unit along a parallel and along a meridian."""
+    major, squared, to_radians = _read_ellipsoid(crs)
+    turn = np.asarray(latitude, np.float64) * to_radians
+    bulge = 1.0 - squared * np.sin(turn) ** 2
+    prime_vertical = major / np.sqrt(bulge)
+    meridian = prime_vertical * (1.0 - squared) / bulge
+    return prime_vertical * np.cos(turn) * to_radians, meridian * to_radians
+
+
+def find_ellipsoid(crs: CRS | None) -> Ellipsoid | None:
+    """Return the ellipsoid of a geographic CRS, None for others."""
+    return None if crs is None or not crs.is_geographic else _read_ellipsoid(crs)
+
+
+def _read_ellipsoid(crs: CRS) -> Ellipsoid:
+    parsed: Any = crs.to_pyproj()  # every geographic CRS has axes and an ellipsoid
+    major, minor = parsed.ellipsoid.semi_major_metre, parsed.ellipsoid.semi_minor_metre
+    to_radians = float(parsed.axis_info[0].unit_conversion_factor)
+    return Ellipsoid(float(major), 1.0 - (minor / major) ** 2, to_radians)

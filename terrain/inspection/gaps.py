@@ -1,0 +1,141 @@
+"""Gaps that a TIN spans without a word: voids between points, slivers along the hull."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...tin.constraints.clipping import Surface, trim
+from ...tin.topology import NO_NEIGHBOR
+from ..relief.gradients import slope
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ...tin import TIN
+
+__all__ = ["describe_gaps"]
+
+_USUAL = 95.0
+_FAR = 5.0
+"""An edge is long beyond so many times the length that 95 % of the edges do not exceed."""
+
+_STEEP = 30.0
+_STEEPER = 5.0
+"""A sliver is steep above 30 degrees, if its gradient is 5 times that of 90 % of the triangles."""
+
+_SAMPLE = 20_000
+
+
+def describe_gaps(tin: TIN) -> list[str]:
+    """Tell of triangles that span places without points.
+
+    Parameters
+    ----------
+    tin : TIN
+
+    Returns
+    -------
+    list of str
+        A sentence for long edges along the boundary, one for those inside, one for steep slivers
+        along the hull; none for edges of lines.
+
+    Notes
+    -----
+    Linear in the triangles. Long is an edge of more than five times the 95th percentile of edge
+    lengths, so that neither scan lines nor contour lines, whose points are dense along them alone,
+    are found to have gaps.
+
+    Examples
+    --------
+    >>> from tinsmith import triangulate
+    >>> square = [[0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+    >>> describe_gaps(triangulate(square))
+    []
+    """
+    squares = _square_lengths(tin)
+    some = squares[:: max(1, len(squares) // _SAMPLE)]
+    limit = _round_up(_FAR * float(np.sqrt(np.percentile(some, _USUAL))))
+    is_long = ((squares > limit**2) & ~tin.constrained).any(axis=1)
+    stays = np.ones(len(squares), np.bool_)
+    if is_long.any():
+        surface = Surface(tin.points, tin.triangles, tin.neighbors, tin.constrained)
+        stays = trim(surface, stays, limit, everywhere=False)
+    unit = "units" if tin.crs is None else tin.crs.horizontal_unit.symbol
+    return [
+        *_describe_outer(squares[~stays], limit, unit),
+        *_describe_inner(squares[is_long & stays], limit, unit),
+        *_describe_slivers(tin, squares, stays),
+    ]
+
+
+def _square_lengths(tin: TIN) -> NDArray[np.float64]:
+    """Return the squares of the lengths of the edges opposite the corners, (m, 3), in the plane."""
+    x, y = (np.ascontiguousarray(axis)[tin.triangles] for axis in tin.points[:, :2].T)
+    squares = np.empty(tin.triangles.shape)
+    for k in range(3):
+        start, end = (k + 1) % 3, (k + 2) % 3
+        squares[:, k] = (x[:, end] - x[:, start]) ** 2 + (y[:, end] - y[:, start]) ** 2
+    return squares
+
+
+def _round_up(length: float) -> float:
+    """Round up to two digits."""
+    unit = 10.0 ** (np.floor(np.log10(length)) - 1)
+    return float(f"{np.ceil(length / unit) * unit:.6g}")
+
+
+def _describe_outer(squares: NDArray[np.float64], limit: float, unit: str) -> list[str]:
+    if len(squares) == 0:
+        return []
+    return [
+        f"{_count_triangles(len(squares))} along the boundary with edges of up to "
+        f"{np.sqrt(squares.max()):.6g} {unit}, far longer than usual: max_edge={limit:g} trims "
+        "them."
+    ]
+
+
+def _describe_inner(squares: NDArray[np.float64], limit: float, unit: str) -> list[str]:
+    if len(squares) == 0:
+        return []
+    return [
+        f"{_count_triangles(len(squares))} inside with edges of up to {np.sqrt(squares.max()):.6g} "
+        f"{unit}, as over a void: max_edge={limit:g} with trim='everywhere' leaves them out."
+    ]
+
+
+def _describe_slivers(
+    tin: TIN, squares: NDArray[np.float64], stays: NDArray[np.bool_]
+) -> list[str]:
+    """Tell of triangles along the hull that are far steeper than the ground."""
+    is_outer = (tin.neighbors == NO_NEIGHBOR) & ~tin.constrained
+    outer = np.flatnonzero(is_outer.any(axis=1) & stays)
+    usual = np.percentile(
+        _compute_gradients(tin, slice(None, None, max(1, len(stays) // _SAMPLE))), 90
+    )
+    slivers = outer[_compute_gradients(tin, outer) > _STEEPER * usual]
+    if len(slivers):
+        degrees = slope(tin)
+        slivers = slivers[degrees[slivers] > _STEEP]
+    if len(slivers) == 0:
+        return []
+    shortest = float(np.sqrt(squares[slivers].max(axis=1).min()))
+    return [
+        f"{_count_triangles(len(slivers))} along the hull as steep as {degrees[slivers].max():.1f} "
+        f"degrees, where the ground is not: a max_edge below {shortest:.4g} trims them."
+    ]
+
+
+def _compute_gradients(tin: TIN, chosen: Any) -> NDArray[np.float64]:
+    """Return the gradients of some triangles, in whatever units there are."""
+    a, b, c = (tin.points[tin.triangles[chosen, k]] for k in range(3))
+    east, north, up = np.cross(b - a, c - a).T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        gradients = np.hypot(east, north) / up
+    steep: NDArray[np.float64] = np.nan_to_num(gradients, nan=0.0)  # infinite is the largest
+    return steep
+
+
+def _count_triangles(count: int) -> str:
+    return f"There {'is 1 triangle' if count == 1 else f'are {count:,} triangles'}"

@@ -1,0 +1,154 @@
+"""Elevations that look as if they stood for "no data": -9999, 0, 1e30 far from all others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...errors import OptionError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from numpy.typing import NDArray
+
+__all__ = [
+    "SuspectElevation",
+    "describe_suspects",
+    "find_suspect_elevations",
+    "is_customary",
+    "parse_nodata",
+]
+
+_CUSTOMARY = (
+    *(-9999.0, -99999.0, -999999.0, -999.0, -9999.9, -999.9, -99.0, -99.9, -32768.0, -32767.0),
+    *(-3.4028234663852886e38, -3.402823e38, -3.4e38, -1e38, -1e30, -1e20, -1.7976931348623157e308),
+    *(0.0, 9999.0, 99999.0, 999999.0, 32767.0, 1e10, 1e20, 1e30, 1e38, 3.4e38),
+    *(1.70141e38, 1.70141183460469e38, 3.4028234663852886e38, 1.7976931348623157e308),
+)
+"""What programs write where they have no elevation: Surfer 1.70141e38, GDAL -9999, Esri -3.4e38."""
+
+_MOST = 3
+_REPEATS = 3
+_FAR = 10.0
+_SOME = 1_000
+_BEYOND = 50_000.0
+"""No elevation of the earth is larger, in feet or in metres."""
+
+
+def parse_nodata(nodata: float | Sequence[float] | None) -> NDArray[np.float64]:
+    """Return the elevations that a caller names as no data, (k,) array.
+
+    Raises
+    ------
+    OptionError
+        If they are no numbers.
+    """
+    try:
+        return np.atleast_1d(np.asarray([] if nodata is None else nodata, np.float64)).ravel()
+    except (TypeError, ValueError, OverflowError) as error:
+        raise OptionError("nodata", nodata, "a number, or several") from error
+
+
+@dataclass(frozen=True, slots=True)
+class SuspectElevation:
+    """An elevation that may stand for no data, and how many points have it."""
+
+    value: float
+    count: int
+    lowest: float
+    highest: float
+
+
+def find_suspect_elevations(z: NDArray[np.float64]) -> list[SuspectElevation]:
+    """Find elevations that may stand for "no data".
+
+    Parameters
+    ----------
+    z : (n,) float64 array
+        Finite elevations.
+
+    Returns
+    -------
+    list of SuspectElevation
+        At most three, the outermost first; ``lowest`` and ``highest`` are of the others.
+
+    Notes
+    -----
+    From the outside inwards the lowest or highest value is suspected if a gap parts it from all
+    others: one that programs write for no data by a gap wider than the range of the others, any
+    value that three points or more share by ten times this range, and any beyond the earth's.
+    Zero among elevations around the sea lies in no gap, and is left alone.
+
+    Examples
+    --------
+    >>> find_suspect_elevations(np.array([318.2, -9999.0, 320.5, 331.0, -9999.0]))
+    [SuspectElevation(value=-9999.0, count=2, lowest=318.2, highest=331.0)]
+    """
+    found: list[SuspectElevation] = []
+    rest = z
+    while len(found) < _MOST and len(rest):
+        suspect = next(
+            filter(None, (_find_suspect(rest, end) for end in _find_extremes(rest))), None
+        )
+        if suspect is None:
+            break
+        found.append(suspect)
+        rest = rest[rest != suspect.value]
+    # What lies beyond the last of them is the range of the true ones.
+    return [replace(one, lowest=float(rest.min()), highest=float(rest.max())) for one in found]
+
+
+def is_customary(value: float) -> bool:
+    """Tell whether programs write an elevation where they have none, such as -9999 and 0.
+
+    Examples
+    --------
+    >>> is_customary(-9999.0), is_customary(318.2)
+    (True, False)
+    """
+    return value in _CUSTOMARY
+
+
+def _find_extremes(z: NDArray[np.float64]) -> tuple[float, float]:
+    """Return lowest and highest value, the one of larger size first."""
+    low, high = float(z.min()), float(z.max())
+    return (high, low) if abs(high) > abs(low) else (low, high)
+
+
+def _find_suspect(z: NDArray[np.float64], value: float) -> SuspectElevation | None:
+    """Return the lowest or highest value if it may stand for no data."""
+    # Fewer others make gap and range look no less suspicious: most values are cleared by some.
+    for others in (z[:: max(1, len(z) // _SOME)], z):
+        others = others[others != value]
+        if len(others) and not _is_far_from(value, others, len(z) - len(others)):
+            return None
+    if len(others) == 0:
+        return None
+    count = len(z) - len(others)
+    if 2 * count > len(z) and (value == 0.0 or value not in _CUSTOMARY):
+        return None
+    return SuspectElevation(value, count, float(others.min()), float(others.max()))
+
+
+def _is_far_from(value: float, others: NDArray[np.float64], count: int) -> bool:
+    low, high = float(others.min()), float(others.max())
+    size = max(abs(low), abs(high))
+    half_gap = low / 2 - value / 2 if value < low else value / 2 - high / 2
+    half_range = high / 2 - low / 2  # the halves cannot overflow
+    is_customary = value in _CUSTOMARY and half_gap > half_range
+    is_shared = count >= _REPEATS and half_gap > _FAR * max(half_range, size / 1000)
+    is_beyond = abs(value) > _BEYOND >= 2.0 * float(np.median(np.abs(others) / 2.0))
+    return is_customary or is_shared or is_beyond
+
+
+def describe_suspects(suspects: Iterable[SuspectElevation], what: str = "point") -> list[str]:
+    """Return a sentence for each, which names the option that leaves such points out."""
+    return [
+        f"{one.count:,} {what}{' has' if one.count == 1 else 's have'} the elevation "
+        f"{one.value:g}, far from the others ({one.lowest:g} to {one.highest:g}): if it stands for "
+        f"no data, nodata={one.value:g} leaves {'it' if one.count == 1 else 'them'} out."
+        for one in suspects
+    ]

@@ -1,0 +1,250 @@
+"""Slope and aspect: how steep the surface is, and which way it falls."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...errors import choice
+from ...policies import SlopeUnit, SurfacePart
+from ...tin.validation.options import require_tin
+from ...tin.validation.threads import thread_count
+from .. import _kernel
+from ..georeference.units import find_scales
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from ...crs import CRS
+    from ...tin import TIN
+
+__all__ = [
+    "aspect",
+    "compute_normals",
+    "measure_areas",
+    "measure_plane_areas",
+    "measure_ring_area",
+    "measure_slopes",
+    "slope",
+    "sum_normals",
+]
+
+
+def slope(
+    tin: TIN, *, unit: SlopeUnit = "degrees", per: SurfacePart = "triangle"
+) -> NDArray[np.float64]:
+    """Measure the slope of each triangle, or at each vertex.
+
+    Parameters
+    ----------
+    tin : TIN
+    unit : {"degrees", "percent", "ratio"}, optional
+        Angle with the horizontal plane, or rise over run, of 100 or of 1.
+    per : {"triangle", "vertex"}, optional
+        At a vertex it is that of the mean normal of its triangles, weighted by their areas in
+        space; so the gradient is their mean weighted by their areas in the plane.
+
+    Returns
+    -------
+    (m,) or (n,) float64 array
+        In degrees 0 (level) to 90, in percent or as a ratio from 0 on; NaN at a vertex that no
+        triangle has.
+
+    Raises
+    ------
+    OptionError
+        For another unit, or another place.
+
+    Notes
+    -----
+    It is the slope of the true surface: elevations are converted from ``tin.elevation_unit`` to the
+    unit of the CRS's eastings. If their unit is not known it is taken to be that of the eastings,
+    metres above longitude and latitude. Degrees count as their length on the ellipsoid at the
+    middle of each triangle, which holds for triangles of some kilometres.
+
+    Examples
+    --------
+    >>> from tinsmith import TIN
+    >>> tin = TIN.from_triangles([[0, 0, 0], [1, 0, 1], [0, 1, 0]], [[0, 1, 2]])
+    >>> slope(tin).round(6), slope(tin, unit="percent", per="vertex").round(6)
+    (array([45.]), array([100., 100., 100.]))
+    """
+    choice("unit", unit, SlopeUnit)
+    return measure_slopes(sum_normals(tin, per), unit)
+
+
+def measure_slopes(upward: NDArray[np.float64], unit: SlopeUnit) -> NDArray[np.float64]:
+    """Return the slope of planes with some upward normals, (k, 3), NaN where there is none."""
+    east, north, up = upward.T
+    run = np.hypot(east, north)
+    if unit == "degrees":
+        found = np.degrees(np.arctan2(run, up))
+    else:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = run / up * (100.0 if unit == "percent" else 1.0)
+    values: NDArray[np.float64] = np.where((run == 0.0) & (up == 0.0), np.nan, found)
+    return values
+
+
+def aspect(tin: TIN, *, per: SurfacePart = "triangle") -> NDArray[np.float64]:
+    """Find the direction in which each triangle, or the surface at each vertex, falls.
+
+    Parameters
+    ----------
+    tin : TIN
+    per : {"triangle", "vertex"}, optional
+        As in :func:`slope`.
+
+    Returns
+    -------
+    (m,) or (n,) float64 array, degrees
+        Azimuth of the steepest descent, clockwise from grid north (of a geographic CRS
+        true north), 0 up to but not including 360; NaN where it is level and falls nowhere.
+
+    Raises
+    ------
+    OptionError
+        For another place.
+
+    Examples
+    --------
+    >>> from tinsmith import TIN
+    >>> tin = TIN.from_triangles([[0, 0, 0], [1, 0, 1], [0, 1, 0]], [[0, 1, 2]])
+    >>> aspect(tin)
+    array([270.])
+    """
+    east, north, _ = sum_normals(tin, per).T
+    azimuth: NDArray[np.float64] = np.degrees(np.arctan2(east, north)) % 360.0
+    # A hair west of north rounds up to the full circle, which is north.
+    azimuth[azimuth == 360.0] = 0.0
+    azimuth[(east == 0.0) & (north == 0.0)] = np.nan
+    return azimuth
+
+
+def measure_plane_areas(tin: TIN) -> NDArray[np.float64]:
+    """Measure the area of each triangle in the plane, in the units of `find_plane_units`.
+
+    Parameters
+    ----------
+    tin : TIN
+
+    Returns
+    -------
+    (m,) float64 array
+        In CRS units squared, as all products have it; above longitude and latitude square metres.
+    """
+    scales = find_scales(tin.crs, None, _average_northings(tin))
+    measured: NDArray[np.float64] = tin.triangle_areas * scales.east * scales.north
+    return measured
+
+
+def measure_areas(tin: TIN) -> NDArray[np.float64]:
+    """Measure the area of each triangle in the plane in square metres, as GeoJSON tells it.
+
+    Parameters
+    ----------
+    tin : TIN
+
+    Returns
+    -------
+    (m,) float64 array
+        In square metres; in CRS units squared where those are not known.
+    """
+    measured: NDArray[np.float64] = tin.triangle_areas * find_area_scale(
+        tin.crs, _average_northings(tin)
+    )
+    return measured
+
+
+def measure_ring_area(crs: CRS | None, ring: NDArray[np.float64]) -> float:
+    """Measure the area inside a ring in the plane on the ground, as :func:`measure_areas` does.
+
+    Parameters
+    ----------
+    crs : CRS or None
+    ring : (k, 2) or (k, 3) float64 array
+        Corners in order, the first not repeated.
+
+    Returns
+    -------
+    float
+        Positive if the ring runs counter-clockwise.
+    """
+    x, y = (ring[:, :2] - ring[0, :2]).T
+    steps = x * np.roll(y, -1) - np.roll(x, -1) * y
+    middle = (ring[:, 1] + np.roll(ring[:, 1], -1) + ring[0, 1]) / 3
+    return float((steps * find_area_scale(crs, middle)).sum()) / 2
+
+
+def find_area_scale(crs: CRS | None, northing: ArrayLike) -> Any:
+    """Return the factor from areas in CRS units squared to square metres, at each northing."""
+    scales = find_scales(crs, None, northing)
+    metres = None if crs is None else crs.horizontal_unit.metres
+    return scales.east * scales.north * (metres or 1.0) ** 2
+
+
+def compute_normals(tin: TIN) -> NDArray[np.float64]:
+    """Return the upward normal of each triangle, its length twice the triangle's area in space.
+
+    Parameters
+    ----------
+    tin : TIN
+
+    Returns
+    -------
+    (m, 3) float64 array
+        Of the true surface, as in :func:`slope`: in CRS units squared, in a geographic CRS square
+        metres. Its horizontal part points downhill; the vertical part is positive.
+    """
+    require_tin(tin)
+    surface = tin.triangulation
+    workers = thread_count(None, len(surface.triangles))
+    normals, slivers = _kernel.triangle_normals(surface.points, surface.triangles, workers)
+    for row in slivers.tolist():
+        normals[row] = _compute_exact_normal(*surface.points[surface.triangles[row]])
+    for axis, factor in enumerate(_find_normal_factors(tin)):
+        if np.ndim(factor) > 0 or factor != 1.0:
+            normals[:, axis] *= factor
+    return normals
+
+
+def _find_normal_factors(tin: TIN) -> tuple[Any, Any, Any]:
+    """Return the factors from products of two coordinates each to areas, of each triangle."""
+    east, north, up = find_scales(tin.crs, tin.elevation_unit, _average_northings(tin))
+    return north * up, east * up, east * north
+
+
+def _compute_exact_normal(*corners: NDArray[np.float64]) -> list[float]:
+    """Return the normal of a triangle, each component rounded once.
+
+    The corners of a sliver lie nearly in a line, so that the products of its sides cancel.
+    """
+    a, b, c = ([Fraction(value) for value in corner.tolist()] for corner in corners)
+    u, v = ([end - start for start, end in zip(a, other, strict=True)] for other in (b, c))
+    turns = ((1, 2), (2, 0), (0, 1))
+    return [float(u[i] * v[j] - u[j] * v[i]) for i, j in turns]
+
+
+def sum_normals(tin: TIN, per: SurfacePart) -> NDArray[np.float64]:
+    """Return the upward normals of triangles, or their sums at each vertex, (n, 3).
+
+    Raises
+    ------
+    OptionError
+        For another place.
+    """
+    choice("per", per, SurfacePart)
+    upward, surface = compute_normals(tin), tin.triangulation
+    if per == "triangle":
+        return upward
+    return _kernel.vertex_normals(surface.points, surface.triangles, upward)
+
+
+def _average_northings(tin: TIN) -> Any:
+    """Return the northing at the middle of each triangle if scales depend on it, else 0."""
+    if tin.crs is None or not tin.crs.is_geographic:
+        return 0.0
+    first, second, third = (tin.points[:, 1][corner] for corner in tin.triangles.T)
+    return (first + second + third) / 3.0

@@ -1,0 +1,75 @@
+"""Light: how bright a surface is under a low sun."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...errors import OptionError
+from ...tin.validation.options import is_finite_number
+from .. import _kernel
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["BRIGHTEST", "DARKEST", "Light", "as_light", "normalise", "shade"]
+
+DARKEST, BRIGHTEST = 1, 255
+"""As gdaldem writes them; 0 is outside."""
+
+
+class Light(NamedTuple):
+    """Where the light comes from, degrees.
+
+    Attributes
+    ----------
+    azimuth : float
+        Clockwise from north.
+    altitude : float
+        Above the horizon.
+    """
+
+    azimuth: float
+    altitude: float
+
+
+def as_light(azimuth: Any, altitude: Any) -> Light:
+    """Return a light, or say which number is out of range.
+
+    Raises
+    ------
+    OptionError
+    """
+    if not is_finite_number(azimuth):
+        raise OptionError("azimuth", azimuth, allowed="a finite number of degrees")
+    if not (is_finite_number(altitude) and 0.0 <= altitude <= 90.0):
+        raise OptionError("altitude", altitude, allowed="a number of degrees from 0 to 90")
+    return Light(float(azimuth), float(altitude))
+
+
+def shade(upward: NDArray[np.float64], light: Light) -> NDArray[np.uint8]:
+    """Return the light on planes: 1 (none) to 255 (from straight above), the cosine of the angle.
+
+    Parameters
+    ----------
+    upward : (k, 3) float64 array
+        Normals of any length.
+    light : Light
+
+    Examples
+    --------
+    >>> shade(np.array([[0.0, 0.0, 2.0]]), Light(315.0, 45.0))
+    array([181], dtype=uint8)
+    """
+    turn, rise = math.radians(light.azimuth), math.radians(light.altitude)
+    towards = (math.sin(turn) * math.cos(rise), math.cos(turn) * math.cos(rise), math.sin(rise))
+    return _kernel.shade_planes(upward, *towards, DARKEST, BRIGHTEST)
+
+
+def normalise(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return vectors of length 1, NaN for those without a direction."""
+    with np.errstate(invalid="ignore"):
+        small = vectors / np.abs(vectors).max(axis=1, keepdims=True)  # no square is 0 or infinite
+        return np.asarray(small / np.linalg.norm(small, axis=1, keepdims=True), np.float64)

@@ -1,0 +1,27 @@
+# Public names, each with the module that has it: type checkers and `_lazy` read them here.
+from ..errors import CheckError as CheckError
+from ..errors import LinesError as LinesError
+from ..errors import MissingExtraError as MissingExtraError
+from ..errors import OptionError as OptionError
+from ..errors import PointsError as PointsError
+from ..errors import TinsmithError as TinsmithError
+from . import paper as paper
+from .building.survey import Survey as Survey
+from .checking.checker import CheckResult as CheckResult
+from .checking.checker import check as check
+from .constraints.breaklines import Breakline as Breakline
+from .constraints.breaklines import Lines as Lines
+from .constraints.breaklines import Water as Water
+from .construction import triangulate as triangulate
+from .meshing.refinement import refine as refine
+from .meshing.shape_quality import Quality as Quality
+from .meshing.shape_quality import quality as quality
+from .paper.comparison import Comparison as Comparison
+from .paper.comparison import Outcome as Outcome
+from .paper.comparison import compare as compare
+from .report import Merge as Merge
+from .report import Report as Report
+from .surface import TIN as TIN
+from .types import Bounds as Bounds
+from .types import Grid as Grid
+from .voronoi.diagram import Voronoi as Voronoi
