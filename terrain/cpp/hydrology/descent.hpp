@@ -15,6 +15,7 @@
 #include "../pulse.hpp"
 #include "falling_surface.hpp"
 #include "filling.hpp"
+#include "steepness.hpp"
 
 namespace tinsmith::hydrology {
 
@@ -122,8 +123,8 @@ class Descent {
   const Filling& filling_;
 };
 
-// Which ways water can leave vertices; of several ways as steep none is chosen here. All triangles
-// are read once, as they lie in memory.
+// Which way water leaves vertices. Edges are compared exactly where doubles cannot tell; where a
+// triangle is as steep, nothing is chosen here. All triangles are read once, as they lie in memory.
 class ExitTable {
  public:
   // Ask the team whether it was stopped.
@@ -183,23 +184,36 @@ class ExitTable {
 
   void list_edge(Vertex v, Vertex end, HalfEdge e) {
     if (!(falls_.elevation(end) < falls_.elevation(v)) || !is_dry(end, v)) return;
-    const bool drains = falls_.sign(e) > 0 && is_outside(e);
-    if (take(ways_[number(v)], measure(v, end))) {
-      ways_[number(v)].vertex = end;
-      ways_[number(v)].triangle = kNoTriangle;
-      ways_[number(v)].drains = drains;
-    }
+    Ways& ways = ways_[number(v)];
+    const double slope = measure(v, end);
+    if (!(is_close(ways, slope) ? is_better(v, end, ways) : take(ways, slope))) return;
+    ways.slope = std::max(ways.slope, slope);
+    ways.vertex = end;
+    ways.triangle = kNoTriangle;
+    ways.drains = falls_.sign(e) > 0 && is_outside(e);
   }
 
   void list_triangle(Vertex v, Triangle t) {
     if (!is_dry(lowest_corner(t), v)) return;
+    Ways& ways = ways_[number(v)];
     const double slope = measure(t);
-    if (!(slope > 0.0)) ways_[number(v)].is_spoilt = true;
-    if (take(ways_[number(v)], slope)) {
-      ways_[number(v)].vertex = kNoVertex;
-      ways_[number(v)].triangle = t;
-      ways_[number(v)].drains = false;
-    }
+    if (!(slope > 0.0)) ways.is_spoilt = true;
+    if (!take(ways, slope)) return;
+    ways.vertex = kNoVertex;
+    ways.triangle = t;
+    ways.drains = false;
+  }
+
+  // Whether doubles cannot tell an edge from the steepest one so far.
+  static bool is_close(const Ways& ways, double slope) {
+    const double steepest = std::max(ways.slope, slope);
+    return ways.vertex != kNoVertex && std::min(ways.slope, slope) >= steepest - kClose * steepest;
+  }
+
+  // Whether an edge is steeper than the steepest one so far, or as steep and of smaller azimuth.
+  bool is_better(Vertex v, Vertex end, const Ways& ways) const {
+    const int compared = compare_slopes(falls_.surface, v, end, ways.vertex);
+    return compared > 0 || (compared == 0 && is_before(falls_.surface, v, end, ways.vertex));
   }
 
   // Whether a slope is the steepest so far.
