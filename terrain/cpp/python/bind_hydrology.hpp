@@ -261,6 +261,9 @@ inline std::tuple<Offsets, Offsets, Numbers> cut_cells(
               are_all(ranges,
                       [=](std::int64_t at) { return 0 <= at && at <= INT32_MAX - first_place; }),
           "ranges must be of places that 32-bit indices can number");
+  for (std::size_t i = 0; i < 6 * count; i += 2) {
+    require(ranges.data()[i] <= ranges.data()[i + 1], "ranges must be of places");
+  }
   const hydrology::CutTriangles given{count,          corners.data(), ranges.data(), first_place,
                                       offsets.data(), lower.data(),   upper.data()};
   const hydrology::CutCells cells = [&] {
