@@ -10,7 +10,7 @@ import numpy as np
 
 from ...tin.topology import NO_NEIGHBOR, HalfEdges, find_boundary_vertices, sort_half_edges
 from .falls import FINEST, measure_fall, round_share
-from .vertices import NOWHERE, find_exits
+from .vertices import NOWHERE, find_exits, sort_edges_at
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -130,12 +130,7 @@ class Walker:
         triangles, count = self.falls.triangles, len(self.falls.points)
         if self._vertices is None:
             return sort_half_edges(triangles, count)
-        can_leave = np.zeros(count, np.bool_)
-        can_leave[self._vertices] = True
-        one, other, last = can_leave[triangles.T]
-        near = np.flatnonzero(one | other | last).astype(np.int32)
-        found = sort_half_edges(triangles[near], count)
-        return found._replace(triangles=near[found.triangles])
+        return sort_edges_at(triangles, self._vertices, count)
 
     def step(self, drops: Drops) -> Drops:
         """Return drops, all of them moving, where they are after one step."""

@@ -11,7 +11,7 @@ from .. import _kernel
 from ..relief.dissolving import join_components
 from .descent import BOUNDARY, MOVING, Walker, make_drops
 from .falls import find_falls
-from .strips import cut_strips, leave_strips, settle
+from .strips import Strips, cut_strips, leave_strips, settle
 from .vertices import NOWHERE
 
 if TYPE_CHECKING:
@@ -22,9 +22,8 @@ if TYPE_CHECKING:
     from .descent import Drops
     from .falls import Falls
     from .filling import Filling
-    from .strips import Strips
 
-__all__ = ["Network", "accumulate", "build_network", "find_ends"]
+__all__ = ["Network", "accumulate", "build_network", "build_vertex_network", "find_ends"]
 
 
 class Network(NamedTuple):
@@ -107,6 +106,23 @@ def build_network(
     done(0.8)
     _link_vertices(found)
     _break_circles(found)
+    return found
+
+
+def build_vertex_network(walker: Walker) -> Network:
+    """Find the way of the water from vertices alone: a network without strips."""
+    falls = walker.falls
+    count = len(falls.points)
+    found = Network(
+        walker,
+        _read_falls(falls, walker.filling),
+        Strips(np.zeros(len(falls.triangles) + 1, np.int64), np.zeros(0)),
+        np.arange(count, dtype=np.int32),
+        np.arange(2 * count + 1, dtype=np.int32),
+        np.full(count, NOWHERE, np.int32),
+        np.zeros(len(falls.triangles)),
+    )
+    _link_vertices(found)
     return found
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...tin.topology import NO_NEIGHBOR, find_triangles, gather
+from ...tin.topology import NO_NEIGHBOR, find_triangles, gather, sort_half_edges
 from .falls import find_corners
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ...tin.topology import HalfEdges
     from .falls import Falls
 
-__all__ = ["NOWHERE", "Exits", "find_exits"]
+__all__ = ["NOWHERE", "Exits", "find_exits", "sort_edges_at"]
 
 NOWHERE = -1
 _CLOSE = 1e-9
@@ -101,6 +101,18 @@ def find_exits(
     leaves = is_boundary[vertices] & ((slopes == 0.0) | drains)
     to_vertex[leaves] = NOWHERE
     return Exits(to_vertex, to_triangle, slopes, leaves)
+
+
+def sort_edges_at(
+    triangles: NDArray[np.int32], vertices: NDArray[np.int64], count: int
+) -> HalfEdges:
+    """Sort the edges of the triangles at some of so many vertices, and of no others."""
+    is_asked = np.zeros(count, np.bool_)
+    is_asked[vertices] = True
+    one, other, last = is_asked[triangles.T]
+    near = np.flatnonzero(one | other | last).astype(np.int32)
+    found = sort_half_edges(triangles[near], count)
+    return found._replace(triangles=near[found.triangles])
 
 
 def _list_candidates(
