@@ -16,11 +16,15 @@ if TYPE_CHECKING:
 __all__ = [
     "SUMS",
     "TILE_SIDE",
+    "FallingSurface",
     "GriddedSurface",
     "LeaveOneOut",
     "OverlayMesh",
+    "accumulate",
+    "cut_cells",
     "densify",
     "fill_bands",
+    "find_ends",
     "find_seen_parts",
     "find_seen_vertices",
     "fit_quadratics",
@@ -33,6 +37,7 @@ __all__ = [
     "stage_sums",
     "sum_areas",
     "sum_between",
+    "sum_channels",
     "sum_heights",
     "trace_contours",
     "triangle_normals",
@@ -55,6 +60,12 @@ simplify_cells = _core.simplify_cells
 measure_cells = _core.measure_cells
 find_seen_parts = _core.find_seen_parts
 find_seen_vertices = _core.find_seen_vertices
+
+FallingSurface = _core.FallingSurface
+find_ends = _core.find_ends
+accumulate = _core.accumulate
+sum_channels = _core.sum_channels
+cut_cells = _core.cut_cells
 
 trace_contours = _core.trace_contours
 smooth_contours = _core.smooth_contours

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...tin.topology import NO_NEIGHBOR, find_boundary_vertices
+from ...tin.topology import NO_NEIGHBOR, HalfEdges, find_boundary_vertices, sort_half_edges
 from .falls import FINEST, measure_fall, round_share
-from .vertices import NOWHERE, find_exits
+from .vertices import NOWHERE, find_exits, sort_edges_at
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -90,6 +91,13 @@ def make_drops(count: int) -> Drops:
 class Walker:
     """Moves drops down a surface.
 
+    Parameters
+    ----------
+    falls : Falls
+    filling : Filling, optional
+    vertices : (k,) int64 array, optional
+        Those that drops can leave; default all. What is on an edge goes where it likes.
+
     Notes
     -----
     1. From a vertex a drop takes its exit (:func:`tinsmith.terrain.hydrology.vertices.find_exits`).
@@ -103,12 +111,26 @@ class Walker:
     but at the boundary.
     """
 
-    def __init__(self, falls: Falls, filling: Filling | None = None) -> None:
+    def __init__(
+        self,
+        falls: Falls,
+        filling: Filling | None = None,
+        vertices: NDArray[np.int64] | None = None,
+    ) -> None:
         self.falls, self.filling = falls, filling
         self.is_boundary = find_boundary_vertices(
             falls.triangles, falls.neighbors, len(falls.points)
         )
         self._level = falls.is_level
+        self._vertices = vertices
+
+    @cached_property
+    def _half_edges(self) -> HalfEdges:
+        """By start, of the triangles at the vertices that drops can leave."""
+        triangles, count = self.falls.triangles, len(self.falls.points)
+        if self._vertices is None:
+            return sort_half_edges(triangles, count)
+        return sort_edges_at(triangles, self._vertices, count)
 
     def step(self, drops: Drops) -> Drops:
         """Return drops, all of them moving, where they are after one step."""
@@ -164,8 +186,10 @@ class Walker:
     def find_exits(self, vertices: NDArray[np.int64]) -> Exits:
         """Find the way of water from vertices."""
         if self.filling is None:
-            return find_exits(self.falls, vertices, self.is_boundary)
-        found = find_exits(self.falls, vertices, self.is_boundary, self.filling.levels)
+            return find_exits(self.falls, self._half_edges, vertices, self.is_boundary)
+        found = find_exits(
+            self.falls, self._half_edges, vertices, self.is_boundary, self.filling.levels
+        )
         crosses = self.filling.nexts[vertices] != NOWHERE
         found.vertices[crosses] = self.filling.nexts[vertices[crosses]]
         found.triangles[crosses], found.leaves[crosses] = NOWHERE, False

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...tin import topology
+from .. import _kernel
 from ..earthwork.cells import fan_out
 from .descent import interpolate_edges
-from .strips import SAME, follow
+from .strips import SAME, Bases, follow
 from .water import Patches
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from numpy.typing import NDArray
 
     from .networks import Network
@@ -33,71 +32,72 @@ class _Cuts(NamedTuple):
     triangles : (k,) int64 array
     lower, upper : (k,) int64 arrays
         Their ends, at the base and on the other two edges: vertices, or places from n on.
-    before, beyond : (k,) int64 arrays
+    before, beyond : (k,) int32 arrays
         The labels on both sides.
     places : (p, 2) float64 array
-    edges : dict
-        The places on each edge, from its smaller vertex on; named by both.
+    edges : (p,) int64 array
+        The edge that each place is on, ascending, and in an edge from its smaller vertex on.
+    touched : (t,) int32 array
+        Triangles with a place on an edge of theirs, beyond the cut ones.
     """
 
     triangles: NDArray[np.int64]
     lower: NDArray[np.int64]
     upper: NDArray[np.int64]
-    before: NDArray[np.int64]
-    beyond: NDArray[np.int64]
+    before: NDArray[np.int32]
+    beyond: NDArray[np.int32]
     places: NDArray[np.float64]
-    edges: dict[int, list[int]]
+    edges: NDArray[np.int64]
+    touched: NDArray[np.int32]
 
 
 def cut_at_divides(
-    network: Network, labels: NDArray[np.int64], level: NDArray[np.int64]
+    network: Network, labels: NDArray[np.int32], level: NDArray[np.int32]
 ) -> Patches:
     """Return triangles that share their vertices, each of one label.
 
     Parameters
     ----------
     network : Network
-    labels : (s,) int64 array
+    labels : (s,) int32 array
         Of the strips.
-    level : (m,) int64 array
+    level : (m,) int32 array
         Of the triangles, for those that are level.
     """
-    falls, strips = network.walker.falls, network.strips
+    falls, offsets = network.walker.falls, network.strips.offsets
     whole = level.copy()
-    whole[strips.triangles] = labels
-    inner = strips.triangles[1:] == strips.triangles[:-1]
-    rows = np.flatnonzero(inner & (labels[1:] != labels[:-1])) + 1
-    cuts = _place_cuts(network, rows, labels)
-    keys = _name_edges(falls.triangles, len(falls.points))
-    is_cut = np.any(np.isin(keys, np.array(list(cuts.edges), np.int64)), axis=1)
-    is_cut |= np.bincount(cuts.triangles, minlength=len(keys)) > 0
-    cells, owners = _list_cells(network, cuts, np.flatnonzero(is_cut), whole)
-    offsets = topology.find_offsets(np.array([len(one) for one in cells], np.int64))
-    slots = np.array([vertex for one in cells for vertex in one], np.int32)
-    made, cell = fan_out(offsets, slots)
-    triangles = np.ascontiguousarray(np.concatenate([falls.triangles[~is_cut], made]), np.int32)
+    sloping = np.flatnonzero(np.diff(offsets))
+    whole[sloping] = labels[offsets[sloping + 1] - 1]
+    rows = np.flatnonzero(labels[1:] != labels[:-1]) + 1
+    owners = network.strips.find_triangles(rows)
+    inner = offsets[owners] != rows
+    cuts = _place_cuts(network, rows[inner], owners[inner], labels)
+    is_cut = np.zeros(len(falls.triangles), np.bool_)
+    is_cut[cuts.triangles] = is_cut[cuts.touched] = True
+    made, regions = _cut_triangles(network, cuts, np.flatnonzero(is_cut), whole)
+    triangles = np.concatenate([falls.triangles[~is_cut], made])
     points = np.concatenate([falls.points[:, :2], cuts.places])
-    regions = np.append(whole[~is_cut], np.array(owners, np.int64)[cell])
-    return Patches(points, triangles, topology.neighbors_of(triangles, len(points)), regions)
+    neighbors = topology.neighbors_of(triangles, len(points))
+    patch_regions = np.append(whole[~is_cut], regions).astype(np.int64)
+    return Patches(points, triangles, neighbors, patch_regions)
 
 
-def _name_edges(triangles: NDArray[np.int32], count: int) -> NDArray[np.int64]:
-    """Return a number for each edge, the same in both of its triangles."""
-    start, end = (np.roll(triangles, -turn, axis=1).astype(np.int64) for turn in (1, 2))
-    return np.minimum(start, end) * count + np.maximum(start, end)
-
-
-def _place_cuts(network: Network, rows: NDArray[np.int64], labels: NDArray[np.int64]) -> _Cuts:
+def _place_cuts(
+    network: Network,
+    rows: NDArray[np.int64],
+    triangles: NDArray[np.int64],
+    labels: NDArray[np.int32],
+) -> _Cuts:
     """Place the ends of cuts, once for both triangles of an edge."""
-    falls, bases = network.walker.falls, network.bases
-    triangles, shares = network.strips.triangles[rows], network.strips.starts[rows]
-    base, count = bases.edges[triangles], len(falls.points)
-    sides, at_side = follow(bases, triangles, base, shares)
-    is_apex = np.abs(shares - bases.splits[triangles]) <= SAME
-    start, end = falls.ends(np.tile(triangles, 2), np.append(base, sides))
+    falls, shares = network.walker.falls, network.strips.starts[rows]
+    bases, count = Bases(*network.surface.bases_of(triangles)), len(falls.points)
+    sides, at_side = follow(bases, bases.edges, shares)
+    is_apex = np.abs(shares - bases.splits) <= SAME
+    owners, edges = np.tile(triangles, 2), np.append(bases.edges, sides)
+    start, end = falls.ends(owners, edges)
     share = np.append(shares, at_side)
     nodes = np.where(share <= _NEAR, start, np.where(share >= 1.0 - _NEAR, end, -1))
-    nodes[len(rows) :][is_apex] = falls.triangles[triangles, base][is_apex]
+    nodes[len(rows) :][is_apex] = falls.triangles[triangles, bases.edges][is_apex]
     # A cut from a corner along an edge of it is none: both ends are the corner.
     corner = np.roll(nodes, len(rows))
     at_corner = (nodes < 0) & ((corner == start) | (corner == end))
@@ -113,55 +113,52 @@ def _place_cuts(network: Network, rows: NDArray[np.int64], labels: NDArray[np.in
     places = interpolate_edges(
         falls.points[low[first], :2], falls.points[high[first], :2], share[first, None]
     )
-    edges: dict[int, list[int]] = {}
-    for key, node in zip(keys[is_new].tolist(), nodes[first].tolist(), strict=True):
-        edges.setdefault(key, []).append(node)
-    lower, upper = nodes[: len(rows)], nodes[len(rows) :]
-    return _Cuts(triangles, lower, upper, labels[rows - 1], labels[rows], places, edges)
-
-
-def _list_cells(
-    network: Network, cuts: _Cuts, triangles: NDArray[np.int64], whole: NDArray[np.int64]
-) -> tuple[list[list[int]], list[int]]:
-    """Return the cells of triangles, and the label of each."""
-    cells: list[list[int]] = []
-    owners: list[int] = []
-    begins, ends = (cuts.triangles.searchsorted(triangles, side) for side in ("left", "right"))
-    for triangle, i, j in zip(triangles.tolist(), begins.tolist(), ends.tolist(), strict=True):
-        below, above = _walk_around(network, cuts, triangle)
-        labels = [int(whole[triangle])]
-        if i < j:
-            labels = [int(cuts.before[i]), *cuts.beyond[i:j].tolist()]
-        pairs = zip(cuts.lower[i:j].tolist(), cuts.upper[i:j].tolist(), strict=True)
-        for label, cell in zip(labels, _cut_ring(below, above, list(pairs)), strict=True):
-            if len(cell) > 2:
-                cells.append(cell)
-                owners.append(label)
-    return cells, owners
-
-
-def _walk_around(network: Network, cuts: _Cuts, triangle: int) -> tuple[list[int], list[int]]:
-    """Return the vertices of the base, and those of the other edges, both from its start on."""
-    falls = network.walker.falls
-    base, count = int(network.bases.edges[triangle]), len(falls.points)
-    a, b, apex = (int(falls.triangles[triangle, (base + turn) % 3]) for turn in (1, 2, 0))
-    below, first, second = (
-        _walk_edge(cuts, count, *edge) for edge in ((a, b), (a, apex), (apex, b))
+    touched = falls.neighbors[owners[first], edges[first]]
+    return _Cuts(
+        triangles,
+        nodes[: len(rows)],
+        nodes[len(rows) :],
+        labels[rows - 1],
+        labels[rows],
+        places,
+        keys[is_new],
+        touched[touched != topology.NO_NEIGHBOR],
     )
-    return [*below, b], [*first, *second, b]
 
 
-def _walk_edge(cuts: _Cuts, count: int, start: int, end: int) -> list[int]:
-    places = cuts.edges.get(min(start, end) * count + max(start, end), [])
-    return [start, *(places if start < end else places[::-1])]
+def _name_edges(corners: NDArray[np.int32], count: int) -> NDArray[np.int64]:
+    """Return a number for each edge, the same in both of its triangles: opposite corners."""
+    return topology.edge_keys(corners[:, [[1, 2], [2, 0], [0, 1]]], count)
 
 
-def _cut_ring(
-    below: list[int], above: list[int], cuts: list[tuple[int, int]]
-) -> Iterator[list[int]]:
-    """Cut a ring of two chains, from the same vertex to the same, into cells."""
-    i = j = 0
-    for lower, upper in [*cuts, (below[-1], above[-1])]:
-        to_i, to_j = max(i, below.index(lower)), max(j, above.index(upper))
-        yield list(dict.fromkeys(below[i : to_i + 1] + above[j : to_j + 1][::-1]))
-        i, j = to_i, to_j
+def _cut_triangles(
+    network: Network, cuts: _Cuts, triangles: NDArray[np.int64], whole: NDArray[np.int32]
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Cut triangles into cells, and these into triangles; return them, and their labels."""
+    falls, count = network.walker.falls, len(network.walker.falls.points)
+    turns = np.array([1, 2, 0]) + network.surface.bases_of(triangles)[0][:, None]
+    corners = falls.triangles[triangles[:, None], turns % 3]  # start, end, apex
+    keys = _name_edges(corners, count)[:, [2, 1, 0]]
+    ranges = np.stack([cuts.edges.searchsorted(keys, side) for side in ("left", "right")], axis=2)
+    offsets = np.append(cuts.triangles.searchsorted(triangles), len(cuts.triangles))
+    numbers, cells, vertices = _kernel.cut_cells(
+        corners,
+        ranges.reshape(-1, 6),
+        count,
+        offsets,
+        cuts.lower.astype(np.int32),
+        cuts.upper.astype(np.int32),
+    )
+    made, cell = fan_out(cells, vertices)
+    labels = np.insert(cuts.beyond, offsets[:-1], _label_first(cuts, offsets, whole[triangles]))
+    return np.ascontiguousarray(made, np.int32), labels[numbers][cell]
+
+
+def _label_first(
+    cuts: _Cuts, offsets: NDArray[np.int64], whole: NDArray[np.int32]
+) -> NDArray[np.int32]:
+    """Return the label before the first cut of triangles."""
+    labels = whole.copy()
+    has_cuts = np.flatnonzero(np.diff(offsets))
+    labels[has_cuts] = cuts.before[offsets[has_cuts]]
+    return labels

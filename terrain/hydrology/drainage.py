@@ -9,6 +9,7 @@ import numpy as np
 from ..._progress import Progress
 from ...errors import OptionError, PointsError
 from ...tin.validation.options import as_flag, is_finite_number
+from .. import _kernel
 from ..earthwork.reference import find_reference
 from ..results import Features
 from .descent import MOVING
@@ -117,7 +118,7 @@ def catchments(
     else:
         named = np.arange(network.first_end, len(network.nexts))
     network.nexts[named] = named
-    numbers = np.full(len(network.nexts), NOWHERE)
+    numbers = np.full(len(network.nexts), NOWHERE, np.int32)
     numbers[named] = np.arange(len(named))
     labels, level = _label(network, numbers)
     areas = _measure(network, labels, level, len(named))
@@ -125,7 +126,7 @@ def catchments(
     columns = _describe_catchments(tin, network, named[kept], kept, outlets is None)
     columns["area"] = areas[kept]
     order = np.lexsort((kept, -areas[kept]))
-    places = np.full(len(named) + 1, NOWHERE)
+    places = np.full(len(named) + 1, NOWHERE, np.int32)
     places[kept[order]] = np.arange(len(kept))
     drawn = gather_polygons(cut_at_divides(network, places[labels], places[level]))
     done.end()
@@ -202,14 +203,10 @@ def flow_accumulation(
     filling = fill(tin) if is_filled else None
     network = build_network(tin, filling, done.stage(0.1, 0.9))
     total = accumulate(network)
-    nodes = np.flatnonzero(network.uppers != NOWHERE)
-    start, end = network.uppers[nodes], network.nexts[nodes] - network.first_vertex
-    keys, row = np.unique(start * len(tin.points) + end, return_inverse=True)
-    pairs = np.column_stack(np.divmod(keys, len(tin.points)))
-    areas = np.bincount(row, total[nodes], minlength=len(pairs))
+    pairs, areas = _kernel.sum_channels(network.uppers, network.nexts, total, len(tin.points))
     chosen = np.flatnonzero((areas > 0.0) & (areas >= min_area))
     chosen = chosen[np.lexsort((chosen, -areas[chosen]))]
-    start, end = pairs[chosen].T
+    start, end = pairs[chosen].T.astype(np.int64)
     columns = {
         "start": start,
         "end": end,
@@ -250,26 +247,23 @@ def _find_kinds(
 
 
 def _label(
-    network: Network, numbers: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    network: Network, numbers: NDArray[np.int32]
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """Return the number of each strip's end, and of level triangles; ``NOWHERE`` for none."""
     falls = network.walker.falls
     ends = find_ends(network.nexts)
     labels = numbers[ends[: network.first_vertex]]
-    level = np.full(len(falls.triangles), NOWHERE)
+    level = np.full(len(falls.triangles), NOWHERE, np.int32)
     flat = np.flatnonzero(falls.is_level)
     level[flat] = numbers[ends[network.find_level_nodes(flat)]]
     return labels, level
 
 
 def _measure(
-    network: Network, labels: NDArray[np.int64], level: NDArray[np.int64], count: int
+    network: Network, labels: NDArray[np.int32], level: NDArray[np.int32], count: int
 ) -> NDArray[np.float64]:
-    strips = network.strips
-    areas = np.zeros(count)
-    within = labels != NOWHERE
-    sizes = strips.parts * network.areas[strips.triangles]
-    np.add.at(areas, labels[within], sizes[within])
+    found = np.bincount(labels + 1, network.measure_strips(), count + 1)[1:]
+    areas: NDArray[np.float64] = found.astype(np.float64)  # without strips they are whole numbers
     flat = level != NOWHERE
     np.add.at(areas, level[flat], network.areas[flat])
     return areas

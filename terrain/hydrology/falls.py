@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...tin.predicates import falls_across
-from ...tin.topology import NO_NEIGHBOR, HalfEdges, sort_half_edges
+from ...tin.topology import NO_NEIGHBOR
 from ...tin.validation.points import require_exact_range
 
 if TYPE_CHECKING:
@@ -45,8 +45,6 @@ class Falls(NamedTuple):
                    /    |   \\         -values[k + 2] / values[k] of the way from a to b
                   a ----|---- b
                      edge k
-    half_edges : HalfEdges
-        By start.
     """
 
     points: NDArray[np.float64]
@@ -54,12 +52,13 @@ class Falls(NamedTuple):
     neighbors: NDArray[np.int32]
     signs: NDArray[np.int8]
     values: NDArray[np.float64]
-    half_edges: HalfEdges
 
     @property
     def is_level(self) -> NDArray[np.bool_]:
         """Whether each triangle is level."""
-        return np.logical_not(self.signs.any(axis=1))
+        one, other, last = self.signs.T
+        is_level: NDArray[np.bool_] = (one | other | last) == 0
+        return is_level
 
     def ends(self, triangle: Any, edge: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Return start and end vertex of edges."""
@@ -123,24 +122,23 @@ def find_falls(tin: TIN) -> Falls:
     """
     surface = tin.triangulation
     require_exact_range(surface.points[:, 2:], "Elevations")
-    corners = np.repeat(np.arange(3), len(surface.triangles))
-    a, b, c = (surface.triangles.T[(corners + k) % 3, _tile(surface.triangles)] for k in (1, 2, 0))
-    signs, values, bounds = falls_across(surface.points, a, b, c)
+    signs = np.empty(surface.triangles.shape, np.int8)
+    values = np.empty(surface.triangles.shape)
+    for k in range(3):
+        signs[:, k], values[:, k] = _measure_falls(surface.points, surface.triangles, k)
+    return Falls(surface.points, surface.triangles, surface.neighbors, signs, values)
+
+
+def _measure_falls(
+    points: NDArray[np.float64], triangles: NDArray[np.int32], k: int
+) -> tuple[NDArray[np.int8], NDArray[np.float64]]:
+    """Return signs and values of the edges opposite corner k."""
+    a, b, c = (triangles[:, (k + turn) % 3] for turn in (1, 2, 0))
+    signs, values, bounds = falls_across(points, a, b, c)
     for row in np.flatnonzero((bounds > _POOR * np.abs(values)) & (signs != 0)).tolist():
-        values[row] = measure_fall(surface.points, a[row], b[row], c[row])
+        values[row] = measure_fall(points, a[row], b[row], c[row])
     values[signs == 0] = 0.0
-    return Falls(
-        surface.points,
-        surface.triangles,
-        surface.neighbors,
-        np.ascontiguousarray(signs.reshape(3, -1).T),
-        np.ascontiguousarray(values.reshape(3, -1).T),
-        sort_half_edges(surface.triangles, len(surface.points)),
-    )
-
-
-def _tile(triangles: NDArray[np.int32]) -> NDArray[np.int64]:
-    return np.tile(np.arange(len(triangles)), 3)
+    return signs, values
 
 
 def measure_fall(points: NDArray[np.float64], a: int, b: int, c: int) -> Fraction:

@@ -85,7 +85,8 @@ def fill(tin: TIN) -> Filling:
     .. [1] R. Barnes, C. Lehman, D. Mulla, Priority-flood, Computers & Geosciences 62 (2014),
        doi:10.1016/j.cageo.2013.04.024.
     """
-    hierarchy = build_hierarchy(tin)
+    ranks = rank_vertices(tin.points)
+    hierarchy = build_hierarchy(tin, ranks)
     z, count = tin.points[:, 2], len(tin.points)
     roots = np.append(hierarchy.find_roots(), NOWHERE)[hierarchy.basins]
     levels = z.copy()
@@ -98,7 +99,7 @@ def fill(tin: TIN) -> Filling:
         ponds,
         np.full(count, NOWHERE),
         np.zeros(count, np.int64),
-        rank_vertices(tin.points),
+        ranks,
     )
     ways = _list_ways(tin.edges.astype(np.int64), filling)
     exits = _cross_level_ground(tin, filling, ways)

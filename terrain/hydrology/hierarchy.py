@@ -56,12 +56,14 @@ class Hierarchy(NamedTuple):
         return depths
 
 
-def build_hierarchy(tin: TIN) -> Hierarchy:
+def build_hierarchy(tin: TIN, rank: NDArray[np.int64] | None = None) -> Hierarchy:
     """Find the depressions of a surface from which water runs off freely at the boundary.
 
     Parameters
     ----------
     tin : TIN
+    rank : (n,) int64 array, optional
+        Of the vertices, as :func:`rank_vertices` has it; default computed.
 
     Returns
     -------
@@ -89,7 +91,7 @@ def build_hierarchy(tin: TIN) -> Hierarchy:
     .. [2] R. Barnes, K. L. Callaghan, A. D. Wickert, Computing water flow through complex
        landscapes, Earth Surface Dynamics 8 (2020), doi:10.5194/esurf-8-431-2020.
     """
-    rank = rank_vertices(tin.points)
+    rank = rank_vertices(tin.points) if rank is None else rank
     edges = tin.edges.astype(np.int64)
     basin = _find_basins(rank, edges)
     pits, number = np.unique(basin, return_inverse=True)

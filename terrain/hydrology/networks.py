@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..._progress import Progress
+from .. import _kernel
 from ..relief.dissolving import join_components
 from .descent import BOUNDARY, MOVING, Walker, make_drops
 from .falls import find_falls
-from .strips import cut_strips, enter_strips, find_bases, leave_strips, settle
+from .strips import Strips, cut_strips, leave_strips, settle
 from .vertices import NOWHERE
 
 if TYPE_CHECKING:
@@ -19,10 +20,10 @@ if TYPE_CHECKING:
     from ..._progress import Tell
     from ...tin import TIN
     from .descent import Drops
+    from .falls import Falls
     from .filling import Filling
-    from .strips import Bases, Strips
 
-__all__ = ["Network", "accumulate", "build_network", "find_ends"]
+__all__ = ["Network", "accumulate", "build_network", "build_vertex_network", "find_ends"]
 
 
 class Network(NamedTuple):
@@ -31,48 +32,54 @@ class Network(NamedTuple):
     Attributes
     ----------
     walker : Walker
-    bases : Bases
+    surface : FallingSurface
+        Of the compiled core.
     strips : Strips
-    grounds : (n,) int64 array
+    grounds : (n,) int32 array
         The smallest vertex that each is connected to along level edges. Water that ends on level
         ground ends at that node of the last ones.
-    nexts : (s + 2 * n + 1,) int64 array
+    nexts : (s + 2 * n + 1,) int32 array
         The node below; ends are below themselves, the last of all being the outside.
-    uppers : (s + n,) int64 array
+    uppers : (s + n,) int32 array
         The upper end of the channel that water takes to a vertex, ``NOWHERE`` where it takes none.
     areas : (m,) float64 array
         Of the triangles.
     """
 
     walker: Walker
-    bases: Bases
+    surface: _kernel.FallingSurface
     strips: Strips
-    grounds: NDArray[np.int64]
-    nexts: NDArray[np.int64]
-    uppers: NDArray[np.int64]
+    grounds: NDArray[np.int32]
+    nexts: NDArray[np.int32]
+    uppers: NDArray[np.int32]
     areas: NDArray[np.float64]
 
     @property
     def first_vertex(self) -> int:
         """The node of vertex 0."""
-        return len(self.strips.triangles)
+        return len(self.strips.starts)
 
     @property
     def first_end(self) -> int:
         """The node of the ground of vertex 0."""
         return self.first_vertex + len(self.grounds)
 
+    def measure_strips(self) -> NDArray[np.float64]:
+        """Return the areas of the strips."""
+        return self.surface.measure_strips(*self.strips, self.areas)
+
     def find_level_nodes(self, level: NDArray[np.int64]) -> NDArray[np.int64]:
         """Return the nodes to which water of level triangles goes."""
         corners, filling = self.walker.falls.triangles[level].astype(np.int64), self.walker.filling
         if filling is None:
-            return self.first_end + self.grounds[corners[:, 0]]
+            return self.first_end + self.grounds[corners[:, 0]].astype(np.int64)
         return self.first_vertex + filling.choose_way(*corners.T)
 
     def find_leaving(self) -> NDArray[np.int64]:
         """Return the nodes of vertices at which water leaves the surface, and the outside."""
         vertices = np.flatnonzero(self.walker.is_boundary)
-        leaves = self.walker.find_exits(vertices).leaves
+        walker = Walker(self.walker.falls, self.walker.filling, vertices)
+        leaves = walker.find_exits(vertices).leaves
         return np.append(self.first_vertex + vertices[leaves], len(self.nexts) - 1)
 
 
@@ -88,33 +95,55 @@ def build_network(
     """
     done = Progress(progress)
     walker = Walker(find_falls(tin), filling)
-    done(0.2)
-    falls = walker.falls
-    bases = find_bases(falls)
-    strips = cut_strips(falls, bases)
-    done(0.4)
-    grounds = _connect_level_ground(tin)
-    u, v = (falls.points[falls.triangles[:, k], :2] for k in (1, 2))
-    origin = falls.points[falls.triangles[:, 0], :2]
-    u, v = u - origin, v - origin
-    areas = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
-    count, vertices = len(strips.triangles), len(grounds)
-    nexts, uppers = np.arange(count + 2 * vertices + 1), np.full(count + vertices, NOWHERE)
-    found = Network(walker, bases, strips, grounds, nexts, uppers, areas)
-    _link_vertices(found)
+    done(0.3)
+    surface = _read_falls(walker.falls, filling)
+    strips = cut_strips(surface)
     done(0.6)
-    left = leave_strips(walker, bases, strips)
-    _link(found, np.arange(count), left)
-    on = np.flatnonzero(_runs_on(left))
-    nexts[on] = enter_strips(bases, strips, left.choose(on))
-    _break_circles(found, left)
+    grounds = _connect_level_ground(tin)
+    nexts, uppers = surface.link_strips(*strips, grounds)
+    areas = _measure_areas(walker.falls)
+    found = Network(walker, surface, strips, grounds, nexts, uppers, areas)
+    done(0.8)
+    _link_vertices(found)
+    _break_circles(found)
     return found
 
 
-def _connect_level_ground(tin: TIN) -> NDArray[np.int64]:
-    edges = tin.edges.astype(np.int64)
-    level = edges[tin.points[edges[:, 0], 2] == tin.points[edges[:, 1], 2]]
-    return join_components(len(tin.points), level[:, 0], level[:, 1])
+def build_vertex_network(walker: Walker) -> Network:
+    """Find the way of the water from vertices alone: a network without strips."""
+    falls = walker.falls
+    count = len(falls.points)
+    found = Network(
+        walker,
+        _read_falls(falls, walker.filling),
+        Strips(np.zeros(len(falls.triangles) + 1, np.int64), np.zeros(0)),
+        np.arange(count, dtype=np.int32),
+        np.arange(2 * count + 1, dtype=np.int32),
+        np.full(count, NOWHERE, np.int32),
+        np.zeros(len(falls.triangles)),
+    )
+    _link_vertices(found)
+    return found
+
+
+def _read_falls(falls: Falls, filling: Filling | None) -> _kernel.FallingSurface:
+    levels = None
+    if filling is not None:
+        levels = (filling.levels, filling.ponds, filling.nexts, filling.steps, filling.ranks)
+    return _kernel.FallingSurface(*falls, levels)
+
+
+def _measure_areas(falls: Falls) -> NDArray[np.float64]:
+    x, y = (axis[falls.triangles.T] for axis in falls.points.T[:2])
+    twice = (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0])
+    areas: NDArray[np.float64] = np.abs(twice) / 2
+    return areas
+
+
+def _connect_level_ground(tin: TIN) -> NDArray[np.int32]:
+    z = tin.points[:, 2]
+    level = tin.edges[z[tin.edges[:, 0]] == z[tin.edges[:, 1]]].astype(np.int64)
+    return join_components(len(z), level[:, 0], level[:, 1]).astype(np.int32)
 
 
 def _runs_on(drops: Drops) -> NDArray[np.bool_]:
@@ -126,14 +155,22 @@ def _runs_on(drops: Drops) -> NDArray[np.bool_]:
 
 
 def _link_vertices(found: Network) -> None:
-    count = len(found.grounds)
-    start = make_drops(count)
-    start.vertices[:] = np.arange(count)
-    drops, uppers = settle(found.walker, start)
-    nodes = found.first_vertex + np.arange(count)
+    """Set what is below vertices; where doubles do not decide that, fractions do."""
+    nexts, uppers, undecided = found.surface.link_vertices(
+        found.walker.is_boundary, found.first_vertex, found.grounds
+    )
+    found.nexts[found.first_vertex : found.first_end] = nexts
+    found.uppers[found.first_vertex :] = uppers
+    if len(undecided) == 0:
+        return
+    start = make_drops(len(undecided))
+    start.vertices[:] = undecided
+    walker = Walker(found.walker.falls, found.walker.filling, start.vertices)
+    drops, left = settle(walker, start)
+    nodes = found.first_vertex + start.vertices
     _link(found, nodes, drops)
-    along = uppers != NOWHERE
-    found.uppers[nodes[along]] = uppers[along]
+    along = left != NOWHERE
+    found.uppers[nodes[along]] = left[along]
 
 
 def _link(found: Network, nodes: NDArray[np.int64], drops: Drops) -> None:
@@ -151,43 +188,27 @@ def _link(found: Network, nodes: NDArray[np.int64], drops: Drops) -> None:
     found.nexts[nodes[ended]] = node[ended]
 
 
-def _break_circles(found: Network, left: Drops) -> None:
+def _break_circles(found: Network) -> None:
     """Follow the drops of strips to a vertex where rounding lets strips run in a circle."""
-    strips = np.flatnonzero(find_ends(found.nexts) < found.first_end)
+    nodes = np.flatnonzero(_kernel.find_ends(found.nexts) < found.first_end)
+    strips = nodes[nodes < found.first_vertex]
     if len(strips):
-        strips = strips[strips < found.first_vertex]
-        on = strips[_runs_on(left.choose(strips))]
+        left = leave_strips(found.walker, found.surface, found.strips, strips)
+        on = np.flatnonzero(_runs_on(left))
         drops, _ = settle(found.walker, left.choose(on))
-        _link(found, on, drops)
+        _link(found, strips[on], drops)
 
 
-def find_ends(nexts: NDArray[np.int64]) -> NDArray[np.int64]:
+def find_ends(nexts: NDArray[np.int32]) -> NDArray[np.int32]:
     """Return the node at which the water of each ends."""
-    ends = nexts
-    for _ in range(len(nexts).bit_length()):
-        ends = ends[ends]
-    return ends
+    return _kernel.find_ends(nexts)
 
 
 def accumulate(found: Network) -> NDArray[np.float64]:
-    """Return the area whose water passes each node, its own included.
-
-    Nodes that no water comes to are taken away, then those that this leaves so, and so on.
-    """
-    strips = found.strips
+    """Return the area whose water passes each node, its own included."""
     total = np.zeros(len(found.nexts))
-    total[: len(strips.triangles)] = strips.parts * found.areas[strips.triangles]
+    total[: found.first_vertex] = found.measure_strips()
     level = np.flatnonzero(found.walker.falls.is_level)
     np.add.at(total, found.find_level_nodes(level), found.areas[level])
-    moving = np.flatnonzero(found.nexts != np.arange(len(found.nexts)))
-    waits = np.bincount(found.nexts[moving], minlength=len(total))
-    ready = moving[waits[moving] == 0]
-    latest = np.empty(len(total), np.int64)
-    while len(ready):
-        below = found.nexts[ready]
-        np.add.at(total, below, total[ready])
-        np.subtract.at(waits, below, 1)
-        below = below[(waits[below] == 0) & (found.nexts[below] != below)]
-        latest[below] = np.arange(len(below))
-        ready = below[latest[below] == np.arange(len(below))]  # each once
+    _kernel.accumulate(found.nexts, total)
     return total

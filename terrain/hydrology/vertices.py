@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...tin.topology import NO_NEIGHBOR, find_triangles, gather
+from ...tin.topology import NO_NEIGHBOR, find_triangles, gather, sort_half_edges
 from .falls import find_corners
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ...tin.topology import HalfEdges
     from .falls import Falls
 
-__all__ = ["NOWHERE", "Exits", "find_exits"]
+__all__ = ["NOWHERE", "Exits", "find_exits", "sort_edges_at"]
 
 NOWHERE = -1
 _CLOSE = 1e-9
@@ -57,6 +58,7 @@ class _Candidates(NamedTuple):
 
 def find_exits(
     falls: Falls,
+    half_edges: HalfEdges,
     vertices: NDArray[np.int64],
     is_boundary: NDArray[np.bool_],
     levels: NDArray[np.float64] | None = None,
@@ -66,6 +68,8 @@ def find_exits(
     Parameters
     ----------
     falls : Falls
+    half_edges : HalfEdges
+        Of the triangles at the vertices, others need not be there.
     vertices : (k,) int64 array
     is_boundary : (n,) bool array
         Of all vertices.
@@ -83,7 +87,7 @@ def find_exits(
     with the smallest azimuth is taken. At the boundary water leaves where nothing descends, and
     where the steepest way is an edge of the boundary across which its triangle drains.
     """
-    found = _list_candidates(falls, vertices)
+    found = _list_candidates(falls, half_edges, vertices)
     if levels is not None:
         found = _leave_out_water(falls, vertices, found, levels)
     chosen = _choose_steepest(falls, vertices, found)
@@ -93,19 +97,33 @@ def find_exits(
     to_vertex[owners] = found.vertices[chosen]
     to_triangle[owners] = found.triangles[chosen]
     slopes[owners] = found.slopes[chosen]
-    drains = _drains_outwards(falls, vertices, to_vertex)
+    drains = _drains_outwards(falls, half_edges, vertices, to_vertex)
     leaves = is_boundary[vertices] & ((slopes == 0.0) | drains)
     to_vertex[leaves] = NOWHERE
     return Exits(to_vertex, to_triangle, slopes, leaves)
 
 
-def _list_candidates(falls: Falls, vertices: NDArray[np.int64]) -> _Candidates:
+def sort_edges_at(
+    triangles: NDArray[np.int32], vertices: NDArray[np.int64], count: int
+) -> HalfEdges:
+    """Sort the edges of the triangles at some of so many vertices, and of no others."""
+    is_asked = np.zeros(count, np.bool_)
+    is_asked[vertices] = True
+    one, other, last = is_asked[triangles.T]
+    near = np.flatnonzero(one | other | last).astype(np.int32)
+    found = sort_half_edges(triangles[near], count)
+    return found._replace(triangles=near[found.triangles])
+
+
+def _list_candidates(
+    falls: Falls, half_edges: HalfEdges, vertices: NDArray[np.int64]
+) -> _Candidates:
     """List the edge on one side of each triangle, at the boundary that on the other side, and it.
 
     In this order, so that those of each vertex are together.
     """
-    slots, owners = gather(falls.half_edges.offsets, vertices)
-    triangles = falls.half_edges.triangles[slots].astype(np.int64)
+    slots, owners = gather(half_edges.offsets, vertices)
+    triangles = half_edges.triangles[slots].astype(np.int64)
     start, z = vertices[owners], falls.points[:, 2]
     corners = find_corners(falls.triangles, triangles, start)
     one, other = falls.ends(triangles, corners)
@@ -221,14 +239,14 @@ def _measure_exactly(
 
 
 def _drains_outwards(
-    falls: Falls, vertices: NDArray[np.int64], ends: NDArray[np.int64]
+    falls: Falls, half_edges: HalfEdges, vertices: NDArray[np.int64], ends: NDArray[np.int64]
 ) -> NDArray[np.bool_]:
     """Tell which edges are of the boundary, with their triangle draining across them."""
     drains = np.zeros(len(vertices), np.bool_)
     chosen = np.flatnonzero(ends != NOWHERE)
     for start, end in ((vertices, ends), (ends, vertices)):
-        left = find_triangles(falls.half_edges, start[chosen], end[chosen])
-        right = find_triangles(falls.half_edges, end[chosen], start[chosen])
+        left = find_triangles(half_edges, start[chosen], end[chosen])
+        right = find_triangles(half_edges, end[chosen], start[chosen])
         rows = np.flatnonzero((left != NO_NEIGHBOR) & (right == NO_NEIGHBOR))
         at = falls.triangles[left[rows]] == start[chosen[rows]][:, None]
         edge = (np.argmax(at, axis=1) + 2) % 3

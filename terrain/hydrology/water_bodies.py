@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...errors import OptionError
-from ...tin.topology import NO_NEIGHBOR, find_boundary_vertices, gather, sort_half_edges
+from ...tin.topology import NO_NEIGHBOR, find_boundary_vertices, gather
 from ...tin.validation.options import as_flag, is_finite_number
 from ..earthwork.reference import find_reference
 from ..relief.dissolving import number_components
 from ..results import Features
-from .descent import MOVING, Walker, make_drops
+from .descent import Walker
 from .falls import find_falls
 from .filling import fill
-from .vertices import NOWHERE
+from .networks import build_vertex_network, find_ends
+from .vertices import NOWHERE, sort_edges_at
 from .water import Waters, cut_below, gather_polygons, measure_waters
 
 if TYPE_CHECKING:
@@ -261,8 +262,9 @@ def _gather_triangles(
     """Return the triangles that have a vertex in each water."""
     if not wet:
         return Waters(np.zeros(0, np.int64), np.zeros(0, np.int64), levels)
-    half_edges = sort_half_edges(tin.triangles, len(tin.points))
-    slots, owner = gather(half_edges.offsets, np.concatenate(wet))
+    vertices = np.concatenate(wet)
+    half_edges = sort_edges_at(tin.triangles, vertices, len(tin.points))
+    slots, owner = gather(half_edges.offsets, vertices)
     water = np.concatenate(waters)[owner]
     keys = np.unique(half_edges.triangles[slots] * np.int64(len(levels)) + water)
     return Waters(keys // len(levels), keys % len(levels), levels)
@@ -341,17 +343,16 @@ def _run_over(
 
 
 def _find_next_ponds(walker: Walker, ponds: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Follow drops from where ponds spill to the next pond, ``NOWHERE`` if they leave first."""
+    """Return the next pond from where ponds spill, ``NOWHERE`` if water leaves first."""
     filling: Any = walker.filling
-    found, rows = np.full(len(ponds), NOWHERE), np.arange(len(ponds))
-    drops = make_drops(len(ponds))
-    drops.vertices[:] = filling.hierarchy.spill_vertices[ponds]
-    while len(rows):
-        drops = walker.step(drops)
-        at_vertex = drops.vertices != NOWHERE
-        found[rows[at_vertex]] = filling.ponds[drops.vertices[at_vertex]]
-        on = np.flatnonzero((drops.ends == MOVING) & (found[rows] == NOWHERE))
-        rows, drops = rows[on], drops.choose(on)
+    network = build_vertex_network(walker)
+    begins = network.nexts[filling.hierarchy.spill_vertices[ponds]]
+    is_wet = filling.ponds != NOWHERE
+    wet = np.flatnonzero(is_wet)
+    network.nexts[wet] = wet
+    ends = find_ends(network.nexts)[begins]
+    outside = np.full(len(network.nexts) - len(is_wet), NOWHERE)
+    found: NDArray[np.int64] = np.append(filling.ponds, outside)[ends]
     return found
 
 

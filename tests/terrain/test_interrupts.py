@@ -76,6 +76,37 @@ def test_a_kernel_ends_soon_after_the_signal(prepare):
     assert process_time() - began < 10.0
 
 
+def prepare_strips():
+    """One triangle in many strips."""
+    surface = _kernel.FallingSurface(
+        np.array([[0.0, 0, 0], [1, 0, 1], [0, 1, 1]]),
+        np.array([[0, 1, 2]], np.int32),
+        np.full((1, 3), -1, np.int32),
+        np.array([[-1, 1, 1]], np.int8),
+        np.array([[-2.0, 1, 1]]),
+        None,
+    )
+    count = 8_000_000
+    starts = np.linspace(0.0, 1.0, count, endpoint=False)
+    return surface.link_strips, (np.array([0, count]), starts, np.zeros(3, np.int32))
+
+
+def prepare_long_way():
+    return _kernel.find_ends, (np.minimum(np.arange(1, 30_000_001, dtype=np.int32), 29_999_999),)
+
+
+@pytest.mark.parametrize("prepare", [prepare_strips, prepare_long_way])
+def test_the_network_of_water_ends_soon_after_the_signal(prepare):
+    kernel, given = prepare()
+    began = process_time()
+    kernel(*given)
+    whole = process_time() - began
+    began = process_time()
+    with pressed_after(0.2 * whole):
+        kernel(*given)
+    assert process_time() - began < 0.8 * whole
+
+
 def test_sums_of_heights_end_soon_after_the_signal():
     """One triangle eight million times: what takes long must not wait for its end."""
     points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])

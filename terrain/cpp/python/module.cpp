@@ -4,6 +4,7 @@
 #include "bind_earthwork.hpp"
 #include "bind_gridding.hpp"
 #include "bind_ground.hpp"
+#include "bind_hydrology.hpp"
 #include "bind_inspection.hpp"
 #include "bind_isolines.hpp"
 #include "bind_raster_simplification.hpp"
@@ -16,6 +17,7 @@ NB_MODULE(_core, m) {
   tinsmith::python::bind_gridding(m);
   tinsmith::python::bind_earthwork(m);
   tinsmith::python::bind_relief(m);
+  tinsmith::python::bind_hydrology(m);
   tinsmith::python::bind_inspection(m);
   tinsmith::python::bind_ground(m);
   tinsmith::python::bind_raster_simplification(m);
