@@ -2,8 +2,10 @@
 
 ``python -m benchmarks.ground FOLDER`` prints the table of docs/ground.md for the LAS and LAZ files
 of a folder whose class 2 is ground, such as the ISPRS filter test (Sithole and Vosselman, "Report:
-ISPRS comparison of filters", 2003). ``--points N`` times N points of a terrain that is made, with
-houses, trees and low noise.
+ISPRS comparison of filters", 2003). ``--changed`` prints the errors on the same files turned,
+thinned and cut, ``--leave-one-out N`` those with the best of N random sets of parameters, chosen
+for each file by the others. ``--points N`` times N points of a terrain that is made, with houses,
+trees and low noise.
 
 Each filter has one set of parameters for all files: its own defaults, for CSF those that its paper
 gives for steep slopes with post-processing.
@@ -33,6 +35,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Filter = Callable[[ts.Survey], NDArray[np.bool_]]
+    Changed = tuple[NDArray[np.float64], NDArray[np.int64]]
+    Change = Callable[[NDArray[np.float64], np.random.Generator], Changed]
 
 GROUND = 2
 
@@ -109,6 +113,56 @@ FILTERS: dict[str, tuple[str, Filter]] = {
 }
 
 
+# --------------------------------------------------------------------------------- changes
+
+
+def _turn(degrees: float) -> Change:
+    cosine, sine = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    matrix = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
+    return lambda points, _: (points @ matrix.T, np.arange(len(points)))
+
+
+def _thin(share: float) -> Change:
+    def change(points: NDArray[np.float64], rng: np.random.Generator) -> Changed:
+        rows = np.flatnonzero(rng.uniform(size=len(points)) < share)
+        return points[rows], rows
+
+    return change
+
+
+def _cut(west: float, south: float) -> Change:
+    def change(points: NDArray[np.float64], _: np.random.Generator) -> Changed:
+        rows = np.flatnonzero((points[:, :2] > (west, south)).all(axis=1))
+        return points[rows], rows
+
+    return change
+
+
+CHANGES = {
+    "as they are": _turn(0),
+    "turned by 17°": _turn(17),
+    "turned by 30°": _turn(30),
+    "turned by 45°": _turn(45),
+    "turned by 71°": _turn(71),
+    "half of them": _thin(0.5),
+    "a quarter of them": _thin(0.25),
+    "cells moved by 0.3 m": _cut(0.3, 0.3),
+    "cells moved by 0.75 and 0.5 m": _cut(0.75, 0.5),
+}
+
+RANGES = {
+    "building": (36.0, 60.0),
+    "cell": (0.75, 1.5),
+    "terrain_slope": (0.08, 0.22),
+    "iteration_angle": (12.0, 28.0),
+    "iteration_distance": (0.8, 2.0),
+    "edge_length": (3.0, 8.0),
+    "tolerance": (0.2, 0.4),
+    "horizontal_tolerance": (0.4, 1.3),
+}
+"""Of parameters that are drawn."""
+
+
 @contextmanager
 def _silence() -> Iterator[None]:
     """Send what libraries print to standard output nowhere."""
@@ -139,7 +193,7 @@ def _in_folder() -> Iterator[Path]:
 
 def print_errors(folder: Path) -> None:
     """Print the errors of every filter on every file, as a table of Markdown."""
-    files = sorted(path for path in folder.iterdir() if path.suffix.lower() in (".las", ".laz"))
+    files = _list_files(folder)
     tools = {name: find for name, (module, find) in FILTERS.items() if is_installed(module)}
     header = ["file", "points", "type I", "type II", "total", "kappa"]
     header += [f"{name}: total, kappa" for name in list(tools)[1:]]
@@ -152,6 +206,51 @@ def print_errors(folder: Path) -> None:
         rows.append([*errors[0], *(part for one in errors[1:] for part in (one.total, one.kappa))])
         _print_row(path.name, f"{len(survey):,}", rows[-1])
     _print_row("**mean**", "", np.mean(rows, axis=0).tolist())
+
+
+def print_changed(folder: Path) -> None:
+    """Print the mean total error on the files turned, thinned and cut, as a table of Markdown."""
+    samples = _read_samples(folder)
+    print("| points | mean total |\n|---|---|")
+    for name, change in CHANGES.items():
+        totals = []
+        for number, (points, truth) in enumerate(samples):
+            changed, rows = change(points, np.random.default_rng(number))
+            totals.append(measure_errors(ts.ground(changed).is_ground, truth[rows]).total)
+        print(f"| {name} | {np.mean(totals):.2f} |", flush=True)
+
+
+def print_leave_one_out(folder: Path, count: int) -> None:
+    """Print the mean total error with parameters chosen for each file by the others."""
+    samples = _read_samples(folder)
+    rng = np.random.default_rng(1)
+    totals = np.empty((count, len(samples)))
+    for row in totals:
+        chosen = {name: rng.uniform(*ends) for name, ends in RANGES.items()}
+        found = [ts.ground(points, **chosen).is_ground for points, _ in samples]
+        row[:] = [
+            measure_errors(is_ground, truth).total
+            for is_ground, (_, truth) in zip(found, samples, strict=True)
+        ]
+    others = (totals.sum(axis=1, keepdims=True) - totals) / (len(samples) - 1)
+    held_out = totals[others.argmin(axis=0), np.arange(len(samples))]
+    means = totals.mean(axis=1)
+    print(
+        f"{count} sets: best mean {means.min():.2f}, median {np.median(means):.2f}; "
+        f"each file with the set best on the others: {held_out.mean():.2f}"
+    )
+
+
+def _read_samples(folder: Path) -> list[tuple[NDArray[np.float64], NDArray[np.bool_]]]:
+    surveys = [ts.read(path) for path in _list_files(folder)]
+    return [
+        (survey.points - survey.points.min(axis=0), survey.attributes["classification"] == GROUND)
+        for survey in surveys
+    ]
+
+
+def _list_files(folder: Path) -> list[Path]:
+    return sorted(path for path in folder.iterdir() if path.suffix.lower() in (".las", ".laz"))
 
 
 def _print_row(name: str, count: str, values: list[float]) -> None:
@@ -195,8 +294,16 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.ground", description=__doc__)
     parser.add_argument("folder", nargs="?", type=Path, help="LAS and LAZ files with labels")
     parser.add_argument("--points", type=int, metavar="N", help="time a terrain of N points")
+    parser.add_argument("--changed", action="store_true", help="turn, thin and cut the files")
+    parser.add_argument("--leave-one-out", type=int, metavar="N", help="draw N sets of parameters")
     given = parser.parse_args(arguments)
-    if given.folder is not None:
+    if (given.changed or given.leave_one_out) and given.folder is None:
+        parser.error("a folder of files with labels is needed")
+    if given.changed:
+        print_changed(given.folder)
+    if given.leave_one_out:
+        print_leave_one_out(given.folder, given.leave_one_out)
+    if given.folder is not None and not (given.changed or given.leave_one_out):
         print_errors(given.folder)
     if given.points is not None:
         print_time(given.points)

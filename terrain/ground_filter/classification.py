@@ -20,6 +20,7 @@ from .cells import lay_cells
 from .parameters import Parameters
 from .returns import are_noise, may_be_ground
 from .seeds import find_low_noise, find_seeds
+from .segments import link, list_continuing
 from .surroundings import surround
 
 if TYPE_CHECKING:
@@ -27,7 +28,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from ..._progress import Tell
     from ...policies import GroundReturns
+    from .cells import Cells
 
 __all__ = ["GroundPoints", "ground"]
 
@@ -36,6 +39,9 @@ UNCLASSIFIED, GROUND, LOW_NOISE = 1, 2, 7
 
 _SMALLEST = 2.0**-100
 """Coordinates nearer to the least than this, which nobody measures, count as equal to it."""
+
+_ROUNDS = ((0.2, 0.6), (0.6, 1.0))
+"""Stages of the whole in which the surface is made; in the second, above that of the first."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -126,7 +132,7 @@ def ground(
     *,
     building: float = 40.0,
     cell: float = 1.0,
-    terrain_slope: float = 0.15,
+    terrain_slope: float = 0.12,
     iteration_angle: float = 20.0,
     iteration_distance: float = 1.4,
     edge_length: float = 5.0,
@@ -148,8 +154,8 @@ def ground(
     cell : float
         Side of the cells whose lowest points may be seeds, metres.
     terrain_slope : float
-        Rise per length below which the lowest points are seeds without a doubt; steeper ground is
-        found from the seeds around it.
+        Rise per length below which the lowest points are seeds without a doubt, and neighbours
+        belong to one segment; steeper ground is found from the seeds around it.
     iteration_angle : float
         Largest angle at the nearest corner of its triangle under which a point is added, degrees.
     iteration_distance : float
@@ -186,9 +192,11 @@ def ground(
     -----
     1. Points below all around them are low noise.
     2. Seeds are the lowest points of cells that openings by growing windows leave in place.
-    3. The TIN of the seeds is densified: of each triangle the point nearest to its plane becomes a
+    3. Segments of other lowest points that continue them without a step are seeds, too.
+    4. The TIN of the seeds is densified: of each triangle the point nearest to its plane becomes a
        vertex, if it is near enough and seen under a small angle, until none is left.
-    4. Points on that surface, within the tolerances, are ground.
+    5. Steps 2 to 4 are done once more, the openings with heights above that surface.
+    6. Points on the surface, within the tolerances, are ground.
 
     Lengths are converted from the units of the survey's CRS. The result depends on the set of
     points alone, not on their order. Bridges and cliffs, low walls and dense low plants cannot be
@@ -200,7 +208,9 @@ def ground(
     Archives of Photogrammetry and Remote Sensing 33 B4 (2000). X. Zhao et al., "Improved
     progressive TIN densification filtering algorithm for airborne LiDAR data in forested areas",
     ISPRS Journal 117 (2016), doi:10.1016/j.isprsjprs.2016.03.016. T. Pingel, K. Clarke and
-    W. McBride (2013), doi:10.1016/j.isprsjprs.2012.12.002.
+    W. McBride (2013), doi:10.1016/j.isprsjprs.2012.12.002. J. Zhang and X. Lin, "Filtering airborne
+    LiDAR data by embedding smoothness-constrained segmentation in progressive TIN densification",
+    ISPRS Journal 81 (2013), doi:10.1016/j.isprsjprs.2013.04.001.
 
     Examples
     --------
@@ -294,10 +304,51 @@ def _classify(
             "are not the last of their pulse."
         )
     cells = lay_cells(points, parameters.cell)
-    is_low = find_low_noise(points, cells, is_taken, parameters, done.stage(0.0, 0.2))
+    is_low = find_low_noise(points, cells, is_taken, parameters, done.stage(0.0, 0.1))
     is_taken &= ~is_low
-    seeds = points[find_seeds(points, cells, is_taken, parameters, done.stage(0.2, 0.5))]
-    done(0.5)
+    heights, slopes = _find_surface(points, cells, is_taken, parameters, done)
+    sideways = parameters.horizontal_tolerance * slopes
+    is_low |= is_taken & (heights < -(parameters.noise_depth + sideways))
+    is_ground = is_taken & ~is_low & _lie_on(heights, slopes, parameters)
+    classes = np.full(len(points), UNCLASSIFIED, np.uint8)
+    classes[is_ground], classes[is_low] = GROUND, LOW_NOISE
+    return classes, heights
+
+
+def _find_surface(
+    points: NDArray[np.float64],
+    cells: Cells,
+    is_taken: NDArray[np.bool_],
+    parameters: Parameters,
+    done: Progress,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the height of each point above the surface of the ground, and its slope there."""
+    lowest = cells.find_lowest(is_taken)
+    ring = surround(points, points[lowest], parameters.cell)
+    links = link(points[lowest], ring, parameters)
+    is_seed, is_ground = np.zeros((2, len(lowest)), bool)
+    heights = points[:, 2]
+    for start, end in _ROUNDS:
+        stage = Progress(done.stage(start, end))
+        is_seed |= find_seeds(heights, cells, lowest, parameters, stage.stage(0.0, 0.3))
+        is_ground |= is_seed
+        is_seed |= list_continuing(links, is_ground)
+        seeds = points[lowest[is_seed]]
+        heights, slopes = _densify(
+            points, cells, is_taken, seeds, parameters, stage.stage(0.4, 1.0)
+        )
+        is_ground = _lie_on(heights[lowest], slopes[lowest], parameters)
+    return heights, slopes
+
+
+def _densify(
+    points: NDArray[np.float64],
+    cells: Cells,
+    is_taken: NDArray[np.bool_],
+    seeds: NDArray[np.float64],
+    parameters: Parameters,
+    progress: Tell | None,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     order = cells.order
     heights, slopes = np.empty(len(points)), np.empty(len(points))
     heights[order], slopes[order] = _kernel.densify(
@@ -307,14 +358,19 @@ def _classify(
         float(np.sin(np.radians(parameters.iteration_angle))),
         parameters.iteration_distance,
         parameters.edge_length,
-        done.stage(0.5, 1.0),
+        progress,
     )
-    sideways = parameters.horizontal_tolerance * slopes
-    is_low |= is_taken & (heights < -(parameters.noise_depth + sideways))
-    is_ground = is_taken & ~is_low & (heights <= parameters.tolerance + sideways)
-    classes = np.full(len(points), UNCLASSIFIED, np.uint8)
-    classes[is_ground], classes[is_low] = GROUND, LOW_NOISE
-    return classes, heights
+    return heights, slopes
+
+
+def _lie_on(
+    heights: NDArray[np.float64], slopes: NDArray[np.float64], parameters: Parameters
+) -> NDArray[np.bool_]:
+    """Tell which points lie no higher above the surface than the tolerances allow."""
+    is_on: NDArray[np.bool_] = (
+        heights <= parameters.tolerance + parameters.horizontal_tolerance * slopes
+    )
+    return is_on
 
 
 def _keep_noise(classes: NDArray[np.uint8], survey: Survey) -> None:

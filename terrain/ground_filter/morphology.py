@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     Grid = NDArray[np.float64]
 
-__all__ = ["least_around", "list_windows", "open_grid", "split_columns"]
+__all__ = ["find_covered", "least_around", "list_windows", "open_grid", "split_columns"]
 
 _GROWTH = 1.3
 """Of one window to the next: finer steps find nothing more."""
@@ -63,11 +63,34 @@ def split_columns(shape: tuple[int, int], halo: int) -> Iterator[tuple[slice, sl
         yield wide, slice(start - first, end - first), slice(start, end)
 
 
-def open_grid(grid: Grid, window: int) -> Grid:
-    """Erode a grid, and dilate what is left: what is narrower than the window goes."""
+def open_grid(grid: Grid, window: int, is_covered: NDArray[np.bool_] | None = None) -> Grid:
+    """Erode a grid, and dilate what is left: what is narrower than the window goes.
+
+    Parameters
+    ----------
+    grid : (m, n) float64 array
+    window : int
+        Half width in cells.
+    is_covered : (m, n) bool array, optional
+        Where windows may be centred: all with a value around by default. One beyond the border of
+        the data would touch nothing but a roof there, and leave it.
+    """
     eroded = _filter(grid, window, np.minimum, np.inf)
-    eroded[np.isinf(eroded)] = -np.inf
+    is_outside = np.isinf(eroded)
+    if is_covered is not None:
+        is_outside |= ~is_covered
+    eroded[is_outside] = -np.inf
     return _filter(eroded, window, np.maximum, -np.inf)
+
+
+def find_covered(is_full: NDArray[np.bool_], gap: int) -> NDArray[np.bool_]:
+    """Close gaps between cells that are no wider than twice so many cells.
+
+    What lies outside the grid counts neither as full nor as empty.
+    """
+    reached = _filter(is_full.astype(np.float64), gap, np.maximum, 0.0)
+    covered: NDArray[np.bool_] = _filter(reached, gap, np.minimum, 1.0) > 0
+    return covered
 
 
 def least_around(grid: Grid, core: int, reach: int, *, is_whole: bool = False) -> Grid:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..._progress import Progress
-from .morphology import least_around, list_windows, open_grid, split_columns
+from .morphology import find_covered, least_around, list_windows, open_grid, split_columns
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -35,6 +35,9 @@ some of a frame is empty, and the lowest corner of a slope would be taken for a 
 
 _ROUNDS = 5
 """How often low points are looked for again, when others that hid them have gone."""
+
+_GAP = 4
+"""Half width in cells of gaps between points; what is wider is beyond the border of the data."""
 
 
 def find_low_noise(
@@ -71,22 +74,23 @@ def _find_least_around(
 
 
 def find_seeds(
-    points: NDArray[np.float64],
+    heights: NDArray[np.float64],
     cells: Cells,
-    is_taken: NDArray[np.bool_],
+    lowest: NDArray[np.int64],
     parameters: Parameters,
     progress: Tell | None = None,
-) -> NDArray[np.int64]:
-    """Return rows of the lowest points of cells that are part of no object.
+) -> NDArray[np.bool_]:
+    """Tell which of the lowest points of cells, by their rows, are part of no object.
 
     Openings by growing windows take off whatever is narrower: what one of them lifts by more than
-    the terrain can rise within the window, by its slope, is an object.
+    the terrain can rise within the window, by its slope, is an object. The heights of all points
+    are above a level, or above a first surface of the ground, which takes its slope away.
     """
-    rows = cells.find_lowest(is_taken)
-    grid = cells.spread(rows, points[:, 2])
+    grid = cells.spread(lowest, heights)
     half = max(1, int(np.ceil(parameters.building / (2 * parameters.cell))))
     is_object = _find_objects(grid, list_windows(half), parameters, Progress(progress))
-    return rows[~is_object.reshape(-1)[cells.number[rows]]]
+    is_seed: NDArray[np.bool_] = ~is_object.reshape(-1)[cells.number[lowest]]
+    return is_seed
 
 
 def _find_objects(
@@ -95,10 +99,13 @@ def _find_objects(
     is_empty = np.isinf(grid)
     is_object = np.zeros(grid.shape, bool)
     rounding = np.finfo(float).eps * np.abs(grid[~is_empty]).max(initial=0.0)
+    is_covered = np.empty(grid.shape, bool)
+    for wide, inner, own in split_columns(grid.shape, 2 * _GAP):
+        is_covered[own] = find_covered(~is_empty[wide], _GAP)[inner]
     for number, window in enumerate(windows, 1):
         opened = np.empty_like(grid)
         for wide, inner, own in split_columns(grid.shape, 2 * window):
-            opened[own] = open_grid(grid[wide], window)[inner]
+            opened[own] = open_grid(grid[wide], window, is_covered[wide])[inner]
         opened[is_empty] = np.inf
         rise = parameters.terrain_slope * window * parameters.cell + rounding
         with np.errstate(invalid="ignore"):  # cells that are empty, which compare as false

@@ -73,7 +73,10 @@ def _find_nearest(
     stretch: NDArray[np.int64], away: Doubles, seeds: Doubles, count: int
 ) -> NDArray[np.int64]:
     """Return the seed nearest to the side in each stretch of it, or in the nearest that has one."""
-    order = np.lexsort((seeds[:, 1], seeds[:, 0], seeds[:, 2], away, stretch))
+    least = np.full(count, np.inf)
+    np.minimum.at(least, stretch, away)
+    rows = np.flatnonzero(away == least[stretch])
+    order = rows[np.lexsort((seeds[rows, 1], seeds[rows, 0], seeds[rows, 2], stretch[rows]))]
     there, first = np.unique(stretch[order], return_index=True)
     wanted = np.arange(count)
     after = np.clip(np.searchsorted(there, wanted), 0, len(there) - 1)
@@ -94,7 +97,11 @@ def _extrapolate(
     Each plane is that of the seeds of three stretches behind the nearest seed.
     """
     limit = away[nearest] + _DEPTH
-    order = np.lexsort((seeds[:, 1], seeds[:, 0], seeds[:, 2]))  # sums do not depend on the input
+    widest = np.pad(limit, 1, mode="edge")
+    widest = np.maximum(np.maximum(widest[:-2], widest[2:]), limit)
+    rows = np.flatnonzero(away <= widest[stretch])
+    x, y, z = seeds[rows].T
+    order = rows[np.lexsort((y, x, z))]  # sums do not depend on the order of the input
     sums = np.zeros((len(side.places), 3, 4))
     for shift in (-1, 0, 1):
         own = stretch[order] + shift

@@ -44,7 +44,7 @@ class GroundAlgorithm(CommandAlgorithm):
         ),
         _parameter("CELL", "Side of a cell", "Metres; the lowest point of each is a seed.", 1.0),
         _parameter(
-            "TERRAIN_SLOPE", "Slope of seeds", "Rise per length that needs no second look.", 0.15
+            "TERRAIN_SLOPE", "Slope of seeds", "Rise per length that needs no second look.", 0.12
         ),
         _parameter("ITERATION_ANGLE", "Largest angle", "Degrees, at the nearest corner.", 20.0),
         _parameter(

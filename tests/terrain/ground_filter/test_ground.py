@@ -79,6 +79,38 @@ def test_a_house_that_the_border_cuts_goes_too():
     assert (ts.ground(points).is_ground == ~roof).all()
 
 
+@pytest.mark.parametrize("degrees", [10, 30, 45, 80])
+def test_a_house_that_an_oblique_border_cuts_goes_too(degrees):
+    points = make_scene(plane)
+    roof = lift_box(points, center=(0, 30), half=8, height=6)
+    cosine, sine = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    points[:, :2] = points[:, :2] @ np.array([[cosine, sine], [-sine, cosine]])
+    missed, wrong = measure_errors(ts.ground(points).is_ground, ~roof)
+    assert missed == 0
+    assert wrong == 0
+
+
+def test_a_terrace_that_joins_the_slope_is_ground_and_a_roof_of_its_height_is_not():
+    points = make_scene(lambda x, y: 0.1 * y, side=80)
+    x, y = points[:, 0], points[:, 1]
+    terrace = (x > 10) & (x < 25) & (y > 30) & (y < 60)  # it joins the slope in the north
+    points[terrace, 2] = 6.0
+    roof = (x > 50) & (x < 65) & (y > 30) & (y < 55)
+    points[roof, 2] = 9.0
+    found = ts.ground(points).is_ground
+    assert found[terrace].mean() > 0.95
+    assert not found[roof].any()
+    assert found[~roof & ~terrace].all()
+
+
+def test_the_ridge_of_steep_ground_is_ground():
+    points = make_scene(lambda x, y: 30 - 0.4 * np.abs(x - 40) + 0.02 * y, side=80)
+    trees = plant_trees(points)
+    missed, wrong = measure_errors(ts.ground(points).is_ground, ~trees)
+    assert missed < 0.005
+    assert wrong == 0
+
+
 def test_houses_and_trees_on_a_hill():
     points = make_scene(hill)
     others = lift_box(points, center=(12, 45), half=5, height=5)
@@ -271,6 +303,7 @@ def test_given_noise_keeps_its_class_and_is_no_ground():
         [[5.0, 5.0, 1.0], [5.0, 5.0, 1.0]],
         [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [2.0, 0.0, 1.0]],
         [[0.0, 0.0, 1.0], [30.0, 0.0, 1.0], [0.0, 30.0, 1.0]],
+        [[i, j, 7.0] for i in range(4) for j in range(4)],
     ],
 )
 def test_few_points_are_ground(points):

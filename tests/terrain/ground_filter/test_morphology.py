@@ -7,6 +7,7 @@ import pytest
 
 from tinsmith.terrain.ground_filter import morphology
 from tinsmith.terrain.ground_filter.morphology import (
+    find_covered,
     least_around,
     list_windows,
     open_grid,
@@ -46,6 +47,35 @@ def test_opening(grid, window):
     eroded = choose_within(grid, octagon, min, np.inf)
     eroded[np.isinf(eroded)] = -np.inf
     assert (open_grid(grid, window) == choose_within(eroded, octagon, max, -np.inf)).all()
+
+
+@pytest.mark.parametrize("window", [1, 2, 4])
+def test_opening_with_windows_centred_where_data_are(grid, window):
+    is_covered = np.isfinite(grid)
+    is_covered[3:6, 2:5] = True
+    octagon = make_octagon(window)
+    eroded = choose_within(grid, octagon, min, np.inf)
+    eroded[np.isinf(eroded) | ~is_covered] = -np.inf
+    expected = choose_within(eroded, octagon, max, -np.inf)
+    assert (open_grid(grid, window, is_covered) == expected).all()
+
+
+@pytest.mark.parametrize("gap", [1, 2, 4])
+def test_covered_cells(grid, gap):
+    is_full = np.isfinite(grid)
+    is_full[8:, 7:] = False
+    octagon = make_octagon(gap)
+    reached = choose_within(is_full, octagon, max, 0.0)
+    closed = choose_within(reached, octagon, min, 1.0) > 0
+    assert (find_covered(is_full, gap) == closed).all()
+    assert (find_covered(is_full, gap) >= is_full).all()
+
+
+def test_what_is_beyond_an_oblique_border_is_not_covered():
+    rows, columns = np.indices((60, 60))
+    is_full = rows + 2 * columns >= 60
+    covered = find_covered(is_full, 4)
+    assert (covered == is_full)[4:50, 4:50].all()  # a corner beyond it closes at the grid's border
 
 
 def test_an_opening_lifts_nothing_and_is_done_once(grid):

@@ -48,7 +48,7 @@ _PARAMETERS = (
     "--terrain-slope",
     "RATIO",
     "Rise per length up to which the lowest points are seeds without a doubt.",
-    default=0.15,
+    default=0.12,
 )
 @number_option(
     "--iteration-angle",
