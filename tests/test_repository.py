@@ -189,6 +189,20 @@ def test_folders_can_be_taken_in_at_a_glance(folder):
     assert len(names) <= MOST_ENTRIES[folder], sorted(names)
 
 
+ROOT_ENTRIES = """
+.ci .clang-format .dockerignore .github .gitignore ARCHITECTURE.md CHANGELOG.md CMakeLists.txt
+LICENSE Makefile README.md benchmarks constraints.txt docs io packaging pyproject.toml qgis
+sample_data src terrain tests tin
+"""
+
+
+def test_the_root_holds_these_entries_and_no_file_of_a_run():
+    tracked = run("git", "ls-files", "-z")
+    assert tracked.returncode == 0, tracked.stderr
+    entries = {path.split("/")[0] for path in tracked.stdout.split("\0")[:-1]}
+    assert entries == set(ROOT_ENTRIES.split())
+
+
 def test_the_architecture_fits_a_minute():
     assert len((ROOT / "ARCHITECTURE.md").read_text().splitlines()) <= 80
 
