@@ -50,6 +50,11 @@ class Recorder:
     def draw_rectangle(self, corner, size, color):
         self.rectangles.append((*corner, *size, tuple(color)))
 
+    def draw_scale(self, corner, size, colors):
+        step = size[0] / len(colors)
+        for k, color in enumerate(colors.tolist()):
+            self.draw_rectangle((corner[0] + k * step, corner[1]), (step, size[1]), color)
+
     def draw_polygon(self, corners, color):
         self.polygons.append((np.array(corners, float), tuple(color)))
 
@@ -395,12 +400,14 @@ def test_the_settings_of_vtk_come_back_after_drawing():
 def test_what_an_overlay_draws_is_where_it_was_asked_for(factor, can_draw):
     """In design pixels from the lower left corner, times the factor."""
     red, green, blue, black = (255, 0, 0), (0, 255, 0), (0, 0, 255), (0, 0, 0)
+    scale = np.array([(255, 0, 255), (0, 255, 255), (255, 255, 0)], np.uint8)
     plotter = pv.Plotter(off_screen=True, window_size=[int(200 * factor), int(120 * factor)])
     plotter.background_color = "white"
     plotter.disable_anti_aliasing()
     overlay = Overlay(plotter.renderer, factor=factor)
     overlay.draw_rectangle((20, 10), (60, 30), red)
     overlay.draw_polygon([(100, 10), (140, 10), (100, 50)], green)
+    overlay.draw_scale((20, 50), (60, 20), scale)
     overlay.draw_line([(20, 80), (80, 80), (80, 110)], blue, width=3.0)
     for align, low in (("left", 20), ("center", 60), ("right", 95)):
         overlay.draw_text((150, low), "HHH", black, size=16, align=align)
@@ -418,6 +425,10 @@ def test_what_an_overlay_draws_is_where_it_was_asked_for(factor, can_draw):
     box, area = box_of(green)
     assert box == pytest.approx([100, 10, 140, 50], abs=1.6)
     assert area == pytest.approx(40 * 40 / 2, rel=0.08)
+    for k, color in enumerate(scale.astype(int)):
+        box, area = box_of(color)
+        assert box == pytest.approx([20 + 20 * k, 50, 40 + 20 * k, 70], abs=1.1)
+        assert area == pytest.approx(20 * 20, rel=0.1)
     box, area = box_of(blue)
     assert box == pytest.approx([20, 79, 81, 110], abs=2.1)
     assert area == pytest.approx(3 * 90, rel=0.15)
