@@ -142,7 +142,7 @@ def test_rings_that_leave_the_hull_cut_what_shapely_cuts(option):
     """
     rng = np.random.default_rng(3)
     built = 0
-    while built < 60:  # the campaign `islands` of tests/fuzz tries the many
+    while built < 150:
         points = rng.integers(0, 7, (rng.integers(3, 9), 2))
         ring = shapely.Polygon(rng.integers(-1, 8, (3, 2)))
         hull = shapely.MultiPoint(points).convex_hull
