@@ -9,7 +9,7 @@ from support.product_arrays import list_arrays
 import tinsmith as ts
 from tinsmith._progress import Progress
 
-N_POINTS = 16_000
+N_POINTS = 40_000
 
 
 @pytest.fixture(scope="module")

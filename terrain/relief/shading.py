@@ -100,8 +100,7 @@ def hillshade(
     cells, _ = as_grid(tin, spacing=side, grid=grid, in_memory=True)
     require_covered(tin, cells)
     upward = sum_normals(tin, "vertex" if smooth else "triangle") * (factor, factor, 1.0)
-    band = np.zeros(cells.shape, np.uint8)
-    height = max(1, _BLOCK_CELLS // cells.shape[1])
+    band, height = np.zeros(cells.shape, np.uint8), max(1, _BLOCK_CELLS // cells.shape[1])
     flat = None if smooth else _as_flat_band(tin, cells, shade(upward, light))
     parts = _grid_normals(tin, normalise(upward)) if smooth else ()
     for top in range(0, cells.shape[0], height):
