@@ -21,6 +21,7 @@ from support.orthos import write_grey
 
 import tinsmith as ts
 from tinsmith.cli import main
+from tinsmith.terrain.preview import picture
 
 PLUG_IN = ROOT / "docs/examples/tinsmith-ifc/README.md"  # run by its own test, once installed
 README = ROOT / "README.md"  # run by test_repository, as a user runs it
@@ -107,8 +108,12 @@ def write_files():
 
 @pytest.fixture
 def folder(files, tmp_path, monkeypatch):
-    """Return a folder with a copy of the files, the one in which commands run."""
+    """Return a folder with a copy of the files, the one in which commands run.
+
+    Pictures have the size that a page asks for, and are drawn without finer pixels to average.
+    """
     shutil.copytree(files, tmp_path, symlinks=True, dirs_exist_ok=True)
+    monkeypatch.setattr(picture, "_SUPERSAMPLING", 1)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

@@ -2,8 +2,8 @@
 
 import ast
 import doctest
-import functools
 import importlib
+import linecache
 import os
 import pkgutil
 import re
@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from support import processes
 from support.blocks import list_pages, name_page, read_blocks
+from support.commands import run_command
 from support.orthos import write_grey
 
 import tinsmith
@@ -24,9 +25,17 @@ import tinsmith.cli
 ROOT = Path(__file__).parents[1]
 
 
-@functools.cache
 def parse(path):
+    """Parse a file; nobody keeps the trees, of which the collector would search a million nodes."""
     return ast.parse(path.read_text())
+
+
+def list_statements(block):
+    """Yield the statements of a block, and those within them."""
+    for statement in block:
+        yield statement
+        for name in ("body", "orelse", "finalbody", "handlers", "cases"):
+            yield from list_statements(getattr(statement, name, ()))
 
 
 def run(*command, cwd=ROOT, **environment):
@@ -95,15 +104,15 @@ def imports_of(name, path, modules):
     what writes it as something else, and that may name the record's type.
     """
     package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-    tree = parse(path.resolve())
+    statements = [*list_statements(parse(path.resolve()).body)]
     typing_only = {
         id(node)
-        for block in ast.walk(tree)
+        for block in statements
         if isinstance(block, ast.If) and "TYPE_CHECKING" in ast.unparse(block.test)
-        for node in ast.walk(block)
+        for node in list_statements([block])
         if not name.startswith("tinsmith.tin.")
     }
-    for node in ast.walk(tree):
+    for node in statements:
         if isinstance(node, ast.ImportFrom) and node.level and id(node) not in typing_only:
             base = package.split(".")[: len(package.split(".")) - node.level + 1]
             source = ".".join([*base, *([node.module] if node.module else [])])
@@ -175,6 +184,7 @@ def test_public_examples_run():
         if name.endswith("._core"):
             continue
         result = doctest.testmod(importlib.import_module(name), optionflags=doctest.ELLIPSIS)
+        linecache.clearcache()  # doctest looks at the file of each line in it for each example
         assert result.failed == 0, name
         tried += result.attempted
     assert tried > 0
@@ -190,6 +200,20 @@ def test_folders_can_be_taken_in_at_a_glance(folder):
     assert len(names) <= MOST_ENTRIES[folder], sorted(names)
 
 
+ROOT_ENTRIES = """
+.ci .clang-format .dockerignore .github .gitignore ARCHITECTURE.md CHANGELOG.md CMakeLists.txt
+LICENSE Makefile README.md benchmarks constraints.txt docs io packaging pyproject.toml qgis
+sample_data src terrain tests tin
+"""
+
+
+def test_the_root_holds_these_entries_and_no_file_of_a_run():
+    tracked = run("git", "ls-files", "-z")
+    assert tracked.returncode == 0, tracked.stderr
+    entries = {path.split("/")[0] for path in tracked.stdout.split("\0")[:-1]}
+    assert entries == set(ROOT_ENTRIES.split())
+
+
 def test_the_architecture_fits_a_minute():
     assert len((ROOT / "ARCHITECTURE.md").read_text().splitlines()) <= 80
 
@@ -201,9 +225,9 @@ FOLDERS = ("tin", "io", "terrain", "src", "qgis", "tests", "benchmarks", "sample
 
 def measure_python_functions(path):
     """Yield name and lines of every function's body, docstring aside."""
-    for node in ast.walk(parse(path)):
+    for node in list_statements(parse(path).body):
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-            body = node.body[1:] if ast.get_docstring(node) is not None else node.body
+            body = node.body[1:] if ast.get_docstring(node, clean=False) is not None else node.body
             yield node.name, body[-1].end_lineno - body[0].lineno + 1 if body else 0
 
 
@@ -301,12 +325,15 @@ def test_sessions_of_the_pages_say_what_they_show(page, names_of_pages):
     assert said == []
 
 
-def test_readme_commands_run(tmp_path, can_draw):
+def test_readme_commands_run(tmp_path, monkeypatch, can_draw):
+    """Run the first as a user does, the others, which need what it writes, in this process."""
     (tmp_path / "sample_data").symlink_to(ROOT / "sample_data")
+    monkeypatch.chdir(tmp_path)
     text = (ROOT / "README.md").read_text()
     lines = re.findall(r"^(tinsmith .*-o .*)$", text, re.MULTILINE)
     assert len(lines) == 5
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    for line in lines:
-        result = run(*line.split(), cwd=tmp_path, PATH=path)
-        assert result.returncode == 0, result.stderr
+    result = run(*lines[0].split(), cwd=tmp_path, PATH=path)
+    assert result.returncode == 0, result.stderr
+    for line in lines[1:]:
+        run_command(*line.split()[1:])

@@ -233,10 +233,7 @@ def _draw_legend(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
         return
     legend = caption.legend or _describe_elevations(caption)
     overlay.draw_text((left, bottom + height + 8.0), legend.name, palette.ink, size=15)
-    colors = legend.colors.tolist()
-    step = _LEGEND_WIDTH / len(colors)
-    for k, (red, green, blue) in enumerate(colors):
-        overlay.draw_rectangle((left + k * step, bottom), (step + 0.5, height), (red, green, blue))
+    overlay.draw_scale((left, bottom), (_LEGEND_WIDTH, height), legend.colors)
     if not legend.ticks:
         _draw_legend_ticks(overlay, legend.ends, (left, bottom), palette)
         return

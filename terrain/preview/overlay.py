@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from .palette import Color
 
@@ -21,6 +21,9 @@ _LAST_LATIN = "\N{LATIN SMALL LETTER LONG S}"
 
 _FONT_FROM_FILE = 4
 """VTK_FONT_FILE, which VTK's Python face does not name."""
+
+_LAP = 0.5
+"""Design pixels by which a part of a scale goes on below the next: no gap shows in between."""
 
 _RESOLUTION = 72
 """Dots per inch at which VTK's font sizes are pixels."""
@@ -65,6 +68,20 @@ class Overlay:
         """Fill a rectangle, given its lower left corner."""
         (x, y), (w, h) = corner, size
         self.draw_polygon([(x, y), (x + w, y), (x + w, y + h), (x, y + h)], color)
+
+    def draw_scale(
+        self, corner: tuple[float, float], size: tuple[float, float], colors: NDArray[np.uint8]
+    ) -> None:
+        """Fill a rectangle, given its lower left corner, with equal parts of (k, 3) colors."""
+        step = size[0] / len(colors)
+        left = corner[0] + step * np.arange(len(colors))
+        x = np.stack([left, left + step + _LAP, left + step + _LAP, left], axis=1)
+        y = np.tile(corner[1] + np.array([0.0, 0.0, size[1], size[1]]), len(colors))
+        mesh = self._make_mesh(np.column_stack([x.ravel(), y]))
+        corners = np.arange(4 * len(colors)).reshape(-1, 4)
+        mesh.faces = np.insert(corners, 0, 4, axis=1).ravel()
+        mesh.cell_data.set_scalars(np.ascontiguousarray(colors, np.uint8))
+        self._add(mesh, (0, 0, 0))
 
     def draw_text(
         self,
@@ -112,13 +129,14 @@ class Overlay:
         import pyvista as pv
 
         flat = np.asarray(places, np.float64) * self.factor
-        return pv.PolyData(np.column_stack([flat, np.zeros(len(flat))]))
+        mesh = pv.PolyData(np.column_stack([flat, np.zeros(len(flat))]))
+        # A mesh made from points comes with a vertex cell for each, drawn as dots.
+        mesh.verts = np.empty(0, np.int64)
+        return mesh
 
     def _add(self, mesh: Any, color: Color, *, width: float = 1.0) -> None:
         from vtkmodules.vtkRenderingCore import vtkActor2D, vtkPolyDataMapper2D
 
-        # A mesh made from points comes with a vertex cell for each, drawn as dots.
-        mesh.verts = np.empty(0, np.int64)
         mapper = vtkPolyDataMapper2D()
         mapper.SetInputData(mesh)
         actor = vtkActor2D()

@@ -8,6 +8,8 @@ import numpy as np
 
 from ...errors import OptionError
 from ...tin.validation.options import is_finite_number, require_tin
+from ...tin.validation.threads import thread_count
+from .. import _kernel
 from ..drawing.rounding import round_down
 from ..georeference import describe_unknown
 from ..gridding.bands import SurfaceBand
@@ -98,13 +100,13 @@ def hillshade(
     cells, _ = as_grid(tin, spacing=side, grid=grid, in_memory=True)
     require_covered(tin, cells)
     upward = sum_normals(tin, "vertex" if smooth else "triangle") * (factor, factor, 1.0)
-    band = np.zeros(cells.shape, np.uint8)
-    height = max(1, _BLOCK_CELLS // cells.shape[1])
+    band, height = np.zeros(cells.shape, np.uint8), max(1, _BLOCK_CELLS // cells.shape[1])
     flat = None if smooth else _as_flat_band(tin, cells, shade(upward, light))
+    parts = _grid_normals(tin, normalise(upward)) if smooth else ()
     for top in range(0, cells.shape[0], height):
         rows = slice(top, min(top + height, cells.shape[0]))
         if flat is None:
-            band[rows] = _shade_smoothly(tin, normalise(upward), light, cells, rows)
+            band[rows] = _shade_smoothly(parts, light, cells, rows)
         else:
             band[rows] = np.nan_to_num(flat[rows, :])
     band.flags.writeable = False
@@ -128,33 +130,27 @@ def _as_flat_band(tin: TIN, cells: Grid, shades: NDArray[np.uint8]) -> SurfaceBa
     return SurfaceBand(tin, cells, values, method="linear", is_mean=False, threads=None)
 
 
+def _grid_normals(tin: TIN, unit: NDArray[np.float64]) -> tuple[_kernel.GriddedSurface, ...]:
+    """Return surfaces of the three parts of the normals, for elevations those of vertices."""
+    surface = tin.triangulation
+    xy = surface.points[:, :2]
+    return tuple(
+        _kernel.GriddedSurface(np.column_stack([xy, part]), surface.triangles) for part in unit.T
+    )
+
+
 def _shade_smoothly(
-    tin: TIN, unit: NDArray[np.float64], light: Light, cells: Grid, rows: slice
+    parts: tuple[_kernel.GriddedSurface, ...], light: Light, cells: Grid, rows: slice
 ) -> NDArray[np.uint8]:
     """Return the light in the cells of some rows, normals turned evenly between vertices."""
-    east, north = locate_centers(cells, rows, slice(0, cells.shape[1]))
-    xy = np.stack([np.tile(east, len(north)), np.repeat(north, len(east))], axis=1)
-    found = tin.locate(xy)
-    is_inside = found >= 0
-    values = np.zeros(len(xy), np.uint8)
-    values[is_inside] = shade(_mix_normals(tin, unit, found[is_inside], xy[is_inside]), light)
-    return values.reshape(len(north), len(east))
-
-
-def _mix_normals(
-    tin: TIN, unit: NDArray[np.float64], triangle: NDArray[np.int32], xy: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Return the normals of vertices, mixed by the place in the triangle."""
-    corners = tin.triangles[triangle]
-    a, b, c = (tin.points[corners[:, k], :2] for k in range(3))
-    whole = _cross(b - a, c - a)
-    shares = [_cross(c - b, xy - b), _cross(a - c, xy - c), _cross(b - a, xy - a)]
-    mixed = sum((share / whole)[:, None] * unit[corners[:, k]] for k, share in enumerate(shares))
-    return np.asarray(mixed, np.float64)
-
-
-def _cross(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+    x, y = locate_centers(cells, rows, slice(0, cells.shape[1]))
+    threads = thread_count(None, len(x) * len(y))
+    found = [part.values_at_centers(x, y, cells.spacing, None, threads, None) for part in parts]
+    normals = np.stack(found, axis=-1)
+    is_inside = ~np.isnan(normals[..., 2])
+    values = np.zeros(normals.shape[:2], np.uint8)
+    values[is_inside] = shade(normals[is_inside], light)
+    return values
 
 
 def _as_positive(option: str, value: Any) -> float:

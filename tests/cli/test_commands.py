@@ -16,6 +16,7 @@ import tinsmith as ts
 from tinsmith.cli import group, main
 from tinsmith.cli.output.summaries import describe_file_size
 from tinsmith.policies import CrossingPolicy, DuplicatePolicy, FeatureKind, TrimPolicy
+from tinsmith.terrain.preview import picture as drawing
 
 SAMPLES = Path(__file__).parents[2] / "sample_data"
 SURVEY = str(SAMPLES / "site_survey.csv")
@@ -55,9 +56,10 @@ def examples():
 
 
 @pytest.mark.parametrize("line", examples())
-def test_example_of_the_help_runs_as_written(line, folder, request):
+def test_example_of_the_help_runs_as_written(line, folder, request, monkeypatch):
     if line.startswith("tinsmith view"):
         request.getfixturevalue("can_draw")
+        monkeypatch.setattr(drawing, "_SUPERSAMPLING", 1)
     if "contours.gpkg --z-field" in line:
         pytest.importorskip("pyogrio")
         dem = ("sample_data/jacksboro.tif", "--stride", 8, "--interval", 40)
@@ -442,7 +444,8 @@ def test_view_of_a_raster_from_standard_input_is_a_sample_too(tmp_path, monkeypa
 def test_view_writes_a_picture(pyramid, tmp_path, can_draw):
     pytest.importorskip("pyvista")
     picture = tmp_path / "out.png"
-    result = run("view", pyramid, "-o", picture, "--edges", "--top", "--exaggeration", "2")
+    options = ("--edges", "--top", "--exaggeration", "2", "--size", "400x300")
+    result = run("view", pyramid, "-o", picture, *options)
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert "out.png" in result.stderr
 

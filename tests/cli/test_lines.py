@@ -226,6 +226,7 @@ def test_a_tin_takes_no_lines_from_files(points, files, tmp_path):
 
 def test_view_takes_the_same_options(points, files, tmp_path, can_draw):
     options = ("--breaklines", files["breaklines"], "--crs", UTM, "--exaggeration", 5, "-q")
+    options += ("--size", "500x400")
     for name, extra in (("a.png", ()), ("b.png", ("--no-lines",))):
         run("view", points, *options, *extra, "-o", tmp_path / name)
     assert (tmp_path / "a.png").read_bytes() != (tmp_path / "b.png").read_bytes()

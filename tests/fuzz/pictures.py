@@ -33,6 +33,9 @@ class Recorder:
     def clear(self) -> None:
         self.__init__()  # type: ignore[misc]
 
+    def draw_scale(self, corner: Any, size: Any, colors: Any) -> None:
+        self.draw_rectangle(corner, size, tuple(colors[0]))
+
     def draw_rectangle(self, corner: Any, size: Any, color: Any) -> None:
         if size[1] == 7.0:
             self.bar.append((corner[0], size[0]))

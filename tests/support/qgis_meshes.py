@@ -16,17 +16,19 @@ import json, sys
 from qgis.core import QgsApplication, QgsMeshLayer
 app = QgsApplication([], False)
 app.initQgis()
-layer = QgsMeshLayer(sys.argv[1], "mesh", "mdal")
-provider = layer.dataProvider()
-groups = [provider.datasetGroupMetadata(k) for k in range(provider.datasetGroupCount())]
-answer = {
-    "valid": layer.isValid(),
-    "crs": layer.crs().authid(),
-    "vertices": provider.vertexCount(),
-    "faces": provider.faceCount(),
-    "groups": {one.name(): [one.minimum(), one.maximum()] for one in groups},
-}
-print("ANSWER" + json.dumps(answer), flush=True)
+answers = []
+for path in sys.argv[1:]:
+    layer = QgsMeshLayer(path, "mesh", "mdal")
+    provider = layer.dataProvider()
+    groups = [provider.datasetGroupMetadata(k) for k in range(provider.datasetGroupCount())]
+    answers.append({
+        "valid": layer.isValid(),
+        "crs": layer.crs().authid(),
+        "vertices": provider.vertexCount(),
+        "faces": provider.faceCount(),
+        "groups": {one.name(): [one.minimum(), one.maximum()] for one in groups},
+    })
+print("ANSWER" + json.dumps(answers), flush=True)
 """
 
 
@@ -41,7 +43,13 @@ def has_qgis() -> bool:
 
 def open_in_qgis(path, folder):
     """Open a mesh; return counts, CRS and ranges; skip the test where QGIS is missing."""
-    return run_in_qgis(_OPEN, [str(path)], folder)
+    (seen,) = open_all_in_qgis([path], folder)
+    return seen
+
+
+def open_all_in_qgis(paths, folder):
+    """Open meshes in one process; return of each counts, CRS and ranges."""
+    return run_in_qgis(_OPEN, [str(path) for path in paths], folder)
 
 
 def run_in_qgis(script, arguments, folder):

@@ -132,7 +132,7 @@ def has_unproved_commas(layout, delimiter, rows):
     return unproved == inner and bool(marked) and not by_custom
 
 
-@settings(max_examples=250, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(table=tables())
 @example(table=("NEZ", "pipe", ",", [["1.000", ".5", ".5"]] * 3, "\n", False))
 @example(

@@ -87,7 +87,7 @@ def test_another_compression_is_refused(tmp_path):
 @pytest.mark.parametrize("form", FORMATS)
 @pytest.mark.parametrize("dtype", ["uint8", "float64"])
 def test_bytes_do_not_depend_on_the_number_of_cores(tmp_path, monkeypatch, form, dtype):
-    made = raster(1100, 1300, dtype=dtype)
+    made = raster(600, 1100, dtype=dtype)
     written = set()
     for threads in ("1", "2", "5"):
         monkeypatch.setattr(geotiff, "_ALL", threads)

@@ -74,10 +74,10 @@ def test_bands_of_small_integer_grids_are_those_of_fractions(seed):
     assert found.columns["area"] == pytest.approx(exact_areas(tin, bounds), rel=1e-12)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(8))
 def test_bands_of_survey_points_tile_the_surface(seed):
     rng = np.random.default_rng(seed)
-    n = int(rng.integers(10, 800))
+    n = int(rng.integers(10, 500))
     xy = np.array([500_000, 4_000_000]) + np.round(rng.uniform(0, 100, (n, 2)), 3)
     tin = ts.triangulate(np.column_stack([xy, np.round(rng.uniform(300, 310, n), 2)]))
     require_a_partition(tin, ts.contour_bands(tin, interval=0.5))

@@ -50,6 +50,11 @@ class Recorder:
     def draw_rectangle(self, corner, size, color):
         self.rectangles.append((*corner, *size, tuple(color)))
 
+    def draw_scale(self, corner, size, colors):
+        step = size[0] / len(colors)
+        for k, color in enumerate(colors.tolist()):
+            self.draw_rectangle((corner[0] + k * step, corner[1]), (step, size[1]), color)
+
     def draw_polygon(self, corners, color):
         self.polygons.append((np.array(corners, float), tuple(color)))
 
@@ -389,6 +394,22 @@ def test_the_settings_of_vtk_come_back_after_drawing():
             assert words.GetDefaultBackend() == backend
     finally:
         words.SetDefaultBackend(before)
+
+
+@pytest.mark.parametrize("factor", [1.0, 2.0])
+def test_parts_of_a_scale_lie_side_by_side(factor, can_draw):
+    colors = np.array([(255, 0, 255), (0, 255, 255), (255, 255, 0)], np.uint8)
+    plotter = pv.Plotter(off_screen=True, window_size=[int(100 * factor), int(80 * factor)])
+    plotter.background_color = "white"
+    plotter.disable_anti_aliasing()
+    Overlay(plotter.renderer, factor=factor).draw_scale((20, 50), (60, 20), colors)
+    shot = plotter.screenshot(return_img=True)[::-1].astype(int)
+    plotter.close()
+    for k, color in enumerate(colors.astype(int)):
+        rows, columns = np.nonzero(np.abs(shot - color).sum(axis=2) < 120)
+        box = np.array([columns.min(), rows.min(), columns.max() + 1, rows.max() + 1]) / factor
+        assert box == pytest.approx([20 + 20 * k, 50, 40 + 20 * k, 70], abs=1.1)
+        assert len(rows) / factor**2 == pytest.approx(20 * 20, rel=0.1)
 
 
 @pytest.mark.parametrize("factor", [1.0, 2.0])

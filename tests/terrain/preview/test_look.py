@@ -122,11 +122,16 @@ def project(camera, points, size):
     return (clip[:, :2] / clip[:, 3:] + 1) / 2 * size
 
 
+class WithoutScale:
+    def draw_scale(self, corner, size, colors):
+        """Draw nothing: nobody asks for the legend's."""
+
+
 def record(sheet, caption, camera):
     """Where the compass and the scale bar are drawn, and the length that it says."""
     found = {}
 
-    class Recorder:
+    class Recorder(WithoutScale):
         def clear(self):
             found.clear()
 
@@ -197,7 +202,7 @@ def test_level_ground_is_lit_alike_by_every_sun(altitude):
 @pytest.mark.parametrize("azimuth", [0, 90, 225])
 def test_slopes_towards_the_sun_are_brightest(tmp_path, azimuth):
     brightness = {}
-    for fall in (0, 90, 180, 225, 270, 45):
+    for fall in (azimuth, (azimuth + 45) % 360, (azimuth - 45) % 360, (azimuth + 180) % 360):
         path = preview(
             make_dipping_plane(fall),
             output=tmp_path / f"{fall}.png",

@@ -412,7 +412,8 @@ def test_the_picture_lies_right_in_a_png(tmp_path):
     pytest.importorskip("pyvista")
     path = write_raster(tmp_path / "a.tif", paint_quarters(2000))
     tin = make_square(height=0.0)
-    out = ts.preview(tin, drape=path, view="top", output=tmp_path / "a.png", lines=False)
+    out = ts.preview(tin, drape=path, view="top", output=tmp_path / "a.png", lines=False,
+                     size=(800, 600))  # fmt: skip
     pixels = np.asarray(pil.open(out).convert("RGB")).astype(int)
     frames = {}
     for name, color in zip("rgby", [(255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 0)],

@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
+from tinsmith.terrain.light import as_light, shade
+from tinsmith.terrain.results.gridded import locate_centers
+from tinsmith.terrain.slope import sum_normals
 from tinsmith.tin.types import Bounds, Grid
 
 
@@ -92,6 +95,27 @@ def test_smooth_light_lies_between_that_of_the_corners():
     level = gdal_shade(0, 0, 315, 45)  # the ridge
     assert level in smooth
     assert smooth.max() <= max(flat.max(), level) + 20  # a normal in between may face the light
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_smooth_light_is_that_of_normals_mixed_by_shares_of_the_triangle(seed):
+    """Cell by cell: the corners' normals, each by the share of the triangle opposite to it."""
+    rng = np.random.default_rng(seed)
+    xy = rng.random((60, 2)) * 40 + [500_000, 4_000_000]
+    tin = ts.triangulate(np.column_stack([xy, rng.random(60) * 9]))
+    made = ts.hillshade(tin, spacing=0.5, smooth=True)
+    unit = sum_normals(tin, "vertex")
+    unit /= np.linalg.norm(unit, axis=1, keepdims=True)
+    x, y = locate_centers(made.grid, *map(slice, (0, 0), made.grid.shape))
+    places = np.column_stack([one.ravel() for one in np.meshgrid(x, y)])
+    found = tin.locate(places)
+    sides = tin.points[tin.triangles[found], :2] - places[:, None]
+    first, second = np.roll(sides, -1, axis=1), np.roll(sides, -2, axis=1)
+    shares = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
+    normals = (shares[..., None] * unit[tin.triangles[found]]).sum(axis=1)
+    wanted = np.where(found < 0, 0, shade(normals, as_light(315.0, 45.0)))
+    assert (found < 0).any()
+    np.testing.assert_array_equal(made.bands["hillshade"].ravel(), wanted)
 
 
 def test_the_grid_begins_at_multiples_of_the_spacing():

@@ -60,7 +60,7 @@ def test_hilly_ground_agrees_with_a_fine_raster(pad, seed):
     ground, pad = make_hills(seed), np.array(pad)
     graded = ts.grade(ground, pad + UTM, 100.0, cut_slope=2, fill_slope=1.5)
     assert ts.check(graded).ok
-    n = 400
+    n = 200
     q = (np.arange(n) + 0.5) * 200 / n
     xy = np.column_stack([one.ravel() for one in np.meshgrid(q, q)])
     away = shapely.distance(shapely.Polygon(pad), shapely.points(xy))
