@@ -28,6 +28,7 @@ from .findings import (
     find_rounded_coordinates,
     find_split_thousands,
     find_summary_rows,
+    find_turned_axes,
     find_unit_words,
     find_units_above,
     require_in_area,
@@ -164,7 +165,8 @@ def read(
         *told_cut,
         *told.notes,
         *require_in_area(told.points, told.rows, meaning, area, path),
-        *_find_odd(told, lines, layout, meaning),
+        *_find_turned(told, layout, source or target, area, is_told=columns is not None),
+        *_find_odd(told, lines, layout, meaning, in_degrees=is_geographic(source)),
     ]
     unit = settle_unit(Unit.of(z_unit), _find_header_unit(layout), path)
     placed = place(told.points, source=source, target=target, path=path, unit=unit)
@@ -180,10 +182,19 @@ def read(
     )
 
 
-def _find_odd(told: _Accounted, lines: TextLines, layout: Layout, columns: Columns) -> list[str]:
+def _find_turned(
+    told: _Accounted, layout: Layout, crs: CRS | None, area: AreaOfUse | None, *, is_told: bool
+) -> list[str]:
+    has_header = layout.columns is not None and not is_told
+    return find_turned_axes(told.points, layout.columns, crs, area) if has_header else []
+
+
+def _find_odd(
+    told: _Accounted, lines: TextLines, layout: Layout, columns: Columns, *, in_degrees: bool
+) -> list[str]:
     numbers, names = (told.attributes.get(role) for role in ("number", "description"))
     return [
-        *find_odd_elevations(told.points),
+        *find_odd_elevations(told.points, in_degrees=in_degrees),
         *find_repeated_numbers(numbers, told.rows),
         *find_rounded_coordinates(lines, told.rows, layout.delimiter, columns),
         *find_summary_rows(told.points, told.rows, (numbers, names)),

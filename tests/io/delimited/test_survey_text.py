@@ -1292,6 +1292,43 @@ def test_a_unit_in_every_row_is_told(survey):
     ]
 
 
+def test_a_unit_in_most_rows_is_told(survey):
+    rows = ["5.5 1.5 3.1 ft 0.8", "6.5 2.5 NaN 0.2", "7.5 3.5 3.3 ft 0.1", "8.5 4.5 3.4 ft 0.7"]
+    found = survey("X Y Z SATS\n" + "\n".join(rows) + "\n", columns="XYZ-")
+    assert any("'SATS' begins with 'ft' in 3 of 4 rows: if this is" in note for note in found.notes)
+
+
+def test_several_units_beside_elevations_are_told(survey):
+    found = survey("E,N,Z,Unit\n1.5,2.5,3.5,ft\n2.5,7.5,4.5,m\n3.5,8.5,5.5,\n")
+    assert found.notes == [
+        "'Unit' begins with 'ft' or 'm' in 2 of 3 rows: if these are the units of the elevations, "
+        "make them one."
+    ]
+
+
+def test_codes_that_are_units_in_few_rows_are_not_told(survey):
+    assert survey("E,N,Z,Code\n1.5,2.5,3.5,M\n2.5,7.5,4.5,EP\n3.5,8.5,5.5,\n").notes == []
+
+
+def test_an_x_that_the_crs_calls_northing_is_told(survey):
+    text = "Nr;X;Y;H\n1;500084.8;250013.6;325.8\n2;500029.1;250046.2;322.1\n3;500040;250090;323\n"
+    told = [
+        "EPSG:2180 calls its northing X, and by the header 'X' is taken as the easting: if it is "
+        "not, columns='PNEZ' says so."
+    ]
+    assert survey(text, crs="EPSG:2180").notes == told
+    assert survey(text, crs="EPSG:2180", columns="PNEZ").points[0].tolist() == [
+        *(250013.6, 500084.8, 325.8)
+    ]
+    assert not any("calls its northing" in note for note in survey(text, crs="EPSG:32634").notes)
+
+
+def test_elevations_beside_longitude_and_latitude_are_not_too_steep(survey):
+    text = "lat,lon,z\n36.3001,-84.2001,325.8\n36.3002,-84.2002,322.1\n36.3004,-84.2001,323\n"
+    assert survey(text, crs="EPSG:32616").notes == []
+    assert "rise by" in survey(text.replace("lat,lon", "y,x")).notes[-1]
+
+
 def test_numbers_with_units_are_no_text_that_holds_the_delimiter(survey):
     rows = [f"{i},752765,119,6,083 m,4024287,230,EP\n" for i in range(1, 9)]
     with pytest.raises(ReadError, match="do not have 5 columns"):
