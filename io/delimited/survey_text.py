@@ -151,7 +151,7 @@ def read(
     target = CRS.of(crs)
     source = _find_source_crs(layout, declared, target)
     area = AreaOfUse.of(source, target)
-    meaning, notes = _find_columns(cells, layout, area, path)
+    meaning, notes = _find_columns(cells, layout, area, left_out, path)
     told_units = require_unit_of_crs(meaning, source or target, path, is_told=columns is not None)
     table = read_table(cells, layout, meaning, lines)
     table, told_cut = leave_out_cut_row(table, lines, layout, meaning, path, skip_bad=skip_bad)
@@ -185,8 +185,9 @@ def read(
 def _find_turned(
     told: _Accounted, layout: Layout, crs: CRS | None, area: AreaOfUse | None, *, is_told: bool
 ) -> list[str]:
-    has_header = layout.columns is not None and not is_told
-    return find_turned_axes(told.points, layout.columns, crs, area) if has_header else []
+    if layout.columns is None or is_told:
+        return []
+    return find_turned_axes(told.points, layout.columns, crs, area)
 
 
 def _find_odd(
@@ -228,13 +229,17 @@ def _find_source_crs(layout: Layout, source_crs: CRS | None, crs: CRS | None) ->
 
 
 def _find_columns(
-    cells: Cells, layout: Layout, area: AreaOfUse | None, path: Path
+    cells: Cells,
+    layout: Layout,
+    area: AreaOfUse | None,
+    nodata: NDArray[np.float64],
+    path: Path,
 ) -> tuple[Columns, list[str]]:
     """Return what the columns mean, by word or header, else by what is in them."""
     if layout.columns is not None:
         return layout.columns, []
     try:
-        columns = describe_columns(cells, layout)
+        columns = [one.without(nodata) for one in describe_columns(cells, layout)]
         found, note = find_columns_by_content(
             columns, area, is_scan=layout.is_scan, is_announced=layout.is_announced
         )

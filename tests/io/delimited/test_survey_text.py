@@ -1323,6 +1323,18 @@ def test_an_x_that_the_crs_calls_northing_is_told(survey):
     assert not any("calls its northing" in note for note in survey(text, crs="EPSG:32634").notes)
 
 
+def test_elevations_of_no_data_say_nothing_of_a_layout(survey):
+    rows = [
+        f"{i},{4024240 + i % 4}.5,{752700 + i // 3}.5,{-9999 if i % 3 == 0 else 322}.25,GS\n"
+        for i in range(1, 13)
+    ]
+    with pytest.raises(ReadError, match="PNEZD would rise by"):
+        survey("".join(rows), crs="EPSG:32616")
+    found = survey("".join(rows), crs="EPSG:32616", nodata=-9999.25)
+    assert found.skipped["nodata points"] == 4
+    assert found.points[0].tolist() == [752700.5, 4024241.5, 322.25]
+
+
 def test_elevations_beside_longitude_and_latitude_are_not_too_steep(survey):
     text = "lat,lon,z\n36.3001,-84.2001,325.8\n36.3002,-84.2002,322.1\n36.3004,-84.2001,323\n"
     assert survey(text, crs="EPSG:32616").notes == []
