@@ -169,7 +169,9 @@ def read(
         *_find_odd(told, lines, layout, meaning, in_degrees=is_geographic(source)),
     ]
     unit = settle_unit(Unit.of(z_unit), _find_header_unit(layout), path)
-    placed = place(told.points, source=source, target=target, path=path, unit=unit)
+    placed = place(
+        told.points, source=source, target=target, path=path, unit=unit, looks_at_area=False
+    )
     return Survey(
         points=placed.points,
         attributes=told.attributes,
