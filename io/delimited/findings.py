@@ -12,7 +12,7 @@ import numpy as np
 from ..._sentences import counted
 from ...crs import FOOT, Unit
 from ...errors import CrsError, OptionError, ReadError
-from ...terrain.nodata import describe_suspects, find_suspect_elevations
+from ...terrain.nodata import describe_elevations
 from .cells import split_line
 from .columns import COORDINATES, find_columns_by_header, find_unit_word, list_names
 from .content import are_plausible_elevations, is_too_steep, measure_relief_and_extent
@@ -379,7 +379,7 @@ def find_odd_elevations(points: NDArray[np.float64], *, in_degrees: bool = False
         Whether they are known to lie in longitude and latitude, beside which all rises are steep.
     """
     z = points[:, 2]
-    notes = describe_suspects(find_suspect_elevations(z))
+    notes = describe_elevations(z)
     some = points[:: max(1, len(points) // _SOME)]
     if not are_plausible_elevations(some[:, 2]):
         low, high = np.percentile(some[:, 2], [5, 95], method="nearest")
