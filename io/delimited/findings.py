@@ -13,9 +13,10 @@ from ..._sentences import counted
 from ...crs import FOOT, Unit
 from ...errors import CrsError, OptionError, ReadError
 from ...terrain.nodata import describe_elevations
-from .cells import split_line
+from .cells import is_number, split_line
 from .columns import COORDINATES, find_columns_by_header, find_unit_word, list_names
 from .content import are_plausible_elevations, is_too_steep, measure_relief_and_extent
+from .lines import COMMENT_PREFIXES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -26,12 +27,14 @@ if TYPE_CHECKING:
     from ...crs import CRS
     from ...terrain.area_of_use import AreaOfUse
     from .columns import Columns
+    from .layout import Layout
     from .lines import TextLines
     from .table import Fault
 
 __all__ = [
     "describe_faults",
     "describe_left_out",
+    "find_commented_points",
     "find_odd_elevations",
     "find_repeated_numbers",
     "find_rounded_coordinates",
@@ -210,6 +213,28 @@ def find_rounded_coordinates(
 def _is_rounded(cell: str) -> bool:
     found = _EXPONENT.fullmatch(cell)
     return found is not None and int(found["exponent"]) > len(found["decimals"] or "")
+
+
+def find_commented_points(
+    lines: TextLines, rows: NDArray[np.int64], layout: Layout, columns: Columns
+) -> list[str]:
+    """Say which lines that begin as comments do hold a point, as where its number is #12."""
+    is_other = ~lines.is_blank
+    is_other[rows] = False
+    found = []
+    for line in np.flatnonzero(is_other)[:_SOME].tolist():
+        text = lines.decode_line(line).strip()
+        cells = split_line(text, layout.delimiter)
+        is_row = len(cells) == layout.count and text.startswith(COMMENT_PREFIXES)
+        if is_row and all(is_number(cells[i], layout.decimal) for i in columns.coordinates):
+            found.append(line)
+    if not found:
+        return []
+    what = "line that begins" if len(found) == 1 else "lines that begin"
+    verb = "holds a point and is" if len(found) == 1 else "hold points and are"
+    return [
+        f"{len(found):,} {what} as comments do {verb} left out ({_name_lines(np.array(found))})."
+    ]
 
 
 def find_summary_rows(

@@ -1323,6 +1323,39 @@ def test_an_x_that_the_crs_calls_northing_is_told(survey):
     assert not any("calls its northing" in note for note in survey(text, crs="EPSG:32634").notes)
 
 
+def test_points_whose_numbers_begin_as_comments_do_are_told(survey):
+    found = survey("P,N,E,Z\n#1,11,21,5.5\n2,12,22,5.6\n# a, b\n//3,13,23,5.7\n4,14,29,5.8\n")
+    assert len(found) == 2
+    told = "2 lines that begin as comments do hold points and are left out (lines 2, 5)."
+    assert told in found.notes
+    assert survey("P,N,E,Z\n#1,1,2,5.5\n2,2,2,5.6\n", comment="").notes == []
+    assert survey("# x,y,z\nP,N,E,Z\n1,1,2,5\n# 1,2,x,4\n2,2,2,6\n").notes == []
+
+
+@pytest.mark.parametrize("suffix", ["csv", "tsv", "txt"])
+def test_texts_that_begin_as_comments_do_come_back(tmp_path, suffix):
+    numbers = np.array(["#1", "//2", ";3", "!", "%5", " #6"], object)
+    points = np.array([[i, i % 3, 5.5 + i] for i in range(6)], np.float64)
+    attributes = {"number": numbers, "description": numbers[::-1]}
+    path = tmp_path / f"names.{suffix}"
+    ts.write(ts.Survey(points=points, attributes=attributes), path)
+    found = ts.read(path)
+    assert np.array_equal(found.points, points)
+    assert [one.strip() for one in found.attributes["number"]] == [one.strip() for one in numbers]
+
+
+def test_line_breaks_within_texts_become_blanks_and_are_told(tmp_path):
+    texts = np.array(["a\nb", "a\r\nb", "", "c"], object)
+    points = np.array([[0, 0, 1], [1, 0, 2], [0, 1, 3], [1, 1, 4.5]])
+    survey = ts.Survey(points=points, attributes={"description": texts, "remark (2)": texts})
+    path = tmp_path / "breaks.csv"
+    with pytest.warns(ts.LossWarning, match=r"texts of description, remark \(2\) became blanks\.$"):
+        ts.write(survey, path)
+    found = ts.read(path)
+    assert np.array_equal(found.points, points)
+    assert found.attributes["description"].tolist() == ["a b", "a b", "", "c"]
+
+
 def test_elevations_of_no_data_say_nothing_of_a_layout(survey):
     rows = [
         f"{i},{4024240 + i % 4}.5,{752700 + i // 3}.5,{-9999 if i % 3 == 0 else 322}.25,GS\n"
