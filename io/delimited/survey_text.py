@@ -162,12 +162,8 @@ def read(
     _require_few_faults(table.faults, lines, layout, path, skip_bad=skip_bad)
     require_one_header(table.faults, lines, layout.delimiter, meaning, path)
     told = _account_for_rows(table, left_out, path)
-    notes = [
-        *layout.notes,
-        *notes,
-        *told_units,
-        *told_cut,
-        *told.notes,
+    notes = [*layout.notes, *notes, *told_units, *told_cut, *told.notes]
+    notes += [
         *require_in_area(told.points, told.rows, meaning, area, path),
         *_find_turned(told, layout, source or target, area, is_told=columns is not None),
         *_find_odd(told, lines, layout, meaning, in_degrees=is_geographic(source)),
