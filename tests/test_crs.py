@@ -228,7 +228,9 @@ def test_units_of_epsg_are_known_by_name():
         assert Unit.of(Unit.of(name).text) == Unit.of(name)
 
 
-@pytest.mark.parametrize("wrong", ["", "parsec", "degree", 3, 0.3048, "m2", b"m"])
+@pytest.mark.parametrize(
+    "wrong", ["", "parsec", "degree", 3, 0.3048, "m2", b"m", "µm", "m²", "m ü.M."]
+)
 def test_what_is_no_unit_is_refused_with_what_is_allowed(wrong):
     with pytest.raises(ts.OptionError, match="US survey foot") as caught:
         Unit.of(wrong)

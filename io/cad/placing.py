@@ -74,6 +74,7 @@ def place_rows(
         target=declared.crs,
         path=path,
         unit=measures.elevation_unit,
+        looks_at_area=False,
     )
     rows = [
         placed.points[start : start + len(one), : one.shape[1]]

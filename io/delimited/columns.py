@@ -45,27 +45,32 @@ _NAMES = {
         *("easting", "east", "e", "eastings", "xcoordinate", "xcoord", "coordx", "xutm", "utmx"),
         *("utme", "pointx", "xcenter", "x", "rechtswert", "ostwert", "ost", "rw", "este", "est"),
         *("coordenadax", "gridx", "gride", "grideasting"),
+        *("rechts", "abscisse"),
     ),
     "northing": (
         *("northing", "north", "n", "northings", "ycoordinate", "ycoord", "coordy", "yutm", "utmy"),
         *("utmn", "pointy", "ycenter", "y", "hochwert", "nordwert", "nord", "hw", "norte"),
         *("coordenaday", "gridy", "gridn", "gridnorthing"),
+        *("hoch", "ordonnee"),
     ),
     "elevation": (
         *("elevation", "elev", "el", "z", "zcoordinate", "zcoord", "coordz", "pointz", "height"),
         *("rl", "reducedlevel", "level", "h", "hoehe", "hohe", "altitude", "alt", "cota", "quota"),
         *("altura", "elevacion", "kote", "hoyde", "orthometricheight", "orthoheight", "zvalue"),
+        *("altitud", "elevacao", "hojd", "hoogte", "nhn"),
     ),
     "number": (
         *("point", "pt", "pointnumber", "pointno", "pointnum", "pointid", "pointname", "ptno"),
         *("ptnum", "ptnumber", "ptid", "ptname", "pnt", "pno", "p", "no", "nr", "num", "number"),
         *("id", "name", "punkt", "punktnummer", "punktnr", "pktnr", "punto", "fid", "objectid"),
+        *("pkt", "ponto", "matricule", "numero"),
         "#",
     ),
     "description": (
         *("description", "desc", "descr", "code", "featurecode", "fieldcode", "rawdescription"),
         *("fulldescription", "d", "bemerkung", "beschreibung", "descripcion", "codigo", "remark"),
         *("remarks", "comment", "note", "notes", "feature", "label", "type"),
+        *("libelle", "descricao", "descrizione", "codice"),
     ),
 }
 _DEGREES = {
@@ -78,6 +83,7 @@ _UNIT_NAMES = (
     *("us survey foot", "us survey feet", "survey foot", "survey feet", "usfoot", "usfeet"),
     *("us survey ft", "survey ft", "us-survey-foot", "us-survey-feet"),
     *("ift", "intft", "int ft", "international foot", "international feet", "ftint"),
+    *("yd", "yard", "yards", "fathom", "fathoms"),
 )
 _UNIT_WORDS = "|".join(sorted(_UNIT_NAMES, key=len, reverse=True)).replace(" ", r"[\s._]+")
 # The brackets inside keep the pattern linear: a text of nothing but brackets is tried once.
@@ -86,6 +92,9 @@ _UNIT = re.compile(
     rf"|(?<=[^\W_])[\W_]+(?P<behind>{_UNIT_WORDS})$",
     re.IGNORECASE,
 )
+_NUMBER_SIGN = re.compile(r"n\s?[°º#]", re.IGNORECASE)
+_PLAIN_LETTERS = str.maketrans({"ø": "o", "æ": "ae", "ł": "l", "đ": "d", "œ": "oe"})
+_ACCENTS = re.compile("[\u0300-\u036f]")
 _SHOWN_LETTERS, _SHOWN_NAMES = 40, 12
 _LONGEST_NAME = 200
 """Letters of a header cell that may be a name; a longer one is some other text."""
@@ -213,8 +222,10 @@ def _simplify_name(name: str) -> str:
     bare = _UNIT.sub("", name.strip())
     if bare.strip() == "#":
         return "#"
-    letters = unicodedata.normalize("NFKD", bare.casefold())
-    return re.sub(r"[^a-z0-9]", "", letters.replace("ß", "ss"))
+    if _NUMBER_SIGN.fullmatch(bare.strip()):
+        return "no"
+    letters = unicodedata.normalize("NFKD", bare).casefold().translate(_PLAIN_LETTERS)
+    return re.sub(r"[\W_]", "", _ACCENTS.sub("", letters))
 
 
 def find_unit_word(name: str) -> str | None:
@@ -231,7 +242,7 @@ def find_unit_word(name: str) -> str | None:
         return None
     for found in _UNIT.finditer(name.strip()):
         word = (found["inside"] or found["behind"] or "").strip()
-        if " ".join(re.split(r"[\s._]+", word.casefold())) in _UNIT_NAMES:
+        if " ".join(re.split(r"[\s._]+", word.casefold())).strip() in _UNIT_NAMES:
             return word
     return None
 
@@ -270,8 +281,11 @@ def find_columns_by_header(
                 f"the header has {len(same)} columns named '{shorten(same[0])}' for the {role}: "
                 "say with the option columns which is meant."
             )
+    if strict:
+        _require_one_pair(header, found, roles)
     notes += _note_other_elevations(header, found["elevation"])
     named = _find_unit_words(header, units, roles)
+    notes += _note_other_unit(header[roles["elevation"]], named.get("elevation"))
     return Columns(name_columns(header, len(header)), roles, in_degrees, named, tuple(notes))
 
 
@@ -306,18 +320,25 @@ def _is_xy(name: str) -> bool:
     return any(letter in _simplify_name(name) for letter in "xy")
 
 
+def _is_letter(name: str) -> bool:
+    """Whether a name is a single letter: N beside Este and Norte is the number of the point."""
+    return len(_simplify_name(name)) == 1
+
+
 def _choose_pair(
     header: Sequence[str], found: Mapping[str, Sequence[int]]
 ) -> tuple[dict[str, int], bool, list[str]]:
     """Return the columns of easting and northing, whether in degrees, and what was assumed.
 
-    Names of one kind belong together: of N, X and Y the first is a number and no northing.
+    Names of one kind belong together: of N, X and Y the first is a number and no northing, and of
+    N, Este and Norte likewise.
     """
     eastings, northings = found.get("easting", []), found.get("northing", [])
     pairs = [(e, n) for e in eastings for n in northings if _is_xy(header[e]) == _is_xy(header[n])]
     pairs = pairs or [
         (e, n) for e in eastings for n in northings if _simplify_name(header[n]) != "n"
     ]
+    pairs.sort(key=lambda pair: _is_letter(header[pair[0]]) != _is_letter(header[pair[1]]))
     if not pairs:
         if not found.keys() >= {"lon", "lat"}:
             return {}, False, []
@@ -343,6 +364,42 @@ def _give_number(header: Sequence[str], roles: dict[str, int]) -> None:
     column = next((i for i, name in enumerate(header) if _simplify_name(name) == "n"), None)
     if column is not None and column != roles["northing"] and "number" not in roles:
         roles["number"] = column
+
+
+def _require_one_pair(
+    header: Sequence[str], found: Mapping[str, Sequence[int]], roles: Mapping[str, int]
+) -> None:
+    """Refuse a northing that stands alone beside the pair N and E, or an easting: N, E, Northing.
+
+    Raises
+    ------
+    ReadError
+    """
+    if not _is_letter(header[roles["easting"]]) or _is_xy(header[roles["easting"]]):
+        return
+    words = {
+        role: [i for i in found[role] if not _is_letter(header[i]) and not _is_xy(header[i])]
+        for role in ("easting", "northing")
+    }
+    for role in words:
+        if words[role] and not all(words.values()):
+            names = list_names([f"'{header[i]}'" for i in (roles[role], words[role][0])])
+            raise ReadError(
+                f"the header has several columns for the {role} ({names}): say with the option "
+                "columns which is meant."
+            )
+
+
+def _note_other_unit(name: str, word: str | None) -> list[str]:
+    """Say that what stands in brackets behind the elevation is no unit that is known."""
+    found = None if word else _UNIT.search(name.strip())
+    inside = (found["inside"] or "").strip() if found else ""
+    if not inside or any(letter.isdecimal() for letter in inside):  # NAVD88 is no unit
+        return []
+    return [
+        f"The header's '{shorten(name.strip())}' tells no unit that is known: the option z_unit "
+        "says that of the elevations."
+    ]
 
 
 def _note_other_elevations(header: Sequence[str], columns: Sequence[int]) -> list[str]:

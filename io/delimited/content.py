@@ -7,7 +7,7 @@ reason. Where several are left a convention may decide, else the table is refuse
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -74,6 +74,12 @@ class Column:
     def counts_rows(self) -> bool:
         """Whether the values are whole and grow by one from row to row."""
         return self.is_whole and bool((np.diff(self.values) == 1.0).all())
+
+    def without(self, nodata: NDArray[np.float64]) -> Column:
+        """Return the same column with NaN in the place of values that stand for no data."""
+        if not np.isin(self.values, nodata).any():
+            return self
+        return replace(self, values=np.where(np.isin(self.values, nodata), np.nan, self.values))
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from itertools import permutations
 from typing import TYPE_CHECKING, Any
 
@@ -11,10 +12,11 @@ import numpy as np
 from ..._sentences import counted
 from ...crs import FOOT, Unit
 from ...errors import CrsError, OptionError, ReadError
-from ...terrain.inspection.nodata import describe_suspects, find_suspect_elevations
-from .cells import split_line
+from ...terrain.inspection.nodata import describe_elevations
+from .cells import is_number, split_line
 from .columns import COORDINATES, find_columns_by_header, find_unit_word, list_names
 from .content import are_plausible_elevations, is_too_steep, measure_relief_and_extent
+from .lines import COMMENT_PREFIXES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -25,17 +27,20 @@ if TYPE_CHECKING:
     from ...crs import CRS
     from ...terrain.georeference.area_of_use import AreaOfUse
     from .columns import Columns
+    from .layout import Layout
     from .lines import TextLines
     from .table import Fault
 
 __all__ = [
     "describe_faults",
     "describe_left_out",
+    "find_commented_points",
     "find_odd_elevations",
     "find_repeated_numbers",
     "find_rounded_coordinates",
     "find_split_thousands",
     "find_summary_rows",
+    "find_turned_axes",
     "find_unit_words",
     "find_units_above",
     "require_in_area",
@@ -122,6 +127,40 @@ def require_in_area(
     ]
 
 
+def find_turned_axes(
+    points: NDArray[np.float64], columns: Columns, crs: CRS | None, area: AreaOfUse | None
+) -> list[str]:
+    """Say that the header's X is taken as the easting, where the CRS calls its northing so.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+        As they are in the file.
+    columns : Columns
+        Found by the header.
+    crs : CRS or None
+        Of the coordinates in the file.
+    area : AreaOfUse or None
+        Where it does not hold the points with axes exchanged, nothing is left to say.
+    """
+    name = columns.names[columns.roles["easting"]]
+    if crs is None or "x" not in name.casefold() or not _points_north(crs, "x"):
+        return []
+    if area is not None and not area.covers_most(points[:, [1, 0]]):
+        return []
+    return [
+        f"{crs.label} calls its northing X, and by the header '{name[:_SHOWN_NAME]}' is taken as "
+        f"the easting: if it is not, columns='{columns.permute((1, 0, 2)).word}' says so."
+    ]
+
+
+def _points_north(crs: CRS, name: str) -> bool:
+    return any(
+        axis.abbrev.casefold() == name and axis.direction == "north"
+        for axis in crs.to_pyproj().axis_info
+    )
+
+
 def require_one_header(
     faults: Sequence[Fault], lines: TextLines, delimiter: str, columns: Columns, path: Path
 ) -> None:
@@ -174,6 +213,28 @@ def find_rounded_coordinates(
 def _is_rounded(cell: str) -> bool:
     found = _EXPONENT.fullmatch(cell)
     return found is not None and int(found["exponent"]) > len(found["decimals"] or "")
+
+
+def find_commented_points(
+    lines: TextLines, rows: NDArray[np.int64], layout: Layout, columns: Columns
+) -> list[str]:
+    """Say which lines that begin as comments do hold a point, as where its number is #12."""
+    is_other = ~lines.is_blank
+    is_other[rows] = False
+    found = []
+    for line in np.flatnonzero(is_other)[:_SOME].tolist():
+        text = lines.decode_line(line).strip()
+        cells = split_line(text, layout.delimiter)
+        is_row = len(cells) == layout.count and text.startswith(COMMENT_PREFIXES)
+        if is_row and all(is_number(cells[i], layout.decimal) for i in columns.coordinates):
+            found.append(line)
+    if not found:
+        return []
+    what = "line that begins" if len(found) == 1 else "lines that begin"
+    verb = "holds a point and is" if len(found) == 1 else "hold points and are"
+    return [
+        f"{len(found):,} {what} as comments do {verb} left out ({_name_lines(np.array(found))})."
+    ]
 
 
 def find_summary_rows(
@@ -237,16 +298,23 @@ def find_split_thousands(
 
 
 def find_unit_words(attributes: Mapping[str, NDArray[Any]]) -> list[str]:
-    """Say which texts begin with one and the same unit of length in every row."""
+    """Say which texts begin with a unit of length in most rows; where it differs, that it does."""
     notes = []
     for name, values in attributes.items():
-        words = {str(one).split(maxsplit=1)[0] for one in values.tolist() if str(one).strip()}
-        word = words.pop() if values.dtype == object and len(words) == 1 else ""
-        if find_unit_word(f"({word})") is not None:
-            notes.append(
-                f"'{name[:_SHOWN_NAME]}' begins with '{word}' in every row: if this is the unit of "
-                "the elevations, the option z_unit says so."
-            )
+        texts = [str(one) for one in values.tolist()] if values.dtype == object else []
+        words = Counter(text.split(maxsplit=1)[0] for text in texts if text.strip())
+        units = [word for word in words if find_unit_word(f"({word})") is not None]
+        n_rows = sum(words[word] for word in units)
+        if not units or 2 * n_rows <= words.total():
+            continue
+        shown = " or ".join(f"'{word}'" for word in units[:_SHOWN])
+        place = "every row" if n_rows == len(texts) else f"{n_rows:,} of {len(texts):,} rows"
+        told = (
+            "if this is the unit of the elevations, the option z_unit says so"
+            if len(units) == 1
+            else "if these are the units of the elevations, make them one"
+        )
+        notes.append(f"'{name[:_SHOWN_NAME]}' begins with {shown} in {place}: {told}.")
     return notes
 
 
@@ -326,15 +394,17 @@ def _find_unit(word: str | None) -> Unit | None:
         return None
 
 
-def find_odd_elevations(points: NDArray[np.float64]) -> list[str]:
+def find_odd_elevations(points: NDArray[np.float64], *, in_degrees: bool = False) -> list[str]:
     """Say whether elevations may stand for no data, or are none that the earth has.
 
     Parameters
     ----------
     points : (n, 3) float64 array
+    in_degrees : bool, optional
+        Whether they are known to lie in longitude and latitude, beside which all rises are steep.
     """
     z = points[:, 2]
-    notes = describe_suspects(find_suspect_elevations(z))
+    notes = describe_elevations(z)
     some = points[:: max(1, len(points) // _SOME)]
     if not are_plausible_elevations(some[:, 2]):
         low, high = np.percentile(some[:, 2], [5, 95], method="nearest")
@@ -343,7 +413,8 @@ def find_odd_elevations(points: NDArray[np.float64]) -> list[str]:
             "the columns."
         )
     relief, extent = measure_relief_and_extent(some)
-    if len(points) >= _FEW_POINTS and not notes and is_too_steep(relief, extent):
+    may_be_steep = len(points) >= _FEW_POINTS and not notes and not in_degrees
+    if may_be_steep and is_too_steep(relief, extent):
         notes.append(
             f"The points rise by {relief:,.6g} within an extent of {extent:,.6g}: check the "
             "columns, and that eastings and northings are no degrees."

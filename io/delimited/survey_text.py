@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import csv
+import re
+import warnings
 from itertools import chain
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -12,7 +14,7 @@ from ..._atomic import replacing
 from ..._progress import Progress
 from ..._sentences import counted
 from ...crs import CRS, Unit
-from ...errors import OptionError, ReadError, WriteError
+from ...errors import LossWarning, OptionError, ReadError, WriteError
 from ...terrain.georeference.area_of_use import AreaOfUse
 from ...terrain.inspection.nodata import parse_nodata
 from ...tin import TIN, Survey
@@ -23,11 +25,13 @@ from .content import find_columns_by_content
 from .findings import (
     describe_faults,
     describe_left_out,
+    find_commented_points,
     find_odd_elevations,
     find_repeated_numbers,
     find_rounded_coordinates,
     find_split_thousands,
     find_summary_rows,
+    find_turned_axes,
     find_unit_words,
     find_units_above,
     require_in_area,
@@ -35,7 +39,7 @@ from .findings import (
     require_unit_of_crs,
 )
 from .layout import find_layout
-from .lines import read_lines
+from .lines import COMMENT_PREFIXES, read_lines
 from .table import describe_columns, describe_faults_of_rows, read_cells, read_table
 from .truncation import leave_out_cut_row
 
@@ -56,6 +60,7 @@ __all__ = ["read", "write"]
 _WGS84 = "EPSG:4326"
 _CHUNK_ROWS = 100_000
 _SUFFIX_DELIMITERS = {".tsv": "\t", ".xyz": " ", ".pts": " "}
+_BREAKS = re.compile("[\r\n\x00]+")
 _BARE_SUFFIXES = frozenset({".xyz", ".pts"})
 
 
@@ -150,24 +155,23 @@ def read(
     target = CRS.of(crs)
     source = _find_source_crs(layout, declared, target)
     area = AreaOfUse.of(source, target)
-    meaning, notes = _find_columns(cells, layout, area, path)
+    meaning, notes = _find_columns(cells, layout, area, left_out, path)
     told_units = require_unit_of_crs(meaning, source or target, path, is_told=columns is not None)
     table = read_table(cells, layout, meaning, lines)
     table, told_cut = leave_out_cut_row(table, lines, layout, meaning, path, skip_bad=skip_bad)
     _require_few_faults(table.faults, lines, layout, path, skip_bad=skip_bad)
     require_one_header(table.faults, lines, layout.delimiter, meaning, path)
     told = _account_for_rows(table, left_out, path)
-    notes = [
-        *layout.notes,
-        *notes,
-        *told_units,
-        *told_cut,
-        *told.notes,
+    notes = [*layout.notes, *notes, *told_units, *told_cut, *told.notes]
+    notes += [
         *require_in_area(told.points, told.rows, meaning, area, path),
-        *_find_odd(told, lines, layout, meaning),
+        *_find_turned(told, layout, source or target, area, is_told=columns is not None),
+        *_find_odd(told, lines, layout, meaning, in_degrees=is_geographic(source)),
     ]
     unit = settle_unit(Unit.of(z_unit), _find_header_unit(layout), path)
-    placed = place(told.points, source=source, target=target, path=path, unit=unit)
+    placed = place(
+        told.points, source=source, target=target, path=path, unit=unit, looks_at_area=False
+    )
     return Survey(
         points=placed.points,
         attributes=told.attributes,
@@ -180,14 +184,25 @@ def read(
     )
 
 
-def _find_odd(told: _Accounted, lines: TextLines, layout: Layout, columns: Columns) -> list[str]:
+def _find_turned(
+    told: _Accounted, layout: Layout, crs: CRS | None, area: AreaOfUse | None, *, is_told: bool
+) -> list[str]:
+    if layout.columns is None or is_told:
+        return []
+    return find_turned_axes(told.points, layout.columns, crs, area)
+
+
+def _find_odd(
+    told: _Accounted, lines: TextLines, layout: Layout, columns: Columns, *, in_degrees: bool
+) -> list[str]:
     numbers, names = (told.attributes.get(role) for role in ("number", "description"))
     return [
-        *find_odd_elevations(told.points),
+        *find_odd_elevations(told.points, in_degrees=in_degrees),
         *find_repeated_numbers(numbers, told.rows),
         *find_rounded_coordinates(lines, told.rows, layout.delimiter, columns),
         *find_summary_rows(told.points, told.rows, (numbers, names)),
         *find_units_above(lines, int(layout.rows[0])),
+        *find_commented_points(lines, layout.rows, layout, columns),
         *(() if layout.columns is None else _find_split(told, layout, columns)),
     ]
 
@@ -217,13 +232,17 @@ def _find_source_crs(layout: Layout, source_crs: CRS | None, crs: CRS | None) ->
 
 
 def _find_columns(
-    cells: Cells, layout: Layout, area: AreaOfUse | None, path: Path
+    cells: Cells,
+    layout: Layout,
+    area: AreaOfUse | None,
+    nodata: NDArray[np.float64],
+    path: Path,
 ) -> tuple[Columns, list[str]]:
     """Return what the columns mean, by word or header, else by what is in them."""
     if layout.columns is not None:
         return layout.columns, []
     try:
-        columns = describe_columns(cells, layout)
+        columns = [one.without(nodata) for one in describe_columns(cells, layout)]
         found, note = find_columns_by_content(
             columns, area, is_scan=layout.is_scan, is_announced=layout.is_announced
         )
@@ -315,6 +334,11 @@ def write(
         If the file cannot be written, an attribute is missing, or the survey has lines, which
         a list of points would lose.
 
+    Warns
+    -----
+    LossWarning
+        If line breaks within texts become blanks.
+
     Notes
     -----
     Every number is written so that it reads back as the same float64. The header names the unit of
@@ -328,9 +352,38 @@ def write(
     names = (
         [] if (is_bare if header is None else not header) else [_name_written_columns(table, obj)]
     )
+    values = _keep_on_one_line(table, path)
     with replacing(path, binary=False) as file:
-        writer = csv.writer(file, delimiter=separator, lineterminator="\n")
-        writer.writerows(chain(names, _iterate_rows(list(table.values()), progress)))
+        writer = csv.writer(
+            file, delimiter=separator, lineterminator="\n", quoting=_choose_quoting(values[0])
+        )
+        writer.writerows(chain(names, _iterate_rows(values, progress)))
+
+
+def _keep_on_one_line(table: Mapping[str, NDArray[Any]], path: Path) -> list[NDArray[Any]]:
+    """Return the columns, with blanks in the place of line breaks, which readers stop at."""
+    kept, broken = [], []
+    for name, values in table.items():
+        texts = values.tolist() if values.dtype.kind in "OU" else []
+        if any(isinstance(text, str) and _BREAKS.search(text) for text in texts):
+            plain = [_BREAKS.sub(" ", one) if isinstance(one, str) else one for one in texts]
+            values = np.array(plain, object)
+            broken.append(name)
+        kept.append(values)
+    if broken:
+        warnings.warn(
+            f"'{path}': line breaks within the texts of {', '.join(broken)} became blanks.",
+            LossWarning,
+            stacklevel=4,
+        )
+    return kept
+
+
+def _choose_quoting(first: NDArray[Any]) -> Literal[0, 2]:
+    """Return the quoting by which no row begins as a comment does."""
+    texts = first.tolist() if first.dtype.kind in "OU" else []
+    has_marks = any(str(text).lstrip().startswith(COMMENT_PREFIXES) for text in texts)
+    return csv.QUOTE_NONNUMERIC if has_marks else csv.QUOTE_MINIMAL
 
 
 def _name_written_columns(table: Mapping[str, NDArray[Any]], obj: TIN | Survey) -> list[str]:

@@ -24,7 +24,7 @@ from ...tin.validation.options import is_finite_number
 from .code_table import CodeTable, make_rules, read_code_table
 from .descriptions import Vocabulary
 from .detection import Reading, choose_reading, read_in_style
-from .figures import RINGS, Fault, Figure
+from .figures import NO_LINES, RINGS, Fault, Figure
 from .geometry import build_polyline
 from .remarks import describe_faults
 from .several_files import NoCodesError, read_each_file, split_files
@@ -230,6 +230,7 @@ class _Builder:
         self._require_no_degrees()
         lines = self._build_lines()
         self._find_unknown_codes(order, texts)
+        self._find_marks_before(order, texts)
         survey = self.survey
         words = self.reading.style.list_words()
         told, findings = describe_faults(self.faults, _make_namer(survey), words)
@@ -302,6 +303,25 @@ class _Builder:
                 unknown.setdefault(first.rstrip("0123456789"), []).append(row)
         self.faults += [
             Fault("unknown code", code or "a number", tuple(rows)) for code, rows in unknown.items()
+        ]
+
+    def _find_marks_before(self, order: Iterable[int], texts: Sequence[str]) -> None:
+        """Find shots whose mark stands before the code of a line, where marks stand behind."""
+        read, style = self.reading.descriptions, self.reading.style
+        if style.place == "before":
+            return
+        turned = Vocabulary(self.table.rules.keys(), replace(style, place="before"))
+        found: dict[str, list[int]] = {}
+        for row in order:
+            word, _, rest = texts[row].partition(" ")
+            is_mark = style.find_meaning(word if style.is_exact else word.upper()) is not None
+            if not is_mark or texts[row] in read or not rest:
+                continue
+            for one in turned.parse(texts[row]).codes[:1]:
+                if one.marks and self.table.rules[one.code].kind not in NO_LINES:
+                    found.setdefault(f"{' '.join(one.words)} {one.name}", []).append(row)
+        self.faults += [
+            Fault("mark before a code", what, tuple(rows)) for what, rows in found.items()
         ]
 
     def _make_breakline(self, figure: Figure, vertices: NDArray[np.float64]) -> Breakline:

@@ -57,6 +57,10 @@ SENTENCES = {
     ),
     "open building": "{count} [building is|buildings are] not closed",
     "contour that is not level": "{count} contour [line has|lines have] several elevations",
+    "mark before a code": (
+        "{count} [mark stands before its code and is|marks stand before their codes and are] not "
+        "read"
+    ),
     "unknown code": "{count} [code is|codes are] not in the code table",
     "too few points": (
         "{count} [line is left out, which has|lines are left out, which have] too few points"
@@ -72,6 +76,7 @@ _HINTS = {
     "unknown mark": (": {words} are known; a remark stands in quotes or behind a comma, / or ;"),
     "mark not applied": ": offsets, recalled points and others are for drawings",
     "code behind others": ": a remark stands in quotes or behind a comma, / or ;",
+    "mark before a code": ': place = "before" in a code table reads them',
     "unknown code": ": their points are points of the surface",
 }
 

@@ -18,7 +18,7 @@ from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError
 from ...terrain.gridding.voids import trace_rings
-from ...terrain.inspection.nodata import describe_suspects, find_suspect_elevations, parse_nodata
+from ...terrain.inspection.nodata import describe_elevations, parse_nodata
 from ...tin import Bounds, Survey
 from ..isolated import Limits, choose_limits, run_isolated, stream_isolated
 from ..isolated.free_memory import measure_free_memory
@@ -221,7 +221,7 @@ def make_survey(
             path=path,
         )
     _require_finite_centres(points, number, path)
-    notes = describe_suspects(find_suspect_elevations(points[:, 2]), "cell")
+    notes = describe_elevations(points[:, 2], "cell")
     placed = place(points, source=source, target=target, path=path, unit=unit)
     survey = Survey(
         points=placed.points,

@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 import numpy as np
 
+from ..._sentences import counted
 from ...crs import require_same_unit
 from ...errors import CrsError, ReadError
+from ...terrain.georeference.area_of_use import AreaOfUse
 from .transformation import convert_elevations, find_utm_zone, reproject, transform_points
 
 if TYPE_CHECKING:
@@ -38,7 +40,7 @@ class Placed(NamedTuple):
     elevation_unit : Unit or None
         None if it is not known.
     notes : tuple of str
-        What was done to the elevations.
+        What was done to the elevations, and whether points lie where the CRS does not apply.
     """
 
     points: NDArray[np.float64]
@@ -54,6 +56,7 @@ def place(
     target: CRS | None,
     path: Path,
     unit: Unit | None = None,
+    looks_at_area: bool = True,
 ) -> Placed:
     """Bring points into a projected CRS.
 
@@ -68,6 +71,9 @@ def place(
         For sentences.
     unit : Unit, optional
         Unit of the elevations, if it is known otherwise than by the source.
+    looks_at_area : bool, optional
+        Whether it is told which points lie outside the area of use of either CRS; False where the
+        reader has looked at it.
 
     Raises
     ------
@@ -79,13 +85,36 @@ def place(
     wanted = target if target is not None else source
     if wanted is not None and wanted.is_geographic:
         _refuse_degrees(points, wanted, source or wanted, path)
+    told = _describe_outside(points, source, target) if looks_at_area else ()
     if source is None or wanted is None or source.is_same(wanted):
-        return _keep_in_place(points, wanted, unit)
+        placed = _keep_in_place(points, wanted, unit)
+        return placed._replace(notes=(*told, *placed.notes))
     try:
         moved = reproject(points, source, wanted, unit=unit)
     except CrsError as error:
         raise CrsError(f"'{path}': {error}", crs=wanted) from error
-    return Placed(moved.points, wanted, moved.unit, moved.notes)
+    return Placed(moved.points, wanted, moved.unit, (*told, *moved.notes))
+
+
+def _describe_outside(
+    points: NDArray[np.float64], source: CRS | None, target: CRS | None
+) -> tuple[str, ...]:
+    """Tell how many points lie outside the areas of use, and whether an exchange would help."""
+    area = AreaOfUse.of(source, target)
+    is_moved = source is not None and target is not None and not source.is_same(target)
+    if area is None or (not is_moved and area.is_local(points[:, :2])):
+        return ()
+    outside = area.find_outside(points[:, :2])
+    if len(outside) == 0:
+        return ()
+    helps = area.covers_most(points[outside][:, [1, 0]])
+    check = "the order of the coordinates" if helps else "that the CRS is the right one"
+    lie = "lies" if len(outside) == 1 else "lie"
+    exchanged = " and, exchanged, inside" if helps else ""
+    return (
+        f"{len(outside):,} of {counted(len(points), 'point')} {lie} outside the area of use of "
+        f"{area.label}{exchanged}: check {check}.",
+    )
 
 
 def _keep_in_place(points: NDArray[np.float64], crs: CRS | None, unit: Unit | None) -> Placed:

@@ -15,7 +15,7 @@ from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError, choice
 from ...policies import LineReading
-from ...terrain.inspection.nodata import describe_suspects, find_suspect_elevations, parse_nodata
+from ...terrain.inspection.nodata import describe_elevations, parse_nodata
 from ...tin import TIN, Breakline, Survey
 from ...tin.topology import find_offsets
 from ..mesh.common import Reference, make_tin
@@ -235,7 +235,7 @@ def _make_survey(vertices: _Vertices, features: Features, asked: _Asked) -> Surv
         notes=[
             *features.notes,
             *found.notes,
-            *describe_suspects(find_suspect_elevations(points[:, 2])),
+            *describe_elevations(points[:, 2]),
             *placed.notes,
         ],
     )

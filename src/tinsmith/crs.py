@@ -133,10 +133,15 @@ _ALLOWED_UNITS = "a length such as 'm', 'ft' (0.3048 m), 'US survey foot' (1200/
 
 def _find_unit(text: str) -> Unit | None:
     """Look a unit up by the words of people, then by those of EPSG."""
-    plain = re.sub(r"[^a-z0-9]", "", text.casefold())
+    plain = _simplify_unit(text)
     if plain in _UNIT_OF_WORD:
         return _UNIT_OF_WORD[plain]
-    return None if not plain else _load_epsg_units().get(plain)
+    return _load_epsg_units().get(plain) if plain.isascii() and plain.isalnum() else None
+
+
+def _simplify_unit(text: str) -> str:
+    """Leave case, blanks and punctuation out; other letters and signs stay: no µm is a metre."""
+    return re.sub(r"[\s._,'()\[\]-]", "", text.casefold())
 
 
 @lru_cache(maxsize=1)
@@ -144,7 +149,7 @@ def _load_epsg_units() -> dict[str, Unit]:
     """Return EPSG's units of length; PROJ's own are left out, its decimetre is a centimetre."""
     library = _optional.load("pyproj", "Units by their EPSG names")
     return {
-        re.sub(r"[^a-z0-9]", "", name.casefold()): _make_unit(name, unit.conv_factor)
+        _simplify_unit(name): _make_unit(name, unit.conv_factor)
         for name, unit in library.get_units_map(auth_name="EPSG", category="linear").items()
     }
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "SuspectElevation",
+    "describe_elevations",
     "describe_suspects",
     "find_suspect_elevations",
     "is_customary",
@@ -152,3 +153,26 @@ def describe_suspects(suspects: Iterable[SuspectElevation], what: str = "point")
         f"no data, nodata={one.value:g} leaves {'it' if one.count == 1 else 'them'} out."
         for one in suspects
     ]
+
+
+def describe_elevations(z: NDArray[np.float64], what: str = "point") -> list[str]:
+    """Say which elevations may stand for no data, or that all of them may.
+
+    Parameters
+    ----------
+    z : (n,) float64 array
+        Finite elevations.
+    what : str, optional
+        What has them.
+
+    Examples
+    --------
+    >>> describe_elevations(np.zeros(4))
+    ['All 4 points have the elevation 0: check that it stands not for no data.']
+    """
+    if len(z) >= _REPEATS and is_customary(float(z[0])) and bool((z == z[0]).all()):
+        return [
+            f"All {len(z):,} {what}s have the elevation {z[0]:g}: check that it stands not for no "
+            "data."
+        ]
+    return describe_suspects(find_suspect_elevations(z), what)

@@ -11,6 +11,7 @@ import numpy as np
 from ...._sentences import counted
 from ....errors import LinesError, ReadError, choice
 from ....policies import BreaklineKind, DrawingContent, LineKind
+from ....terrain.inspection.nodata import describe_elevations
 from ....tin import Breakline, Survey, Water
 from ....tin.constraints.breaklines import as_ring
 from ...mesh.common import Reference, require_own_crs
@@ -206,7 +207,12 @@ def _read_survey(
         crs=placing.crs,
         elevation_unit=placing.elevation_unit,
         source=drawing.path.name,
-        notes=[*placing.notes, *notes, *drawing.describe_left_out()],
+        notes=[
+            *placing.notes,
+            *notes,
+            *describe_elevations(placing.rows[0][:, 2]),
+            *drawing.describe_left_out(),
+        ],
     )
     try:
         return _add_lines(survey, placing.rows[1:], told)
@@ -257,8 +263,8 @@ def _gather_points(
         points = np.concatenate([points, kept])
         layers += ["texts"] * len(kept)
         notes.append(
-            f"{counted(len(kept), 'point')} come from texts, "
-            f"{counted(int((~is_number).sum()), 'text')} are no numbers."
+            f"Points that come from texts: {len(kept):,}; texts that are no numbers: "
+            f"{int((~is_number).sum()):,}."
         )
     names = value["point_names"]
     for k, name in enumerate(_NUMBER_NAMES):

@@ -12,6 +12,7 @@ from .... import _optional
 from ...._sentences import counted
 from ....errors import LinesError, ReadError
 from ....policies import BreaklineKind
+from ....terrain.inspection.nodata import describe_elevations
 from ....tin import Breakline, Survey, Water
 from ....tin.constraints.breaklines import as_ring
 from ..placing import Placing, place_rows
@@ -58,7 +59,11 @@ def make_survey_of_points(
         elevation_unit=placing.elevation_unit,
         source=path.name,
         skipped=skipped,
-        notes=[*placing.notes, *_describe_states(points, kept)],
+        notes=[
+            *placing.notes,
+            *_describe_states(points, kept),
+            *describe_elevations(placing.rows[0][:, 2]),
+        ],
     )
 
 

@@ -54,6 +54,7 @@ def test_other_names_say_nothing():
         ("Z us ft", "us ft"), ("Elev ( m )", "m"),
         ("ft", None), ("m", None), ("(m)", "m"), ("Z (NAVD88) (ft)", "ft"), ("Soft", None),
         ("Z.m", "m"), ("Z-intft", "intft"), ("Z metres", "metres"), ("Z (inch)", None),
+        ("Z (FT.)", "FT."), ("Z (yd)", "yd"), ("depth fathoms", "fathoms"),
         ("Z" + " " * 196 + "(m)", "m"), ("Z" + " " * 197 + "(m)", None),
     ],
 )  # fmt: skip
@@ -75,8 +76,13 @@ HEIGHTS = "The header's 'Z' is taken as the elevation, not {}."
         ("E N Z", "ENZ", []),
         ("X Y Z E N", "--ZEN", [TWO_PAIRS.format("'E' and 'N'", "'X' and 'Y'")]),
         ("East North x y H", "EN--Z", [TWO_PAIRS.format("'East' and 'North'", "'x' and 'y'")]),
-        ("E N Northing Z", "EPNZ", []),
-        ("Easting E N Z", "E-NZ", []),
+        ("N Este Norte Cota", "PENZ", []),
+        ("N° Est Nord Altitude", "PENZ", []),
+        ("N. RW HW H", "PENZ", []),
+        ("N# E N Z", "PENZ", []),
+        ("E Easting Northing Z", "-ENZ", []),
+        ("Pkt Rechts Hoch NHN Libellé", "PENZD", []),
+        ("№ Øst Nord Høyde", "PENZ", []),
         ("Y X Z", "NEZ", [TURNED]),
         ("N E Z", "NEZ", []),
         ("N X Y Z", "PENZ", []),
@@ -95,6 +101,27 @@ def test_a_header_names_the_columns_and_what_it_leaves_open_is_told(header, word
     assert found.word == word
     assert list(found.notes) == notes
     assert not found.is_degrees
+
+
+@pytest.mark.parametrize("header", ["E N Northing Z", "n;e;nord;z", "Easting E N Z"])
+def test_n_and_e_beside_another_northing_or_easting_are_refused(header):
+    with pytest.raises(ReadError, match=r"several columns for the (north|east)ing \('.', '.*'\)"):
+        find_columns_by_header(header.replace(";", " ").split())
+
+
+def test_letters_of_other_alphabets_are_no_blanks():
+    assert [find_role(name) for name in ("«ø±ê", "Zд", "東N", "Xé", "é")] == [
+        *(None, None, None, None, "easting")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [("Z (pieds)", True), ("Z (')", True), ("Z (NAVD88)", False), ("Z (m)", False), ("Z", False)],
+)
+def test_brackets_behind_the_elevation_that_are_no_unit_are_told(name, told):
+    notes = find_columns_by_header(["E", "N", name]).notes
+    assert [f"'{name}' tells no unit that is known" in note for note in notes] == [True] * told
 
 
 @pytest.mark.parametrize("header", ["E N", "X Z q", "Lon N Z", "E Lat Z", "", "P D"])

@@ -1291,6 +1291,88 @@ def test_a_unit_in_every_row_is_told(survey):
     ]
 
 
+def test_a_unit_in_most_rows_is_told(survey):
+    rows = ["5.5 1.5 3.1 ft 0.8", "6.5 2.5 NaN 0.2", "7.5 3.5 3.3 ft 0.1", "8.5 4.5 3.4 ft 0.7"]
+    found = survey("X Y Z SATS\n" + "\n".join(rows) + "\n", columns="XYZ-")
+    assert any("'SATS' begins with 'ft' in 3 of 4 rows: if this is" in note for note in found.notes)
+
+
+def test_several_units_beside_elevations_are_told(survey):
+    found = survey("E,N,Z,Unit\n1.5,2.5,3.5,ft\n2.5,7.5,4.5,m\n3.5,8.5,5.5,\n")
+    assert found.notes == [
+        "'Unit' begins with 'ft' or 'm' in 2 of 3 rows: if these are the units of the elevations, "
+        "make them one."
+    ]
+
+
+def test_codes_that_are_units_in_few_rows_are_not_told(survey):
+    assert survey("E,N,Z,Code\n1.5,2.5,3.5,M\n2.5,7.5,4.5,EP\n3.5,8.5,5.5,\n").notes == []
+
+
+def test_an_x_that_the_crs_calls_northing_is_told(survey):
+    text = "Nr;X;Y;H\n1;500084.8;250013.6;325.8\n2;500029.1;250046.2;322.1\n3;500040;250090;323\n"
+    told = [
+        "EPSG:2180 calls its northing X, and by the header 'X' is taken as the easting: if it is "
+        "not, columns='PNEZ' says so."
+    ]
+    assert survey(text, crs="EPSG:2180").notes == told
+    assert survey(text, crs="EPSG:2180", columns="PNEZ").points[0].tolist() == [
+        *(250013.6, 500084.8, 325.8)
+    ]
+    assert not any("calls its northing" in note for note in survey(text, crs="EPSG:32634").notes)
+
+
+def test_points_whose_numbers_begin_as_comments_do_are_told(survey):
+    found = survey("P,N,E,Z\n#1,11,21,5.5\n2,12,22,5.6\n# a, b\n//3,13,23,5.7\n4,14,29,5.8\n")
+    assert len(found) == 2
+    told = "2 lines that begin as comments do hold points and are left out (lines 2, 5)."
+    assert told in found.notes
+    assert survey("P,N,E,Z\n#1,1,2,5.5\n2,2,2,5.6\n", comment="").notes == []
+    assert survey("# x,y,z\nP,N,E,Z\n1,1,2,5\n# 1,2,x,4\n2,2,2,6\n").notes == []
+
+
+@pytest.mark.parametrize("suffix", ["csv", "tsv", "txt"])
+def test_texts_that_begin_as_comments_do_come_back(tmp_path, suffix):
+    numbers = np.array(["#1", "//2", ";3", "!", "%5", " #6"], object)
+    points = np.array([[i, i % 3, 5.5 + i] for i in range(6)], np.float64)
+    attributes = {"number": numbers, "description": numbers[::-1]}
+    path = tmp_path / f"names.{suffix}"
+    ts.write(ts.Survey(points=points, attributes=attributes), path)
+    found = ts.read(path)
+    assert np.array_equal(found.points, points)
+    assert [one.strip() for one in found.attributes["number"]] == [one.strip() for one in numbers]
+
+
+def test_line_breaks_within_texts_become_blanks_and_are_told(tmp_path):
+    texts = np.array(["a\nb", "a\r\nb", "", "c"], object)
+    points = np.array([[0, 0, 1], [1, 0, 2], [0, 1, 3], [1, 1, 4.5]])
+    survey = ts.Survey(points=points, attributes={"description": texts, "remark (2)": texts})
+    path = tmp_path / "breaks.csv"
+    with pytest.warns(ts.LossWarning, match=r"texts of description, remark \(2\) became blanks\.$"):
+        ts.write(survey, path)
+    found = ts.read(path)
+    assert np.array_equal(found.points, points)
+    assert found.attributes["description"].tolist() == ["a b", "a b", "", "c"]
+
+
+def test_elevations_of_no_data_say_nothing_of_a_layout(survey):
+    rows = [
+        f"{i},{4024240 + i % 4}.5,{752700 + i // 3}.5,{-9999 if i % 3 == 0 else 322}.25,GS\n"
+        for i in range(1, 13)
+    ]
+    with pytest.raises(ReadError, match="PNEZD would rise by"):
+        survey("".join(rows), crs="EPSG:32616")
+    found = survey("".join(rows), crs="EPSG:32616", nodata=-9999.25)
+    assert found.skipped["nodata points"] == 4
+    assert found.points[0].tolist() == [752700.5, 4024241.5, 322.25]
+
+
+def test_elevations_beside_longitude_and_latitude_are_not_too_steep(survey):
+    text = "lat,lon,z\n36.3001,-84.2001,325.8\n36.3002,-84.2002,322.1\n36.3004,-84.2001,323\n"
+    assert survey(text, crs="EPSG:32616").notes == []
+    assert "rise by" in survey(text.replace("lat,lon", "y,x")).notes[-1]
+
+
 def test_numbers_with_units_are_no_text_that_holds_the_delimiter(survey):
     rows = [f"{i},752765,119,6,083 m,4024287,230,EP\n" for i in range(1, 9)]
     with pytest.raises(ReadError, match="do not have 5 columns"):

@@ -214,3 +214,14 @@ def test_findings_reach_the_report(tmp_path):
         "rows": [2],
         "sentence": "Too few points: CL1: row 2.",
     }
+
+
+def test_marks_before_their_codes_are_told():
+    told = notes("B EP1", "EP1", "EP1", "E EP1", "ST FL", "FL", "FL", "B the gate", "C")
+    assert (
+        "3 marks stand before their codes and are not read (B EP1: row 0, E EP1: row 3, ST FL: "
+        'row 4): place = "before" in a code table reads them.'
+    ) in told
+    assert "before" not in notes("EP1 B", "EP1", "EP1 E", "C GS", "B12")
+    table = {"place": "before", "codes": {"EP": "hard", "FL": "hard"}}
+    assert "marks stand" not in notes("B EP1", "EP1", "E EP1", code_table=table)

@@ -7,6 +7,7 @@ import pytest
 
 import tinsmith as ts
 from tinsmith.terrain.inspection.nodata import (
+    describe_elevations,
     describe_suspects,
     find_suspect_elevations,
     parse_nodata,
@@ -126,6 +127,14 @@ def test_sentences_on_suspects(count, what, begin, end):
     assert sentence.endswith(f"nodata=-9999 {end}")
     (sentence,) = describe_suspects(suspects(-9999.0))
     assert "1 point has" in sentence
+
+
+def test_one_elevation_for_all_that_programs_write_for_none_is_told():
+    told = "All 3 points have the elevation 0: check that it stands not for no data."
+    assert describe_elevations(np.zeros(3)) == [told]
+    assert describe_elevations(np.full(4, -9999.0), "cell")[0].startswith("All 4 cells have")
+    assert describe_elevations(np.full(4, 318.0)) == describe_elevations(np.zeros(2)) == []
+    assert describe_elevations(np.array([])) == describe_elevations(np.array([0.0, 0, 1])) == []
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.terrain.light import as_light, shade
+from tinsmith.terrain.relief.gradients import sum_normals
+from tinsmith.terrain.relief.light import as_light, shade
 from tinsmith.terrain.results.gridded import locate_centers
-from tinsmith.terrain.slope import sum_normals
 from tinsmith.tin.types import Bounds, Grid
 
 

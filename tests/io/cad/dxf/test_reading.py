@@ -211,7 +211,7 @@ def test_texts_are_points_only_when_asked_for(drawing, save):
     assert "2 TEXT, 1 MTEXT" in notes_of(survey)
     survey = ts.read(path, texts=True)
     assert survey.points.tolist() == [[0, 0, 1], [5, 6, 318.25], [7, 8, 319.5]]
-    assert "2 points come from texts, 1 text are no numbers" in notes_of(survey)
+    assert "Points that come from texts: 2; texts that are no numbers: 1." in notes_of(survey)
 
 
 # ------------------------------------------------------------------ layers

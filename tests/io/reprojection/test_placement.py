@@ -1,0 +1,70 @@
+"""Points of a file in the CRS wanted: what is told of areas of use, whatever the format."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tinsmith as ts
+from tinsmith.crs import CRS
+from tinsmith.io.reprojection.placement import place
+
+NORTH = np.array([0.0, 5e6, 0.0])
+UTM, ZONE = CRS.of("EPSG:32616"), "EPSG:32616 (longitude -90 to -84, latitude 0 to 84)"
+SITE = np.array(
+    [[752700.0, 4024200.0, 320.0], [752710.0, 4024200.0, 321.0], [752700.0, 4024210.0, 322.0]]
+)
+
+
+def _place(points, source, target, **options):
+    return place(points, source=source, target=target, path=Path("a"), **options).notes
+
+
+def test_points_in_the_area_of_their_crs_are_not_told():
+    assert _place(SITE, UTM, None) == _place(SITE, None, UTM) == ()
+
+
+def test_points_outside_the_area_of_either_crs_are_told():
+    far = SITE + NORTH
+    told = (
+        f"3 of 3 points lie outside the area of use of {ZONE}: check that the CRS is the right one."
+    )
+    assert _place(far, UTM, None) == _place(far, None, UTM) == (told,)
+    assert _place(far, UTM, None, looks_at_area=False) == ()
+    one = np.vstack([SITE, far[:1]])
+    assert _place(one, UTM, None)[0].startswith("1 of 4 points lies outside")
+
+
+def test_points_that_would_lie_inside_exchanged_are_told_so():
+    told = f"3 of 3 points lie outside the area of use of {ZONE} and, exchanged, inside"
+    assert _place(SITE[:, [1, 0, 2]], UTM, None)[0].startswith(told)
+
+
+def test_local_coordinates_are_told_where_they_are_reprojected():
+    local = SITE - [752690.0, 4024190.0, 0.0] - [3000.0, 9000.0, 0.0]
+    assert _place(local, UTM, None) == ()
+    assert "outside the area of use" in _place(local, UTM, CRS.of("EPSG:2274"))[0]
+
+
+def test_latitude_before_longitude_in_geojson_is_told(tmp_path):
+    features = [
+        {"type": "Feature", "properties": {}, "geometry": {"type": "Point", "coordinates": place}}
+        for place in ([36.1, -84.2, 320], [36.1, -84.201, 321], [36.101, -84.2, 322])
+    ]
+    path = tmp_path / "swapped.geojson"
+    path.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+    notes = ts.read(path, crs="EPSG:32616").notes
+    assert any("exchanged, inside: check the order of the coordinates" in one for one in notes)
+
+
+@pytest.mark.parametrize("suffix", ["gpkg", "las", "tif"])
+def test_files_of_every_kind_tell_points_outside(tmp_path, suffix):
+    path = tmp_path / f"far.{suffix}"
+    survey = ts.Survey(points=SITE + NORTH, crs="EPSG:32616")
+    if suffix == "tif":
+        ts.write(ts.rasterize(ts.triangulate(survey), spacing=2.0), path)
+    else:
+        ts.write(survey, path)
+    notes = ts.read(path).notes
+    assert any("outside the area of use of EPSG:32616" in one for one in notes)
