@@ -62,6 +62,12 @@ class CandidateMesh {
     return candidates_[static_cast<std::size_t>(c)];
   }
   Point place(CandidateId c) const { return candidate(c).point.at; }
+  bool comes_before(CandidateId c, CandidateId d) const {
+    return lexicographically_before(place(c), place(d));
+  }
+  bool comes_before(Vertex v, Vertex w) const {
+    return lexicographically_before(editor_.point(v), editor_.point(w));
+  }
   std::int32_t row(Vertex v) const { return row_of_[static_cast<std::size_t>(number(v))]; }
   SurfacePoint surface_point(Vertex v) const {
     return {editor_.point(v), elevation_[static_cast<std::size_t>(number(v))]};
