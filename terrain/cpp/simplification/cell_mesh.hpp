@@ -94,7 +94,7 @@ class CellMesh {
   template <typename Visit>
   void insert(Triangle t, CellId c, Visit&& visit) {
     const Point p = place(c);
-    const MeshLocation at = editor_.locate(p, half_edge(t, 0));
+    const MeshLocation at = locate(p, t);
     if (at.where == MeshLocation::Where::kOutside) {
       open_[static_cast<std::size_t>(c)] = kNoElevation;
       measure(t);
@@ -187,6 +187,18 @@ class CellMesh {
       column = there;
     }
     if (far.row != nullptr) found = {id({column, far.row->row}), far.error};
+  }
+
+  // Where a cell of a triangle is: in it but where its coordinates are rounded.
+  MeshLocation locate(Point p, Triangle t) {
+    HalfEdge edge = kNoHalfEdge;
+    for (const HalfEdge e : half_edges(t)) {
+      const int side = orientation(editor_.point(mesh().from(e)), editor_.point(mesh().to(e)), p);
+      if (side < 0 || (side == 0 && edge != kNoHalfEdge)) return editor_.locate(p, e);
+      if (side == 0) edge = e;
+    }
+    if (edge == kNoHalfEdge) return {MeshLocation::Where::kInside, half_edge(t, 0)};
+    return {MeshLocation::Where::kOnEdge, edge};
   }
 
   // The first column of a row with an error.
