@@ -3,7 +3,7 @@
 ``python -m benchmarks.simplification`` prints the table of docs/simplify.md: vertices, triangles,
 the largest error at all cells and the least processor time of some runs, the programs in turn on
 one core. ``--blocks SIDE`` times a raster that is simplified in blocks, ``--points N`` N random
-points of a terrain with noise. ``--write FILE`` writes a tiled GeoTIFF with a side of so many cells,
+points of a terrain with noise. ``--write FILE`` writes a tiled GeoTIFF, with ``--side``,
 for ``tinsmith simplify``.
 """
 
@@ -138,7 +138,7 @@ def time_blocks(side: int) -> None:
 
 
 def write_raster(path: Path, side: int) -> None:
-    """Write a GeoTIFF of the tile again and again, mirrored, on long waves; a row of tiles at once."""
+    """Write a GeoTIFF of the tile again and again, mirrored, on long waves."""
     import rasterio
 
     tile, rng = make_heights(1000), np.random.default_rng(3)
