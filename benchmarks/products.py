@@ -26,6 +26,7 @@ __all__ = ["PRODUCTS"]
 DROPS = 1000
 NOISE = 0.03
 INTERVAL = 5.0
+EYE_HEIGHT = 30.0
 WARM_UP_POINTS = 200
 
 
@@ -95,6 +96,23 @@ def follow_drops(tin: ts.TIN, *, is_filled: bool) -> ts.Features:
     return ts.flow_path(tin, places, fill_depressions=is_filled)
 
 
+def look_around(tin: ts.TIN) -> Any:
+    """Tell which vertices are seen from above the middle."""
+    return ts.visible_vertices(tin, tin.bounds.center, eye_height=EYE_HEIGHT)
+
+
+def look_over(tin: ts.TIN) -> ts.Features:
+    """Divide the surface into what is seen from above the middle, and what is hidden."""
+    return ts.viewshed(tin, tin.bounds.center, eye_height=EYE_HEIGHT)
+
+
+def look_along_lines(tin: ts.TIN) -> ts.Features:
+    """Look from the middle at vertices everywhere."""
+    chosen = np.random.default_rng(3).choice(len(tin.points), DROPS, replace=False)
+    targets = tin.points[chosen, :2]
+    return ts.line_of_sight(tin, tin.bounds.center, targets, eye_height=EYE_HEIGHT)
+
+
 # --------------------------------------------------------------------- what must hold
 
 
@@ -151,6 +169,26 @@ def _require_mended(tin: ts.TIN, found: ts.TIN) -> str:
     return f"{len(found.points) - len(tin.points):,} points added"
 
 
+def _require_seen_and_hidden(tin: ts.TIN, found: Any) -> str:
+    assert len(found) == len(tin.points)
+    assert 0 < found.sum() < len(found)
+    return f"{found.sum():,} seen"
+
+
+def _require_parts(tin: ts.TIN, found: ts.Features) -> str:
+    area = dict(zip(found.columns["class"], found.columns["area"], strict=True))
+    assert abs(sum(area.values()) - tin.area) <= 1e-6 * tin.area, f"{area}, surface of {tin.area}"
+    return f"{100 * area['visible'] / tin.area:.1f} % seen"
+
+
+def _require_sights(tin: ts.TIN, found: ts.Features) -> str:
+    chosen = np.random.default_rng(3).choice(len(tin.points), DROPS, replace=False)
+    seen = ts.visible_vertices(tin, tin.bounds.center, eye_height=EYE_HEIGHT)[chosen]
+    differing = int((found.columns["visible"] != seen).sum())
+    assert differing == 0, f"{differing} lines of sight differ from the vertices seen"
+    return f"{seen.sum():,} seen"
+
+
 PRODUCTS: dict[str, Product] = {
     "pits": Product(make_hills, ts.pits, _require_some),
     "depressions": Product(make_hills, ts.depressions, _require_some),
@@ -177,6 +215,9 @@ PRODUCTS: dict[str, Product] = {
     "grade": Product(make_hills, grade_pad, _require_pad),
     "paste": Product(make_pair, lambda given: ts.paste(*given), _require_patch),
     "simplify": Product(make_hills, partial(ts.simplify, tolerance=0.5, threads=1), _require_near),
+    "visible vertices": Product(make_hills, look_around, _require_seen_and_hidden),
+    "viewshed": Product(make_hills, look_over, _require_parts),
+    f"lines of sight, {DROPS:,}": Product(make_hills, look_along_lines, _require_sights),
 }
 """By name; hills have a point a square metre."""
 

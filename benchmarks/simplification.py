@@ -3,7 +3,8 @@
 ``python -m benchmarks.simplification`` prints the table of docs/simplify.md: vertices, triangles,
 the largest error at all cells and the least processor time of some runs, the programs in turn on
 one core. ``--blocks SIDE`` times a raster that is simplified in blocks, ``--points N`` N random
-points of a terrain with noise.
+points of a terrain with noise. ``--write FILE`` writes a tiled GeoTIFF, with ``--side``,
+for ``tinsmith simplify``.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import argparse
 import resource
 import time
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,8 +27,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-TOLERANCES = (3.0, 1.0)
+TOLERANCES = (10.0, 3.0, 1.0, 0.3, 0.1)
+USUAL_TOLERANCE = 3.0
 RUNS = 5
+TILE = 512
+CRS = "EPSG:32616"
 
 
 def make_heights(side: int, seed: int = 1) -> NDArray[np.float32]:
@@ -82,8 +87,8 @@ def compare(side: int) -> None:
             print_row(program, tolerance, tin, points, f"{seconds[program]:.3f}")
     surface = ts.triangulate(points, threads=1)
     begin = time.process_time()
-    simple = ts.simplify(surface, tolerance=TOLERANCES[0], threads=1)
-    print_row("TIN", TOLERANCES[0], simple, points, f"{time.process_time() - begin:.2f}")
+    simple = ts.simplify(surface, tolerance=USUAL_TOLERANCE, threads=1)
+    print_row("TIN", USUAL_TOLERANCE, simple, points, f"{time.process_time() - begin:.2f}")
 
 
 def time_in_turn(
@@ -123,13 +128,33 @@ def time_blocks(side: int) -> None:
     grid = ts.Grid(ts.Bounds(0.0, 0.0, float(side), float(side)), (side, side), 1.0)
     raster = ts.Raster({"elevation": Tiles()}, grid)  # type: ignore[dict-item]
     begin, wall = time.process_time(), time.perf_counter()
-    simple = ts.simplify(raster, tolerance=TOLERANCES[0])
+    simple = ts.simplify(raster, tolerance=USUAL_TOLERANCE)
     told = simple.report.simplification
     print(
         f"{side:,} x {side:,} cells to {len(simple.points):,} vertices, largest error "
         f"{told.largest_error:.4f}: {time.process_time() - begin:.1f} s of processors, "
         f"{time.perf_counter() - wall:.1f} s, {measure_peak_memory() / 2**20:,.0f} MiB at the peak"
     )
+
+
+def write_raster(path: Path, side: int) -> None:
+    """Write a GeoTIFF of the tile again and again, mirrored, on long waves."""
+    import rasterio
+
+    tile, rng = make_heights(1000), np.random.default_rng(3)
+    east, north, phase = rng.uniform([[0.5], [0.5], [0.0]], [[6.0], [6.0], [6.28]], (3, 12))
+    columns = np.arange(side)
+    profile = {"driver": "GTiff", "width": side, "height": side, "count": 1, "dtype": "float32"}
+    tiling = {"tiled": True, "blockxsize": TILE, "blockysize": TILE, "BIGTIFF": "IF_SAFER"}
+    transform = rasterio.transform.from_origin(5e5, 4.1e6, 1.0, 1.0)
+    with rasterio.open(path, "w", **profile, **tiling, transform=transform, crs=CRS) as file:
+        for first in range(0, side, TILE):
+            rows = np.arange(first, min(first + TILE, side))
+            z = tile[np.ix_(*(np.abs((part + 999) % 1998 - 999) for part in (rows, columns)))]
+            for a, b, start in zip(east, north, phase, strict=True):
+                along = np.sin(a * 2 * np.pi * columns / side + start)
+                z += (20 * np.cos(b * 2 * np.pi * rows / side)[:, None] * along).astype("f4")
+            file.write(z, 1, window=((first, rows[-1] + 1), (0, side)))
 
 
 def measure_peak_memory() -> int:
@@ -156,8 +181,11 @@ def main() -> None:
     parser.add_argument("--side", type=int, default=1000, help="cells of a side")
     parser.add_argument("--blocks", type=int, help="time a raster with such a side instead")
     parser.add_argument("--points", type=int, help="time so many random points instead")
+    parser.add_argument("--write", type=Path, metavar="FILE", help="write a GeoTIFF instead")
     given = parser.parse_args()
-    if given.blocks:
+    if given.write:
+        write_raster(given.write, given.side)
+    elif given.blocks:
         time_blocks(given.blocks)
     elif given.points:
         time_points(given.points)

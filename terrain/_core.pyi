@@ -189,6 +189,7 @@ def simplify_cells(
     tolerance: float,
     most: int,
     prunes: bool,
+    path: str = ...,
 ) -> tuple[Ints, int]: ...
 def measure_cells(z: Doubles, cells: Ints, elevations: Doubles, triangles: Ints) -> Doubles: ...
 

@@ -1,4 +1,4 @@
-"""Products of a surface: hydrology, checks, ground, flats, grading, simplification.
+"""Products of a surface: hydrology, checks, ground, flats, grading, simplification, sight.
 
 Each runs alone in a process of its own, whose memory is looked at.
 """

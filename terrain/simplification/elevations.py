@@ -138,19 +138,25 @@ class Elevations:
 
 
 class Heights:
-    """Elevations of some cells."""
+    """Elevations of some cells.
+
+    Attributes
+    ----------
+    cells : (k,) int64 array
+        Ascending, each once.
+    """
 
     def __init__(self, cells: NDArray[np.int64], z: NDArray[np.float64]) -> None:
-        self._cells, first = np.unique(cells, return_index=True)
+        self.cells, first = np.unique(cells, return_index=True)
         self._z = z[first]
 
     def of(self, cells: NDArray[np.int64]) -> NDArray[np.float64]:
         """Return the elevations of cells, which are some of them."""
-        return self._z[np.searchsorted(self._cells, cells)]
+        return self._z[np.searchsorted(self.cells, cells)]
 
     def join(self, cells: NDArray[np.int64], z: NDArray[np.float64]) -> Heights:
         """Return the elevations of these cells and others."""
-        return Heights(np.append(self._cells, cells), np.append(self._z, z))
+        return Heights(np.append(self.cells, cells), np.append(self._z, z))
 
 
 def _choose_band(raster: Raster) -> str:

@@ -165,7 +165,7 @@ class _Work:
             raise PointsError(f"Cell {cell}, which is to be kept, is not on the surface.")
         cells = np.concatenate([one.cells for one in chosen])
         self._heights = Heights(cells, np.concatenate([one.z for one in chosen]))
-        return np.unique(cells), sum(one.needless for one in chosen)
+        return self._heights.cells, sum(one.needless for one in chosen)
 
     def _simplify_blocks(self) -> Iterator[_Chosen]:
         """Simplify blocks, as many at a time as there are threads."""

@@ -19,6 +19,7 @@
 #include "isolines/line_smoothing.hpp"
 #include "location/locator.hpp"
 #include "sight/seen_vertices.hpp"
+#include "simplification/row_errors.hpp"
 #include "triangulation.hpp"
 
 using namespace tinsmith;
@@ -61,6 +62,37 @@ void see() {
     std::size_t count = 0;
     for (const sight::Sight one : seen) count += one == sight::Sight::kSeen;
     expect(height < 0.0 ? count < 10 : count == seen.size(), "a plane is seen from above alone");
+  }
+}
+
+// Cells of a row, some without an elevation, beside a plane: the search of each vector path finds what
+// one cell after another tells, to the last bit.
+void search_far_rows() {
+  constexpr std::int32_t kMost = 40;
+  std::mt19937 rng(5);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::vector<double> z(kMost + kMostLanes), steps(kMost + kMostLanes);
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    z[i] = rng() % 5 == 0 ? kNoElevation : unit(rng);
+    steps[i] = static_cast<double>(i);
+  }
+  for (std::int32_t first = 0; first < kMost; ++first) {
+    for (std::int32_t last = first; last < kMost; ++last) {
+      const CellPlane plane(CellTriangle{{{0, 0}, {7, -2}, {3, 5}}, {unit(rng), unit(rng), 0.3}});
+      const CellRow row{0, first, last};
+      double wanted = -kInfinity;
+      for (std::int32_t i = 0; i <= last - first; ++i) {
+        const double error = std::fabs(z[first + i] - (plane.at(first, 0) + plane.east() * i));
+        if (error > wanted) wanted = error;
+      }
+      for (const NamedPath& path : vector_paths()) {
+        const PlaneOverRows over{plane, z.data(), kMost, steps.data()};
+        const FarRow far = far_row_search(path.path)(over, &row, &row + 1, 0.25);
+        const bool is_far = wanted >= 0.25;
+        expect(far.row == (is_far ? &row : &row + 1), std::string(path.name) + ": the far row");
+        expect(!is_far || far.error == wanted, std::string(path.name) + ": the error in a row");
+      }
+    }
   }
 }
 
@@ -166,6 +198,7 @@ void draw_raster() {
 int main() {
   contour();
   see();
+  search_far_rows();
   refuse_open_boundary();
   simplify();
   measure_earthwork();

@@ -1,5 +1,7 @@
 """Rasters simplified cell by cell: near every cell, in one piece or in blocks, voids stay voids."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from support.simplification import errors, is_needed
@@ -10,6 +12,7 @@ from tinsmith.terrain.gridding.voids import find_surface
 from tinsmith.terrain.results.gridded import locate_centers
 from tinsmith.terrain.simplification.rasters import simplify_raster
 from tinsmith.terrain.simplification.seams import choose_vertices, trace_block
+from tinsmith.tin._kernel import VECTOR_PATHS
 from tinsmith.tin.meshing.simplification import Goal
 
 
@@ -134,6 +137,27 @@ def test_the_core_measures_what_brute_force_does():
     y, x = np.mgrid[:20, :24]
     points = np.column_stack([x.ravel(), y.ravel(), z_up.ravel()])
     assert measured.ravel() == pytest.approx(errors(points, tin), abs=1e-9)
+
+
+@pytest.mark.parametrize("tolerance", [0.0, 0.05, 2.0])
+@pytest.mark.parametrize("name", RASTERS)
+def test_vector_paths_choose_the_same_cells(name, tolerance, monkeypatch):
+    raster, found = RASTERS[name](), {}
+    simplify_cells = _kernel.simplify_cells
+    for path in VECTOR_PATHS:
+        monkeypatch.setattr(_kernel, "simplify_cells", partial(simplify_cells, path=path))
+        found[path] = ts.simplify(raster, tolerance=tolerance)
+    assert {"plain"} <= set(found)
+    for simple in found.values():
+        assert np.array_equal(simple.points, found["plain"].points)
+        assert simple.report.simplification == found["plain"].report.simplification
+
+
+def test_a_vector_path_that_is_none_is_refused(monkeypatch):
+    unknown = partial(_kernel.simplify_cells, path="avx9")
+    monkeypatch.setattr(_kernel, "simplify_cells", unknown)
+    with pytest.raises(ValueError, match="no such vector path on this processor: avx9"):
+        ts.simplify(raster_of(hills()), tolerance=1.0)
 
 
 def test_blocks_and_threads_change_nothing_but_the_seams():

@@ -18,7 +18,7 @@
 #include "index/grid.hpp"
 #include "insertion/canonical_order.hpp"
 #include "insertion/insertion.hpp"
-#include "search/vector_paths.hpp"
+#include "search/neighborhood_paths.hpp"
 
 namespace tinsmith {
 

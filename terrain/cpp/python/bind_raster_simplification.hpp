@@ -2,12 +2,14 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -33,7 +35,8 @@ inline auto simplify_cell_arrays(const GivenValues& x, const GivenValues& y, con
                                  const GivenNumbers& vertex_cells, const GivenRows& vertices,
                                  const GivenTriples& triangles, const GivenTriples& neighbors,
                                  const GivenFlags& fixed, double tolerance, std::int32_t most,
-                                 bool prunes) {
+                                 bool prunes, const std::string& path) {
+  const VectorPath vectors = vector_path_named(path);
   const CellElevations grid = elevations_of(x, y, z);
   const auto is_cell = [&](std::int32_t cell) {
     return cell >= 0 && static_cast<std::size_t>(cell) < grid.count();
@@ -44,7 +47,7 @@ inline auto simplify_cell_arrays(const GivenValues& x, const GivenValues& y, con
   MeshEditor editor = editor_from(vertices, triangles, neighbors, fixed);
   const Simplified found = [&] {
     nb::gil_scoped_release release;
-    CellMesh mesh(editor, grid, vertex_cells.data(), tolerance);
+    CellMesh mesh(editor, grid, vertex_cells.data(), tolerance, vectors);
     if (!mesh.measure_all(no_signal)) return Simplified{{}, 0, false};
     const Vertex first{editor.slots()};
     return simplify_mesh(mesh, first, {tolerance, most}, prunes, no_signal);
@@ -77,7 +80,8 @@ inline void bind_raster_simplification(nb::module_& m) {
   m.def("simplify_cells", &simplify_cell_arrays, "x"_a.noconvert(), "y"_a.noconvert(),
         "z"_a.noconvert(), "vertex_cells"_a.noconvert(), "vertices"_a.noconvert(),
         "triangles"_a.noconvert(), "neighbors"_a.noconvert(), "fixed"_a.noconvert(), "tolerance"_a,
-        "most"_a, "prunes"_a, "Cells that are left, ascending, and how many were removed again.");
+        "most"_a, "prunes"_a, "path"_a = vector_paths().back().name,
+        "Cells that are left, ascending, and how many were removed again.");
   m.def("measure_cells", &measure_cell_arrays, "z"_a.noconvert(), "cells"_a.noconvert(),
         "elevations"_a.noconvert(), "triangles"_a.noconvert(),
         "How far cells are from a surface between cells in elevation; NaN where there is none.");

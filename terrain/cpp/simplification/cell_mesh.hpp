@@ -46,8 +46,13 @@ struct WorstCell {
 class CellMesh {
  public:
   // The cells that are vertices of the mesh; cells that are nearer than `least` are not looked for.
-  CellMesh(MeshEditor& editor, const CellElevations& grid, const CellId* vertex_cells, double least)
-      : editor_(editor), grid_(grid), least_(least), open_(grid.z, grid.z + grid.count()) {
+  CellMesh(MeshEditor& editor, const CellElevations& grid, const CellId* vertex_cells, double least,
+           VectorPath path = vector_paths().back().path)
+      : editor_(editor),
+        grid_(grid),
+        least_(least),
+        open_(grid.z, grid.z + grid.count()),
+        find_far_row_(far_row_search(path)) {
     open_.resize(open_.size() + kMostLanes, kNoElevation);
     steps_.resize(static_cast<std::size_t>(grid.columns) + kMostLanes);
     for (std::size_t i = 0; i < steps_.size(); ++i) steps_[i] = static_cast<double>(i);
@@ -59,6 +64,8 @@ class CellMesh {
   const Mesh& mesh() const { return editor_.mesh(); }
   const WorstCell& list(Triangle t) const { return worst_[number(t)]; }
   Point place(CellId c) const { return {grid_.x[c % grid_.columns], grid_.y[c / grid_.columns]}; }
+  static bool comes_before(CellId c, CellId d) { return c < d; }
+  bool comes_before(Vertex v, Vertex w) const { return row(v) < row(w); }
   std::int32_t row(Vertex v) const { return id(cell_[static_cast<std::size_t>(number(v))].cell); }
 
   template <typename KeepGoing>
@@ -87,7 +94,7 @@ class CellMesh {
   template <typename Visit>
   void insert(Triangle t, CellId c, Visit&& visit) {
     const Point p = place(c);
-    const MeshLocation at = editor_.locate(p, half_edge(t, 0));
+    const MeshLocation at = locate(p, t);
     if (at.where == MeshLocation::Where::kOutside) {
       open_[static_cast<std::size_t>(c)] = kNoElevation;
       measure(t);
@@ -182,6 +189,18 @@ class CellMesh {
     if (far.row != nullptr) found = {id({column, far.row->row}), far.error};
   }
 
+  // Where a cell of a triangle is: in it but where its coordinates are rounded.
+  MeshLocation locate(Point p, Triangle t) {
+    HalfEdge edge = kNoHalfEdge;
+    for (const HalfEdge e : half_edges(t)) {
+      const int side = orientation(editor_.point(mesh().from(e)), editor_.point(mesh().to(e)), p);
+      if (side < 0 || (side == 0 && edge != kNoHalfEdge)) return editor_.locate(p, e);
+      if (side == 0) edge = e;
+    }
+    if (edge == kNoHalfEdge) return {MeshLocation::Where::kInside, half_edge(t, 0)};
+    return {MeshLocation::Where::kOnEdge, edge};
+  }
+
   // The first column of a row with an error.
   static std::int32_t find_column(const PlaneOverRows& over, const FarRow& far) {
     const double* const z = over.z_of(*far.row);
@@ -248,7 +267,7 @@ class CellMesh {
   std::vector<double> steps_;   // 0, 1, 2, ...
   std::vector<VertexCell> cell_;  // of each vertex
   std::vector<WorstCell> worst_;  // by triangle
-  FindFarRow find_far_row_ = fastest_search();
+  FindFarRow find_far_row_;
   CellRows rows_;  // of the triangle at hand
 
   StarGap star_;

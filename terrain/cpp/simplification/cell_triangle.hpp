@@ -2,7 +2,6 @@
 // rows: their differences are exact.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
 #include "cell_rows.hpp"
@@ -24,14 +23,25 @@ struct CellTriangle {
       const bool is_south = cell[k].column == cell[first].column && cell[k].row < cell[first].row;
       if (is_west || is_south) first = k;
     }
-    std::rotate(cell, cell + first, cell + 3);
-    std::rotate(z, z + first, z + 3);
+    for (; first > 0; --first) turn_once();
   }
   bool holds(Cell at) const {
     for (int k = 0; k < 3; ++k) {
       if (twice_area_of(cell[k], cell[(k + 1) % 3], at) < 0) return false;
     }
     return true;
+  }
+
+ private:
+  void turn_once() {
+    const Cell first = cell[0];
+    cell[0] = cell[1];
+    cell[1] = cell[2];
+    cell[2] = first;
+    const double first_z = z[0];
+    z[0] = z[1];
+    z[1] = z[2];
+    z[2] = first_z;
   }
 };
 

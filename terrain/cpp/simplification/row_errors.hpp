@@ -1,18 +1,13 @@
-// How far the cells of rows are from a plane: with the vector instructions of the processor, chosen
-// when it runs, as in tin/cpp/search/vector_paths.hpp.
+// How far the cells of rows are from a plane, with the vector instructions of each path.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 
+#include "../../../tin/cpp/base/vector_paths.hpp"
 #include "cell_rows.hpp"
 #include "cell_triangle.hpp"
-
-#if defined(__GNUC__) && defined(__x86_64__)  // Clang says __GNUC__ too
-#define TINSMITH_ERRORS_WITH_AVX
-#include <immintrin.h>
-#endif
 
 namespace tinsmith {
 
@@ -48,45 +43,20 @@ using FindFarRow = FarRow (*)(const PlaneOverRows&, const CellRow*, const CellRo
 
 }  // namespace tinsmith
 
-#define TINSMITH_PATH plain
-#define TINSMITH_LANES 1
-#include "vector_errors.inc"
-
-#if defined(__GNUC__)
-#define TINSMITH_PATH base
-#define TINSMITH_LANES 2
-#include "vector_errors.inc"
-#endif
-
-#ifdef TINSMITH_ERRORS_WITH_AVX
-#ifdef __clang__
-#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2")
-#endif
-#define TINSMITH_PATH avx2
-#define TINSMITH_LANES 4
-#include "vector_errors.inc"
-#ifdef __clang__
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
-#endif
+#define TINSMITH_LOOPS "../../../terrain/cpp/simplification/vector_errors.inc"
+#include "../../../tin/cpp/base/each_vector_path.inc"
 
 namespace tinsmith {
 
-// For the fastest instructions that the processor has.
-inline FindFarRow fastest_search() {
-#ifdef TINSMITH_ERRORS_WITH_AVX
-  if (__builtin_cpu_supports("avx2")) return avx2::find_far_row;
-#endif
-#if defined(__GNUC__)
-  return base::find_far_row;
-#else
-  return plain::find_far_row;
-#endif
+inline FindFarRow far_row_search(VectorPath path) {
+  switch (path) {
+    case VectorPath::kAvx2:
+      return avx2::find_far_row;
+    case VectorPath::kBase:
+      return base::find_far_row;
+    default:
+      return plain::find_far_row;
+  }
 }
 
 }  // namespace tinsmith

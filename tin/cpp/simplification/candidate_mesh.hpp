@@ -19,6 +19,7 @@
 #include "../index/hilbert_order.hpp"
 #include "../mesh/mesh_editor.hpp"
 #include "elevation_plane.hpp"
+#include "star_gap.hpp"
 
 namespace tinsmith {
 
@@ -62,6 +63,12 @@ class CandidateMesh {
     return candidates_[static_cast<std::size_t>(c)];
   }
   Point place(CandidateId c) const { return candidate(c).point.at; }
+  bool comes_before(CandidateId c, CandidateId d) const {
+    return lexicographically_before(place(c), place(d));
+  }
+  bool comes_before(Vertex v, Vertex w) const {
+    return lexicographically_before(editor_.point(v), editor_.point(w));
+  }
   std::int32_t row(Vertex v) const { return row_of_[static_cast<std::size_t>(number(v))]; }
   SurfacePoint surface_point(Vertex v) const {
     return {editor_.point(v), elevation_[static_cast<std::size_t>(number(v))]};
@@ -104,9 +111,14 @@ class CandidateMesh {
   double error_without(Vertex v, double limit) {
     const SurfacePoint kept = surface_point(v);
     save_star(v);
+    if (star_gap_.find(editor_, v)) {
+      list_gap(star_gap_.triangles());
+      return error_in_gap(kept, limit);
+    }
     editor_.remove(v);
+    find_gap();
     const double error = error_in_gap(kept, limit);
-    editor_.insert_at(location(kept.at, holder_in_gap(kept.at)), kept.at, v);
+    editor_.insert_at(location(kept.at, gap_[holder_in_gap(kept.at)]), kept.at, v);
     restore_star(v);
     return error;
   }
@@ -121,13 +133,13 @@ class CandidateMesh {
     for (const Spared& spared : spared_) {
       for (CandidateId c = spared.list.first; c != kNoCandidate;) {
         const CandidateId next = candidate(c).next;
-        push(holder_in_gap(candidate(c).point.at), c);
+        push(gap_[holder_in_gap(candidate(c).point.at)], c);
         c = next;
       }
     }
     const auto again = static_cast<CandidateId>(candidates_.size());
     candidates_.push_back({kept, kNoCandidate, row(v)});
-    push(holder_in_gap(kept.at), again);
+    push(gap_[holder_in_gap(kept.at)], again);
     for (const Triangle t : gap_) measure(t);
   }
 
@@ -320,15 +332,30 @@ class CandidateMesh {
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     gap_.clear();
+    made_.clear();
     for (const Triangle t : touched_) {
-      if (!mesh().is_free(t) && !mesh().is_ghost(t)) gap_.push_back(t);
+      if (mesh().is_free(t) || mesh().is_ghost(t)) continue;
+      const auto& corner = mesh()[t].corner;
+      gap_.push_back(t);
+      made_.push_back({{corner[0], corner[1], corner[2]}});
     }
+    list_gap(made_);
+  }
+
+  // Triangles in the place of a star, of the mesh or only thought of.
+  void list_gap(const std::vector<GapTriangle>& triangles) {
+    in_gap_.clear();
     planes_.clear();
-    for (const Triangle t : gap_) planes_.push_back(plane(t));
+    for (const GapTriangle& t : triangles) {
+      const SurfacePoint a = surface_point(t.corner[0]), b = surface_point(t.corner[1]);
+      const SurfacePoint c = surface_point(t.corner[2]);
+      in_gap_.push_back({{a.at, b.at, c.at}});
+      planes_.emplace_back(a, b, c);
+    }
+    last_ = 0;
   }
 
   double error_in_gap(const SurfacePoint& gone, double limit) {
-    find_gap();
     double worst = error_of(gone);
     for (const Spared& spared : spared_) {
       for (CandidateId c = spared.list.first; c != kNoCandidate && worst <= limit;) {
@@ -338,28 +365,31 @@ class CandidateMesh {
     }
     return worst <= limit ? worst : std::numeric_limits<double>::infinity();
   }
-  double error_of(const SurfacePoint& p) {
-    holder_in_gap(p.at);
-    return planes_[last_].error(p.at, p.z);
-  }
+  double error_of(const SurfacePoint& p) { return planes_[holder_in_gap(p.at)].error(p.at, p.z); }
 
-  Triangle holder_in_gap(Point p) {
-    for (std::size_t i = 0; i < gap_.size(); ++i) {
-      const std::size_t k = (last_ + i) % gap_.size();
-      if (holds(gap_[k], p)) {
-        last_ = k;
-        return gap_[k];
+  // The triangle of the gap that a point belongs to; one on the edge of the gap is its own.
+  std::size_t holder_in_gap(Point p) {
+    for (const bool is_on_border : {false, true}) {
+      for (std::size_t i = 0; i < in_gap_.size(); ++i) {
+        const std::size_t k = (last_ + i) % in_gap_.size();
+        if (holds(in_gap_[k], p, is_on_border)) return last_ = k;
       }
     }
     throw std::logic_error("no triangle holds a point of those that went");
   }
 
-  // Whether a point belongs to a triangle.
-  bool holds(Triangle t, Point p) const {
-    for (const HalfEdge e : half_edges(t)) {
-      const Point from = editor_.point(mesh().from(e)), to = editor_.point(mesh().to(e));
+  struct Corners {
+    Point at[3];  // counter-clockwise
+  };
+
+  // Whether a point is in a triangle, or on an edge that runs on from its lexicographically first
+  // end, or on any.
+  static bool holds(const Corners& t, Point p, bool is_on_border) {
+    for (int k = 0; k < 3; ++k) {
+      const Point from = t.at[k], to = t.at[k < 2 ? k + 1 : 0];
       const int side = orientation(from, to, p);
-      if (side < 0 || (side == 0 && owner_of(e) != t)) return false;
+      if (side < 0) return false;
+      if (side == 0 && !is_on_border && !lexicographically_before(from, to)) return false;
     }
     return true;
   }
@@ -372,6 +402,9 @@ class CandidateMesh {
 
   // Of the change at hand.
   std::vector<Triangle> star_, touched_, gap_;
+  StarGap star_gap_;
+  std::vector<GapTriangle> made_;  // gap_ by corners
+  std::vector<Corners> in_gap_;
   std::vector<Point> spokes_;  // spoke i is on the right of triangle i, i + 1 on its left
   bool is_open_ = false;       // whether the star is at the hull
   std::vector<CandidateId> moved_;
