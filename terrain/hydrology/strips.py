@@ -30,7 +30,7 @@ __all__ = [
 
 SAME = 1e-12
 """Fall lines whose shares of the base differ by no more are one."""
-_MOST_CUTS = 30_000_000
+_MOST_CUTS = 100_000_000
 
 
 class Bases(NamedTuple):
