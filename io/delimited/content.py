@@ -7,6 +7,7 @@ reason. Where several are left a convention may decide, else the table is refuse
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -43,6 +44,7 @@ _FEW_ROWS = 3
 _DISTINCT_SHARE = 0.5
 _ODD_SHARE = 0.1
 _DECIMAL_DIGITS = 4
+_WHOLE = re.compile(r"[+-]?[0-9]+([eE][+-]?[0-9]+)?")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -333,7 +335,7 @@ def require_no_split_decimals(body: Sequence[Sequence[str]], delimiter: str) -> 
     start = len(numbers) - 6
     if start not in (0, 1) or numbers != list(range(len(numbers))):
         return
-    if all(len(row[start + i]) <= _DECIMAL_DIGITS for row in body for i in (1, 3, 5)):
+    if all(_may_be_decimals(row[start + i]) for row in body for i in (1, 3, 5)):
         raise ReadError(
             "its commas may be delimiters or decimal marks: say with the option columns what the "
             "columns are, or write the table with another delimiter."
@@ -341,5 +343,10 @@ def require_no_split_decimals(body: Sequence[Sequence[str]], delimiter: str) -> 
 
 
 def _are_whole(body: Sequence[Sequence[str]], column: int) -> bool:
-    """Whether all cells of a column are whole numbers."""
-    return all(row[column].lstrip("+-").isdecimal() for row in body)
+    """Whether all cells of a column are whole numbers, which may have an exponent."""
+    return all(_WHOLE.fullmatch(row[column]) for row in body)
+
+
+def _may_be_decimals(cell: str) -> bool:
+    """Whether a whole number looks like what stands behind a decimal comma."""
+    return len(cell) <= _DECIMAL_DIGITS or "e" in cell.lower()

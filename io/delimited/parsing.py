@@ -130,7 +130,8 @@ def _parse_numbers(bounds: CellBounds, column: int, decimal: str) -> NDArray[Any
             number = _read_number(text.strip(), decimal)
             if number is None:
                 return None
-            floats[start + k] = float(text) if isinstance(number, int) else number  # keeps -0.0
+            own = float(text.strip()) if isinstance(number, int) else number  # keeps -0.0
+            floats[start + k] = own
             whole = _place_whole(whole, k, number)
         if whole is None:
             integers = None

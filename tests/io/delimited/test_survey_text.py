@@ -1434,3 +1434,10 @@ def test_a_unit_above_the_table_is_told(survey, line):
     (note,) = found.notes
     assert note.startswith(f"Line 1 ('{line}') tells a unit")
     assert survey(f"United we stand\nUnits: many\n{WITH_HEADER}").notes == []
+
+
+def test_white_space_of_any_kind_may_stand_around_a_number(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("7,\x1c3,\x1f-0\n8,4\x1d,5\n")
+    found = read(path, columns="XYZ", skip_bad=True)
+    assert found.points.tolist() == [[7, 3, 0], [8, 4, 5]]
