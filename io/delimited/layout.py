@@ -49,6 +49,8 @@ __all__ = ["Layout", "find_layout"]
 _TOP_LINES = 100
 _SPREAD_LINES = 200
 _MOST_COLUMNS = 1_000
+_COUNT_DIGITS = 18
+"""A number of points has no more."""
 _SCAN_SUFFIXES = frozenset({".xyz", ".pts"})
 _UNIT_WORDS = frozenset(
     {*("m", "metre", "metres", "meter", "meters", "ft", "feet", "foot", "usft", "mm", "cm", "deg")}
@@ -450,7 +452,7 @@ def _classify_line(row: Sequence[str], count: int, decimal: str, is_header_known
         return "header lines" if is_units and numbers == 0 else "row"
     if find_columns_by_header(row, strict=False) is not None:
         return "header lines"
-    if len(row) == 1 and count > 1 and row[0].isdecimal():
+    if len(row) == 1 and count > 1 and row[0].isdecimal() and len(row[0]) <= _COUNT_DIGITS:
         return "point count"
     if abs(len(row) - count) <= 1 and not any(
         is_number_like(cell, decimal) for cell in row if cell

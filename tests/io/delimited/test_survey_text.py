@@ -1441,3 +1441,11 @@ def test_white_space_of_any_kind_may_stand_around_a_number(tmp_path):
     path.write_text("7,\x1c3,\x1f-0\n8,4\x1d,5\n")
     found = read(path, columns="XYZ", skip_bad=True)
     assert found.points.tolist() == [[7, 3, 0], [8, 4, 5]]
+
+
+def test_a_number_alone_of_thousands_of_digits_counts_no_points(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("9" * 5000 + "\n8,35.6,3\n7,4,5\n")
+    found = read(path, columns="XYZ")
+    assert found.points.tolist() == [[8, 35.6, 3], [7, 4, 5]]
+    assert found.skipped == {"title lines": 1}
