@@ -31,8 +31,8 @@ FORMATS = (
         writes=(*SURFACES, "Features"),
         precision="Coordinates come back bit for bit.",
         losses="One unit for coordinates and elevations; the numbers of vertices; attributes of "
-        "points but number and description; priorities of breaklines; columns of features; notes "
-        "and report. R12 has no CRS.",
+        "points but number and description; columns of features; notes and report. R12 has no "
+        "CRS.",
         loses=("elevation unit", "order", "attributes", "notes", "report"),
         extra="cad",
         sniff=signatures.is_dxf,

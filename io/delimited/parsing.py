@@ -126,12 +126,12 @@ def _parse_numbers(bounds: CellBounds, column: int, decimal: str) -> NDArray[Any
         floats[rows] = _divide(digits)
         whole = _take_whole(digits) if integers is not None else None
         odd = np.flatnonzero(digits.is_odd)
-        for k, text in zip(odd.tolist(), _take_texts(bounds, starts[odd], ends[odd]), strict=True):
-            number = _read_number(text.strip(), decimal)
+        for k, cell in zip(odd.tolist(), _take_texts(bounds, starts[odd], ends[odd]), strict=True):
+            text = cell.strip()
+            number = _read_number(text, decimal)
             if number is None:
                 return None
-            own = float(text.strip()) if isinstance(number, int) else number  # keeps -0.0
-            floats[start + k] = own
+            floats[start + k] = float(text) if isinstance(number, int) else number  # keeps -0.0
             whole = _place_whole(whole, k, number)
         if whole is None:
             integers = None

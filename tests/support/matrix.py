@@ -41,12 +41,18 @@ def make_survey_with_lines():
         breaklines=[
             ts.Breakline([[*_place(10, 10), 302], [*_place(200, 120), 306]], name="kerb"),
             ts.Breakline(
-                [[*_place(20, 150), 304], [*_place(190, 40), 308]], kind="soft", name="ridge"
+                [[*_place(20, 150), 304], [*_place(190, 40), 308]],
+                kind="soft",
+                name="ridge",
+                priority=-2,
             ),
             ts.Breakline([_place(40, 170), _place(90, 160)], name="draped"),
         ],
         boundary=[_place((0, 0), (225, 5), (228, 185), (2, 188))],
-        holes=[_place((60, 20), (80, 22), (70, 40))],
+        holes=[
+            _place((60, 20), (80, 22), (70, 40)),
+            [_place((10, 100), (40, 100), (25, 140)), _place((20, 105), (30, 105), (25, 115))],
+        ],
         erase=[_place((160, 140), (180, 142), (170, 160))],
         water=[ts.Water(_place((120, 120), (150, 122), (140, 150)), 299.5, name="pond")],
     )
@@ -130,11 +136,13 @@ def _list_lines(survey, kind):
     for line in getattr(survey, kind):
         match line:
             case ts.Breakline():
-                lines.append((line.name, line.kind, line.is_draped, _list_places(line.coords)))
+                told = (line.name, line.kind, line.priority, line.is_draped)
+                lines.append((*told, _list_places(line.coords)))
             case ts.Water():
                 lines.append((line.name, line.z, _list_places(line.ring)))
             case _:
-                lines.append(_list_places(line))
+                rings = [line] if np.ndim(line[0][0]) == 0 else line
+                lines.append([_list_places(ring) for ring in rings])
     return lines
 
 

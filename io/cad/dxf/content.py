@@ -58,16 +58,18 @@ def add_survey(writer: EntityWriter, survey: Survey, factor: float, *, labels: b
     for line in survey.breaklines:
         one = line if isinstance(line, Breakline) else Breakline(line)
         rows = _scale(one.coords, factor)
-        writer.add_line(_LAYER_OF_KIND[one.kind], rows, (one.kind, one.name))
+        told = (one.kind, one.name, "", str(one.priority))
+        writer.add_line(_LAYER_OF_KIND[one.kind], rows, told)
     for regions, what, layer in (
         (survey.boundary, "boundary", "BOUNDARY"),
         (survey.holes, "hole", "HOLES"),
         (survey.erase, "erase", "ERASE"),
     ):
-        for rings in gather_rings_of_regions(as_sequence(regions, what), what):
+        polygons = gather_rings_of_regions(as_sequence(regions, what), what)
+        for number, rings in enumerate(polygons):
             for ring in rings:
                 closed = np.concatenate([ring, ring[:1]])
-                writer.add_line(layer, _scale(closed, factor), (what, ""))
+                writer.add_line(layer, _scale(closed, factor), (what, "", str(number)))
     for one_water in survey.water:
         ring = np.column_stack([one_water.ring, np.full(len(one_water.ring), one_water.z)])
         closed = np.concatenate([ring, ring[:1]])

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["read"]
 
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)", re.ASCII)
+_PRIORITY = re.compile(r"-?[0-9]{1,15}", re.ASCII)
 _SAMPLE = 64
 _RINGS = frozenset({"boundary", "hole", "erase"})
 _NUMBER_NAMES = ("number", "description")
@@ -164,13 +165,13 @@ def _select_edge_lines(drawing: Drawing, measures: Measures) -> list[EdgeLine]:
 
 
 def _name_lines(drawing: Drawing) -> list[list[str]]:
-    """Return kind, name and source of each line; the layer is the name where it has no other."""
+    """Return kind, name, source and priority of each line; unnamed ones are called by layers."""
     told = drawing.value["line_names"]
     layers, numbers = drawing.value["layers"], drawing.arrays["line_layers"].tolist()
     if not told:
-        return [["", layers[number], ""] for number in numbers]
+        return [["", layers[number], "", ""] for number in numbers]
     return [
-        ([*one, "", "", ""][:3] if one else ["", layers[number], ""])
+        ([*one, "", "", "", ""][:4] if one else ["", layers[number], "", ""])
         for one, number in zip(told, numbers, strict=True)
     ]
 
@@ -225,13 +226,17 @@ def _add_lines(
 ) -> Survey:
     """Add breaklines, and of drawings that were written here rings and water by their kinds."""
     found: dict[str, list[Any]] = {kind: [] for kind in ("boundary", "hole", "erase", "water", "")}
-    for rows, (kind, name, _) in zip(lines, told, strict=True):
+    polygons: dict[tuple[str, str], list[NDArray[np.float64]]] = {}
+    for rows, (kind, name, number, priority) in zip(lines, told, strict=True):
         if kind == "water" and rows.shape[1] == 3:
             found[kind].append(Water(as_ring(rows, "water"), float(rows[0, 2]), name=name))
         elif kind in _RINGS:
-            found[kind].append(as_ring(rows, kind))
+            key = (kind, number or f"alone {len(polygons)}")
+            polygons.setdefault(key, []).append(as_ring(rows, kind))
         else:
-            found[""].append(_make_breakline(rows, kind, name))
+            found[""].append(_make_breakline(rows, kind, name, priority))
+    for (kind, _), rings in polygons.items():
+        found[kind].append(rings[0] if len(rings) == 1 else rings)
     return replace(
         survey,
         breaklines=found[""],
@@ -242,9 +247,10 @@ def _add_lines(
     )
 
 
-def _make_breakline(rows: NDArray[np.float64], told: str, name: str) -> Breakline:
+def _make_breakline(rows: NDArray[np.float64], told: str, name: str, priority: str) -> Breakline:
     kind: BreaklineKind = "soft" if told == "soft" else "hard"
-    return Breakline(rows, kind=kind, name=name)
+    rank = int(priority) if _PRIORITY.fullmatch(priority) else 0
+    return Breakline(rows, kind=kind, name=name, priority=rank)
 
 
 def _gather_points(

@@ -99,7 +99,7 @@ def test_lines_of_a_survey_are_kept_or_told(one, tmp_path):
         warnings.simplefilter("always", ts.LossWarning)
         ts.write(matrix.make_survey_with_lines(), tmp_path / f"a{one.suffixes[0]}", format=one.name)
     words = {
-        "survey lines": "(3 breaklines, 1 boundary, 1 hole, 1 erased area, 1 water body)",
+        "survey lines": "(3 breaklines, 1 boundary, 2 holes, 1 erased area, 1 water body)",
         "erased areas": "(1 erased area)",
     }
     wanted = [sentence for word, sentence in words.items() if word in one.loses]
