@@ -32,11 +32,11 @@ from .measure import is_installed
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
+    from tinsmith.arrays import BoolArray, Float64Array, Int64Array
 
-    Filter = Callable[[ts.Survey], NDArray[np.bool_]]
-    Changed = tuple[NDArray[np.float64], NDArray[np.int64]]
-    Change = Callable[[NDArray[np.float64], np.random.Generator], Changed]
+    Filter = Callable[[ts.Survey], BoolArray]
+    Changed = tuple[Float64Array, Int64Array]
+    Change = Callable[[Float64Array, np.random.Generator], Changed]
 
 GROUND = 2
 
@@ -50,7 +50,7 @@ class Errors(NamedTuple):
     kappa: float
 
 
-def measure_errors(found: NDArray[np.bool_], truth: NDArray[np.bool_]) -> Errors:
+def measure_errors(found: BoolArray, truth: BoolArray) -> Errors:
     """Compare what a filter found with the labels."""
     missed, wrong = (truth & ~found).sum(), (~truth & found).sum()
     agreed = 1 - (missed + wrong) / len(truth)
@@ -66,13 +66,13 @@ def measure_errors(found: NDArray[np.bool_], truth: NDArray[np.bool_]) -> Errors
 # --------------------------------------------------------------------------------- filters
 
 
-def find_by_tinsmith(survey: ts.Survey) -> NDArray[np.bool_]:
+def find_by_tinsmith(survey: ts.Survey) -> BoolArray:
     """Densify a TIN."""
     bare = ts.Survey(points=survey.points, crs=survey.crs)
     return ts.ground(bare).is_ground
 
 
-def find_by_cloth(survey: ts.Survey) -> NDArray[np.bool_]:
+def find_by_cloth(survey: ts.Survey) -> BoolArray:
     """Let a cloth fall on the points upside down."""
     import CSF
 
@@ -90,7 +90,7 @@ def find_by_cloth(survey: ts.Survey) -> NDArray[np.bool_]:
     return found
 
 
-def find_by_whitebox(survey: ts.Survey) -> NDArray[np.bool_]:
+def find_by_whitebox(survey: ts.Survey) -> BoolArray:
     """Classify with the improved ground point filter of Whitebox Workflows, through files."""
     import whitebox_workflows
 
@@ -123,7 +123,7 @@ def _turn(degrees: float) -> Change:
 
 
 def _thin(share: float) -> Change:
-    def change(points: NDArray[np.float64], rng: np.random.Generator) -> Changed:
+    def change(points: Float64Array, rng: np.random.Generator) -> Changed:
         rows = np.flatnonzero(rng.uniform(size=len(points)) < share)
         return points[rows], rows
 
@@ -131,7 +131,7 @@ def _thin(share: float) -> Change:
 
 
 def _cut(west: float, south: float) -> Change:
-    def change(points: NDArray[np.float64], _: np.random.Generator) -> Changed:
+    def change(points: Float64Array, _: np.random.Generator) -> Changed:
         rows = np.flatnonzero((points[:, :2] > (west, south)).all(axis=1))
         return points[rows], rows
 
@@ -241,7 +241,7 @@ def print_leave_one_out(folder: Path, count: int) -> None:
     )
 
 
-def _read_samples(folder: Path) -> list[tuple[NDArray[np.float64], NDArray[np.bool_]]]:
+def _read_samples(folder: Path) -> list[tuple[Float64Array, BoolArray]]:
     surveys = [ts.read(path) for path in _list_files(folder)]
     return [
         (survey.points - survey.points.min(axis=0), survey.attributes["classification"] == GROUND)
@@ -259,7 +259,7 @@ def _print_row(name: str, count: str, values: list[float]) -> None:
     print(f"| {' | '.join([name, count, *own, *others])} |", flush=True)
 
 
-def make_terrain(count: int, seed: int = 1) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+def make_terrain(count: int, seed: int = 1) -> tuple[Float64Array, BoolArray]:
     """Return points on hills with houses, trees and low noise, and which of them are ground."""
     rng = np.random.default_rng(seed)
     side = np.sqrt(count)  # one point a square metre

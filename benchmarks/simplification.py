@@ -25,7 +25,7 @@ from .measure import is_installed
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
+    from tinsmith.arrays import Float32Array, Float64Array
 
 TOLERANCES = (10.0, 3.0, 1.0, 0.3, 0.1)
 USUAL_TOLERANCE = 3.0
@@ -34,7 +34,7 @@ TILE = 512
 CRS = "EPSG:32616"
 
 
-def make_heights(side: int, seed: int = 1) -> NDArray[np.float32]:
+def make_heights(side: int, seed: int = 1) -> Float32Array:
     """Return a square raster whose roughness falls with the frequency, 300 high."""
     rng = np.random.default_rng(seed)
     squares = np.fft.fftfreq(side) ** 2
@@ -46,7 +46,7 @@ def make_heights(side: int, seed: int = 1) -> NDArray[np.float32]:
     return (300.0 * (z - z.min()) / np.ptp(z)).astype(np.float32)
 
 
-def as_points(heights: NDArray[np.float32]) -> NDArray[np.float64]:
+def as_points(heights: Float32Array) -> Float64Array:
     """Return the cells of a raster as points, one unit apart."""
     y, x = np.indices(heights.shape)
     return np.column_stack([x.ravel(), y.ravel(), heights.ravel()]).astype(float)
@@ -59,7 +59,7 @@ def print_row(program: str, tolerance: float, tin: ts.TIN, points: Any, seconds:
     print(f"| {tolerance:g} | {program} | {counts} | {error:.4f} | {seconds} |")
 
 
-def as_raster(heights: NDArray[np.float32]) -> ts.Raster:
+def as_raster(heights: Float32Array) -> ts.Raster:
     """Return a raster whose rows go south from 0, cells one unit apart, with centres at 0, 1, 2."""
     rows, columns = heights.shape
     bounds = ts.Bounds(-0.5, 0.5 - rows, columns - 0.5, 0.5)

@@ -9,14 +9,14 @@ import runpy
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import tinsmith as ts
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from tinsmith.arrays import AnyArray, Float64Array
 
 HERE = Path(__file__).parent
 SAMPLES = HERE.parent / "sample_data"
@@ -62,7 +62,7 @@ def thinned(survey: ts.Survey) -> ts.Survey:
     return ts.Survey(points=points, breaklines=fewer, water=survey.water, crs=survey.crs)
 
 
-def _every(coords: NDArray[np.float64]) -> NDArray[np.float64]:
+def _every(coords: Float64Array) -> Float64Array:
     """Return every so many vertices, and the last."""
     return coords[[*range(0, len(coords) - 1, EVERY), -1]]
 
@@ -92,12 +92,12 @@ def tell(name: str, tin: ts.TIN) -> None:
     print(f"{name}: water would stand {pool_depth(flow):.3f} m deep in the ditch at most")
 
 
-def heights(tin: ts.TIN, u: NDArray[Any], v: NDArray[Any]) -> NDArray[np.float64]:
+def heights(tin: ts.TIN, u: AnyArray, v: AnyArray) -> Float64Array:
     """Heights of the surface at places of the site."""
     return tin.interpolate(np.stack([SITE["EASTING"] + u, SITE["NORTHING"] + v], axis=1))
 
 
-def pool_depth(bed: NDArray[np.float64]) -> float:
+def pool_depth(bed: Float64Array) -> float:
     """Greatest depth of water that cannot run off to the west along a bed."""
     return float((np.maximum.accumulate(bed) - bed).max())
 

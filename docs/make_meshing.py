@@ -21,7 +21,7 @@ import tinsmith as ts
 from tinsmith.tin import quality, refine
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from tinsmith.arrays import AnyArray
 
 HERE = Path(__file__).parent
 SURVEY = HERE.parent / "sample_data" / "site_survey.csv"
@@ -128,7 +128,7 @@ def row(name: str, tin: ts.TIN, angle: float) -> str:
     )
 
 
-def as_graph(tin: ts.TIN) -> dict[str, NDArray[Any]]:
+def as_graph(tin: ts.TIN) -> dict[str, AnyArray]:
     """Return what Triangle takes: vertices, segments and a place in each hole."""
     t, k = np.nonzero(tin.constrained | (tin.neighbors < 0))
     ends = [tin.triangles[t, (k + 1) % 3], tin.triangles[t, (k + 2) % 3]]

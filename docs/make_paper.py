@@ -18,8 +18,7 @@ import tinsmith as ts
 from tinsmith.tin import paper
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from tinsmith.arrays import Float64Array, Int32Array
     from tinsmith.tin import Comparison, Outcome
 
 HERE = Path(__file__).parent
@@ -59,12 +58,12 @@ def main(folder: Path = HERE) -> None:
     tell_breeding(2_000)
 
 
-def random_points(n: int, seed: int) -> NDArray[np.float64]:
+def random_points(n: int, seed: int) -> Float64Array:
     """Return points in a square of 100 by 100."""
     return 100 * np.random.default_rng(seed).random((n, 3))
 
 
-def data() -> dict[str, NDArray[np.float64]]:
+def data() -> dict[str, Float64Array]:
     """Return the point sets compared."""
     sets = {f"{n:,} random": random_points(n, SEED) for n in (75, 500, 2_000)}
     sets["site survey"] = ts.read(SAMPLES / "site_survey.csv").points
@@ -144,7 +143,7 @@ def tell_ties(n: int) -> None:
             )
 
 
-def lattice_points(n: int, seed: int) -> NDArray[np.float64]:
+def lattice_points(n: int, seed: int) -> Float64Array:
     """Return places of whole numbers, of which many lie on one circle."""
     places = np.random.default_rng(seed).permutation(15 * 15)[:n]
     return np.column_stack([places // 15, places % 15, np.zeros(n)])
@@ -224,9 +223,7 @@ def draw_tied(panels: Any, places: list[tuple[int, int]], name: str, rule: str) 
             axes.annotate(str(row + 1), (x, y), (6, 6), textcoords="offset points", color=INK)
 
 
-def draw_network(
-    axes: Any, points: NDArray[np.float64], triangles: NDArray[np.int32], faults: list[Any]
-) -> None:
+def draw_network(axes: Any, points: Float64Array, triangles: Int32Array, faults: list[Any]) -> None:
     """Draw triangles, some of them marked."""
     for corners in faults:
         axes.fill(*points[list(corners), :2].T, color=CHOSEN, alpha=0.22, linewidth=0)
@@ -242,12 +239,12 @@ def draw_circle(axes: Any, center: Any, radius: float, color: str, *, style: str
     axes.plot(x, y, style, color=color, linewidth=1.4)
 
 
-def circle_on(p: NDArray[np.float64], q: NDArray[np.float64]) -> tuple[Any, float]:
+def circle_on(p: Float64Array, q: Float64Array) -> tuple[Any, float]:
     """Return centre and radius of the circle whose diameter is an edge."""
     return (p[:2] + q[:2]) / 2, float(np.hypot(*(q - p)[:2])) / 2
 
 
-def circle_through(corners: NDArray[np.float64]) -> tuple[Any, float]:
+def circle_through(corners: Float64Array) -> tuple[Any, float]:
     """Return centre and radius of a triangle's circle."""
     a, *others = corners[:, :2]
     rows = np.array(others) - a
@@ -255,7 +252,7 @@ def circle_through(corners: NDArray[np.float64]) -> tuple[Any, float]:
     return a + offset, float(np.hypot(*offset))
 
 
-def flat(places: list[tuple[int, int]]) -> NDArray[np.float64]:
+def flat(places: list[tuple[int, int]]) -> Float64Array:
     """Return places as points of height 0."""
     return np.array([(x, y, 0.0) for x, y in places])
 

@@ -21,7 +21,7 @@ import tinsmith as ts
 from tinsmith.terrain.drawing.linework import find_line_edges
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from tinsmith.arrays import Float64Array
 
 HERE = Path(__file__).parent
 SAMPLES = HERE.parent / "sample_data"
@@ -109,11 +109,11 @@ def paint_site(tin: ts.TIN) -> Path:
 
 
 def paint_strip(
-    colors: NDArray[np.float64],
+    colors: Float64Array,
     tin: ts.TIN,
     spacing: float,
-    start: NDArray[np.float64],
-    stop: NDArray[np.float64],
+    start: Float64Array,
+    stop: Float64Array,
 ) -> None:
     """Paint a strip of 1.5 m along a line."""
     box = tin.bounds
@@ -125,7 +125,7 @@ def paint_strip(
         colors[max(row - width, 0) : row + width, max(column - width, 0) : column + width] = PAVED
 
 
-def sample(tin: ts.TIN, spacing: float) -> tuple[NDArray[np.float64], ...]:
+def sample(tin: ts.TIN, spacing: float) -> tuple[Float64Array, ...]:
     """Return eastings, northings and elevations of pixels, rows from the north."""
     box = tin.bounds
     x = np.arange(box.xmin + spacing / 2, box.xmax, spacing)
@@ -136,7 +136,7 @@ def sample(tin: ts.TIN, spacing: float) -> tuple[NDArray[np.float64], ...]:
 
 
 def write_ortho(
-    path: Path, tin: ts.TIN, spacing: float, colors: NDArray[np.float64], z: NDArray[np.float64]
+    path: Path, tin: ts.TIN, spacing: float, colors: Float64Array, z: Float64Array
 ) -> Path:
     """Write a picture with grain and faint shadows of a sun in the southeast."""
     down, right = np.gradient(z, spacing)

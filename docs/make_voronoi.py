@@ -18,7 +18,7 @@ from scipy.spatial import Voronoi as SciPyVoronoi
 import tinsmith as ts
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from tinsmith.arrays import Float64Array
 
 HERE = Path(__file__).parent
 SURVEY = HERE.parent / "sample_data" / "site_survey.csv"
@@ -123,7 +123,7 @@ def tell(count: int) -> None:
     print(f"SciPy, cells not clipped: {timed(tin.points[:, :2]):.1f} s")
 
 
-def timed(xy: NDArray[np.float64]) -> float:
+def timed(xy: Float64Array) -> float:
     """Return the seconds that SciPy takes."""
     begin = time.perf_counter()
     SciPyVoronoi(xy)

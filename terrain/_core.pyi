@@ -1,229 +1,229 @@
 # Types of the compiled core; what it does is said in terrain/_kernel.py.
 from collections.abc import Callable
-from typing import TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
-
-Doubles: TypeAlias = NDArray[np.float64]
-Ints: TypeAlias = NDArray[np.int32]
-Longs: TypeAlias = NDArray[np.int64]
-Flags: TypeAlias = NDArray[np.bool_]
-Bytes: TypeAlias = NDArray[np.uint8]
+from ..arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array, UInt8Array
 
 TILE_SIDE: int
 
 class GriddedSurface:
-    def __init__(self, points: Doubles, triangles: Ints) -> None: ...
+    def __init__(self, points: Float64Array, triangles: Int32Array) -> None: ...
     def values_at_centers(
         self,
-        x: Doubles,
-        y: Doubles,
+        x: Float64Array,
+        y: Float64Array,
         spacing: float,
-        values: Doubles | None,
+        values: Float64Array | None,
         threads: int = ...,
         progress: Callable[[float], None] | None = ...,
-    ) -> Doubles: ...
+    ) -> Float64Array: ...
     def means_of_cells(
         self,
-        x: Doubles,
-        y: Doubles,
+        x: Float64Array,
+        y: Float64Array,
         spacing: float,
-        x_edges: Doubles,
-        y_edges: Doubles,
-        values: Doubles | None,
+        x_edges: Float64Array,
+        y_edges: Float64Array,
+        values: Float64Array | None,
         threads: int = ...,
         progress: Callable[[float], None] | None = ...,
-    ) -> Doubles: ...
+    ) -> Float64Array: ...
 
 class LeaveOneOut:
-    def __init__(self, points: Doubles, triangles: Ints, neighbors: Ints) -> None: ...
-    def interpolate(self, vertices: Ints, threads: int = ...) -> Doubles: ...
-    def list_neighbors(self, vertices: Ints) -> tuple[Longs, Ints]: ...
+    def __init__(
+        self, points: Float64Array, triangles: Int32Array, neighbors: Int32Array
+    ) -> None: ...
+    def interpolate(self, vertices: Int32Array, threads: int = ...) -> Float64Array: ...
+    def list_neighbors(self, vertices: Int32Array) -> tuple[Int64Array, Int32Array]: ...
 
 def trace_contours(
-    points: Doubles,
-    triangles: Ints,
-    neighbors: Ints,
-    levels: Doubles,
+    points: Float64Array,
+    triangles: Int32Array,
+    neighbors: Int32Array,
+    levels: Float64Array,
 ) -> tuple[
-    Doubles,
-    Longs,
-    Ints,
-    Flags,
-    Doubles,
+    Float64Array,
+    Int64Array,
+    Int32Array,
+    BoolArray,
+    Float64Array,
 ]: ...
 def fill_bands(
-    points: Doubles,
-    triangles: Ints,
-    neighbors: Ints,
-    levels: Doubles,
-) -> tuple[Doubles, Longs, Longs, Ints]: ...
+    points: Float64Array,
+    triangles: Int32Array,
+    neighbors: Int32Array,
+    levels: Float64Array,
+) -> tuple[Float64Array, Int64Array, Int64Array, Int32Array]: ...
 def smooth_contours(
-    points: Doubles,
-    triangles: Ints,
-    neighbors: Ints,
-    levels: Doubles,
-    xyz: Doubles,
-    offsets: Longs,
-    level: Ints,
-    is_closed: Flags,
-    places: Ints,
+    points: Float64Array,
+    triangles: Int32Array,
+    neighbors: Int32Array,
+    levels: Float64Array,
+    xyz: Float64Array,
+    offsets: Int64Array,
+    level: Int32Array,
+    is_closed: BoolArray,
+    places: Int32Array,
     smooth: float,
     rounds: int,
     simplify: float,
 ) -> tuple[
-    Doubles,
-    Longs,
-    Ints,
-    Flags,
-    Doubles,
+    Float64Array,
+    Int64Array,
+    Int32Array,
+    BoolArray,
+    Float64Array,
 ]: ...
 def sum_between(
-    points: Doubles,
-    triangles: Ints,
-    groups: Ints,
+    points: Float64Array,
+    triangles: Int32Array,
+    groups: Int32Array,
     group_count: int,
-    other_points: Doubles,
-    other_triangles: Ints,
+    other_points: Float64Array,
+    other_triangles: Int32Array,
     up: float,
     threads: int = ...,
     progress: Callable[[float], None] | None = ...,
-) -> Doubles: ...
+) -> Float64Array: ...
 def sum_heights(
-    points: Doubles,
-    triangles: Ints,
-    heights: Doubles,
-    groups: Ints,
+    points: Float64Array,
+    triangles: Int32Array,
+    heights: Float64Array,
+    groups: Int32Array,
     group_count: int,
     up: float,
-) -> Doubles: ...
+) -> Float64Array: ...
 def sum_areas(
-    points: Doubles,
-    triangles: Ints,
-    groups: Ints,
+    points: Float64Array,
+    triangles: Int32Array,
+    groups: Int32Array,
     group_count: int,
-) -> Doubles: ...
+) -> Float64Array: ...
 def overlay(
-    points: Doubles,
-    triangles: Ints,
-    other_points: Doubles,
-    other_triangles: Ints,
+    points: Float64Array,
+    triangles: Int32Array,
+    other_points: Float64Array,
+    other_triangles: Int32Array,
 ) -> tuple[
-    Doubles,
-    Ints,
-    Longs,
-    Ints,
-    Ints,
+    Float64Array,
+    Int32Array,
+    Int64Array,
+    Int32Array,
+    Int32Array,
 ]: ...
 def stage_sums(
-    points: Doubles,
-    triangles: Ints,
-    levels: Doubles,
+    points: Float64Array,
+    triangles: Int32Array,
+    levels: Float64Array,
     up: float,
-) -> Doubles: ...
+) -> Float64Array: ...
 def triangle_normals(
-    points: Doubles,
-    triangles: Ints,
+    points: Float64Array,
+    triangles: Int32Array,
     threads: int = ...,
-) -> tuple[Doubles, Ints]: ...
+) -> tuple[Float64Array, Int32Array]: ...
 def vertex_normals(
-    points: Doubles,
-    triangles: Ints,
-    normals: Doubles,
-) -> Doubles: ...
+    points: Float64Array,
+    triangles: Int32Array,
+    normals: Float64Array,
+) -> Float64Array: ...
 def fit_quadratics(
-    points: Doubles,
-    triangles: Ints,
-    east: Doubles,
-    north: Doubles,
+    points: Float64Array,
+    triangles: Int32Array,
+    east: Float64Array,
+    north: Float64Array,
     up: float,
     threads: int = ...,
-) -> Doubles: ...
+) -> Float64Array: ...
 def find_seen_parts(
-    points: Doubles,
-    triangles: Ints,
-    neighbors: Ints,
-    eye: Doubles,
+    points: Float64Array,
+    triangles: Int32Array,
+    neighbors: Int32Array,
+    eye: Float64Array,
     target_height: float,
     threads: int = ...,
-) -> tuple[Bytes, Longs, Ints, Bytes, Doubles, Longs]: ...
+) -> tuple[UInt8Array, Int64Array, Int32Array, UInt8Array, Float64Array, Int64Array]: ...
 def find_seen_vertices(
-    points: Doubles,
-    triangles: Ints,
-    neighbors: Ints,
-    wanted: Flags,
-    eye: Doubles,
+    points: Float64Array,
+    triangles: Int32Array,
+    neighbors: Int32Array,
+    wanted: BoolArray,
+    eye: Float64Array,
     target_height: float,
     radius: float,
     fall: float,
     threads: int = ...,
-) -> Bytes: ...
-def measure_neighbors(points: Doubles, triangles: Ints) -> Doubles: ...
+) -> UInt8Array: ...
+def measure_neighbors(points: Float64Array, triangles: Int32Array) -> Float64Array: ...
 def shade_planes(
-    normals: Doubles,
+    normals: Float64Array,
     east: float,
     north: float,
     up: float,
     darkest: int,
     brightest: int,
-) -> Bytes: ...
+) -> UInt8Array: ...
 def densify(
-    seeds: Doubles,
-    points: Doubles,
-    is_candidate: Flags,
+    seeds: Float64Array,
+    points: Float64Array,
+    is_candidate: BoolArray,
     sine: float,
     distance: float,
     full_edge: float,
     progress: Callable[[float], None] | None = None,
-) -> tuple[Doubles, Doubles]: ...
+) -> tuple[Float64Array, Float64Array]: ...
 def simplify_cells(
-    x: Doubles,
-    y: Doubles,
-    z: Doubles,
-    vertex_cells: Ints,
-    vertices: Doubles,
-    triangles: Ints,
-    neighbors: Ints,
-    fixed: Flags,
+    x: Float64Array,
+    y: Float64Array,
+    z: Float64Array,
+    vertex_cells: Int32Array,
+    vertices: Float64Array,
+    triangles: Int32Array,
+    neighbors: Int32Array,
+    fixed: BoolArray,
     tolerance: float,
     most: int,
     prunes: bool,
     path: str = ...,
-) -> tuple[Ints, int]: ...
-def measure_cells(z: Doubles, cells: Ints, elevations: Doubles, triangles: Ints) -> Doubles: ...
+) -> tuple[Int32Array, int]: ...
+def measure_cells(
+    z: Float64Array, cells: Int32Array, elevations: Float64Array, triangles: Int32Array
+) -> Float64Array: ...
 
 class FallingSurface:
     def __init__(
         self,
-        points: Doubles,
-        triangles: Ints,
-        neighbors: Ints,
-        signs: NDArray[np.int8],
-        values: Doubles,
-        levels: tuple[Doubles, Longs, Longs, Longs, Longs] | None,
+        points: Float64Array,
+        triangles: Int32Array,
+        neighbors: Int32Array,
+        signs: Int8Array,
+        values: Float64Array,
+        levels: tuple[Float64Array, Int64Array, Int64Array, Int64Array, Int64Array] | None,
     ) -> None: ...
-    def bases_of(self, triangles: Longs) -> tuple[Longs, Doubles, Flags]: ...
-    def cut_strips(self, most: int) -> tuple[Longs, Doubles]: ...
-    def measure_strips(self, offsets: Longs, starts: Doubles, areas: Doubles) -> Doubles: ...
-    def link_strips(self, offsets: Longs, starts: Doubles, grounds: Ints) -> tuple[Ints, Ints]: ...
+    def bases_of(self, triangles: Int64Array) -> tuple[Int64Array, Float64Array, BoolArray]: ...
+    def cut_strips(self, most: int) -> tuple[Int64Array, Float64Array]: ...
+    def measure_strips(
+        self, offsets: Int64Array, starts: Float64Array, areas: Float64Array
+    ) -> Float64Array: ...
+    def link_strips(
+        self, offsets: Int64Array, starts: Float64Array, grounds: Int32Array
+    ) -> tuple[Int32Array, Int32Array]: ...
     def link_vertices(
-        self, is_boundary: Flags, strip_count: int, grounds: Ints
-    ) -> tuple[Ints, Ints, Ints]: ...
+        self, is_boundary: BoolArray, strip_count: int, grounds: Int32Array
+    ) -> tuple[Int32Array, Int32Array, Int32Array]: ...
 
-def find_ends(nexts: Ints) -> Ints: ...
-def accumulate(nexts: Ints, totals: Doubles) -> None: ...
+def find_ends(nexts: Int32Array) -> Int32Array: ...
+def accumulate(nexts: Int32Array, totals: Float64Array) -> None: ...
 def sum_channels(
-    uppers: Ints,
-    nexts: Ints,
-    totals: Doubles,
+    uppers: Int32Array,
+    nexts: Int32Array,
+    totals: Float64Array,
     vertex_count: int,
-) -> tuple[Ints, Doubles]: ...
+) -> tuple[Int32Array, Float64Array]: ...
 def cut_cells(
-    corners: Ints,
-    ranges: Longs,
+    corners: Int32Array,
+    ranges: Int64Array,
     first_place: int,
-    offsets: Longs,
-    lower: Ints,
-    upper: Ints,
-) -> tuple[Longs, Longs, Ints]: ...
+    offsets: Int64Array,
+    lower: Int32Array,
+    upper: Int32Array,
+) -> tuple[Int64Array, Int64Array, Int32Array]: ...

@@ -10,8 +10,7 @@ with hold_interrupts():
     from . import _core
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    from ..arrays import Float64Array, Int32Array, Int64Array
 
 __all__ = [
     "SUMS",
@@ -107,18 +106,18 @@ class OverlayMesh(NamedTuple):
         Of the first and of the second surface, that the cell is part of.
     """
 
-    vertices: NDArray[np.float64]
-    origins: NDArray[np.int32]
-    offsets: NDArray[np.int64]
-    corners: NDArray[np.int32]
-    triangles: NDArray[np.int32]
+    vertices: Float64Array
+    origins: Int32Array
+    offsets: Int64Array
+    corners: Int32Array
+    triangles: Int32Array
 
 
 def overlay(
-    points: NDArray[np.float64],
-    triangles: NDArray[np.int32],
-    other_points: NDArray[np.float64],
-    other_triangles: NDArray[np.int32],
+    points: Float64Array,
+    triangles: Int32Array,
+    other_points: Float64Array,
+    other_triangles: Int32Array,
 ) -> OverlayMesh:
     """Cut two surfaces along the edges of each other, where both are."""
     return OverlayMesh(*_core.overlay(points, triangles, other_points, other_triangles))

@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 
 import tinsmith
+from tinsmith import arrays
+from tinsmith.tin.constraints.polylines import Polylines
 from tinsmith.tin.editing.operations import OPERATIONS
 
 WORKED_ON = {
@@ -54,10 +56,18 @@ def test_a_value_cannot_be_changed(one):
 def test_values_that_hold_arrays_are_equal_only_to_themselves(one):
     """``==`` of arrays is no truth value."""
     family = [one, *(base for base in one.__mro__[1:] if dataclasses.is_dataclass(base))]
-    holds = any("NDArray" in str(field.type) for field in dataclasses.fields(one))
+    holds = any(_is_array(field.type) for field in dataclasses.fields(one))
     if holds or any(base.__eq__ is object.__eq__ for base in family[1:]):
         assert one.__eq__ is object.__eq__
         assert one.__hash__ is object.__hash__
+
+
+def _is_array(annotation):
+    return any(name in str(annotation) for name in ("NDArray", *arrays.__all__))
+
+
+def test_values_that_hold_arrays_are_found():
+    assert _is_array(Polylines.__dataclass_fields__["vertices"].type)
 
 
 def test_all_dataclasses_are_seen():

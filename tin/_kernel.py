@@ -11,10 +11,8 @@ with hold_interrupts():
     from . import _core
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from .._progress import Tell
+    from ..arrays import Float64Array, Int32Array
 
 __all__ = [
     "EXACT_RANGE",
@@ -91,9 +89,9 @@ class Growth(NamedTuple):
     first row at the same place, and vertices are numbered by kept rows.
     """
 
-    triangles: NDArray[np.int32]
-    neighbors: NDArray[np.int32]
-    kept_row: NDArray[np.int32] | None
+    triangles: Int32Array
+    neighbors: Int32Array
+    kept_row: Int32Array | None
 
 
 VECTOR_PATHS: tuple[str, ...] = tuple(_core.vector_paths())
@@ -101,7 +99,7 @@ VECTOR_PATHS: tuple[str, ...] = tuple(_core.vector_paths())
 
 
 def grow(
-    points: NDArray[np.float64],
+    points: Float64Array,
     *,
     method: Method = Method.AUTOMATIC,
     threads: int = 1,

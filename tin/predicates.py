@@ -18,12 +18,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ..arrays import AnyArray, BoolArray, Float64Array, Int8Array, Int64Array
 
 __all__ = [
     "EXACT_RANGE",
@@ -40,7 +40,7 @@ __all__ = [
 EXACT_RANGE = (2.0**-200, 2.0**250)
 """Smallest (but 0) and largest magnitude of a coordinate for which the signs are exact."""
 
-Columns = tuple["NDArray[np.float64]", "NDArray[np.float64]"]
+Columns = tuple["Float64Array", "Float64Array"]
 """Eastings and northings, each contiguous."""
 
 _BLOCK = 1 << 14  # rows at a time: temporary arrays stay in the processor's cache
@@ -61,7 +61,7 @@ _MANTISSA_BITS = 52
 _EXPONENT_BIAS = 1023
 
 
-def columns(points: NDArray[np.float64]) -> Columns:
+def columns(points: Float64Array) -> Columns:
     """Take the eastings and northings out of (n, 3) points."""
     return np.ascontiguousarray(points[:, 0]), np.ascontiguousarray(points[:, 1])
 
@@ -72,7 +72,7 @@ def blocks(count: int) -> Iterator[slice]:
         yield slice(start, min(start + _BLOCK, count))
 
 
-def orientation(xy: Columns, a: NDArray[Any], b: NDArray[Any], c: NDArray[Any]) -> NDArray[np.int8]:
+def orientation(xy: Columns, a: AnyArray, b: AnyArray, c: AnyArray) -> Int8Array:
     """Tell on which side of the line from ``a`` to ``b`` every ``c`` lies.
 
     Parameters
@@ -99,9 +99,7 @@ def orientation(xy: Columns, a: NDArray[Any], b: NDArray[Any], c: NDArray[Any]) 
     return signs
 
 
-def in_circle(
-    xy: Columns, a: NDArray[Any], b: NDArray[Any], c: NDArray[Any], d: NDArray[Any]
-) -> NDArray[np.int8]:
+def in_circle(xy: Columns, a: AnyArray, b: AnyArray, c: AnyArray, d: AnyArray) -> Int8Array:
     """Tell whether every ``d`` lies in the circle through counter-clockwise ``a``, ``b``, ``c``.
 
     Parameters
@@ -127,8 +125,8 @@ def in_circle(
 
 
 def falls_across(
-    points: NDArray[np.float64], a: NDArray[Any], b: NDArray[Any], c: NDArray[Any]
-) -> tuple[NDArray[np.int8], NDArray[np.float64], NDArray[np.float64]]:
+    points: Float64Array, a: AnyArray, b: AnyArray, c: AnyArray
+) -> tuple[Int8Array, Float64Array, Float64Array]:
     """Tell whether the plane through ``a``, ``b``, ``c`` falls across the edge from ``a`` to ``b``.
 
     Parameters
@@ -167,14 +165,14 @@ def falls_across(
     return signs, values, bounds
 
 
-def is_last(xy: Columns, p: NDArray[Any], q: NDArray[Any]) -> NDArray[np.bool_]:
+def is_last(xy: Columns, p: AnyArray, q: AnyArray) -> BoolArray:
     """Tell whether vertex ``p`` comes after ``q`` by easting, then northing."""
     x, y = xy
-    after: NDArray[np.bool_] = (x[p] > x[q]) | ((x[p] == x[q]) & (y[p] > y[q]))
+    after: BoolArray = (x[p] > x[q]) | ((x[p] == x[q]) & (y[p] > y[q]))
     return after
 
 
-def _gather_coordinates(xy: Columns, vertices: NDArray[Any]) -> Columns:
+def _gather_coordinates(xy: Columns, vertices: AnyArray) -> Columns:
     return xy[0].take(vertices), xy[1].take(vertices)
 
 
@@ -182,13 +180,13 @@ def _gather_coordinates(xy: Columns, vertices: NDArray[Any]) -> Columns:
 
 
 def _evaluate_in_circle(
-    adx: NDArray[np.float64],
-    ady: NDArray[np.float64],
-    bdx: NDArray[np.float64],
-    bdy: NDArray[np.float64],
-    cdx: NDArray[np.float64],
-    cdy: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    adx: Float64Array,
+    ady: Float64Array,
+    bdx: Float64Array,
+    bdy: Float64Array,
+    cdx: Float64Array,
+    cdy: Float64Array,
+) -> tuple[Float64Array, Float64Array]:
     """Return the rounded determinant, and its permanent: the same with all terms positive."""
     value = permanent = np.zeros(())
     for x, y, px, py, qx, qy in (
@@ -204,11 +202,11 @@ def _evaluate_in_circle(
 
 
 def _decide(
-    value: NDArray[np.float64],
-    bound: NDArray[np.float64],
-    terms: tuple[tuple[NDArray[np.float64], NDArray[np.float64]], ...],
-    exact_sign: Callable[[NDArray[np.int64]], NDArray[np.int8]],
-) -> NDArray[np.int8]:
+    value: Float64Array,
+    bound: Float64Array,
+    terms: tuple[tuple[Float64Array, Float64Array], ...],
+    exact_sign: Callable[[Int64Array], Int8Array],
+) -> Int8Array:
     """Take the sign of the rounded value where the bound allows, else decide exactly.
 
     ``terms`` are the pairs of coordinates whose differences the exact determinant is made of.
@@ -228,10 +226,10 @@ def _decide(
 
 
 def _decide_exactly(
-    minuends: NDArray[np.float64],
-    subtrahends: NDArray[np.float64],
-    exact_sign: Callable[[NDArray[np.int64]], NDArray[np.int8]],
-) -> NDArray[np.int8]:
+    minuends: Float64Array,
+    subtrahends: Float64Array,
+    exact_sign: Callable[[Int64Array], Int8Array],
+) -> Int8Array:
     """Decide rows on the integers that their (terms, rows) differences are multiples of."""
     high, low = _subtract_exactly(minuends, subtrahends)
     unit = np.minimum(_find_lowest_bit(high), _find_lowest_bit(low)).min(axis=0)
@@ -247,9 +245,7 @@ def _decide_exactly(
     return signs
 
 
-def _subtract_exactly(
-    a: NDArray[np.float64], b: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _subtract_exactly(a: Float64Array, b: Float64Array) -> tuple[Float64Array, Float64Array]:
     """Return the rounded difference and what the rounding left out (Knuth's two-sum)."""
     high = a - b
     b_part = a - high
@@ -260,19 +256,19 @@ def _subtract_exactly(
 _NO_BIT = np.int64(1 << 20)
 
 
-def _find_top_bit(values: NDArray[np.float64]) -> NDArray[np.int64]:
+def _find_top_bit(values: Float64Array) -> Int64Array:
     """Return the exponent of the highest bit of each double."""
     return ((values.view(np.int64) >> _MANTISSA_BITS) & 0x7FF) - _EXPONENT_BIAS
 
 
-def _find_lowest_bit(values: NDArray[np.float64]) -> NDArray[np.int64]:
+def _find_lowest_bit(values: Float64Array) -> Int64Array:
     """Return the exponent of the lowest bit that is set in each double, a large one for 0."""
     mantissa = values.view(np.int64) & ((1 << _MANTISSA_BITS) - 1) | (1 << _MANTISSA_BITS)
     place = _find_top_bit((mantissa & -mantissa).astype(np.float64)) - _MANTISSA_BITS
     return np.where(values == 0.0, _NO_BIT, _find_top_bit(values) + place)
 
 
-def _split(values: NDArray[np.float64], unit: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+def _split(values: Float64Array, unit: Int64Array, count: int) -> Int64Array:
     """Return ``values / 2^unit`` as integers of ``count`` limbs, (terms, count, rows).
 
     Limbs have the sign of their number, lowest first, magnitudes below 2^28.
@@ -287,12 +283,12 @@ def _split(values: NDArray[np.float64], unit: NDArray[np.int64], count: int) -> 
     return limbs
 
 
-def _decide_cross(numbers: NDArray[np.int64]) -> NDArray[np.int8]:
+def _decide_cross(numbers: Int64Array) -> Int8Array:
     acx, acy, bcx, bcy = numbers
     return _find_sign(_multiply(acx, bcy) - _multiply(acy, bcx))
 
 
-def _decide_in_circle(numbers: NDArray[np.int64]) -> NDArray[np.int8]:
+def _decide_in_circle(numbers: Int64Array) -> Int8Array:
     adx, ady, bdx, bdy, cdx, cdy = numbers
     a_term = _multiply(_lift(adx, ady), _multiply_crosswise(bdx, bdy, cdx, cdy))
     b_term = _multiply(_lift(bdx, bdy), _multiply_crosswise(cdx, cdy, adx, ady))
@@ -300,26 +296,26 @@ def _decide_in_circle(numbers: NDArray[np.int64]) -> NDArray[np.int8]:
     return _find_sign(a_term + b_term + c_term)
 
 
-def _decide_fall(numbers: NDArray[np.int64]) -> NDArray[np.int8]:
+def _decide_fall(numbers: Int64Array) -> Int8Array:
     ux, uy, uz, vx, vy, vz = numbers
     along = _carry(_multiply(ux, vx) + _multiply(uy, vy))
     return _find_sign(_multiply(vz, _carry(_lift(ux, uy))) - _multiply(uz, along))
 
 
-def _lift(x: NDArray[np.int64], y: NDArray[np.int64]) -> NDArray[np.int64]:
+def _lift(x: Int64Array, y: Int64Array) -> Int64Array:
     return _multiply(x, x) + _multiply(y, y)
 
 
 def _multiply_crosswise(
-    px: NDArray[np.int64],
-    py: NDArray[np.int64],
-    qx: NDArray[np.int64],
-    qy: NDArray[np.int64],
-) -> NDArray[np.int64]:
+    px: Int64Array,
+    py: Int64Array,
+    qx: Int64Array,
+    qy: Int64Array,
+) -> Int64Array:
     return _multiply(px, qy) - _multiply(qx, py)
 
 
-def _multiply(a: NDArray[np.int64], b: NDArray[np.int64]) -> NDArray[np.int64]:
+def _multiply(a: Int64Array, b: Int64Array) -> Int64Array:
     """Multiply (limbs, rows) integers; the product is carried."""
     product = np.zeros((len(a) + len(b), a.shape[1]), np.int64)
     for place, limb in enumerate(a):
@@ -327,7 +323,7 @@ def _multiply(a: NDArray[np.int64], b: NDArray[np.int64]) -> NDArray[np.int64]:
     return _carry(product)
 
 
-def _carry(number: NDArray[np.int64]) -> NDArray[np.int64]:
+def _carry(number: Int64Array) -> Int64Array:
     """Bring all limbs but the highest into 0 to 2^28, in place; the highest bears the sign."""
     for lower, higher in pairwise(number):
         higher += lower >> _LIMB_BITS
@@ -335,6 +331,6 @@ def _carry(number: NDArray[np.int64]) -> NDArray[np.int64]:
     return number
 
 
-def _find_sign(number: NDArray[np.int64]) -> NDArray[np.int8]:
+def _find_sign(number: Int64Array) -> Int8Array:
     _carry(number)
     return np.where(number[-1] < 0, -1, number.any(axis=0)).astype(np.int8)

@@ -13,7 +13,7 @@ from .._sentences import counted
 from .types import Frozen
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ..arrays import Float64Array, Int8Array, Int32Array, Int64Array
 
 __all__ = [
     "LEFT_OUT",
@@ -148,19 +148,19 @@ class Crossings(NamedTuple):
         What the vertex received.
     """
 
-    vertices: NDArray[np.int32]
-    xy: NDArray[np.float64]
-    lines: NDArray[np.int32]
-    elevations: NDArray[np.float64]
-    vertex_elevations: NDArray[np.float64]
+    vertices: Int32Array
+    xy: Float64Array
+    lines: Int32Array
+    elevations: Float64Array
+    vertex_elevations: Float64Array
 
     @property
-    def heights(self) -> NDArray[np.float64]:
+    def heights(self) -> Float64Array:
         """The same as ``elevations``."""
         return self.elevations
 
     @property
-    def taken(self) -> NDArray[np.float64]:
+    def taken(self) -> Float64Array:
         """The same as ``vertex_elevations``."""
         return self.vertex_elevations
 
@@ -185,18 +185,18 @@ class Overruled(NamedTuple):
     vertex_elevations : (k,) float64 array
     """
 
-    vertices: NDArray[np.int32]
-    lines: NDArray[np.int32]
-    elevations: NDArray[np.float64]
-    vertex_elevations: NDArray[np.float64]
+    vertices: Int32Array
+    lines: Int32Array
+    elevations: Float64Array
+    vertex_elevations: Float64Array
 
     @property
-    def heights(self) -> NDArray[np.float64]:
+    def heights(self) -> Float64Array:
         """The same as ``elevations``."""
         return self.elevations
 
     @property
-    def taken(self) -> NDArray[np.float64]:
+    def taken(self) -> Float64Array:
         """The same as ``vertex_elevations``."""
         return self.vertex_elevations
 
@@ -214,9 +214,9 @@ class Unmended(NamedTuple):
         Smallest angle of each in the plane, degrees.
     """
 
-    triangles: NDArray[np.int32]
-    why: NDArray[np.int8]
-    angles: NDArray[np.float64]
+    triangles: Int32Array
+    why: Int8Array
+    angles: Float64Array
 
     @classmethod
     def none(cls) -> Unmended:
@@ -290,11 +290,11 @@ def _make_none_overruled() -> Overruled:
     return Overruled(_make_no_rows(), _make_no_rows(), np.empty(0), np.empty(0))
 
 
-def _make_no_rows() -> NDArray[np.int32]:
+def _make_no_rows() -> Int32Array:
     return np.empty(0, np.int32)
 
 
-def _make_no_numbers() -> NDArray[np.float64]:
+def _make_no_numbers() -> Float64Array:
     return np.empty(0)
 
 
@@ -355,14 +355,14 @@ class Report(Frozen):
     n_triangles: int
     duplicates: str = "mean"
     snap: float = 0.0
-    merged_vertices: NDArray[np.int32] = field(default_factory=_make_no_rows)
-    merged_offsets: NDArray[np.int32] = field(default_factory=lambda: np.zeros(1, np.int32))
-    merged_rows: NDArray[np.int32] = field(default_factory=_make_no_rows)
-    merged_elevations: NDArray[np.float64] = field(default_factory=_make_no_numbers)
-    merged_shifts: NDArray[np.float64] = field(default_factory=_make_no_numbers)
-    vertex_elevations: NDArray[np.float64] = field(default_factory=_make_no_numbers)
-    left_out_rows: NDArray[np.int32] = field(default_factory=_make_no_rows)
-    left_out_why: NDArray[np.int8] = field(default_factory=lambda: np.empty(0, np.int8))
+    merged_vertices: Int32Array = field(default_factory=_make_no_rows)
+    merged_offsets: Int32Array = field(default_factory=lambda: np.zeros(1, np.int32))
+    merged_rows: Int32Array = field(default_factory=_make_no_rows)
+    merged_elevations: Float64Array = field(default_factory=_make_no_numbers)
+    merged_shifts: Float64Array = field(default_factory=_make_no_numbers)
+    vertex_elevations: Float64Array = field(default_factory=_make_no_numbers)
+    left_out_rows: Int32Array = field(default_factory=_make_no_rows)
+    left_out_why: Int8Array = field(default_factory=lambda: np.empty(0, np.int8))
     n_lines: int = 0
     line_labels: tuple[str, ...] = ()
     crossings: Crossings = field(default_factory=Crossings.none)
@@ -374,7 +374,7 @@ class Report(Frozen):
     simplification: Simplification | None = None
 
     def after_edits(
-        self, vertex_of: NDArray[np.int32], n_vertices: int, n_triangles: int, edits: Sequence[Edit]
+        self, vertex_of: Int32Array, n_vertices: int, n_triangles: int, edits: Sequence[Edit]
     ) -> Report:
         """Return the report of a TIN that was not built by us, whose rows have these vertices.
 
@@ -398,7 +398,7 @@ class Report(Frozen):
         )
         return report.with_removed(vertex_of)
 
-    def with_removed(self, vertex_of: NDArray[np.int32], why: str = "removed by an edit") -> Report:
+    def with_removed(self, vertex_of: Int32Array, why: str = "removed by an edit") -> Report:
         """Return the report with the rows that have no vertex; those that are new, and why.
 
         Examples
@@ -415,7 +415,7 @@ class Report(Frozen):
         codes[before] = self.left_out_why[np.searchsorted(self.left_out_rows, lost[before])]
         return replace(self, left_out_rows=lost, left_out_why=codes)
 
-    def with_rows(self, rows: NDArray[np.int64], n_rows: int) -> Report:
+    def with_rows(self, rows: Int64Array, n_rows: int) -> Report:
         """Return the report with row ``i`` called ``rows[i]``; those between were removed.
 
         Examples
@@ -468,12 +468,12 @@ class Report(Frozen):
         return replace(self, n_lines=len(labels), line_labels=tuple(labels))
 
     @property
-    def merged_heights(self) -> NDArray[np.float64]:
+    def merged_heights(self) -> Float64Array:
         """The same as ``merged_elevations``."""
         return self.merged_elevations
 
     @property
-    def vertex_heights(self) -> NDArray[np.float64]:
+    def vertex_heights(self) -> Float64Array:
         """The same as ``vertex_elevations``."""
         return self.vertex_elevations
 
@@ -510,7 +510,7 @@ class Report(Frozen):
         )
 
     def renumber(
-        self, number: NDArray[np.int32], n_rows: int, n_vertices: int, n_triangles: int
+        self, number: Int32Array, n_rows: int, n_vertices: int, n_triangles: int
     ) -> Report:
         """Return the report with vertex ``v`` of the lines' account called ``number[v]``.
 

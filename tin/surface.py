@@ -30,8 +30,9 @@ from .validation.vertices import as_vertex, as_vertex_pairs
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ..arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
     from ..crs import CrsLike, UnitLike
     from .building.inputs import BuildInputs
     from .types import Bounds, PointsLike
@@ -116,11 +117,11 @@ class TIN(Editable):
     def __init__(
         self,
         *,
-        points: NDArray[np.float64],
-        triangles: NDArray[np.int32],
-        neighbors: NDArray[np.int32],
-        constrained: NDArray[np.bool_],
-        vertex_of: NDArray[np.int32],
+        points: Float64Array,
+        triangles: Int32Array,
+        neighbors: Int32Array,
+        constrained: BoolArray,
+        vertex_of: Int32Array,
         report: Report,
         lines: Lines | None = None,
         crs: CrsLike | None = None,
@@ -218,27 +219,27 @@ class TIN(Editable):
         return self._current.triangulation
 
     @property
-    def points(self) -> NDArray[np.float64]:
+    def points(self) -> Float64Array:
         """Easting, northing, elevation of the vertices, (n, 3) array."""
         return self._current.triangulation.points
 
     @property
-    def triangles(self) -> NDArray[np.int32]:
+    def triangles(self) -> Int32Array:
         """Vertices of each triangle, counter-clockwise, (m, 3) array."""
         return self._current.triangulation.triangles
 
     @property
-    def neighbors(self) -> NDArray[np.int32]:
+    def neighbors(self) -> Int32Array:
         """The triangle across the edge opposite each corner, (m, 3) array; -1 outside."""
         return self._current.triangulation.neighbors
 
     @property
-    def constrained(self) -> NDArray[np.bool_]:
+    def constrained(self) -> BoolArray:
         """Whether that edge is a breakline, boundary or hole, (m, 3) array."""
         return self._current.triangulation.constrained
 
     @property
-    def vertex_of(self) -> NDArray[np.int32]:
+    def vertex_of(self) -> Int32Array:
         """The vertex that stands for each input row, (n_input,) array; -1 for none."""
         return self._current.vertex_of
 
@@ -263,7 +264,7 @@ class TIN(Editable):
         return self._elevation_unit
 
     @property
-    def attributes(self) -> Mapping[str, NDArray[Any]]:
+    def attributes(self) -> Mapping[str, AnyArray]:
         """Further columns of the vertices, such as ``"number"``, those of the survey.
 
         The value of a vertex is that of the first row that it stands for. Vertices that no such
@@ -284,7 +285,7 @@ class TIN(Editable):
         return Attributes(self._row_attributes, lambda: version.first_rows)
 
     @property
-    def row_attributes(self) -> Mapping[str, NDArray[Any]]:
+    def row_attributes(self) -> Mapping[str, AnyArray]:
         """Further columns of the input rows; those that edits inserted, behind them, have none."""
         return dict(self._row_attributes)
 
@@ -319,7 +320,7 @@ class TIN(Editable):
 
     def transform(
         self,
-        function: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+        function: Callable[[Float64Array], Float64Array],
         *,
         crs: CrsLike | None = None,
         z_unit: UnitLike | None = None,
@@ -382,15 +383,13 @@ class TIN(Editable):
             inputs=inputs,
         )
 
-    def _choose_attributes(self, rows: NDArray[np.int64] | None) -> Mapping[str, NDArray[Any]]:
+    def _choose_attributes(self, rows: Int64Array | None) -> Mapping[str, AnyArray]:
         """Return the attributes of some rows, None for all."""
         if rows is None:
             return self._row_attributes
         return dict(Attributes(self._row_attributes, lambda: rows))
 
-    def _keep_triangles(
-        self, points: NDArray[np.float64], crs: CRS | None, unit: Unit | None
-    ) -> TIN:
+    def _keep_triangles(self, points: Float64Array, crs: CRS | None, unit: Unit | None) -> TIN:
         """Return the same triangles at other places, all turned round where the map is mirrored."""
         made = type(self).from_triangles(
             points, self.triangles, constrained=self.constrained, crs=crs, z_unit=unit
@@ -410,12 +409,12 @@ class TIN(Editable):
         return self._current.triangulation.bounds
 
     @property
-    def edges(self) -> NDArray[np.int32]:
+    def edges(self) -> Int32Array:
         """Every edge once, (k, 2) vertex pairs."""
         return self._current.triangulation.edges
 
     @property
-    def boundary(self) -> list[NDArray[np.int32]]:
+    def boundary(self) -> list[Int32Array]:
         """Rings of vertices around the surface, which is on their left; an outer one first.
 
         A surface of several parts, or with holes, has several.
@@ -425,7 +424,7 @@ class TIN(Editable):
     rings = boundary
 
     @property
-    def hull(self) -> NDArray[np.int32]:
+    def hull(self) -> Int32Array:
         """Vertices on the convex hull, counter-clockwise, those within its edges too.
 
         The same as the boundary only where the surface fills its hull.
@@ -433,12 +432,12 @@ class TIN(Editable):
         return self._current.triangulation.hull
 
     @property
-    def triangle_areas(self) -> NDArray[np.float64]:
+    def triangle_areas(self) -> Float64Array:
         """Area of each triangle in the plane, (m,) array, CRS units squared."""
         return self._current.triangulation.triangle_areas
 
     @property
-    def triangle_surface_areas(self) -> NDArray[np.float64]:
+    def triangle_surface_areas(self) -> Float64Array:
         """Area of each triangle in space, (m,) array, CRS units squared, elevations converted.
 
         Raises CrsError where coordinates are longitude and latitude.
@@ -457,7 +456,7 @@ class TIN(Editable):
         return float(self.triangle_surface_areas.sum())
 
     @property
-    def triangle_normals(self) -> NDArray[np.float64]:
+    def triangle_normals(self) -> Float64Array:
         """Upward unit normal of each triangle, (m, 3) array; elevations in CRS units.
 
         Raises CrsError where coordinates are longitude and latitude.
@@ -472,7 +471,7 @@ class TIN(Editable):
         return seal(_with_length_one(self._current.triangulation.normals(scale)))
 
     @property
-    def vertex_normals(self) -> NDArray[np.float64]:
+    def vertex_normals(self) -> Float64Array:
         """Upward unit normal at each vertex, (n, 3) array; elevations in CRS units.
 
         It is the mean of the normals of its triangles, weighted by their areas in space; NaN at a
@@ -490,7 +489,7 @@ class TIN(Editable):
 
     # ---------------------------------------------------------------- queries
 
-    def locate(self, xy: ArrayLike) -> NDArray[np.int32]:
+    def locate(self, xy: ArrayLike) -> Int32Array:
         """Find the triangle that holds each place.
 
         Parameters
@@ -535,7 +534,7 @@ class TIN(Editable):
         *,
         extrapolate: Extrapolation | None = ...,
         threads: int | None = ...,
-    ) -> NDArray[np.float64]: ...
+    ) -> Float64Array: ...
     @overload
     def interpolate(
         self,
@@ -545,7 +544,7 @@ class TIN(Editable):
         method: InterpolationMethod = ...,
         extrapolate: Extrapolation | None = ...,
         threads: int | None = ...,
-    ) -> NDArray[np.float64]: ...
+    ) -> Float64Array: ...
     def interpolate(
         self,
         xy: Any,
@@ -657,7 +656,7 @@ class TIN(Editable):
         ).reshape(shape)
         return found if shape else float(found)
 
-    def closest_vertex(self, xy: ArrayLike) -> NDArray[np.int32]:
+    def closest_vertex(self, xy: ArrayLike) -> Int32Array:
         """Find the vertex nearest to each place, in the plane.
 
         Parameters
@@ -692,7 +691,7 @@ class TIN(Editable):
 
     # ---------------------------------------------------------------- connections
 
-    def vertex_triangles(self, vertex: int) -> NDArray[np.int32]:
+    def vertex_triangles(self, vertex: int) -> Int32Array:
         """Return the triangles around a vertex, counter-clockwise.
 
         Parameters
@@ -724,7 +723,7 @@ class TIN(Editable):
         surface = self._current.triangulation
         return surface.turn_about(as_vertex(vertex, len(surface.points)))[0]
 
-    def vertex_neighbors(self, vertex: int) -> NDArray[np.int32]:
+    def vertex_neighbors(self, vertex: int) -> Int32Array:
         """Return the vertices that edges join to a vertex, counter-clockwise.
 
         Parameters
@@ -751,7 +750,7 @@ class TIN(Editable):
         surface = self._current.triangulation
         return surface.turn_about(as_vertex(vertex, len(surface.points)))[1]
 
-    def edge_triangles(self, a: ArrayLike, b: ArrayLike) -> NDArray[np.int32]:
+    def edge_triangles(self, a: ArrayLike, b: ArrayLike) -> Int32Array:
         """Return the triangles on the two sides of edges.
 
         Parameters
@@ -782,7 +781,7 @@ class TIN(Editable):
         surface = self._current.triangulation
         return surface.find_edges(*as_vertex_pairs(a, b, len(surface.points)))
 
-    def is_edge(self, a: ArrayLike, b: ArrayLike) -> NDArray[np.bool_]:
+    def is_edge(self, a: ArrayLike, b: ArrayLike) -> BoolArray:
         """Tell which pairs of vertices are joined by an edge.
 
         Parameters
@@ -982,7 +981,7 @@ class TIN(Editable):
         return stream
 
 
-def _have_same_values(one: Mapping[str, NDArray[Any]], other: Mapping[str, NDArray[Any]]) -> bool:
+def _have_same_values(one: Mapping[str, AnyArray], other: Mapping[str, AnyArray]) -> bool:
     """Whether columns have the same names and values; what is missing is the same."""
     if list(one) != list(other):
         return False
@@ -994,9 +993,9 @@ def _have_same_values(one: Mapping[str, NDArray[Any]], other: Mapping[str, NDArr
     )
 
 
-def _with_length_one(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+def _with_length_one(vectors: Float64Array) -> Float64Array:
     """Return vectors scaled to length 1; NaN for those without a direction."""
     longest = np.abs(vectors).max(axis=1, keepdims=True)
     scaled = np.divide(vectors, longest, out=np.full_like(vectors, np.nan), where=longest > 0)
-    unit: NDArray[np.float64] = scaled / np.linalg.norm(scaled, axis=1, keepdims=True)
+    unit: Float64Array = scaled / np.linalg.norm(scaled, axis=1, keepdims=True)
     return unit

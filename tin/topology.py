@@ -13,7 +13,7 @@ Numbering, used everywhere::
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from . import _kernel
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from numpy.typing import NDArray
+    from ..arrays import AnyArray, BoolArray, Int32Array, Int64Array
 
 __all__ = [
     "NO_NEIGHBOR",
@@ -48,7 +48,7 @@ __all__ = [
 NO_NEIGHBOR = -1
 
 
-def directed_edges(triangles: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def directed_edges(triangles: Int32Array) -> tuple[Int64Array, Int64Array]:
     """Return start and end vertex, (m, 3) each, of the edge opposite every corner."""
     return (
         triangles[:, [1, 2, 0]].astype(np.int64),
@@ -57,8 +57,8 @@ def directed_edges(triangles: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDA
 
 
 def ends(
-    triangles: NDArray[np.int32], triangle: NDArray[np.int64], corner: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    triangles: Int32Array, triangle: Int64Array, corner: Int64Array
+) -> tuple[Int64Array, Int64Array]:
     """Return start and end vertex of the edges opposite some corners of some triangles."""
     return (
         triangles[triangle, (corner + 1) % 3].astype(np.int64),
@@ -66,7 +66,7 @@ def ends(
     )
 
 
-def edges_at(triangles: NDArray[np.int32], is_chosen: NDArray[np.bool_]) -> NDArray[np.int32]:
+def edges_at(triangles: Int32Array, is_chosen: BoolArray) -> Int32Array:
     """Return the edges opposite the chosen corners, (k, 2) vertex pairs, triangle by triangle.
 
     Parameters
@@ -80,16 +80,14 @@ def edges_at(triangles: NDArray[np.int32], is_chosen: NDArray[np.bool_]) -> NDAr
     )
 
 
-def find_boundary_vertices(
-    triangles: NDArray[np.int32], neighbors: NDArray[np.int32], count: int
-) -> NDArray[np.bool_]:
+def find_boundary_vertices(triangles: Int32Array, neighbors: Int32Array, count: int) -> BoolArray:
     """Tell which of so many vertices lie on the boundary of the surface, or of a hole in it."""
     is_boundary = np.zeros(count, np.bool_)
     is_boundary[edges_at(triangles, neighbors == NO_NEIGHBOR)] = True
     return is_boundary
 
 
-def edge_keys(pairs: NDArray[Any], n_vertices: int) -> NDArray[np.int64]:
+def edge_keys(pairs: AnyArray, n_vertices: int) -> Int64Array:
     """Return one number for each edge, whatever its direction: smaller end * n + larger end.
 
     Parameters
@@ -101,14 +99,12 @@ def edge_keys(pairs: NDArray[Any], n_vertices: int) -> NDArray[np.int64]:
     return _make_keys(pairs[..., 0].astype(np.int64), pairs[..., 1].astype(np.int64), n_vertices)
 
 
-def _make_keys(
-    start: NDArray[np.int64], end: NDArray[np.int64], n_vertices: int
-) -> NDArray[np.int64]:
-    keys: NDArray[np.int64] = np.minimum(start, end) * n_vertices + np.maximum(start, end)
+def _make_keys(start: Int64Array, end: Int64Array, n_vertices: int) -> Int64Array:
+    keys: Int64Array = np.minimum(start, end) * n_vertices + np.maximum(start, end)
     return keys
 
 
-def neighbors_of(triangles: NDArray[np.int32], n_vertices: int) -> NDArray[np.int32]:
+def neighbors_of(triangles: Int32Array, n_vertices: int) -> Int32Array:
     """Match the edges of counter-clockwise triangles.
 
     Parameters
@@ -132,7 +128,7 @@ def neighbors_of(triangles: NDArray[np.int32], n_vertices: int) -> NDArray[np.in
     return neighbors
 
 
-def _require_manifold(triangles: NDArray[np.int32], n_vertices: int) -> None:
+def _require_manifold(triangles: Int32Array, n_vertices: int) -> None:
     starts, ends = directed_edges(triangles)
     keys = _make_keys(starts, ends, n_vertices).ravel()
     forward = (starts < ends).ravel()
@@ -153,21 +149,19 @@ def _require_manifold(triangles: NDArray[np.int32], n_vertices: int) -> None:
         )
 
 
-def _get_edge(triangles: NDArray[np.int32], slot: int) -> tuple[int, int]:
+def _get_edge(triangles: Int32Array, slot: int) -> tuple[int, int]:
     triangle, corner = divmod(slot, 3)
     return int(triangles[triangle, (corner + 1) % 3]), int(triangles[triangle, (corner + 2) % 3])
 
 
-def edges(triangles: NDArray[np.int32], neighbors: NDArray[np.int32]) -> NDArray[np.int32]:
+def edges(triangles: Int32Array, neighbors: Int32Array) -> Int32Array:
     """Return every edge once, as a (k, 2) int32 array of vertex pairs."""
     across = np.arange(len(triangles), dtype=np.int32)[:, None]
     once = (neighbors == NO_NEIGHBOR) | (neighbors > across)
     return np.stack([triangles[:, [1, 2, 0]][once], triangles[:, [2, 0, 1]][once]], axis=1)
 
 
-def boundary_rings(
-    triangles: NDArray[np.int32], neighbors: NDArray[np.int32]
-) -> list[NDArray[np.int32]]:
+def boundary_rings(triangles: Int32Array, neighbors: Int32Array) -> list[Int32Array]:
     """Return the boundary as closed vertex rings (first vertex not repeated), interior on the left.
 
     At a vertex where two rings touch, they are kept apart by turning about the vertex through
@@ -178,9 +172,7 @@ def boundary_rings(
     return [start[a:b] for a, b in pairwise(offsets.tolist())]
 
 
-def boundary_walks(
-    triangles: NDArray[np.int32], neighbors: NDArray[np.int32]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def boundary_walks(triangles: Int32Array, neighbors: Int32Array) -> tuple[Int64Array, Int64Array]:
     """Return the boundary edges, ring by ring, as in :func:`boundary_rings`.
 
     Returns
@@ -208,9 +200,7 @@ def boundary_walks(
     return edge[np.array(order, np.int64)], np.array(offsets, np.int64)
 
 
-def _find_next_on_boundary(
-    triangles: NDArray[np.int32], neighbors: NDArray[np.int32]
-) -> NDArray[np.int64]:
+def _find_next_on_boundary(triangles: Int32Array, neighbors: Int32Array) -> Int64Array:
     """Return for every boundary edge the next one, both as 3 * triangle + corner.
 
     It is found by turning about the end of the edge, through the triangles inside.
@@ -245,12 +235,12 @@ class HalfEdges(NamedTuple):
     offsets : (n + 1,) int64 array
     """
 
-    keys: NDArray[np.int64]
-    triangles: NDArray[np.int32]
-    offsets: NDArray[np.int64]
+    keys: Int64Array
+    triangles: Int32Array
+    offsets: Int64Array
 
 
-def sort_half_edges(triangles: NDArray[np.int32], n_vertices: int) -> HalfEdges:
+def sort_half_edges(triangles: Int32Array, n_vertices: int) -> HalfEdges:
     """Sort the edges of counter-clockwise triangles by their start and their end."""
     start, end = directed_edges(triangles)
     keys = (start * n_vertices + end).ravel()
@@ -263,9 +253,7 @@ def sort_half_edges(triangles: NDArray[np.int32], n_vertices: int) -> HalfEdges:
     )
 
 
-def find_triangles(
-    edges: HalfEdges, start: NDArray[np.int64], end: NDArray[np.int64]
-) -> NDArray[np.int32]:
+def find_triangles(edges: HalfEdges, start: Int64Array, end: Int64Array) -> Int32Array:
     """Return the triangle on the left of each edge, ``NO_NEIGHBOR`` if there is none."""
     wanted = start * (len(edges.offsets) - 1) + end
     at = np.minimum(np.searchsorted(edges.keys, wanted), len(edges.keys) - 1)
@@ -274,8 +262,8 @@ def find_triangles(
 
 
 def turn_about(
-    triangles: NDArray[np.int32], edges: HalfEdges, vertex: int
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    triangles: Int32Array, edges: HalfEdges, vertex: int
+) -> tuple[Int32Array, Int32Array]:
     r"""Return the triangles around a vertex, and its neighbours, both counter-clockwise.
 
     Each part of the surface that meets in the vertex is turned through from boundary to boundary,
@@ -311,20 +299,18 @@ def turn_about(
 #   owners    0   0   2   2   2
 
 
-def find_offsets(lengths: Iterable[int] | NDArray[Any]) -> NDArray[np.int64]:
+def find_offsets(lengths: Iterable[int] | AnyArray) -> Int64Array:
     """Return where each part of a ragged array begins, and the last one ends."""
     lengths = lengths if isinstance(lengths, np.ndarray) else list(lengths)
     return np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)])
 
 
-def find_owners(offsets: NDArray[Any]) -> NDArray[np.int64]:
+def find_owners(offsets: AnyArray) -> Int64Array:
     """Return for each item of a ragged array the part that it belongs to."""
     return np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
 
 
-def gather(
-    offsets: NDArray[np.int64], parts: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def gather(offsets: Int64Array, parts: Int64Array) -> tuple[Int64Array, Int64Array]:
     """Return where the items of some parts of a ragged array stand, and whose of these each is."""
     begins = offsets[parts]
     chosen = find_offsets(offsets[parts + 1] - begins)

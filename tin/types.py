@@ -12,7 +12,9 @@ from ..errors import OptionError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
+
+    from ..arrays import Float64Array
 
 __all__ = [
     "Bounds",
@@ -82,7 +84,7 @@ class Bounds:
     ymax: float
 
     @classmethod
-    def of(cls, points: NDArray[np.float64]) -> Bounds:
+    def of(cls, points: Float64Array) -> Bounds:
         """Return the bounds of ``points``, an (n, 2) or (n, 3) array with n >= 1.
 
         Examples

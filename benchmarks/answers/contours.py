@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import tinsmith as ts
+from tinsmith.arrays import Float64Array
 from tinsmith.tin import TIN
 
 from ..measure import OURS, Outcome, Result, alternate, find_median
@@ -38,8 +38,6 @@ NOTES = {
 RELATIVE = 1e-9
 ON_A_RASTER = 0.2
 """Lines through scattered points wind more than those through a raster: by less than this share."""
-
-Floats = NDArray[np.float64]
 
 
 def run(n_points: int, *, repeats: int = 3) -> Outcome:
@@ -75,19 +73,19 @@ def run(n_points: int, *, repeats: int = 3) -> Outcome:
     return outcome
 
 
-def hills(x: Floats, y: Floats) -> Floats:
+def hills(x: Float64Array, y: Float64Array) -> Float64Array:
     """Return the elevations of rolling ground, metres."""
     broad = 60 * np.sin(x / 900) * np.cos(y / 1100) + 30 * np.sin(x / 310 + y / 270)
-    elevations: Floats = 300 + broad + 8 * np.sin(x / 70) * np.sin(y / 90)
+    elevations: Float64Array = 300 + broad + 8 * np.sin(x / 70) * np.sin(y / 90)
     return elevations
 
 
-def _ours(tin: TIN, levels: Floats) -> list[Floats]:
+def _ours(tin: TIN, levels: Float64Array) -> list[Float64Array]:
     found = ts.contours(tin, levels=levels)
     return np.split(found.coordinates[:, :2], found.offsets[0][1:-1])
 
 
-def _matplotlib(tin: TIN, levels: Floats) -> Callable[[], list[Floats]]:
+def _matplotlib(tin: TIN, levels: Float64Array) -> Callable[[], list[Float64Array]]:
     """Return the call of what tricontour calls for each level; its preparation is not timed."""
     from matplotlib import _tri
     from matplotlib.tri import Triangulation
@@ -100,7 +98,7 @@ def _matplotlib(tin: TIN, levels: Floats) -> Callable[[], list[Floats]]:
     return lambda: [line for level in levels for line in generator.create_contour(level)[0]]
 
 
-def _contourpy(n_points: int, levels: Floats) -> Callable[[], list[Floats]]:
+def _contourpy(n_points: int, levels: Float64Array) -> Callable[[], list[Float64Array]]:
     from contourpy import contour_generator
 
     x, y = _places(n_points)
@@ -108,13 +106,13 @@ def _contourpy(n_points: int, levels: Floats) -> Callable[[], list[Floats]]:
     return lambda: [line for level in levels for line in generator.lines(level)]
 
 
-def _places(n_points: int) -> tuple[Floats, Floats]:
+def _places(n_points: int) -> tuple[Float64Array, Float64Array]:
     axis = np.linspace(0, SIZE, round(n_points**0.5))
     x, y = np.meshgrid(axis, axis)
     return x, y
 
 
-def _gdal_contour(n_points: int, levels: Floats, folder: Path) -> Callable[[], Path]:
+def _gdal_contour(n_points: int, levels: Float64Array, folder: Path) -> Callable[[], Path]:
     x, y = _places(n_points)
     spacing = float(x[0, 1] - x[0, 0])
     half = spacing / 2
@@ -132,7 +130,7 @@ def _gdal_contour(n_points: int, levels: Floats, folder: Path) -> Callable[[], P
     return call
 
 
-def _read_lines(path: Path) -> list[Floats]:
+def _read_lines(path: Path) -> list[Float64Array]:
     import pyogrio.raw
     import shapely
 
@@ -140,12 +138,12 @@ def _read_lines(path: Path) -> list[Floats]:
     return [shapely.get_coordinates(line) for line in shapely.get_parts(geometries)]
 
 
-def _require_same(ours: list[Floats], theirs: list[Floats], *, is_raster: bool) -> None:
+def _require_same(ours: list[Float64Array], theirs: list[Float64Array], *, is_raster: bool) -> None:
     total, other = (sum(_length(line) for line in lines) for lines in (ours, theirs))
     np.testing.assert_allclose(other, total, rtol=ON_A_RASTER if is_raster else RELATIVE)
     if not is_raster:
         assert sorted(map(len, ours)) == sorted(map(len, theirs)), "other lines"
 
 
-def _length(line: Floats) -> float:
+def _length(line: Float64Array) -> float:
     return float(np.hypot(*np.diff(line, axis=0).T).sum())

@@ -12,9 +12,9 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 import tinsmith as ts
+from tinsmith.arrays import AnyArray, Float64Array
 from tinsmith.tin import TIN
 
 from ..measure import OURS, Outcome, Result, alternate, find_median
@@ -30,8 +30,7 @@ MOST_SLOW_PLACES = 5_000
 
 CELLS_PER_POINT = 16
 
-Floats = NDArray[np.float64]
-Answer = Callable[[Floats], NDArray[Any]]
+Answer = Callable[[Float64Array], AnyArray]
 
 
 class Tool(NamedTuple):
@@ -66,7 +65,7 @@ def run(n_points: int, *, repeats: int = 3) -> Outcome:
 def _measure(
     task: str,
     tin: TIN,
-    xy: Floats,
+    xy: Float64Array,
     tools: dict[str, Tool],
     repeats: int,
     outcome: Outcome,
@@ -90,11 +89,11 @@ def _measure(
         outcome.results.append(Result(SECTION, task, name, counts[name], seconds, times, "", extra))
 
 
-def _call(answer: Answer, xy: Floats) -> Callable[[], NDArray[Any]]:
+def _call(answer: Answer, xy: Float64Array) -> Callable[[], AnyArray]:
     return lambda: answer(xy)
 
 
-def _centers(grid: ts.Grid) -> Floats:
+def _centers(grid: ts.Grid) -> Float64Array:
     rows, columns = grid.shape
     x = grid.bounds.xmin + (np.arange(columns) + 0.5) * grid.spacing
     y = grid.bounds.ymax - (np.arange(rows) + 0.5) * grid.spacing
@@ -145,7 +144,7 @@ def _raster_tools(grid: ts.Grid) -> dict[str, Tool]:
     def ours(tin: TIN) -> Answer:
         fresh = ts.triangulate(tin.points)
 
-        def answer(xy: Floats) -> NDArray[Any]:
+        def answer(xy: Float64Array) -> AnyArray:
             raster = ts.rasterize(fresh, grid=grid, threads=1)
             return np.asarray(raster.bands["elevation"]).ravel()[: len(xy)]
 

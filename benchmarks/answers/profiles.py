@@ -11,9 +11,9 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 import tinsmith as ts
+from tinsmith.arrays import Float64Array, Int64Array
 from tinsmith.tin import TIN
 
 from ..measure import OURS, Outcome, Result, alternate, find_median
@@ -28,8 +28,7 @@ MOST_SECTIONS = 10_000
 SECTION_WIDTH = 20.0
 ROUNDING = 1e-6
 
-Floats = NDArray[np.float64]
-Cut = Callable[[Floats, Floats], Floats]
+Cut = Callable[[Float64Array, Float64Array], Float64Array]
 """Cuts segments (starts, ends) and returns the elevations of all their breaks, sorted."""
 
 
@@ -64,7 +63,7 @@ def run(n_points: int, *, repeats: int = 3) -> Outcome:
 def _measure(
     task: str,
     tin: TIN,
-    segments: tuple[Floats, Floats],
+    segments: tuple[Float64Array, Float64Array],
     tools: dict[str, Tool],
     repeats: int,
     outcome: Outcome,
@@ -86,7 +85,7 @@ def _measure(
         )
 
 
-def _call(cut: Cut, starts: Floats, ends: Floats) -> Callable[[], Floats]:
+def _call(cut: Cut, starts: Float64Array, ends: Float64Array) -> Callable[[], Float64Array]:
     return lambda: cut(starts, ends)
 
 
@@ -94,7 +93,7 @@ def _tinsmith(tin: TIN) -> Cut:
     fresh = TIN.from_triangles(tin.points, tin.triangles)
     fresh.interpolate([[SIZE / 2, SIZE / 2]])  # builds the index
 
-    def cut(starts: Floats, ends: Floats) -> Floats:
+    def cut(starts: Float64Array, ends: Float64Array) -> Float64Array:
         lines = np.stack([starts, ends], axis=1)
         table = ts.profile(fresh, ts.Features.of_lines(lines.reshape(-1, 2), _pairs(len(starts))))
         return np.sort(table["elevation"][table["crossed"] != "line"])
@@ -102,7 +101,7 @@ def _tinsmith(tin: TIN) -> Cut:
     return cut
 
 
-def _pairs(count: int) -> NDArray[np.int64]:
+def _pairs(count: int) -> Int64Array:
     return np.arange(0, 2 * count + 1, 2)
 
 
@@ -112,7 +111,7 @@ def _shapely(tin: TIN) -> Cut:
     edges = tin.edges
     tree = shapely.STRtree(shapely.linestrings(tin.points[edges][:, :, :2]))
 
-    def cut(starts: Floats, ends: Floats) -> Floats:
+    def cut(starts: Float64Array, ends: Float64Array) -> Float64Array:
         lines = shapely.linestrings(np.stack([starts, ends], axis=1))
         line, edge = tree.query(lines, predicate="crosses")
         (a, b), (c, d) = (starts[line], ends[line]), tin.points[edges[edge]].transpose(1, 0, 2)
@@ -122,8 +121,8 @@ def _shapely(tin: TIN) -> Cut:
     return cut
 
 
-def _side(a: Floats, b: Floats, c: Floats) -> Floats:
-    side: Floats = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1])
+def _side(a: Float64Array, b: Float64Array, c: Float64Array) -> Float64Array:
+    side: Float64Array = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1])
     return side - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
 
 
@@ -132,7 +131,7 @@ def _pyvista(tin: TIN) -> Cut:
 
     mesh = pyvista.PolyData.from_regular_faces(tin.points, tin.triangles)
 
-    def cut(starts: Floats, ends: Floats) -> Floats:
+    def cut(starts: Float64Array, ends: Float64Array) -> Float64Array:
         (start,), (end,) = starts, ends
         along = end - start
         found: Any = mesh.slice(normal=(-along[1], along[0], 0.0), origin=(*start, 0.0))

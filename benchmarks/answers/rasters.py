@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import tinsmith as ts
+from tinsmith.arrays import Float64Array
 
 from ..measure import OURS, Outcome, Result, alternate, find_median
 from ..peers.programs import find_present, run_program
@@ -46,7 +46,6 @@ NOTES = {
     WHITEBOX: "points and cells in memory, on all cores",
 }
 
-Floats = NDArray[np.float64]
 Call = Callable[[], Any]
 
 
@@ -105,7 +104,7 @@ def run(n_points: int, *, repeats: int = 3) -> Outcome:
     return outcome
 
 
-def _ours(points: Floats, grid: ts.Grid) -> Call:
+def _ours(points: Float64Array, grid: ts.Grid) -> Call:
     return lambda: ts.rasterize(ts.triangulate(points, threads=1), grid=grid, threads=1)
 
 
@@ -143,7 +142,7 @@ def _gdal_grid(grid: ts.Grid, folder: Path) -> Call:
     return call
 
 
-def _whitebox(points: Floats, grid: ts.Grid, folder: Path) -> Call:
+def _whitebox(points: Float64Array, grid: ts.Grid, folder: Path) -> Call:
     import whitebox_workflows
 
     environment: Any = whitebox_workflows.WbEnvironment()
@@ -162,7 +161,7 @@ def _whitebox(points: Floats, grid: ts.Grid, folder: Path) -> Call:
     return call
 
 
-def _write_points(points: Floats, path: Path) -> None:
+def _write_points(points: Float64Array, path: Path) -> None:
     import pyogrio.raw
     import shapely
 
@@ -176,7 +175,7 @@ def _write_points(points: Floats, path: Path) -> None:
     )
 
 
-def _read_cells(tool: str, answer: Any, folder: Path) -> Floats:
+def _read_cells(tool: str, answer: Any, folder: Path) -> Float64Array:
     """Return elevations, NaN where a tool has none."""
     if tool == OURS:
         return np.asarray(answer.bands["elevation"])
@@ -190,7 +189,7 @@ def _read_cells(tool: str, answer: Any, folder: Path) -> Floats:
         return np.asarray(file.read(1, masked=True).filled(np.nan), np.float64)
 
 
-def _require_same(tool: str, wanted: Floats, found: Floats) -> None:
+def _require_same(tool: str, wanted: Float64Array, found: Float64Array) -> None:
     both = np.isfinite(found) & np.isfinite(wanted)
     assert both.mean() >= LEAST_SHARE, f"{tool} has other cells inside"
     np.testing.assert_allclose(found[both], wanted[both], rtol=0, atol=ROUNDING)

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import tinsmith as ts
+from tinsmith.arrays import BoolArray, Float64Array
 from tinsmith.tin import TIN
 
 from ..measure import OURS, Outcome, Result, alternate, find_median
@@ -31,7 +31,7 @@ LEAST_SHARE = 0.95
 """Of the vertices that must be seen by a peer as by us."""
 
 GDAL = "gdal_viewshed, files"
-Seen = NDArray[np.bool_]
+Seen = BoolArray
 
 
 def run(n_points: int, *, repeats: int = 3) -> Outcome:
@@ -78,7 +78,7 @@ def _make_hills(side: int) -> tuple[TIN, ts.Raster]:
     return ts.triangulate(points), ts.Raster({"elevation": z}, grid, crs="EPSG:32616")
 
 
-def _gdal_viewshed(eye: NDArray[np.float64], folder: Path) -> None:
+def _gdal_viewshed(eye: Float64Array, folder: Path) -> None:
     command = ["gdal_viewshed", "-q", "-cc", "0", "-oz", EYE_HEIGHT, "-ox", eye[0], "-oy", eye[1]]
     run_program([*command, folder / "dem.tif", folder / "seen.tif"])
 
@@ -96,7 +96,7 @@ def _require_alike(ours: Seen, theirs: Seen) -> None:
     assert share >= LEAST_SHARE, f"{GDAL} sees only {share:.1%} of the vertices as we do"
 
 
-def _measure_lines(tin: TIN, eye: NDArray[np.float64], seen: Seen, repeats: int) -> Outcome:
+def _measure_lines(tin: TIN, eye: Float64Array, seen: Seen, repeats: int) -> Outcome:
     rng = np.random.default_rng(1)
     apart = np.flatnonzero((tin.points[:, :2] != eye).any(axis=1))
     count = min(MOST_LINES, len(apart))

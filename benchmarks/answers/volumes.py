@@ -11,7 +11,6 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 import tinsmith as ts
 from tinsmith.tin import TIN
@@ -31,8 +30,6 @@ EXACT = 1e-9
 MOST_CELLS_PER_POINT = 64
 CELLS = "raster cells"
 TASK = "volume: cut and fill between two TINs"
-
-Floats = NDArray[np.float64]
 
 
 class Volumes(NamedTuple):

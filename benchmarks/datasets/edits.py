@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from tinsmith.arrays import Float64Array, Int64Array
 
 from .points import SEED, make_points
 
@@ -20,7 +21,6 @@ __all__ = [
     "make_edit_task",
 ]
 
-Floats = NDArray[np.float64]
 
 EDITS = 1_000
 WHAT = ("insert", "remove", "move", "set_z")
@@ -52,10 +52,10 @@ class EditTask(NamedTuple):
         No point is touched twice.
     """
 
-    points: Floats
-    script: Floats
+    points: Float64Array
+    script: Float64Array
 
-    def afterwards(self) -> Floats:
+    def afterwards(self) -> Float64Array:
         """Return the points after all edits, in the order of a TIN's vertices."""
         what, number = self.script[:, :2].astype(np.int64).T
         points = self.points.copy()
@@ -93,8 +93,8 @@ def make_edit_task(name: str, n: int) -> EditTask:
 
 
 def _make_script(
-    points: Floats, what: NDArray[np.int64], number: NDArray[np.int64], rng: np.random.Generator
-) -> Floats:
+    points: Float64Array, what: Int64Array, number: Int64Array, rng: np.random.Generator
+) -> Float64Array:
     corner, side = points[:, :2].min(axis=0), np.ptp(points[:, :2], axis=0)
     xyz = points[number] + rng.uniform(-STRIDE, STRIDE, (len(what), 3))
     is_new = (what == WHAT.index("insert")) | (what == INSERT_ALL)
@@ -105,7 +105,7 @@ def _make_script(
     return np.column_stack([what, number, vertex, xyz])
 
 
-def _count_removed_before(what: NDArray[np.int64], number: NDArray[np.int64]) -> NDArray[np.int64]:
+def _count_removed_before(what: Int64Array, number: Int64Array) -> Int64Array:
     """Count the smaller numbers that are removed by then: those behind them have moved up."""
     removals = np.flatnonzero(what == WHAT.index("remove"))
     is_earlier = removals < np.arange(len(what))[:, None]

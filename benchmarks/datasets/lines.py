@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tinsmith.arrays import BoolArray, Float64Array, Int64Array
+
 from .points import SEED, UTM_CORNER, lift_to_ground, make_points
 
 __all__ = ["LEAST_POINTS", "LINE_DATASETS", "LineTask", "make_lines"]
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 LEAST_POINTS = 1_000
 BLOCK = 24
@@ -54,14 +54,14 @@ class LineTask(NamedTuple):
         The same, cut at the vertices that lie on them exactly: the edges that a right answer has.
     """
 
-    points: Floats
-    coords: Floats
-    offsets: Ints
-    vertices: Floats
-    segments: Ints
-    steps: Ints
+    points: Float64Array
+    coords: Float64Array
+    offsets: Int64Array
+    vertices: Float64Array
+    segments: Int64Array
+    steps: Int64Array
 
-    def breaklines(self) -> list[Floats]:
+    def breaklines(self) -> list[Float64Array]:
         """Return the lines one by one."""
         return np.split(self.coords, self.offsets[1:-1])
 
@@ -155,7 +155,7 @@ LINE_DATASETS: dict[str, Callable[[int, np.random.Generator], LineTask]] = {
 # -------------------------------------------------------------------------- parts
 
 
-def _place_strips(blocks: int) -> tuple[Floats, NDArray[np.bool_]]:
+def _place_strips(blocks: int) -> tuple[Float64Array, BoolArray]:
     """Lower left corners of strips, lying in every other block and upright in the others."""
     per_block = BLOCK // STRIP
     number = np.arange(blocks * blocks * per_block)
@@ -171,16 +171,16 @@ def _place_strips(blocks: int) -> tuple[Floats, NDArray[np.bool_]]:
 def _put_into_strips(
     along: NDArray[np.generic],
     across: NDArray[np.generic],
-    corners: Floats,
-    is_upright: NDArray[np.bool_],
-) -> Floats:
+    corners: Float64Array,
+    is_upright: BoolArray,
+) -> Float64Array:
     """Put lines, (l, k) each, into their strips: (l, k, 2)."""
     lying = np.stack([along, across], axis=2).astype(np.float64)
     turned = np.where(is_upright[:, None, None], lying[:, :, ::-1], lying)
     return turned + corners[:, None]
 
 
-def _make_hill(count: int, growth: float, rng: np.random.Generator) -> Floats:
+def _make_hill(count: int, growth: float, rng: np.random.Generator) -> Float64Array:
     """Rings about the origin, (count, corners, 2), the innermost first, radius from 10 m."""
     radius = 10.0 * growth ** np.arange(count)[:, None]
     corner = np.arange(RING_CORNERS) + rng.uniform(-0.3, 0.3, (count, RING_CORNERS))
@@ -189,7 +189,7 @@ def _make_hill(count: int, growth: float, rng: np.random.Generator) -> Floats:
     return np.stack([np.cos(angle), np.sin(angle)], axis=2) * (radius * bulge)[:, :, None]
 
 
-def _make_ring_task(hills: list[Floats]) -> LineTask:
+def _make_ring_task(hills: list[Float64Array]) -> LineTask:
     """Make a data set of rings whose heights fall evenly from the middle of each hill."""
     xy = np.concatenate(hills) + UTM_CORNER
     fall = np.concatenate([np.arange(len(rings)) for rings in hills])
@@ -208,7 +208,7 @@ def _make_ring_task(hills: list[Floats]) -> LineTask:
     )
 
 
-def _make_separate_task(points: Floats, xy: Floats) -> LineTask:
+def _make_separate_task(points: Float64Array, xy: Float64Array) -> LineTask:
     """Make a data set of points and lines that share no place; lines are (l, k, 2)."""
     coords = lift_to_ground(xy.reshape(-1, 2))
     segments = _link_neighbors(len(points) + np.arange(len(coords)).reshape(xy.shape[:2]))
@@ -216,16 +216,16 @@ def _make_separate_task(points: Floats, xy: Floats) -> LineTask:
     return LineTask(points, coords, _find_offsets(xy), vertices, segments, segments)
 
 
-def _link_neighbors(numbers: Ints) -> Ints:
+def _link_neighbors(numbers: Int64Array) -> Int64Array:
     """Pairs of neighbours in lines of vertex numbers, (l, k) to (l * (k - 1), 2)."""
     return np.stack([numbers[:, :-1].ravel(), numbers[:, 1:].ravel()], axis=1)
 
 
-def _find_offsets(lines: NDArray[np.generic]) -> Ints:
+def _find_offsets(lines: NDArray[np.generic]) -> Int64Array:
     return np.arange(len(lines) + 1, dtype=np.int64) * lines.shape[1]
 
 
-def _cut_at_lattice(xy: Floats, segments: Ints, columns: int) -> Ints:
+def _cut_at_lattice(xy: Float64Array, segments: Int64Array, columns: int) -> Int64Array:
     """Cut segments between lattice points at the lattice points that lie on them exactly."""
     start, end = segments.T
     rows_down, columns_right = end // columns - start // columns, end % columns - start % columns
@@ -241,10 +241,12 @@ def _cut_at_lattice(xy: Floats, segments: Ints, columns: int) -> Ints:
     return np.concatenate([*done, np.stack([last, end], axis=1)])
 
 
-def _find_between(xy: Floats, start: Ints, inner: Ints, end: Ints) -> NDArray[np.bool_]:
+def _find_between(
+    xy: Float64Array, start: Int64Array, inner: Int64Array, end: Int64Array
+) -> BoolArray:
     """Whether lattice points between two others are on the straight line, in whole numbers."""
     whole = np.ldexp(xy, SHIFTED_BITS).astype(np.int64)
     ux, uy = (whole[inner] - whole[start]).T.astype(object)
     vx, vy = (whole[end] - whole[start]).T.astype(object)
-    is_on: NDArray[np.bool_] = (ux * vy == uy * vx).astype(np.bool_)
+    is_on: BoolArray = (ux * vy == uy * vx).astype(np.bool_)
     return is_on

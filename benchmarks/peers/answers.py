@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tinsmith.arrays import AnyArray, Float64Array, Int64Array
 from tinsmith.tin import TIN, PointsError, check
 from tinsmith.tin.checking.findings import Problem
 
@@ -22,8 +23,7 @@ __all__ = [
     "rank_triangles",
 ]
 
-Floats = NDArray[np.float64]
-Triangles = NDArray[np.int64]
+Triangles = Int64Array
 
 
 EQUAL, AS_MANY = "equal", "as many triangles"
@@ -45,7 +45,7 @@ class Verdict(NamedTuple):
 
 
 def judge_answer(
-    tin: TIN, answer: NDArray[Any], wanted: Triangles, *, steps: Triangles | None = None
+    tin: TIN, answer: AnyArray, wanted: Triangles, *, steps: Triangles | None = None
 ) -> Verdict:
     """Judge an answer.
 
@@ -72,10 +72,10 @@ def judge_answer(
     return _judge_alone(tin, triangles, np.empty((0, 2), np.int64) if steps is None else steps)
 
 
-def make_counting_judge(tin: TIN) -> Callable[[NDArray[Any]], Verdict]:
+def make_counting_judge(tin: TIN) -> Callable[[AnyArray], Verdict]:
     """Return a judge that only counts the triangles: for sets too large to compare."""
 
-    def judge(answer: NDArray[Any]) -> Verdict:
+    def judge(answer: AnyArray) -> Verdict:
         missing = len(tin.triangles) - len(answer)
         text = _describe_loss(missing, len(tin.triangles), 0, len(tin.points))
         return Verdict(missing == 0, text or AS_MANY)
@@ -116,19 +116,19 @@ def _name_problem(problem: Problem) -> str:
     return problem.sentence.rstrip(".")
 
 
-def encode_edges(ends: NDArray[Any]) -> NDArray[np.int64]:
+def encode_edges(ends: AnyArray) -> Int64Array:
     """Return one number for each pair of vertex numbers, the same for both directions."""
     low, high = np.min(ends, axis=-1).astype(np.int64), np.max(ends, axis=-1)
     return low << 32 | high
 
 
-def rank_triangles(triangles: NDArray[Any]) -> Triangles:
+def rank_triangles(triangles: AnyArray) -> Triangles:
     """Return triangles as sorted vertex numbers, one code each, in ascending order."""
     corners = np.sort(triangles.astype(np.int64), axis=1)
     return corners[np.lexsort(corners.T[::-1])]
 
 
-def number_corners(corners: Floats, points: Floats) -> Triangles:
+def number_corners(corners: Float64Array, points: Float64Array) -> Triangles:
     """Find the vertex number of each corner by its coordinates, -1 where there is no such point."""
     order = np.lexsort((points[:, 1], points[:, 0]))
     known = _make_keys(points[order, :2])
@@ -138,6 +138,6 @@ def number_corners(corners: Floats, points: Floats) -> Triangles:
     return found.reshape(-1, 3)
 
 
-def _make_keys(xy: Floats) -> NDArray[np.complex128]:
+def _make_keys(xy: Float64Array) -> NDArray[np.complex128]:
     """Pairs as one value that sorts by x, then y."""
     return np.ascontiguousarray(xy, np.float64).view(np.complex128)[:, 0]

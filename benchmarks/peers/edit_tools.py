@@ -6,7 +6,8 @@ import os
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from tinsmith.arrays import Float64Array, UInt64Array
 
 from ..datasets.edits import INSERT_ALL, WHAT, EditTask
 from ..measure import OURS
@@ -101,7 +102,7 @@ def _make_own_edit_tool(run: Any, renew: Any = _triangulate_first) -> Tool:
 # --------------------------------------------------------------------- startinpy
 
 
-def _sort_for_startinpy(task: EditTask) -> tuple[NDArray[np.float64], list[Any], Any]:
+def _sort_for_startinpy(task: EditTask) -> tuple[Float64Array, list[Any], Any]:
     """Sort points along a curve: in random order startinpy takes half a minute a million."""
     order = np.argsort(_encode_morton(task.points[:, :2]))
     ids = np.empty(len(order), np.int64)
@@ -115,7 +116,7 @@ def _sort_for_startinpy(task: EditTask) -> tuple[NDArray[np.float64], list[Any],
     return task.points[order], edits, batch[np.argsort(_encode_morton(batch[:, :2]))]
 
 
-def _encode_morton(xy: NDArray[np.float64]) -> NDArray[np.uint64]:
+def _encode_morton(xy: Float64Array) -> UInt64Array:
     """Place along a Z-shaped curve through a square about the places."""
     if len(xy) == 0:
         return np.empty(0, np.uint64)

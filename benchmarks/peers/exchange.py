@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tinsmith.arrays import Float64Array
 from tinsmith.tin import TIN
 
 __all__ = [
@@ -21,7 +21,6 @@ __all__ = [
     "write_with_trimesh",
 ]
 
-Floats = NDArray[np.float64]
 _DRIVERS = {".gpkg": "GPKG", ".fgb": "FlatGeobuf", ".shp": "ESRI Shapefile"}
 _SCALE = 0.001
 
@@ -29,7 +28,7 @@ _SCALE = 0.001
 # ------------------------------------------------------------------------------- lidar
 
 
-def write_cloud_with_laspy(points: Floats, path: Path) -> None:
+def write_cloud_with_laspy(points: Float64Array, path: Path) -> None:
     """Write points as LAZ 1.4 of format 6, with millimetres."""
     import laspy
 
@@ -41,7 +40,7 @@ def write_cloud_with_laspy(points: Floats, path: Path) -> None:
     cloud.write(path)
 
 
-def read_cloud_with_laspy(path: Path) -> Floats:
+def read_cloud_with_laspy(path: Path) -> Float64Array:
     """Return the coordinates; laspy decompresses every attribute."""
     import laspy
 
@@ -85,7 +84,7 @@ def write_triangles_with_arrow(tin: TIN, path: Path) -> None:
     frame.to_parquet(path)
 
 
-def read_triangles(path: Path) -> Floats:
+def read_triangles(path: Path) -> Float64Array:
     """Return the corners of the polygons of a layer, (m, 3, 3), in the order of their columns."""
     import shapely
 

@@ -6,8 +6,8 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tinsmith.arrays import Float64Array, Int64Array
 from tinsmith.tin import TIN
 
 __all__ = ["read_with_etree", "write_with_etree"]
@@ -15,7 +15,7 @@ __all__ = ["read_with_etree", "write_with_etree"]
 _SPACE = "http://www.landxml.org/schema/LandXML-1.2"
 
 
-def read_with_etree(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def read_with_etree(path: Path) -> tuple[Float64Array, Int64Array]:
     """Return points, easting first, and triangles by rows, of a file whose ids count from 1."""
     points: list[list[float]] = []
     faces: list[list[int]] = []

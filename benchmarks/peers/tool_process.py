@@ -12,7 +12,8 @@ from types import TracebackType
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
+
+from tinsmith.arrays import AnyArray
 
 from ..cgal import build_harness
 from ..datasets.tasks import write_task
@@ -117,11 +118,11 @@ class ToolProcess:
             return self._timed()
         return first
 
-    def triangles(self) -> NDArray[Any]:
+    def triangles(self) -> AnyArray:
         """Return the last answer: (m, 3) vertex numbers or (m, 3, 2) coordinates."""
         path = self._folder / ("answer.bin" if self._is_cgal else "answer.npy")
         self._ask(f"save {path}", START_SECONDS)
-        made: NDArray[Any] = np.fromfile(path) if self._is_cgal else np.load(path)
+        made: AnyArray = np.fromfile(path) if self._is_cgal else np.load(path)
         path.unlink()
         return made.reshape(-1, 3, 2) if self._is_cgal else made
 

@@ -12,7 +12,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from tinsmith.arrays import AnyArray, Float64Array
 
 __all__ = [
     "ALL_CORES",
@@ -25,7 +26,6 @@ __all__ = [
     "is_cgal",
 ]
 
-Floats = NDArray[np.float64]
 
 CGAL = "CGAL"
 KERNEL = "tinsmith kernel"
@@ -58,9 +58,9 @@ class Tool:
     """
 
     module: str
-    prepare: Callable[[Floats], Any]
+    prepare: Callable[[Float64Array], Any]
     run: Callable[[Any], Any]
-    triangles: Callable[[Any], NDArray[Any]]
+    triangles: Callable[[Any], AnyArray]
     renew: Callable[[Any], Any] = lambda given: given
     output_bytes: Callable[[Any], int] = lambda _: 0
     largest: int = 100_000
@@ -72,24 +72,24 @@ def is_cgal(tool: str) -> bool:
     return tool.startswith(CGAL)
 
 
-def _pass_points(points: Floats) -> Floats:
+def _pass_points(points: Float64Array) -> Float64Array:
     return points
 
 
-def _drop_elevations(points: Floats) -> Floats:
+def _drop_elevations(points: Float64Array) -> Float64Array:
     return np.ascontiguousarray(points[:, :2])
 
 
 # ---------------------------------------------------------------------- tinsmith
 
 
-def _triangulate_points(points: Floats, threads: int | None = 1) -> Any:
+def _triangulate_points(points: Float64Array, threads: int | None = 1) -> Any:
     from tinsmith import triangulate
 
     return triangulate(points, threads=threads)
 
 
-def _grow_only(points: Floats, threads: int | None = 1) -> Any:
+def _grow_only(points: Float64Array, threads: int | None = 1) -> Any:
     from tinsmith.tin import _kernel
     from tinsmith.tin.validation.threads import thread_count
 
@@ -109,23 +109,23 @@ def _count_growth_bytes(growth: Any) -> int:
 # ------------------------------------------------------------------------- peers
 
 
-def _prepare_vertices(points: Floats) -> dict[str, Floats]:
+def _prepare_vertices(points: Float64Array) -> dict[str, Float64Array]:
     return {"vertices": _drop_elevations(points)}
 
 
-def _triangulate_with_triangle(vertices: dict[str, Floats]) -> Any:
+def _triangulate_with_triangle(vertices: dict[str, Float64Array]) -> Any:
     import triangle
 
     return triangle.triangulate(vertices, "Qz")
 
 
-def _triangulate_with_scipy(xy: Floats) -> Any:
+def _triangulate_with_scipy(xy: Float64Array) -> Any:
     from scipy.spatial import Delaunay
 
     return Delaunay(xy)
 
 
-def _triangulate_with_startinpy(points: Floats) -> Any:
+def _triangulate_with_startinpy(points: Float64Array) -> Any:
     import startinpy
 
     made = startinpy.DT()
@@ -134,11 +134,11 @@ def _triangulate_with_startinpy(points: Floats) -> Any:
     return made
 
 
-def _read_startinpy_triangles(made: Any) -> NDArray[Any]:
+def _read_startinpy_triangles(made: Any) -> AnyArray:
     return np.asarray(made.points[:, :2][made.triangles.astype(np.int64)])
 
 
-def _make_multipoint(points: Floats) -> Any:
+def _make_multipoint(points: Float64Array) -> Any:
     import shapely
 
     return shapely.multipoints(points[:, :2])
@@ -150,13 +150,13 @@ def _triangulate_with_geos(multipoint: Any) -> Any:
     return shapely.delaunay_triangles(multipoint)
 
 
-def _read_geos_triangles(collection: Any) -> NDArray[Any]:
+def _read_geos_triangles(collection: Any) -> AnyArray:
     import shapely
 
     return np.asarray(shapely.get_coordinates(collection).reshape(-1, 4, 2)[:, :3])
 
 
-def _make_own_tool(run: Callable[[Floats], Any], output_bytes: Callable[[Any], int]) -> Tool:
+def _make_own_tool(run: Callable[[Float64Array], Any], output_bytes: Callable[[Any], int]) -> Tool:
     return Tool(
         module="tinsmith",
         prepare=_pass_points,

@@ -15,10 +15,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 import tinsmith as ts
+from tinsmith.arrays import Float64Array
 from tinsmith.tin import _kernel
 
 from ..cgal import CgalMissingError, build_harness
@@ -48,8 +46,6 @@ OUR_TOOLS = (OURS, KERNEL, ALL_CORES, KERNEL_ALL_CORES)
 ALL_TOOLS = (*OUR_TOOLS, CGAL, *(name for name in TOOLS if name not in OUR_TOOLS))
 LARGEST_COMPARED = 1_000_000
 """Above this only the numbers of triangles are compared, and ours is checked to level 2."""
-
-Floats = NDArray[np.float64]
 
 
 class Case(NamedTuple):
@@ -154,7 +150,7 @@ def make_result(
     return Result(section, task, tool, count, find_median(process.seconds), runs, found.text, extra)
 
 
-def _measure_work(case: Case, points: Floats) -> Result:
+def _measure_work(case: Case, points: Float64Array) -> Result:
     counts = _kernel.count_work(points)
     per_triangle = {
         name: count / counts["triangles"] for name, count in counts.items() if name != "triangles"
@@ -166,7 +162,7 @@ def _measure_work(case: Case, points: Floats) -> Result:
 
 
 def _judge_all(
-    points: Floats, processes: dict[str, ToolProcess], failures: dict[str, str]
+    points: Float64Array, processes: dict[str, ToolProcess], failures: dict[str, str]
 ) -> dict[str, Verdict]:
     """Return what is to be said of each tool's answer."""
     tin = ts.triangulate(points)

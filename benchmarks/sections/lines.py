@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 import tinsmith as ts
+from tinsmith.arrays import Int64Array
 from tinsmith.tin import TIN
 
 from ..cgal import CgalMissingError, build_harness
@@ -112,8 +112,8 @@ def _measure_lines(
 
 class _Wanted(NamedTuple):
     tin: TIN
-    triangles: NDArray[np.int64]
-    steps: NDArray[np.int64]
+    triangles: Int64Array
+    steps: Int64Array
 
 
 def _prepare_wanted(task: LineTask) -> _Wanted:

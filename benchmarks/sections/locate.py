@@ -9,12 +9,12 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 import tinsmith as ts
+from tinsmith.arrays import AnyArray, Float64Array
 from tinsmith.tin import TIN
 
 from ..measure import OURS, Outcome, Result, alternate, find_median
@@ -29,8 +29,7 @@ SIZE = 1000.0
 MOST_SLOW_QUERIES = 20_000
 """startinpy answers some thousand places a second: it gets no more than these."""
 
-Floats = NDArray[np.float64]
-Answer = Callable[[Floats], NDArray[Any]]
+Answer = Callable[[Float64Array], AnyArray]
 
 
 class Tool(NamedTuple):
@@ -60,7 +59,7 @@ def run(n_points: int = 50_000, n_queries: int = 50_000, *, repeats: int = 3) ->
 
 
 def _measure_queries(
-    task: str, tools: list[Tool], tin: TIN, xy: Floats, repeats: int
+    task: str, tools: list[Tool], tin: TIN, xy: Float64Array, repeats: int
 ) -> list[Result]:
     prepared = {tool.name: _prepare_tool(tool, tin) for tool in tools}
     asked = {tool.name: xy[: tool.most] for tool in tools}
@@ -84,7 +83,7 @@ def _prepare_tool(tool: Tool, tin: TIN) -> tuple[Answer, float]:
     return answer, time.perf_counter() - begin
 
 
-def _prepare_query(answer: Answer, xy: Floats) -> Callable[[], NDArray[Any]]:
+def _prepare_query(answer: Answer, xy: Float64Array) -> Callable[[], AnyArray]:
     return lambda: answer(xy)
 
 
@@ -121,7 +120,7 @@ def _interpolate_with_startinpy(tin: TIN) -> Answer:
     return lambda xy: np.asarray(surface.interpolate({"method": "TIN"}, xy))
 
 
-def _order_in_strips(points: Floats) -> Floats:
+def _order_in_strips(points: Float64Array) -> Float64Array:
     """To and fro in strips: inserted at random, a million points take half a minute."""
     strip = (points[:, 1] / SIZE * np.sqrt(len(points) / 2)).astype(np.int64)
     eastwards = np.where(strip % 2 == 0, points[:, 0], -points[:, 0])

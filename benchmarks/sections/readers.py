@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 import tinsmith as ts
+from tinsmith.arrays import Float32Array, Float64Array
 from tinsmith.tin import TIN
 
 from ..datasets.points import make_points
@@ -40,8 +40,6 @@ OUR_NOTES = {
     LIDAR: "in a child process; four attributes",
     LAYER: "in a child process; joins corners, checks the triangles",
 }
-
-Floats = NDArray[np.float64]
 
 
 class Reader(NamedTuple):
@@ -120,7 +118,7 @@ def _measure_survey(folder: Path, n: int, repeats: int, outcome: Outcome) -> Non
     _measure_readers(SURVEY, path, n, peers, repeats, outcome, require, columns="PNEZD")
 
 
-def _write_pnezd(points: Floats, path: Path) -> None:
+def _write_pnezd(points: Float64Array, path: Path) -> None:
     codes = ("GS", "EP", "TOE", "TOP", "CL")
     with path.open("w", encoding="ascii") as file:
         file.writelines(
@@ -129,17 +127,17 @@ def _write_pnezd(points: Floats, path: Path) -> None:
         )
 
 
-def _swap_axes(points: Floats) -> Floats:
+def _swap_axes(points: Float64Array) -> Float64Array:
     return points[:, [1, 0, 2]]
 
 
-def _read_with_pandas(path: Path) -> Floats:
+def _read_with_pandas(path: Path) -> Float64Array:
     import pandas as pd
 
     return np.asarray(pd.read_csv(path, header=None).iloc[:, 1:4], np.float64)
 
 
-def _read_with_numpy(path: Path) -> Floats:
+def _read_with_numpy(path: Path) -> Float64Array:
     return np.loadtxt(path, delimiter=",", usecols=(1, 2, 3))
 
 
@@ -165,7 +163,7 @@ def _measure_raster(folder: Path, n: int, repeats: int, outcome: Outcome) -> Non
     _measure_readers(RASTER, path, len(points), peers, repeats, outcome, require)
 
 
-def _write_geotiff(points: Floats, heights: NDArray[np.float32], path: Path) -> None:
+def _write_geotiff(points: Float64Array, heights: Float32Array, path: Path) -> None:
     import rasterio
 
     columns = int(np.count_nonzero(points[:, 1] == points[0, 1]))
@@ -185,7 +183,7 @@ def _write_geotiff(points: Floats, heights: NDArray[np.float32], path: Path) -> 
         file.write(heights.reshape(-1, columns), 1)
 
 
-def _read_with_rasterio(path: Path) -> NDArray[np.float32]:
+def _read_with_rasterio(path: Path) -> Float32Array:
     import rasterio
 
     with rasterio.open(path) as file:
@@ -203,7 +201,7 @@ def _measure_mesh(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
         for tool, peer in MESH_PEERS.items()
     }
 
-    def require(ours: TIN, theirs: tuple[Floats, Any], tool: str) -> None:
+    def require(ours: TIN, theirs: tuple[Float64Array, Any], tool: str) -> None:
         np.testing.assert_array_equal(ours.points, tin.points)
         np.testing.assert_array_equal(ours.neighbors, tin.neighbors)
         step = MESH_PEERS[tool].read_step
@@ -218,7 +216,7 @@ def _measure_landxml(folder: Path, n: int, repeats: int, outcome: Outcome) -> No
     path = ts.write(tin, folder / "surface.xml")
     peers = {"xml.etree": Reader("xml", read_with_etree, "the numbers only")}
 
-    def require(ours: TIN, theirs: tuple[Floats, Any], _: str) -> None:
+    def require(ours: TIN, theirs: tuple[Float64Array, Any], _: str) -> None:
         np.testing.assert_array_equal(ours.points, tin.points)
         np.testing.assert_array_equal(theirs[0], ours.points)
         np.testing.assert_array_equal(theirs[1], ours.triangles)
@@ -238,7 +236,7 @@ def _measure_lidar(folder: Path, n: int, repeats: int, outcome: Outcome) -> None
     write_cloud_with_laspy(points, path)
     peers = {"laspy": Reader("laspy", read_cloud_with_laspy, "every attribute")}
 
-    def require(ours: Any, theirs: Floats, _: str) -> None:
+    def require(ours: Any, theirs: Float64Array, _: str) -> None:
         np.testing.assert_array_equal(ours.points, theirs)
         np.testing.assert_allclose(ours.points, points, rtol=0, atol=1e-6)
 
@@ -254,7 +252,7 @@ def _measure_layer(folder: Path, n: int, repeats: int, outcome: Outcome) -> None
     write_triangles_with_pyogrio(tin, path)
     peers = {"pyogrio, shapely": Reader("pyogrio", read_triangles, "corners alone")}
 
-    def require(ours: TIN, theirs: Floats, _: str) -> None:
+    def require(ours: TIN, theirs: Float64Array, _: str) -> None:
         assert len(ours.triangles) == len(tin.triangles)
         np.testing.assert_array_equal(
             np.sort(ours.points[ours.triangles], axis=1), np.sort(theirs, axis=1)

@@ -10,9 +10,9 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import tinsmith as ts
+from tinsmith.arrays import Int32Array
 from tinsmith.tin import _kernel
 
 from ..datasets.points import DATASETS, make_points
@@ -102,7 +102,7 @@ def _measure_variants(
 
 def _require_equal(found: Any, wanted: Any) -> None:
     for name in ("triangles", "neighbors"):
-        array: NDArray[np.int32] = getattr(found, name)
+        array: Int32Array = getattr(found, name)
         assert np.array_equal(array, getattr(wanted, name)), name
 
 

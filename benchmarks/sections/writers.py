@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 import tinsmith as ts
+from tinsmith.arrays import AnyArray, Float64Array
 from tinsmith.io import transform_points
 from tinsmith.terrain.relief.gradients import aspect, slope
 from tinsmith.tin import TIN
@@ -42,8 +42,6 @@ DEGREE_STEP, METRE_STEP = 1.01e-9, 1.01e-6
 
 DIGIT_STEP = 1.01e-8
 """GDAL takes a last digit after a row of zeros for rounding noise and drops it."""
-
-Floats = NDArray[np.float64]
 
 
 class Writer(NamedTuple):
@@ -133,7 +131,7 @@ def _measure_geojson(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> 
         _require_same(ours, _parse_features(path), peers[tool].step)
 
 
-def _parse_features(path: Path) -> tuple[Floats, Floats]:
+def _parse_features(path: Path) -> tuple[Float64Array, Float64Array]:
     """Return rings, (m, 4, 3), and properties, (m, 4), of a file, with its bytes dropped."""
     with path.open("rb") as file:
         features = json.load(file)["features"]
@@ -143,7 +141,9 @@ def _parse_features(path: Path) -> tuple[Floats, Floats]:
     return rings, np.array(properties, np.float64)  # null becomes NaN
 
 
-def _require_same(ours: tuple[Floats, Floats], theirs: tuple[Floats, Floats], step: float) -> None:
+def _require_same(
+    ours: tuple[Float64Array, Float64Array], theirs: tuple[Float64Array, Float64Array], step: float
+) -> None:
     assert ours[0].shape == theirs[0].shape
     np.testing.assert_allclose(ours[0][..., :2], theirs[0][..., :2], rtol=0, atol=step)
     np.testing.assert_allclose(ours[0][..., 2], theirs[0][..., 2], rtol=0, atol=METRE_STEP)
@@ -169,7 +169,7 @@ def _write_with_pyogrio(tin: TIN, path: Path) -> None:
     )
 
 
-def _collect_properties(tin: TIN) -> dict[str, NDArray[Any]]:
+def _collect_properties(tin: TIN) -> dict[str, AnyArray]:
     return {
         "id": np.arange(len(tin.triangles), dtype=np.int32),
         "slope": slope(tin),
@@ -248,7 +248,7 @@ def _measure_layers(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> N
             np.testing.assert_array_equal(_sort_triangles(read_triangles(path)), wanted)
 
 
-def _sort_triangles(corners: Floats) -> Floats:
+def _sort_triangles(corners: Float64Array) -> Float64Array:
     """Return triangles in one order, whatever the order and the first corner of each."""
     first = np.lexsort((corners[..., 1], corners[..., 0]), axis=1)
     corners = np.take_along_axis(corners, first[..., None], axis=1)

@@ -14,8 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...crs import CRS, Unit
     from .reference import Declared, Measures
 
@@ -33,14 +32,14 @@ class Placing(NamedTuple):
     notes : list of str
     """
 
-    rows: list[NDArray[np.float64]]
+    rows: list[Float64Array]
     crs: CRS | None
     elevation_unit: Unit | None
     notes: list[str]
 
 
 def place_rows(
-    parts: Sequence[NDArray[np.float64]], measures: Measures, declared: Declared, path: Path
+    parts: Sequence[Float64Array], measures: Measures, declared: Declared, path: Path
 ) -> Placing:
     """Bring easting, northing and elevation of a file into the CRS wanted, all at once.
 

@@ -19,8 +19,7 @@ from ..reprojection.placement import settle_unit
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...crs import CrsLike, UnitLike
 
 __all__ = ["Declared", "Measures", "Stated", "choose_measures"]
@@ -93,7 +92,7 @@ class Measures:
         told = (*notes, *self.notes) if first else (*self.notes, *notes)
         return replace(self, notes=told, **changes)
 
-    def apply(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    def apply(self, rows: Float64Array) -> Float64Array:
         """Return easting, northing and, where there is one, elevation as they are wanted."""
         if self.scale == 1.0 and self.elevation_scale == 1.0 and not self.is_swapped:
             return rows
@@ -105,7 +104,7 @@ class Measures:
 
 
 def choose_measures(
-    stated: Stated, declared: Declared, path: Path, *, sample: NDArray[np.float64]
+    stated: Stated, declared: Declared, path: Path, *, sample: Float64Array
 ) -> Measures:
     """Decide what coordinates and elevations are measured in.
 
@@ -202,7 +201,7 @@ def _convert_elevations(measures: Measures, unit: Unit, what: str) -> Measures:
     )
 
 
-def _look_at_area(measures: Measures, target: CRS | None, sample: NDArray[np.float64]) -> Measures:
+def _look_at_area(measures: Measures, target: CRS | None, sample: Float64Array) -> Measures:
     """Compare coordinates with the area of use; swap them if they only fit so."""
     area = AreaOfUse.of(measures.source, target)
     rows = sample[np.isfinite(sample).all(axis=1)] * measures.scale

@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int64Array
     from ...policies import LineKind
     from ..mesh.common import Reference
 
@@ -42,7 +41,7 @@ class EdgeLine(NamedTuple):
         Its number as ``Lines.sources`` has it; default it is counted.
     """
 
-    coordinates: NDArray[np.float64]
+    coordinates: Float64Array
     kind: LineKind | None
     name: str
     source: int | None = None
@@ -59,9 +58,9 @@ class Mesh(NamedTuple):
     notes : list of str
     """
 
-    points: NDArray[np.float64]
-    triangles: NDArray[np.int64]
-    constrained: NDArray[np.bool_] | None
+    points: Float64Array
+    triangles: Int64Array
+    constrained: BoolArray | None
     notes: list[str]
 
 
@@ -118,7 +117,7 @@ def _add_lines(tin: TIN, lines: Sequence[EdgeLine]) -> tuple[TIN, list[str]]:
     keys = edge_keys(edges, len(tin.points))
     known = np.unique(keys)
     vertex_at = _Vertices(tin)
-    chains: list[NDArray[np.int64]] = []
+    chains: list[Int64Array] = []
     owners: list[int] = []
     n_partly = 0
     for number, line in enumerate(lines):
@@ -140,9 +139,9 @@ def _add_lines(tin: TIN, lines: Sequence[EdgeLine]) -> tuple[TIN, list[str]]:
 def _with_chains(
     tin: TIN,
     lines: Sequence[EdgeLine],
-    chains: Sequence[NDArray[np.int64]],
+    chains: Sequence[Int64Array],
     owners: Sequence[int],
-    keys: NDArray[np.int64],
+    keys: Int64Array,
 ) -> TIN:
     segments = np.concatenate([np.stack([one[:-1], one[1:]], axis=1) for one in chains])
     flags = tin.constrained | np.isin(keys, edge_keys(segments, len(tin.points)))
@@ -179,7 +178,7 @@ class _Vertices:
         sorted_xy = tin.points[self._order, :2] + 0.0
         self._keys = sorted_xy[:, 0] + 1j * sorted_xy[:, 1]
 
-    def find(self, coordinates: NDArray[np.float64]) -> NDArray[np.int64]:
+    def find(self, coordinates: Float64Array) -> Int64Array:
         """Return the vertex at each place, -1 where there is none."""
         wanted = (coordinates[:, 0] + 0.0) + 1j * (coordinates[:, 1] + 0.0)
         at = np.searchsorted(self._keys, wanted)
@@ -190,7 +189,7 @@ class _Vertices:
             found[is_open] = self._find_near(coordinates[is_open, :2])
         return found
 
-    def _find_near(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+    def _find_near(self, xy: Float64Array) -> Int64Array:
         found = np.full(len(xy), -1, np.int64)
         bounds = self._tin.bounds
         low = np.array([bounds.xmin, bounds.ymin]) - _SAME_PLACE
@@ -203,7 +202,7 @@ class _Vertices:
         return found
 
 
-def _fill_in(tin: TIN, vertices: NDArray[np.int64], known: NDArray[np.int64]) -> NDArray[np.int64]:
+def _fill_in(tin: TIN, vertices: Int64Array, known: Int64Array) -> Int64Array:
     """Return the vertices of a line with those between that lie on its segments.
 
     Programs put the vertices of a surface where a breakline meets other edges.
@@ -239,9 +238,7 @@ def _walk_along(tin: TIN, a: int, b: int) -> list[int]:
     return passed[:-1]
 
 
-def _split_into_runs(
-    vertices: NDArray[np.int64], known: NDArray[np.int64], n_points: int
-) -> list[NDArray[np.int64]]:
+def _split_into_runs(vertices: Int64Array, known: Int64Array, n_points: int) -> list[Int64Array]:
     """Return the longest parts of a line all of whose segments are edges."""
     is_edge = _find_edges(vertices, known, n_points)
     steps = np.diff(np.concatenate([[0], is_edge.astype(np.int8), [0]]))
@@ -249,13 +246,11 @@ def _split_into_runs(
     return [vertices[a : b + 1] for a, b in zip(starts.tolist(), ends.tolist(), strict=True)]
 
 
-def _find_edges(
-    vertices: NDArray[np.int64], known: NDArray[np.int64], n_points: int
-) -> NDArray[np.bool_]:
+def _find_edges(vertices: Int64Array, known: Int64Array, n_points: int) -> BoolArray:
     """Return which segments between vertices, -1 for none, are edges."""
     pairs = np.stack([vertices[:-1], vertices[1:]], axis=1)
     is_edge = (pairs >= 0).all(axis=1) & (pairs[:, 0] != pairs[:, 1])
     keys = edge_keys(np.where(is_edge[:, None], pairs, 0), n_points)
     at = np.minimum(np.searchsorted(known, keys), len(known) - 1)
-    found: NDArray[np.bool_] = is_edge & (known[at] == keys)
+    found: BoolArray = is_edge & (known[at] == keys)
     return found

@@ -10,7 +10,7 @@ import numpy as np
 from .cells import BLANKS
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import Int64Array, UInt8Array
 
 __all__ = ["CellBounds", "find_cell_bounds"]
 
@@ -31,8 +31,8 @@ class CellBounds:
     """
 
     data: bytes
-    before: NDArray[np.int64]
-    ends: NDArray[np.int64]
+    before: Int64Array
+    ends: Int64Array
 
     def __len__(self) -> int:
         return len(self.ends)
@@ -71,7 +71,7 @@ def find_cell_bounds(data: bytes, delimiter: str, count: int) -> CellBounds | No
 
 
 def _find_words(
-    data: bytes, codes: NDArray[np.uint8], line_ends: NDArray[np.int64], count: int
+    data: bytes, codes: UInt8Array, line_ends: Int64Array, count: int
 ) -> CellBounds | None:
     is_gap = np.ones(len(codes) + 2, np.bool_)
     is_gap[1:-1] = (codes == _SPACE) | (codes == _TAB) | (codes == _LINE_FEED)
@@ -83,9 +83,7 @@ def _find_words(
     return CellBounds(data, before.reshape(-1, count), ends.reshape(-1, count))
 
 
-def _are_even(
-    places: NDArray[np.int64], starts: NDArray[np.int64], ends: NDArray[np.int64], count: int
-) -> bool:
+def _are_even(places: Int64Array, starts: Int64Array, ends: Int64Array, count: int) -> bool:
     """Whether exactly ``count`` of the places (ascending) lie in every line."""
     if len(places) != count * len(starts):
         return False
@@ -93,9 +91,7 @@ def _are_even(
     return bool((by_line[:, 0] >= starts).all() and (by_line[:, -1] < ends).all())
 
 
-def _are_plain(
-    quotes: NDArray[np.int64], codes: NDArray[np.uint8], delimiter: int, ends: NDArray[np.int64]
-) -> bool:
+def _are_plain(quotes: Int64Array, codes: UInt8Array, delimiter: int, ends: Int64Array) -> bool:
     """Whether no quote stands where only care can read it.
 
     Quotes are plain if they are closed on their line, open at the start of a cell, and close at
@@ -111,7 +107,7 @@ def _are_plain(
     return bool(np.isin(beside, [delimiter, _QUOTE, _LINE_FEED]).all())
 
 
-def _drop_quoted(places: NDArray[np.int64], quotes: NDArray[np.int64]) -> NDArray[np.int64]:
+def _drop_quoted(places: Int64Array, quotes: Int64Array) -> Int64Array:
     """Return the places (ascending) that do not lie between an opening and its closing quote."""
     first = np.searchsorted(places, quotes[0::2])
     counts = np.searchsorted(places, quotes[1::2]) - first

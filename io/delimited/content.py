@@ -20,8 +20,7 @@ from .columns import Columns, find_columns_by_word
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...terrain.georeference.area_of_use import AreaOfUse
 
 __all__ = [
@@ -65,7 +64,7 @@ class Column:
         Of the cells, those that are no numbers and not empty; of the values, those that differ.
     """
 
-    values: NDArray[np.float64]
+    values: Float64Array
     is_text: bool = False
     is_whole: bool = False
     is_padded: bool = False
@@ -77,7 +76,7 @@ class Column:
         """Whether the values are whole and grow by one from row to row."""
         return self.is_whole and bool((np.diff(self.values) == 1.0).all())
 
-    def without(self, nodata: NDArray[np.float64]) -> Column:
+    def without(self, nodata: Float64Array) -> Column:
         """Return the same column with NaN in the place of values that stand for no data."""
         if not np.isin(self.values, nodata).any():
             return self
@@ -98,7 +97,7 @@ class _Candidate:
     def is_plausible(self) -> bool:
         return not self.objections and not self.is_outside
 
-    def coordinates(self, columns: Sequence[Column]) -> NDArray[np.float64]:
+    def coordinates(self, columns: Sequence[Column]) -> Float64Array:
         """Return some of the points that it gives."""
         first, second, third = range(self.start, self.start + 3)
         order = (second, first, third) if self.is_northing_first else (first, second, third)
@@ -232,7 +231,7 @@ def _find_signs_of_numbers(columns: Sequence[Column]) -> Iterator[str]:
         yield "would have whole numbers in one coordinate and decimals in the other"
 
 
-def are_plausible_elevations(z: NDArray[np.float64]) -> bool:
+def are_plausible_elevations(z: Float64Array) -> bool:
     """Whether at least half of some elevations are such as the earth has, in metres or feet."""
     return bool(2 * ((z >= _LOWEST) & (z <= _HIGHEST)).sum() >= len(z))
 
@@ -242,7 +241,7 @@ def is_too_steep(relief: float, extent: float) -> bool:
     return relief > _STEEPEST * extent > 0.0
 
 
-def measure_relief_and_extent(points: NDArray[np.float64]) -> tuple[float, float]:
+def measure_relief_and_extent(points: Float64Array) -> tuple[float, float]:
     """Return relief and extent, outliers aside."""
     if len(points) == 0:
         return 0.0, 0.0

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Float64Array, Int64Array
     from ...crs import CRS
     from ...terrain.georeference.area_of_use import AreaOfUse
     from .columns import Columns
@@ -76,8 +75,8 @@ _SAME_UNIT = 1e-3
 
 
 def require_in_area(
-    points: NDArray[np.float64],
-    rows: NDArray[np.int64],
+    points: Float64Array,
+    rows: Int64Array,
     columns: Columns,
     area: AreaOfUse | None,
     path: Path,
@@ -128,7 +127,7 @@ def require_in_area(
 
 
 def find_turned_axes(
-    points: NDArray[np.float64], columns: Columns, crs: CRS | None, area: AreaOfUse | None
+    points: Float64Array, columns: Columns, crs: CRS | None, area: AreaOfUse | None
 ) -> list[str]:
     """Say that the header's X is taken as the easting, where the CRS calls its northing so.
 
@@ -192,7 +191,7 @@ def _differs(found: Columns, columns: Columns) -> bool:
 
 
 def find_rounded_coordinates(
-    lines: TextLines, rows: NDArray[np.int64], delimiter: str, columns: Columns
+    lines: TextLines, rows: Int64Array, delimiter: str, columns: Columns
 ) -> list[str]:
     """Say which coordinates have an exponent that leaves tens or more open, as spreadsheets do."""
     found = []
@@ -216,7 +215,7 @@ def _is_rounded(cell: str) -> bool:
 
 
 def find_commented_points(
-    lines: TextLines, rows: NDArray[np.int64], layout: Layout, columns: Columns
+    lines: TextLines, rows: Int64Array, layout: Layout, columns: Columns
 ) -> list[str]:
     """Say which lines that begin as comments do hold a point, as where its number is #12."""
     is_other = ~lines.is_blank
@@ -238,7 +237,7 @@ def find_commented_points(
 
 
 def find_summary_rows(
-    points: NDArray[np.float64], rows: NDArray[np.int64], names: Iterable[NDArray[Any] | None]
+    points: Float64Array, rows: Int64Array, names: Iterable[AnyArray | None]
 ) -> list[str]:
     """Say which rows are called like a statistic of the others, or are their sum."""
     notes = []
@@ -278,7 +277,7 @@ def find_units_above(lines: TextLines, first_row: int) -> list[str]:
 
 
 def find_split_thousands(
-    points: NDArray[np.float64], attributes: Mapping[str, NDArray[Any]], delimiter: str
+    points: Float64Array, attributes: Mapping[str, AnyArray], delimiter: str
 ) -> list[str]:
     """Say which of the columns behind a layout may come of coordinates that commas have split."""
     is_head = ((points >= 0) & (points < 1000) & (points == np.floor(points))).all(axis=0)
@@ -297,7 +296,7 @@ def find_split_thousands(
     ]
 
 
-def find_unit_words(attributes: Mapping[str, NDArray[Any]]) -> list[str]:
+def find_unit_words(attributes: Mapping[str, AnyArray]) -> list[str]:
     """Say which texts begin with a unit of length in most rows; where it differs, that it does."""
     notes = []
     for name, values in attributes.items():
@@ -324,7 +323,7 @@ def _count(number: int, total: int = 0) -> str:
 
 
 def _require_no_exchange(
-    points: NDArray[np.float64], columns: Columns, area: AreaOfUse, path: Path
+    points: Float64Array, columns: Columns, area: AreaOfUse, path: Path
 ) -> None:
     """Refuse points that lie in the area once their columns are exchanged."""
     orders = sorted(permutations(range(3)), key=lambda order: order != (1, 0, 2))
@@ -394,7 +393,7 @@ def _find_unit(word: str | None) -> Unit | None:
         return None
 
 
-def find_odd_elevations(points: NDArray[np.float64], *, in_degrees: bool = False) -> list[str]:
+def find_odd_elevations(points: Float64Array, *, in_degrees: bool = False) -> list[str]:
     """Say whether elevations may stand for no data, or are none that the earth has.
 
     Parameters
@@ -422,7 +421,7 @@ def find_odd_elevations(points: NDArray[np.float64], *, in_degrees: bool = False
     return notes
 
 
-def find_repeated_numbers(numbers: NDArray[Any] | None, rows: NDArray[np.int64]) -> list[str]:
+def find_repeated_numbers(numbers: AnyArray | None, rows: Int64Array) -> list[str]:
     """Say which point numbers occur more than once.
 
     Parameters
@@ -469,7 +468,7 @@ def describe_faults(faults: Sequence[Fault]) -> str:
     return f"{len(faults):,} bad {rows} left out ({shown}{more})."
 
 
-def _name_lines(rows: NDArray[np.int64]) -> str:
+def _name_lines(rows: Int64Array) -> str:
     """Name lines, counted from 1."""
     numbers = [f"{row + 1}" for row in rows[:_SHOWN].tolist()]
     more = ", ..." if len(rows) > _SHOWN else ""

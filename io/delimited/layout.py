@@ -40,8 +40,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Int64Array
     from .lines import TextLines
 
 __all__ = ["Layout", "find_layout"]
@@ -103,7 +102,7 @@ class Layout:
     is_decimal_told: bool
     count: int
     columns: Columns | None
-    rows: NDArray[np.int64]
+    rows: Int64Array
     has_text_tail: bool
     may_lack_tail: bool
     text_columns: frozenset[int]
@@ -228,7 +227,7 @@ def _split_rows(rows: Sequence[str], delimiter: str) -> list[list[str]]:
 
 def _choose_decimal_mark(
     lines: TextLines,
-    data: NDArray[np.int64],
+    data: Int64Array,
     cells: list[list[str]],
     delimiter: str,
     wishes: _Wishes,
@@ -249,7 +248,7 @@ def _choose_decimal_mark(
 
 def _lay_out_table(
     lines: TextLines,
-    data: NDArray[np.int64],
+    data: Int64Array,
     skipped: Counter[str],
     cells: list[list[str]],
     marks: tuple[str, DecimalMark],
@@ -327,7 +326,7 @@ def _find_named_columns(
 # ------------------------------------------------------------------ lines
 
 
-def _select_data_lines(lines: TextLines, wishes: _Wishes) -> tuple[NDArray[np.int64], Counter[str]]:
+def _select_data_lines(lines: TextLines, wishes: _Wishes) -> tuple[Int64Array, Counter[str]]:
     """Set blank and comment lines aside; ``;`` is judged when the delimiter is known."""
     is_blank = lines.is_blank
     is_comment = np.zeros(len(lines), np.bool_)
@@ -345,11 +344,11 @@ def _select_data_lines(lines: TextLines, wishes: _Wishes) -> tuple[NDArray[np.in
 
 def _drop_fillers(
     lines: TextLines,
-    data: NDArray[np.int64],
+    data: Int64Array,
     skipped: Counter[str],
     delimiter: str,
     wishes: _Wishes,
-) -> tuple[NDArray[np.int64], Counter[str]]:
+) -> tuple[Int64Array, Counter[str]]:
     """Set aside rows of nothing but delimiters, and comments that start with a semicolon."""
     if delimiter != BLANKS:
         starters = data[lines.starts_with(delimiter)[data]]
@@ -364,7 +363,7 @@ def _drop_fillers(
     return data, skipped
 
 
-def _sample_lines(data: NDArray[np.int64]) -> list[int]:
+def _sample_lines(data: Int64Array) -> list[int]:
     top, rest = data[:_TOP_LINES], data[_TOP_LINES:]
     spread = rest[:: max(1, len(rest) // _SPREAD_LINES)]
     return [*top.tolist(), *spread.tolist()]

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from ...arrays import BoolArray, Int64Array, UInt8Array
 
 __all__ = ["COMMENT_PREFIXES", "TextLines", "decode_head", "read_lines"]
 
@@ -47,8 +47,8 @@ class TextLines:
     """
 
     data: bytes
-    starts: NDArray[np.int64]
-    ends: NDArray[np.int64]
+    starts: Int64Array
+    ends: Int64Array
     is_whole: bool
 
     @classmethod
@@ -67,7 +67,7 @@ class TextLines:
         return len(self.starts)
 
     @property
-    def codes(self) -> NDArray[np.uint8]:
+    def codes(self) -> UInt8Array:
         """The bytes as numbers."""
         return np.frombuffer(self.data, np.uint8)
 
@@ -80,7 +80,7 @@ class TextLines:
         return [self.decode_line(line) for line in lines]
 
     @cached_property
-    def firsts(self) -> NDArray[np.int64]:
+    def firsts(self) -> Int64Array:
         """First byte of every line that is no space or tab; the line's end where there is none."""
         codes = self.codes
         firsts = self.starts.copy()
@@ -93,23 +93,23 @@ class TextLines:
         return firsts
 
     @cached_property
-    def is_blank(self) -> NDArray[np.bool_]:
+    def is_blank(self) -> BoolArray:
         """Whether a line holds nothing but spaces and tabs, (k,) array."""
-        blank: NDArray[np.bool_] = self.firsts == self.ends
+        blank: BoolArray = self.firsts == self.ends
         return blank
 
     @cached_property
-    def first_codes(self) -> NDArray[np.uint8]:
+    def first_codes(self) -> UInt8Array:
         """The byte at ``firsts``, (k,) array; 0 where a line is blank."""
         codes = np.zeros(len(self), np.uint8)
         filled = np.flatnonzero(~self.is_blank)
         codes[filled] = self.codes[self.firsts[filled]]
         return codes
 
-    def starts_with(self, prefix: str) -> NDArray[np.bool_]:
+    def starts_with(self, prefix: str) -> BoolArray:
         """Whether a line starts with a prefix, leading spaces aside, (k,) array."""
         code, *others = prefix.encode()
-        fits: NDArray[np.bool_] = self.first_codes == code
+        fits: BoolArray = self.first_codes == code
         for place, other in enumerate(others, start=1):
             lines = np.flatnonzero(fits)
             at = self.firsts[lines] + place
@@ -118,7 +118,7 @@ class TextLines:
             fits[lines[is_inside]] = self.codes[at[is_inside]] == other
         return fits
 
-    def find_with_decimals(self, lines: NDArray[np.int64]) -> NDArray[np.int64]:
+    def find_with_decimals(self, lines: Int64Array) -> Int64Array:
         """Return those of the chosen lines in which a comma or a point stands between digits."""
         codes = self.codes
         is_digit = (codes >= ord("0")) & (codes <= ord("9"))
@@ -126,7 +126,7 @@ class TextLines:
         places = np.flatnonzero(is_mark & is_digit[:-2] & is_digit[2:]) + 1
         return np.intersect1d(np.searchsorted(self.starts, places, side="right") - 1, lines)
 
-    def find_with_exponents(self, lines: NDArray[np.int64]) -> NDArray[np.int64]:
+    def find_with_exponents(self, lines: Int64Array) -> Int64Array:
         """Return the places of those of the chosen lines in which e+ or E+ stands."""
         if b"E+" not in self.data and b"e+" not in self.data:
             return np.empty(0, np.int64)
@@ -135,7 +135,7 @@ class TextLines:
         found = np.searchsorted(self.starts, np.flatnonzero(is_exponent), side="right") - 1
         return np.flatnonzero(np.isin(lines, found))
 
-    def join(self, lines: NDArray[np.int64]) -> bytes:
+    def join(self, lines: Int64Array) -> bytes:
         """Return the chosen lines (ascending numbers) as one text."""
         if len(lines) == 0:
             return b""

@@ -8,15 +8,14 @@ of every cell at a time; what is longer or has an exponent is read by Python, on
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from .cells import is_infinite, is_number
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int8Array, Int64Array
     from .cell_bounds import CellBounds
 
 __all__ = ["parse_column"]
@@ -38,17 +37,17 @@ _TRUTHS = {
 class _Digits(NamedTuple):
     """Cells as integers and the number of their decimals; which are empty, and which are odd."""
 
-    integers: NDArray[np.int64]
-    decimals: NDArray[np.int8]
-    is_negative: NDArray[np.bool_]
-    has_point: NDArray[np.bool_]
-    is_empty: NDArray[np.bool_]
-    is_odd: NDArray[np.bool_]
+    integers: Int64Array
+    decimals: Int8Array
+    is_negative: BoolArray
+    has_point: BoolArray
+    is_empty: BoolArray
+    is_odd: BoolArray
 
 
 def parse_column(
     bounds: CellBounds, column: int, *, decimal: str, is_text: bool = False
-) -> NDArray[Any]:
+) -> AnyArray:
     """Read the cells of a column.
 
     Parameters
@@ -79,9 +78,7 @@ def parse_column(
     return values
 
 
-def _find_cells(
-    bounds: CellBounds, column: int, rows: slice
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _find_cells(bounds: CellBounds, column: int, rows: slice) -> tuple[Int64Array, Int64Array]:
     """Return where cells begin behind their leading spaces, and where they end."""
     codes = np.frombuffer(bounds.data, np.uint8)
     starts, ends = bounds.before[rows, column] + 1, bounds.ends[rows, column]
@@ -92,9 +89,7 @@ def _find_cells(
         starts += is_space
 
 
-def _take_texts(
-    bounds: CellBounds, starts: NDArray[np.int64], ends: NDArray[np.int64]
-) -> list[str]:
+def _take_texts(bounds: CellBounds, starts: Int64Array, ends: Int64Array) -> list[str]:
     """Return cells as texts, without their quotes."""
     if len(starts) == 0:
         return []
@@ -114,11 +109,11 @@ def _take_texts(
 # ------------------------------------------------------------------ numbers
 
 
-def _parse_numbers(bounds: CellBounds, column: int, decimal: str) -> NDArray[Any] | None:
+def _parse_numbers(bounds: CellBounds, column: int, decimal: str) -> AnyArray | None:
     """Return a column as numbers, None if a cell is none."""
     n = len(bounds)
     floats = np.empty(n)
-    integers: NDArray[np.int64] | None = np.empty(n, np.int64)
+    integers: Int64Array | None = np.empty(n, np.int64)
     for start in range(0, n, _BLOCK_ROWS):
         rows = slice(start, start + _BLOCK_ROWS)
         starts, ends = _find_cells(bounds, column, rows)
@@ -140,7 +135,7 @@ def _parse_numbers(bounds: CellBounds, column: int, decimal: str) -> NDArray[Any
     return floats if integers is None else integers
 
 
-def _divide(digits: _Digits) -> NDArray[np.float64]:
+def _divide(digits: _Digits) -> Float64Array:
     """Return the cells that are not odd as floats, NaN for empty ones."""
     values = digits.integers / _POWERS.take(digits.decimals, mode="clip")
     np.negative(values, out=values, where=digits.is_negative)
@@ -148,16 +143,14 @@ def _divide(digits: _Digits) -> NDArray[np.float64]:
     return values
 
 
-def _take_whole(digits: _Digits) -> NDArray[np.int64] | None:
+def _take_whole(digits: _Digits) -> Int64Array | None:
     """Return the cells as integers if all that are not odd are whole, None otherwise."""
     if digits.is_empty.any() or (digits.has_point & ~digits.is_odd).any():
         return None
     return np.where(digits.is_negative, -digits.integers, digits.integers)
 
 
-def _place_whole(
-    whole: NDArray[np.int64] | None, row: int, number: float
-) -> NDArray[np.int64] | None:
+def _place_whole(whole: Int64Array | None, row: int, number: float) -> Int64Array | None:
     """Put one number among integers if it is one."""
     if whole is None or not isinstance(number, int):
         return None
@@ -177,9 +170,7 @@ def _read_number(text: str, decimal: str) -> float | None:
     return float(text.replace(decimal, "."))
 
 
-def _read_digits(
-    data: bytes, starts: NDArray[np.int64], ends: NDArray[np.int64], mark: int
-) -> _Digits:
+def _read_digits(data: bytes, starts: Int64Array, ends: Int64Array, mark: int) -> _Digits:
     """Read cells as digits with one decimal mark and a sign; what is anything else is odd."""
     codes = np.frombuffer(data, np.uint8)
     n = len(starts)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array, ObjectArray
 
 __all__ = ["QueryPoints", "read_query_points"]
 
@@ -41,8 +41,8 @@ class QueryPoints:
         What was assumed.
     """
 
-    columns: dict[str, NDArray[np.object_]]
-    xy: NDArray[np.float64]
+    columns: dict[str, ObjectArray]
+    xy: Float64Array
     is_degrees: bool
     notes: tuple[str, ...]
 
@@ -173,7 +173,7 @@ def _find_coordinates(
     return (east, north), (note,)
 
 
-def _parse_numbers(table: _Table, column: int, path: Path) -> NDArray[np.float64]:
+def _parse_numbers(table: _Table, column: int, path: Path) -> Float64Array:
     values = np.array([_parse_number(row[column]) for row in table.rows], np.float64)
     wrong = np.flatnonzero(~np.isfinite(values))
     if len(wrong):

@@ -47,8 +47,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from .columns import Columns
     from .layout import Layout
@@ -235,7 +234,7 @@ def _find_columns(
     cells: Cells,
     layout: Layout,
     area: AreaOfUse | None,
-    nodata: NDArray[np.float64],
+    nodata: Float64Array,
     path: Path,
 ) -> tuple[Columns, list[str]]:
     """Return what the columns mean, by word or header, else by what is in them."""
@@ -265,14 +264,14 @@ def _require_few_faults(
 class _Accounted(NamedTuple):
     """The points that are left, and the lines of those that are not."""
 
-    points: NDArray[np.float64]
-    rows: NDArray[np.int64]
-    attributes: dict[str, NDArray[Any]]
+    points: Float64Array
+    rows: Int64Array
+    attributes: dict[str, AnyArray]
     lines: dict[str, tuple[int, ...]]
     notes: list[str]
 
 
-def _account_for_rows(table: Table, nodata: NDArray[np.float64], path: Path) -> _Accounted:
+def _account_for_rows(table: Table, nodata: Float64Array, path: Path) -> _Accounted:
     """Leave out points without an elevation, and say what became of every row."""
     z = table.points[:, 2]
     is_flat = np.isnan(z)
@@ -360,7 +359,7 @@ def write(
         writer.writerows(chain(names, _iterate_rows(values, progress)))
 
 
-def _keep_on_one_line(table: Mapping[str, NDArray[Any]], path: Path) -> list[NDArray[Any]]:
+def _keep_on_one_line(table: Mapping[str, AnyArray], path: Path) -> list[AnyArray]:
     """Return the columns, with blanks in the place of line breaks, which readers stop at."""
     kept, broken = [], []
     for name, values in table.items():
@@ -379,14 +378,14 @@ def _keep_on_one_line(table: Mapping[str, NDArray[Any]], path: Path) -> list[NDA
     return kept
 
 
-def _choose_quoting(first: NDArray[Any]) -> Literal[0, 2]:
+def _choose_quoting(first: AnyArray) -> Literal[0, 2]:
     """Return the quoting by which no row begins as a comment does."""
     texts = first.tolist() if first.dtype.kind in "OU" else []
     has_marks = any(str(text).lstrip().startswith(COMMENT_PREFIXES) for text in texts)
     return csv.QUOTE_NONNUMERIC if has_marks else csv.QUOTE_MINIMAL
 
 
-def _name_written_columns(table: Mapping[str, NDArray[Any]], obj: TIN | Survey) -> list[str]:
+def _name_written_columns(table: Mapping[str, AnyArray], obj: TIN | Survey) -> list[str]:
     """Return the names of the columns, that of elevations with their unit if readers know it."""
     unit = obj.elevation_unit
     named = None if unit is None else f"elevation ({unit.symbol})"
@@ -396,7 +395,7 @@ def _name_written_columns(table: Mapping[str, NDArray[Any]], obj: TIN | Survey) 
 
 def _choose_written_columns(
     obj: TIN | Survey, letters: str | None, is_bare: bool, path: Path
-) -> dict[str, NDArray[Any]]:
+) -> dict[str, AnyArray]:
     attributes = dict(obj.attributes) if isinstance(obj, Survey) else {}
     coordinates = dict(zip(("easting", "northing", "elevation"), obj.points.T, strict=True))
     if letters is None and {"number", "description"} <= attributes.keys() and not is_bare:
@@ -411,11 +410,11 @@ def _choose_written_columns(
 
 
 def _choose_by_letters(
-    letters: str, available: dict[str, NDArray[Any]], path: Path
-) -> dict[str, NDArray[Any]]:
+    letters: str, available: dict[str, AnyArray], path: Path
+) -> dict[str, AnyArray]:
     roles = {"P": "number", "N": "northing", "Y": "northing", "E": "easting", "X": "easting"}
     roles |= {"Z": "elevation", "H": "elevation", "D": "description"}
-    chosen: dict[str, NDArray[Any]] = {}
+    chosen: dict[str, AnyArray] = {}
     for letter in letters.upper():
         role = roles.get(letter)
         if role is None or role not in available or role in chosen:
@@ -430,7 +429,7 @@ def _choose_by_letters(
 
 
 def _iterate_rows(
-    columns: Sequence[NDArray[Any]], progress: Callable[[float], None] | None
+    columns: Sequence[AnyArray], progress: Callable[[float], None] | None
 ) -> Iterator[tuple[Any, ...]]:
     """Walk the rows as Python values; a float's text is the shortest that reads back the same."""
     count = len(columns[0])

@@ -10,7 +10,7 @@ import csv
 from dataclasses import dataclass
 from io import StringIO
 from itertools import chain
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -36,9 +36,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
     from ..._progress import Tell
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from .cell_bounds import CellBounds
     from .columns import Columns
     from .layout import Layout
@@ -83,8 +82,8 @@ class Cells:
     faults : tuple of Fault
     """
 
-    columns: tuple[NDArray[Any], ...]
-    rows: NDArray[np.int64]
+    columns: tuple[AnyArray, ...]
+    rows: Int64Array
     faults: tuple[Fault, ...] = ()
 
 
@@ -94,9 +93,9 @@ class Table(NamedTuple):
     Elevations are NaN where the row has none.
     """
 
-    points: NDArray[np.float64]
-    attributes: dict[str, NDArray[Any]]
-    rows: NDArray[np.int64]
+    points: Float64Array
+    attributes: dict[str, AnyArray]
+    rows: Int64Array
     faults: tuple[Fault, ...]
     n_grouped: int
 
@@ -148,7 +147,7 @@ def read_cells(
 
 def _parse_columns(
     bounds: CellBounds, layout: Layout, progress: Tell | None
-) -> tuple[NDArray[Any], ...]:
+) -> tuple[AnyArray, ...]:
     done, columns = Progress(progress), []
     for i in range(layout.count):
         is_text = i in layout.text_columns
@@ -190,7 +189,7 @@ def describe_faults_of_rows(
 
 def _rewrite_rows(
     lines: TextLines, layout: Layout, progress: Tell | None
-) -> tuple[bytes, NDArray[np.int64], list[Fault]]:
+) -> tuple[bytes, Int64Array, list[Fault]]:
     """Write the rows anew with plain quotes; leave those out that have not the right cells."""
     text = StringIO(newline="")
     writer = csv.writer(text, delimiter=_REWRITTEN_DELIMITER, lineterminator="\n")
@@ -283,12 +282,12 @@ def _may_be_split_numbers(cells: Sequence[str], layout: Layout) -> bool:
 class _Numbers(NamedTuple):
     """A column as floats, NaN for what is none; where cells are empty; how many were grouped."""
 
-    values: NDArray[np.float64]
-    is_missing: NDArray[np.bool_]
+    values: Float64Array
+    is_missing: BoolArray
     n_grouped: int = 0
 
 
-def _parse_numbers(column: NDArray[Any], layout: Layout, *, has_groups: bool) -> _Numbers:
+def _parse_numbers(column: AnyArray, layout: Layout, *, has_groups: bool) -> _Numbers:
     """Read the numbers of a column, those with thousands separators where these are proved."""
     if column.dtype.kind in "fi":
         values = column.astype(np.float64)
@@ -306,7 +305,7 @@ def _parse_numbers(column: NDArray[Any], layout: Layout, *, has_groups: bool) ->
     return _Numbers(values, missing, len(grouped))
 
 
-def _strip_texts(column: NDArray[Any]) -> list[str]:
+def _strip_texts(column: AnyArray) -> list[str]:
     return [cell.strip() for cell in column.tolist()]
 
 
@@ -336,7 +335,7 @@ def describe_columns(cells: Cells, layout: Layout) -> list[Column]:
     ]
 
 
-def _describe_column(column: NDArray[Any], i: int, layout: Layout, *, has_groups: bool) -> Column:
+def _describe_column(column: AnyArray, i: int, layout: Layout, *, has_groups: bool) -> Column:
     if i in layout.mostly_text:
         distinct = len(set(column.tolist())) / len(column)
         return Column(np.full(len(column), np.nan), is_text=True, distinct_share=distinct)
@@ -354,12 +353,12 @@ def _describe_column(column: NDArray[Any], i: int, layout: Layout, *, has_groups
     )
 
 
-def _are_counts(values: NDArray[np.float64]) -> bool:
+def _are_counts(values: Float64Array) -> bool:
     with np.errstate(invalid="ignore"):
         return bool((values >= 0).all() and (np.floor(values) == values).all())
 
 
-def _measure_distinct_share(values: NDArray[np.float64]) -> float:
+def _measure_distinct_share(values: Float64Array) -> float:
     if len(values) < 2 or (np.diff(values) > 0).all():
         return 1.0
     return len(np.unique(values)) / len(values)
@@ -418,10 +417,10 @@ def _describe_fault(lines: TextLines, layout: Layout, columns: Columns, line: in
 # ------------------------------------------------------------------ attributes
 
 
-def _collect_attributes(cells: Cells, columns: Columns) -> dict[str, NDArray[Any]]:
+def _collect_attributes(cells: Cells, columns: Columns) -> dict[str, AnyArray]:
     """Return the columns that are no coordinates, by role or name; empty unnamed ones are left."""
     roles = {column: role for role, column in columns.roles.items()}
-    attributes: dict[str, NDArray[Any]] = {}
+    attributes: dict[str, AnyArray] = {}
     for column, name in enumerate(columns.names):
         if roles.get(column) in COORDINATES:
             continue
@@ -432,5 +431,5 @@ def _collect_attributes(cells: Cells, columns: Columns) -> dict[str, NDArray[Any
     return attributes
 
 
-def _is_empty(values: NDArray[Any]) -> bool:
+def _is_empty(values: AnyArray) -> bool:
     return bool((values == "").all() if values.dtype == object else np.isnan(values).all())

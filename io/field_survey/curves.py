@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array
 
 __all__ = ["MOST_VERTICES", "Arc", "densify", "fit_arcs", "fit_tangent_arc"]
 
@@ -40,8 +40,8 @@ class Arc(NamedTuple):
         From the tangent at the start to the chord, counter-clockwise; half of what the arc turns.
     """
 
-    start: NDArray[np.float64]
-    end: NDArray[np.float64]
+    start: Float64Array
+    end: Float64Array
     angle: float
 
     @property
@@ -67,22 +67,22 @@ class Arc(NamedTuple):
             step = 2.0 * math.asin(math.sqrt(tolerance / (2.0 * radius)))
         return max(1, math.ceil(abs(self.angle) / step - 1e-9))
 
-    def interpolate(self, shares: NDArray[np.float64]) -> NDArray[np.float64]:
+    def interpolate(self, shares: Float64Array) -> Float64Array:
         """Return points at shares of the length, (k, 2)."""
         chord = self.end - self.start
         if self.is_straight:
-            straight: NDArray[np.float64] = self.start + shares[:, None] * chord
+            straight: Float64Array = self.start + shares[:, None] * chord
             return straight
         turn = self.angle * (shares - 1.0)  # of the direction from the start, seen from the chord
         reach = np.sin(self.angle * shares) / math.sin(self.angle)
         cos, sin = reach * np.cos(turn), reach * np.sin(turn)
-        bent: NDArray[np.float64] = self.start + np.column_stack(
+        bent: Float64Array = self.start + np.column_stack(
             [cos * chord[0] - sin * chord[1], sin * chord[0] + cos * chord[1]]
         )
         return bent
 
 
-def fit_arcs(points: NDArray[np.float64]) -> list[list[Arc]]:
+def fit_arcs(points: Float64Array) -> list[list[Arc]]:
     """Fit arcs to three or more points in the plane, none of them twice in succession.
 
     Parameters
@@ -110,29 +110,27 @@ def fit_arcs(points: NDArray[np.float64]) -> list[list[Arc]]:
     ]
 
 
-def fit_tangent_arc(
-    start: NDArray[np.float64], end: NDArray[np.float64], direction: NDArray[np.float64]
-) -> Arc:
+def fit_tangent_arc(start: Float64Array, end: Float64Array, direction: Float64Array) -> Arc:
     """Fit the arc that leaves a point in a direction and reaches another one."""
     return Arc(start, end, _measure_turn(direction, end - start))
 
 
-def _reflect(tangent: NDArray[np.float64], chord: NDArray[np.float64]) -> NDArray[np.float64]:
+def _reflect(tangent: Float64Array, chord: Float64Array) -> Float64Array:
     """Return the tangent at the other end of an arc."""
-    mirrored: NDArray[np.float64] = 2.0 * float(tangent @ chord) * chord - tangent
+    mirrored: Float64Array = 2.0 * float(tangent @ chord) * chord - tangent
     return mirrored
 
 
-def _measure_turn(from_: NDArray[np.float64], to: NDArray[np.float64]) -> float:
+def _measure_turn(from_: Float64Array, to: Float64Array) -> float:
     """Return the angle from one direction to another, -pi to pi."""
     return math.atan2(from_[0] * to[1] - from_[1] * to[0], float(from_ @ to))
 
 
 def _join_by_biarc(
-    start: NDArray[np.float64],
-    end: NDArray[np.float64],
-    leaving: NDArray[np.float64],
-    arriving: NDArray[np.float64],
+    start: Float64Array,
+    end: Float64Array,
+    leaving: Float64Array,
+    arriving: Float64Array,
 ) -> list[Arc]:
     """Join two points by two arcs of equal tangent lengths, or by one where one does."""
     chord = end - start
@@ -149,7 +147,7 @@ def _join_by_biarc(
     return [one, other]
 
 
-def densify(arcs: list[Arc], heights: tuple[float, float], tolerance: float) -> NDArray[np.float64]:
+def densify(arcs: list[Arc], heights: tuple[float, float], tolerance: float) -> Float64Array:
     """Return the vertices between the ends of a chain of arcs.
 
     Parameters
@@ -171,7 +169,7 @@ def densify(arcs: list[Arc], heights: tuple[float, float], tolerance: float) -> 
     lengths = np.array([arc.length for arc in arcs])
     starts = np.append(0.0, np.cumsum(lengths))
     total = starts[-1]
-    rows: list[NDArray[np.float64]] = []
+    rows: list[Float64Array] = []
     for arc, begun, length, count in zip(arcs, starts[:-1], lengths, counts, strict=True):
         shares = np.arange(1, count + 1) / count
         share = (begun + shares * length) / total

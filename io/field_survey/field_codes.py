@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Iterable, Sequence
 
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array, Int64Array
 
 __all__ = ["MARKS", "RULES", "LineRole", "lines_from_codes"]
 
@@ -164,7 +164,7 @@ def _require_descriptions(survey: Survey) -> list[str]:
     return [str(one or "") for one in np.asarray(survey.attributes["description"]).tolist()]
 
 
-def _order_by_number(survey: Survey) -> NDArray[np.int64]:
+def _order_by_number(survey: Survey) -> Int64Array:
     numbers = survey.attributes.get("number")
     if numbers is None or numbers.dtype.kind not in "iu":
         return np.arange(len(survey))
@@ -264,9 +264,9 @@ class _Builder:
         if crs is not None and crs.is_geographic and has_curves:
             raise LinesError(f"Curves need a projected CRS: {crs.label} measures in degrees.")
 
-    def _build_lines(self) -> dict[str, list[tuple[Figure, NDArray[np.float64]]]]:
+    def _build_lines(self) -> dict[str, list[tuple[Figure, Float64Array]]]:
         """Return figures and their vertices, by what they become."""
-        found: dict[str, list[tuple[Figure, NDArray[np.float64]]]] = {
+        found: dict[str, list[tuple[Figure, Float64Array]]] = {
             kind: [] for kind in ("line", *RINGS)
         }
         for figure in self.figures:
@@ -280,7 +280,7 @@ class _Builder:
             found[kind if kind in RINGS else "line"].append((figure, vertices))
         return found
 
-    def _find_doubts(self, figure: Figure, vertices: NDArray[np.float64]) -> None:
+    def _find_doubts(self, figure: Figure, vertices: Float64Array) -> None:
         """Tell of rings that no mark closes, and of contours that are not level."""
         rows = tuple(figure.rows)
         ends = (rows[0], rows[-1])
@@ -324,14 +324,14 @@ class _Builder:
             Fault("mark before a code", what, tuple(rows)) for what, rows in found.items()
         ]
 
-    def _make_breakline(self, figure: Figure, vertices: NDArray[np.float64]) -> Breakline:
+    def _make_breakline(self, figure: Figure, vertices: Float64Array) -> Breakline:
         is_closed = figure.is_closed or figure.rule.is_closed or figure.is_rectangle
         if is_closed and (vertices[0] != vertices[-1]).any():
             vertices = np.vstack([vertices, vertices[:1]])
         kind: BreaklineKind = "soft" if figure.rule.kind in ("soft", "contour") else "hard"
         return Breakline(vertices, kind=kind, name=figure.name)
 
-    def _make_water(self, figure: Figure, ring: NDArray[np.float64]) -> Water:
+    def _make_water(self, figure: Figure, ring: Float64Array) -> Water:
         level = float(np.median(self.survey.points[figure.rows, 2]))
         return Water(ring[:, :2], level, name=figure.name)
 

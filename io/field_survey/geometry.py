@@ -15,8 +15,7 @@ from .figures import Curve, Fault, find_curves
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from .figures import Figure
 
 __all__ = ["build_polyline"]
@@ -30,10 +29,10 @@ _SQUARE = math.radians(5.0)
 
 def build_polyline(
     figure: Figure,
-    points: NDArray[np.float64],
+    points: Float64Array,
     tolerance: float,
     tell: Callable[[Fault], None],
-) -> NDArray[np.float64]:
+) -> Float64Array:
     """Return the vertices of a figure; those of a ring without the first one at its end.
 
     Parameters
@@ -69,7 +68,7 @@ def build_polyline(
 
 def _drop_repeated(
     figure: Figure,
-    points: NDArray[np.float64],
+    points: Float64Array,
     curves: Sequence[Curve],
     tell: Callable[[Fault], None],
 ) -> list[int]:
@@ -105,7 +104,7 @@ class _Line:
     """Shots, and the arcs between them."""
 
     figure: Figure
-    shots: NDArray[np.float64]
+    shots: Float64Array
     rows: list[int]
     tell: Callable[[Fault], None]
 
@@ -147,24 +146,24 @@ class _Line:
             return None
         return arc
 
-    def _find_direction(self, shot: int) -> NDArray[np.float64] | None:
+    def _find_direction(self, shot: int) -> Float64Array | None:
         """Return the direction in which the line arrives at a shot."""
         if shot == 0:
             return None
-        chord: NDArray[np.float64] = self.shots[shot, :2] - self.shots[shot - 1, :2]
+        chord: Float64Array = self.shots[shot, :2] - self.shots[shot - 1, :2]
         arcs = self.arcs.get(shot - 1)
         if arcs:
             chord = _rotate(arcs[-1].end - arcs[-1].start, arcs[-1].angle)
         return chord if chord.any() else None
 
-    def _find_leaving(self, shot: int) -> NDArray[np.float64] | None:
+    def _find_leaving(self, shot: int) -> Float64Array | None:
         """Return the direction in which a straight leg leaves a shot."""
         if shot + 1 >= len(self.shots):
             return None
-        chord: NDArray[np.float64] = self.shots[shot + 1, :2] - self.shots[shot, :2]
+        chord: Float64Array = self.shots[shot + 1, :2] - self.shots[shot, :2]
         return chord if chord.any() else None
 
-    def join(self, tolerance: float) -> NDArray[np.float64]:
+    def join(self, tolerance: float) -> Float64Array:
         """Return all vertices."""
         if not self.arcs:
             return self.shots
@@ -189,19 +188,19 @@ class _Line:
         self.tell(Fault(kind, self.figure.name, tuple(self.rows[first : last + 1])))
 
 
-def _rotate(vector: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
+def _rotate(vector: Float64Array, angle: float) -> Float64Array:
     cos, sin = math.cos(angle), math.sin(angle)
     return np.array([cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1]])
 
 
-def _measure(from_: NDArray[np.float64], to: NDArray[np.float64]) -> float:
+def _measure(from_: Float64Array, to: Float64Array) -> float:
     """Return the angle from one direction to another, -pi to pi."""
     return math.atan2(from_[0] * to[1] - from_[1] * to[0], float(from_ @ to))
 
 
 def _find_corner(
-    figure: Figure, shots: NDArray[np.float64], tell: Callable[[Fault], None]
-) -> list[NDArray[np.float64]]:
+    figure: Figure, shots: Float64Array, tell: Callable[[Fault], None]
+) -> list[Float64Array]:
     """Return the last corner of a rectangle: where perpendiculars to both end legs meet."""
     rows = tuple(figure.rows)
     if len(shots) < 3:

@@ -14,8 +14,7 @@ from ..reprojection.joining import SOURCE_FILE
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Int64Array
     from ...tin import Survey
 
 __all__ = ["NoCodesError", "read_each_file", "split_files"]
@@ -28,7 +27,7 @@ class NoCodesError(LinesError):
     """No description begins with a code."""
 
 
-def split_files(survey: Survey) -> dict[str, NDArray[np.int64]]:
+def split_files(survey: Survey) -> dict[str, Int64Array]:
     """Return the rows of each file of which a survey was joined; none for a single one."""
     files = survey.attributes.get(SOURCE_FILE)
     if files is None:
@@ -40,7 +39,7 @@ def split_files(survey: Survey) -> dict[str, NDArray[np.int64]]:
 
 
 def read_each_file(
-    survey: Survey, files: dict[str, NDArray[np.int64]], read: Callable[[Survey], Survey]
+    survey: Survey, files: dict[str, Int64Array], read: Callable[[Survey], Survey]
 ) -> Survey:
     """Return the survey with the lines of each of its files.
 
@@ -65,7 +64,7 @@ def read_each_file(
     return _join(survey, made, list(files.values()))
 
 
-def _choose_rows(survey: Survey, rows: NDArray[np.int64]) -> Survey:
+def _choose_rows(survey: Survey, rows: Int64Array) -> Survey:
     """Return some points of a survey, without its lines and what is known of it."""
     nothing: dict[str, Any] = dict.fromkeys((*_LINES, "extent", "notes", "findings"), ())
     return replace(
@@ -78,7 +77,7 @@ def _choose_rows(survey: Survey, rows: NDArray[np.int64]) -> Survey:
     )
 
 
-def _join(survey: Survey, made: dict[str, Survey], rows: Sequence[NDArray[np.int64]]) -> Survey:
+def _join(survey: Survey, made: dict[str, Survey], rows: Sequence[Int64Array]) -> Survey:
     parts = list(made.values())
     skipped = dict(survey.skipped)
     for part in parts:

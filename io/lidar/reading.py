@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -32,9 +32,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
     from ..._progress import Tell
+    from ...arrays import AnyArray, Float64Array
     from ...crs import CrsLike, UnitLike
 
 __all__ = ["read"]
@@ -249,7 +248,7 @@ class _Gathered:
     def __init__(self, capacity: int, progress: Tell | None) -> None:
         self._progress = progress
         self._points = np.empty((capacity, 3))  # the system gives memory to what is filled
-        self._columns: dict[str, NDArray[Any]] = {}
+        self._columns: dict[str, AnyArray] = {}
         self.count = 0
         self.tally = Tally(np.zeros(N_CLASSES, np.int64))
 
@@ -273,7 +272,7 @@ class _Gathered:
             )
         return cls(count, progress)
 
-    def append(self, arrays: dict[str, NDArray[Any]], header: Header) -> None:
+    def append(self, arrays: dict[str, AnyArray], header: Header) -> None:
         """Add a chunk: coordinates are scaled as laspy does, one rounding after the other."""
         xyz = arrays["xyz"]
         start, end = self.count, self.count + len(xyz)
@@ -289,7 +288,7 @@ class _Gathered:
                 self._fill_column(key.removeprefix("attribute "), values, start)
         self.count = end
 
-    def _fill_column(self, name: str, values: NDArray[Any], start: int) -> None:
+    def _fill_column(self, name: str, values: AnyArray, start: int) -> None:
         column = self._columns.get(name)
         if column is None or column.dtype != np.result_type(column, values):
             dtype = values.dtype if column is None else np.result_type(column, values)
@@ -299,7 +298,7 @@ class _Gathered:
             column = self._columns[name] = wider
         column[start : start + len(values)] = values
 
-    def replace(self, start: int, points: NDArray[np.float64]) -> None:
+    def replace(self, start: int, points: Float64Array) -> None:
         """Put other coordinates in the place of those from a row on."""
         if (
             points.base is not self._points
@@ -313,15 +312,15 @@ class _Gathered:
             self._progress((self.count + self.tally.left_out) / len(self._points))
 
     @property
-    def points(self) -> NDArray[np.float64]:
+    def points(self) -> Float64Array:
         """Coordinates of all points."""
         return self._shrink(self._points)
 
-    def _shrink(self, values: NDArray[Any]) -> NDArray[Any]:
+    def _shrink(self, values: AnyArray) -> AnyArray:
         part = values[: self.count]
         return part.copy() if self.count < _SPARSE * len(values) else part
 
-    def finish_attributes(self) -> dict[str, NDArray[Any]]:
+    def finish_attributes(self) -> dict[str, AnyArray]:
         """Return the attributes of all points."""
         return {name: self._shrink(column) for name, column in self._columns.items()}
 
@@ -376,7 +375,7 @@ def _read_tile(
     return placed._replace(notes=(*placed.notes, note))
 
 
-def _describe_outside(points: NDArray[np.float64], header: Header) -> list[str]:
+def _describe_outside(points: Float64Array, header: Header) -> list[str]:
     """Tell of points beyond the bounds that the header gives, looking at some of them."""
     some = points[:: max(1, len(points) // _SOME)]
     low, high = header.low, header.high

@@ -17,7 +17,7 @@ from ...tin import Bounds
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
+    from ...arrays import Int64Array
 
 __all__ = [
     "CHEAP_ATTRIBUTES",
@@ -114,7 +114,7 @@ class Tally:
         Points among those taken that are marked so.
     """
 
-    classes: NDArray[np.int64]
+    classes: Int64Array
     withheld: int = 0
     of_other_classes: int = 0
     of_other_returns: int = 0
@@ -123,7 +123,7 @@ class Tally:
     synthetic: int = 0
     overlap: int = 0
 
-    def add(self, part: dict[str, int], classes: NDArray[np.int64]) -> None:
+    def add(self, part: dict[str, int], classes: Int64Array) -> None:
         """Add the counts of some points."""
         self.classes += classes
         for name, count in part.items():

@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Float64Array, Int32Array
     from ...crs import CRS
 
 __all__ = ["write"]
@@ -74,9 +73,9 @@ class _Scaling(NamedTuple):
         By how much the coordinates that are read differ most.
     """
 
-    scales: NDArray[np.float64]
-    offsets: NDArray[np.float64]
-    error: NDArray[np.float64]
+    scales: Float64Array
+    offsets: Float64Array
+    error: Float64Array
 
 
 def write(
@@ -143,7 +142,7 @@ def _parse_scale(scale: float | None) -> float | None:
     return float(scale)
 
 
-def _require_points(points: NDArray[np.float64], path: Path) -> None:
+def _require_points(points: Float64Array, path: Path) -> None:
     if len(points) == 0:
         raise WriteError(f"Cannot write '{path}': there are no points.", path=path)
     wrong = ~np.isfinite(points).all(axis=1)
@@ -159,13 +158,13 @@ def _require_points(points: NDArray[np.float64], path: Path) -> None:
 # ---------------------------------------------------------------------------- scales
 
 
-def _choose_scaling(points: NDArray[np.float64], scale: float | None, path: Path) -> _Scaling:
+def _choose_scaling(points: Float64Array, scale: float | None, path: Path) -> _Scaling:
     axes = [_scale_axis(points[:, k], scale, "xyz"[k], path) for k in range(3)]
     return _Scaling(*(np.array(column) for column in zip(*axes, strict=True)))
 
 
 def _scale_axis(
-    values: NDArray[np.float64], scale: float | None, axis: str, path: Path
+    values: Float64Array, scale: float | None, axis: str, path: Path
 ) -> tuple[float, float, float]:
     """Return scale, offset and the largest error of one axis."""
     candidates = [10.0**-k for k in range(_COARSEST, _FINEST + 1)] if scale is None else [scale]
@@ -188,7 +187,7 @@ def _scale_axis(
     return best
 
 
-def _try_scale(values: NDArray[np.float64], scale: float) -> tuple[float, float, float] | None:
+def _try_scale(values: Float64Array, scale: float) -> tuple[float, float, float] | None:
     """Return scale, offset and error; None if the numbers would not fit into 32 bits."""
     low, high = float(values.min()), float(values.max())
     offset = 0.0
@@ -204,14 +203,14 @@ def _try_scale(values: NDArray[np.float64], scale: float) -> tuple[float, float,
     return scale, offset, error
 
 
-def _round_to_whole(values: NDArray[np.float64], scale: float, offset: float) -> NDArray[np.int32]:
+def _round_to_whole(values: Float64Array, scale: float, offset: float) -> Int32Array:
     return np.rint((values - offset) / scale).astype(np.int32)
 
 
 # ------------------------------------------------------------------------ attributes
 
 
-def _choose_columns(attributes: Mapping[str, NDArray[Any]], path: Path) -> dict[str, NDArray[Any]]:
+def _choose_columns(attributes: Mapping[str, AnyArray], path: Path) -> dict[str, AnyArray]:
     """Return the attributes that the format holds, and tell of the others."""
     columns, texts = {}, []
     for name, given in attributes.items():
@@ -234,12 +233,12 @@ def _choose_columns(attributes: Mapping[str, NDArray[Any]], path: Path) -> dict[
     return columns
 
 
-def _fits_extra_bytes(name: str, values: NDArray[Any]) -> bool:
+def _fits_extra_bytes(name: str, values: AnyArray) -> bool:
     is_plain = values.dtype.str[1:] in _EXTRA_TYPES and values.ndim == 1
     return is_plain and 0 < len(name.encode()) <= _NAME_BYTES and name not in ("X", "Y", "Z")
 
 
-def _require_range(name: str, values: NDArray[Any], path: Path) -> NDArray[Any]:
+def _require_range(name: str, values: AnyArray, path: Path) -> AnyArray:
     low, high = _STANDARD[name]
     fits = (values >= low) & (values <= high) & (values == np.rint(values))
     if not fits.all():
@@ -268,7 +267,7 @@ def _warn_of_unit(surface: TIN | Survey, path: Path) -> None:
 
 
 def _make_header(
-    laspy: Any, scaling: _Scaling, columns: Mapping[str, NDArray[Any]], crs: CRS | None
+    laspy: Any, scaling: _Scaling, columns: Mapping[str, AnyArray], crs: CRS | None
 ) -> Any:
     has_colours = any(name in columns for name in _COLOURS)
     header = laspy.LasHeader(
@@ -296,8 +295,8 @@ def _format_crs(crs: CRS) -> str:
 def _write_points(
     laspy: Any,
     writer: Any,
-    points: NDArray[np.float64],
-    columns: Mapping[str, NDArray[Any]],
+    points: Float64Array,
+    columns: Mapping[str, AnyArray],
     done: Progress,
 ) -> None:
     header = writer.header

@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
 
 __all__ = [
@@ -63,8 +62,8 @@ class Fans(NamedTuple):
         Whether polygons were cut, which has more than one way.
     """
 
-    triangles: NDArray[np.int64]
-    polygon: NDArray[np.int64]
+    triangles: Int64Array
+    polygon: Int64Array
     notes: tuple[str, ...] = ()
 
 
@@ -188,13 +187,13 @@ def _find_unit(text: str | None, path: Path) -> Unit | None:
 
 
 def make_tin(
-    points: NDArray[Any],
-    triangles: NDArray[Any],
+    points: AnyArray,
+    triangles: AnyArray,
     path: Path,
     *,
-    constrained: NDArray[np.bool_] | None = None,
+    constrained: BoolArray | None = None,
     reference: Reference,
-    attributes: Mapping[str, NDArray[Any]] | None = None,
+    attributes: Mapping[str, AnyArray] | None = None,
     notes: Sequence[str] = (),
 ) -> TIN:
     """Make a TIN of what a file holds; what makes no TIN is a fault of the file.
@@ -222,7 +221,7 @@ def make_tin(
     return add_notes(tin, told) if told else tin
 
 
-def describe_single_precision(points: NDArray[np.float64], dtype: Any) -> list[str]:
+def describe_single_precision(points: Float64Array, dtype: Any) -> list[str]:
     """Tell how far apart the numbers are that coordinates of a file can have, if that is much.
 
     Parameters
@@ -243,7 +242,7 @@ def describe_single_precision(points: NDArray[np.float64], dtype: Any) -> list[s
     ]
 
 
-def _describe_suspects(z: NDArray[np.float64]) -> list[str]:
+def _describe_suspects(z: Float64Array) -> list[str]:
     """Tell of elevations that may stand for no data; a mesh is read with all its vertices."""
     return [
         f"{counted(one.count, 'vertex', 'vertices')} {'has' if one.count == 1 else 'have'} the "
@@ -260,10 +259,10 @@ def add_notes(tin: TIN, notes: Sequence[str]) -> TIN:
 
 
 def make_survey(
-    points: NDArray[np.float64],
+    points: Float64Array,
     path: Path,
     *,
-    attributes: dict[str, NDArray[Any]] | None = None,
+    attributes: dict[str, AnyArray] | None = None,
     reference: Reference,
     notes: Sequence[str] = (),
 ) -> Survey:
@@ -295,7 +294,7 @@ def make_survey(
 
 
 def cut_into_fans(
-    corners: NDArray[np.int64], offsets: NDArray[np.int64], points: NDArray[np.float64], path: Path
+    corners: Int64Array, offsets: Int64Array, points: Float64Array, path: Path
 ) -> Fans:
     """Cut polygons into triangles about their first corner, quadrilaterals along an inner diagonal.
 
@@ -346,8 +345,8 @@ def cut_into_fans(
 
 
 def _turn_to_inner_diagonal(
-    corners: NDArray[np.int64], offsets: NDArray[np.int64], points: NDArray[np.float64]
-) -> NDArray[np.int64]:
+    corners: Int64Array, offsets: Int64Array, points: Float64Array
+) -> Int64Array:
     """Begin a quadrilateral one corner later where its first diagonal runs outside of it."""
     starts = offsets[:-1][np.diff(offsets) == 4]
     slots = starts[:, None] + np.arange(4)
@@ -360,5 +359,5 @@ def _turn_to_inner_diagonal(
     return corners
 
 
-def _cross_in_plane(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+def _cross_in_plane(u: Float64Array, v: Float64Array) -> Float64Array:
     return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])

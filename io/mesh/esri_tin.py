@@ -14,7 +14,7 @@ The layout is that which MDAL and the Virtual Terrain Project found out; Esri ha
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -27,8 +27,7 @@ from .linework import Chain, add_lines, chain_edges
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ...policies import LineKind
     from ...tin import TIN
@@ -51,11 +50,11 @@ _NO_CRS = ("{B286C06B-0879-11D2-AACA-00C04FA33C20}", "UNKNOWN")
 
 
 class _Tables(NamedTuple):
-    places: NDArray[np.float64]
-    elevations: NDArray[np.float64]
-    corners: NDArray[np.int64]
-    beside: NDArray[np.int64]
-    enforced: NDArray[np.int64]
+    places: Float64Array
+    elevations: Float64Array
+    corners: Int64Array
+    beside: Int64Array
+    enforced: Int64Array
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN:
@@ -105,7 +104,7 @@ def _read_tables(folder: Path) -> _Tables:
     )
 
 
-def _read_numbers(path: Path, dtype: str, width: int) -> NDArray[Any]:
+def _read_numbers(path: Path, dtype: str, width: int) -> AnyArray:
     content = read_content(path)
     row = width * np.dtype(dtype).itemsize
     if len(content) % row:
@@ -143,7 +142,7 @@ def _require_sound(tables: _Tables, folder: Path) -> None:
         )
 
 
-def _read_mask(folder: Path, n_triangles: int) -> NDArray[np.bool_]:
+def _read_mask(folder: Path, n_triangles: int) -> BoolArray:
     """Return which triangles are masked.
 
     The last number of ``tmsx.adf`` is the length of the mask in 16-bit words; it ends the file
@@ -186,7 +185,7 @@ def _read_crs(folder: Path) -> str | None:
 
 
 def _gather_chains(
-    tables: _Tables, triangles: NDArray[np.int64], number: NDArray[np.int64], tin: TIN
+    tables: _Tables, triangles: Int64Array, number: Int64Array, tin: TIN
 ) -> list[Chain]:
     """Return the enforced edges of the surface, chained by their kind.
 

@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Int32Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
 
@@ -42,7 +41,7 @@ _ODD_LETTERS = re.compile(r'["\r\n]')
 class _Edges(NamedTuple):
     """Edges of boundary and lines, each once, and the name of the group of each."""
 
-    pairs: NDArray[np.int32]
+    pairs: Int32Array
     names: list[str]
 
 
@@ -65,9 +64,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     return make_tin(points, triangles, path, constrained=flags, reference=reference)
 
 
-def _flag_edges(
-    triangles: NDArray[np.int32], lines: NDArray[np.int32], n_points: int
-) -> NDArray[np.bool_]:
+def _flag_edges(triangles: Int32Array, lines: Int32Array, n_points: int) -> BoolArray:
     edges = np.stack(directed_edges(triangles), axis=-1)
     return np.isin(edge_keys(edges, n_points), edge_keys(lines, n_points))
 

@@ -12,7 +12,7 @@ import numpy as np
 from ..isolated import Answer, Refusal
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import Int64Array
 
 __all__ = ["prepare", "read_mesh"]
 
@@ -64,6 +64,6 @@ def _read_with_meshio(path: str, shown: str) -> Any:
     return found
 
 
-def _find_cells(found: Any, kind: str, size: int) -> NDArray[np.int64]:
+def _find_cells(found: Any, kind: str, size: int) -> Int64Array:
     blocks = [np.asarray(block.data, np.int64) for block in found.cells if block.type == kind]
     return np.concatenate([np.empty((0, size), np.int64), *blocks])

@@ -27,8 +27,8 @@ from .vtk_child import read_dataset
 
 if TYPE_CHECKING:
     import pyvista
-    from numpy.typing import NDArray
 
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
 
 __all__ = ["from_mesh", "to_meshio", "to_pyvista", "to_trimesh"]
@@ -40,8 +40,8 @@ _WITHOUT_FACES = frozenset({"vertex", "line"})
 class _Shifted(NamedTuple):
     """Vertices near zero, and what brings them back exactly."""
 
-    points: NDArray[np.float64]
-    origin: NDArray[np.float64]
+    points: Float64Array
+    origin: Float64Array
 
 
 def _shift(tin: TIN) -> _Shifted:
@@ -204,12 +204,12 @@ def to_meshio(tin: TIN) -> Any:
 class _Found(NamedTuple):
     """A mesh of another library."""
 
-    points: NDArray[np.float64]
-    corners: NDArray[np.int64]
-    offsets: NDArray[np.int64]
+    points: Float64Array
+    corners: Int64Array
+    offsets: Int64Array
     about: Mapping[str, Any]
-    flags: NDArray[np.bool_] | None
-    attributes: Mapping[str, NDArray[Any]]
+    flags: BoolArray | None
+    attributes: Mapping[str, AnyArray]
     dtype: Any
 
 
@@ -280,7 +280,7 @@ def _as_text(value: Any) -> str | None:
     return str(value) or None if value is not None else None
 
 
-def _restore_points(found: _Found) -> NDArray[np.float64]:
+def _restore_points(found: _Found) -> Float64Array:
     """Take an exaggeration out of the elevations, and add the origin."""
     points = found.points.copy()
     for name in ("exaggeration", "elevation_scale"):
@@ -291,7 +291,7 @@ def _restore_points(found: _Found) -> NDArray[np.float64]:
     if origin.shape != (3,):
         has = counted(len(origin), "number")
         raise PointsError(f"The origin of the mesh has {has}: three are needed.")
-    moved: NDArray[np.float64] = points + origin
+    moved: Float64Array = points + origin
     return moved
 
 
@@ -368,7 +368,7 @@ def _read_meshio(mesh: Any) -> _Found:
     )
 
 
-def _choose_attributes(data: Mapping[str, Any], count: int) -> dict[str, NDArray[Any]]:
+def _choose_attributes(data: Mapping[str, Any], count: int) -> dict[str, AnyArray]:
     arrays = {str(name): np.asarray(values) for name, values in data.items()}
     return {
         name: values

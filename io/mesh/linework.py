@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ...arrays import BoolArray, Int32Array, Int64Array
     from ...policies import LineKind
 
 __all__ = ["Chain", "add_lines", "chain_edges", "list_chains"]
@@ -31,7 +32,7 @@ class Chain(NamedTuple):
     name : str
     """
 
-    vertices: NDArray[np.int64]
+    vertices: Int64Array
     kind: LineKind | None = None
     name: str = ""
 
@@ -79,7 +80,7 @@ def _choose_kind(tin: TIN, chain: Chain) -> LineKind:
     return "boundary" if (sides == NO_NEIGHBOR).any(axis=1).all() else "hard"
 
 
-def _flag_edges(tin: TIN, segments: NDArray[np.int32]) -> NDArray[np.bool_]:
+def _flag_edges(tin: TIN, segments: Int32Array) -> BoolArray:
     """Flag the edges of all triangles that are among some pairs of vertices."""
     count = len(tin.points)
     edges = np.stack(
@@ -88,7 +89,7 @@ def _flag_edges(tin: TIN, segments: NDArray[np.int32]) -> NDArray[np.bool_]:
     return np.isin(edge_keys(edges, count), edge_keys(segments, count))
 
 
-def list_chains(tin: TIN) -> list[NDArray[np.int64]]:
+def list_chains(tin: TIN) -> list[Int64Array]:
     """Return the lines of a TIN as chains of vertices, then its other constrained edges chained."""
     chains = [np.asarray(chain, np.int64) for chain in tin.lines.chains()]
     triangle, corner = np.nonzero(tin.constrained)
@@ -99,7 +100,7 @@ def list_chains(tin: TIN) -> list[NDArray[np.int64]]:
     return [*chains, *chain_edges(left, count)]
 
 
-def chain_edges(edges: NDArray[np.integer], n_vertices: int) -> list[NDArray[np.int64]]:
+def chain_edges(edges: NDArray[np.integer], n_vertices: int) -> list[Int64Array]:
     """Join edges to chains that end where an end, a fork or a crossing is; a ring is closed.
 
     Parameters
@@ -134,9 +135,7 @@ def _repeat_starts(knots: Iterable[int], at: dict[int, list[int]]) -> list[int]:
     return [knot for knot in knots for _ in at[knot]]
 
 
-def _walk(
-    pairs: NDArray[np.int64], at: dict[int, list[int]], used: NDArray[np.bool_], start: int
-) -> list[int]:
+def _walk(pairs: Int64Array, at: dict[int, list[int]], used: BoolArray, start: int) -> list[int]:
     """Follow unused edges from a vertex to the next knot, or round a ring."""
     chain = [start]
     while len(chain) == 1 or len(at[chain[-1]]) == 2:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 import warnings
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -30,8 +30,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import IO
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
     from .texture import Texture
@@ -96,9 +95,7 @@ def _find_comment(lines: Sequence[str], name: str) -> str | None:
     return None
 
 
-def _parse_points(
-    lines: Sequence[str], vertex_lines: Sequence[int], path: Path
-) -> NDArray[np.float64]:
+def _parse_points(lines: Sequence[str], vertex_lines: Sequence[int], path: Path) -> Float64Array:
     plain = _parse_plain_rows([lines[i] for i in vertex_lines], np.float64)
     if plain is not None:
         return plain
@@ -114,7 +111,7 @@ def _parse_points(
         raise
 
 
-def _parse_plain_rows(rows: Sequence[str], dtype: type[np.generic]) -> NDArray[Any] | None:
+def _parse_plain_rows(rows: Sequence[str], dtype: type[np.generic]) -> AnyArray | None:
     """Return the numbers of rows like ``v 1 2 3`` at once; None where a row is anything else."""
     if any(row.count(" ") != 3 for row in rows):
         return None
@@ -136,7 +133,7 @@ def _require_numbers(words: Sequence[str], lines: Sequence[str], i: int, path: P
 
 def _parse_faces(
     lines: Sequence[str], vertex_lines: Sequence[int], face_lines: Sequence[int], path: Path
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+) -> tuple[Int64Array, Int64Array]:
     """Return the vertex numbers, from 0 on, of all faces, and the offsets of each."""
     plain = _parse_plain_rows([lines[i] for i in face_lines], np.int64)
     if plain is not None and plain.min() > 0 and plain.max() < _CLAMPED:

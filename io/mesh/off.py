@@ -36,8 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Int64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
 
@@ -134,7 +133,7 @@ def _parse_counts(rows: Sequence[str], lines: Sequence[int], path: Path) -> _Cou
 
 def _parse_faces(
     rows: Sequence[str], lines: Sequence[int], path: Path
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+) -> tuple[Int64Array, Int64Array]:
     """Return the vertex numbers of all faces, and the offsets of each."""
     if rows and all(row.startswith(("3 ", "3\t")) for row in rows):
         what = "a face has fewer corners than it promises"

@@ -35,8 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
 
@@ -109,7 +108,7 @@ def _sort_cards(content: bytes, path: Path) -> dict[str, _Rows]:
     return cards
 
 
-def _parse_nodes(rows: _Rows, path: Path) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+def _parse_nodes(rows: _Rows, path: Path) -> tuple[Int64Array, Float64Array]:
     """Return the numbers of the nodes as the file calls them, and their coordinates."""
     what = "a node needs its number, x, y and z"
     points = parse_floats(rows.texts, rows.lines, path, columns=slice(2, 5), what=what)
@@ -126,8 +125,8 @@ def _parse_nodes(rows: _Rows, path: Path) -> tuple[NDArray[np.int64], NDArray[np
 
 
 def _parse_elements(
-    card: str, rows: _Rows, numbers: NDArray[np.int64], path: Path
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    card: str, rows: _Rows, numbers: Int64Array, path: Path
+) -> tuple[Int64Array, Int64Array]:
     """Return the corners of the polygons that elements of one kind become, and their lengths."""
     count, polygons = _FACES[card]
     what = f"an element {card} needs its number and {count} nodes"
@@ -139,9 +138,7 @@ def _parse_elements(
     return corners, np.tile([len(polygon) for polygon in polygons], len(nodes))
 
 
-def _find_nodes(
-    named: NDArray[np.int64], numbers: NDArray[np.int64], rows: _Rows, path: Path
-) -> NDArray[np.int64]:
+def _find_nodes(named: Int64Array, numbers: Int64Array, rows: _Rows, path: Path) -> Int64Array:
     """Return the rows of nodes that are called by number."""
     order = np.argsort(numbers)
     at = np.searchsorted(numbers, named, sorter=order)
@@ -155,7 +152,7 @@ def _find_nodes(
     return np.asarray(found, np.int64)
 
 
-def _parse_strings(rows: _Rows, numbers: NDArray[np.int64], path: Path) -> list[Chain]:
+def _parse_strings(rows: _Rows, numbers: Int64Array, path: Path) -> list[Chain]:
     """Return the node strings: a negative number ends one, and the string's own may follow it."""
     chains: list[Chain] = []
     open_nodes: list[int] = []
@@ -235,7 +232,7 @@ def _iterate_batches(tin: TIN) -> Iterator[tuple[int, str]]:
         yield len(rows), "".join(text)
 
 
-def _format_string(chain: NDArray[np.int64], number: int) -> str:
+def _format_string(chain: Int64Array, number: int) -> str:
     """Return a node string: the last node is negative, and the number of the string follows it."""
     words = [str(node + 1) for node in chain.tolist()]
     words[-1] = f"-{words[-1]} {number}"

@@ -13,8 +13,7 @@ from ...tin.topology import NO_NEIGHBOR, ends
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int32Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["Solid", "build_solid"]
@@ -29,8 +28,8 @@ class Solid(NamedTuple):
     triangles : (m, 3) int64 array
     """
 
-    points: NDArray[np.float64]
-    triangles: NDArray[np.int64]
+    points: Float64Array
+    triangles: Int64Array
 
     @property
     def volume(self) -> float:
@@ -39,7 +38,7 @@ class Solid(NamedTuple):
         return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
 
 
-def build_solid(tin: TIN, points: NDArray[np.float64], thickness: float, path: Path) -> Solid:
+def build_solid(tin: TIN, points: Float64Array, thickness: float, path: Path) -> Solid:
     """Close a surface with a flat base and upright walls.
 
     Parameters
@@ -83,9 +82,7 @@ def build_solid(tin: TIN, points: NDArray[np.float64], thickness: float, path: P
     )
 
 
-def _split_touching(
-    triangles: NDArray[np.int64], neighbors: NDArray[np.int32]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _split_touching(triangles: Int64Array, neighbors: Int32Array) -> tuple[Int64Array, Int64Array]:
     """Give each fan of triangles about a vertex a corner of its own.
 
     Returns
@@ -110,7 +107,7 @@ def _split_touching(
 
 
 def _walk_fan(
-    triangles: NDArray[np.int64], neighbors: NDArray[np.int32], triangle: int, vertex: int
+    triangles: Int64Array, neighbors: Int32Array, triangle: int, vertex: int
 ) -> list[tuple[int, int]]:
     """Return the corners at a vertex, from a triangle whose edge from there is of the boundary."""
     slots = []

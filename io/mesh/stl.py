@@ -15,7 +15,7 @@ by a base and walls.
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -38,8 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Float32Array, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN
 
@@ -77,7 +76,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     return make_tin(places, triangles, path, reference=reference, notes=notes)
 
 
-def _find_facets(content: bytes, path: Path) -> NDArray[Any]:
+def _find_facets(content: bytes, path: Path) -> AnyArray:
     body = _HEADER_BYTES + 4
     count = int.from_bytes(content[_HEADER_BYTES:body], "little")
     room = (len(content) - body) // _FACET.itemsize
@@ -100,7 +99,7 @@ def _find_facets(content: bytes, path: Path) -> NDArray[Any]:
     )
 
 
-def _read_record(header: bytes) -> tuple[NDArray[np.float64], str | None, str | None]:
+def _read_record(header: bytes) -> tuple[Float64Array, str | None, str | None]:
     """Return origin, CRS and unit that our own header records; a foreign one records none."""
     found = _RECORD.fullmatch(header.rstrip(b"\0 ").decode("ascii", errors="replace"))
     if found is None:
@@ -112,7 +111,7 @@ def _read_record(header: bytes) -> tuple[NDArray[np.float64], str | None, str | 
     return origin, found[4], found[5]
 
 
-def _merge_corners(corners: NDArray[np.float32]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _merge_corners(corners: Float32Array) -> tuple[Float64Array, Int64Array]:
     """Return the distinct places in the order in which they first occur, and their numbers."""
     corners = corners + np.float32(0.0)  # turns -0.0 into 0.0, so that equal places are equal bits
     bits = np.ascontiguousarray(corners).view(np.uint32).astype(np.uint64)
@@ -213,7 +212,7 @@ def _require_model_options(
 
 def _make_model(
     tin: TIN, scale: float | None, size: float | None, exaggeration: float
-) -> tuple[NDArray[np.float64], bytes]:
+) -> tuple[Float64Array, bytes]:
     """Return the vertices of a model, from its own corner, and what the header tells of it."""
     used = tin.points[np.unique(tin.triangles)]
     points = (tin.points - used.min(axis=0)) * (1.0, 1.0, exaggeration * scale_elevations(
@@ -236,7 +235,7 @@ def _make_model(
     return points, record.encode()[:_HEADER_BYTES].ljust(_HEADER_BYTES, b" ")
 
 
-def _format_record(origin: NDArray[np.float64], tin: TIN) -> bytes:
+def _format_record(origin: Float64Array, tin: TIN) -> bytes:
     """Record the origin, and CRS and unit of elevations as far as there is room for them."""
     record = "origin {!r} {!r} {!r}".format(*(origin + 0.0).tolist())
     for name, text in (("crs", str(tin.crs or "")), ("z", "".join(format_unit(tin).split()))):
@@ -246,7 +245,7 @@ def _format_record(origin: NDArray[np.float64], tin: TIN) -> bytes:
     return record.encode().ljust(_HEADER_BYTES, b" ")
 
 
-def _pack_facets(corners: NDArray[np.float64]) -> NDArray[Any]:
+def _pack_facets(corners: Float64Array) -> AnyArray:
     """Return STL rows for (m, 3 corners, 3) coordinates."""
     rows = np.zeros(len(corners), _FACET)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

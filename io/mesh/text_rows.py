@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from ...arrays import AnyArray, Float64Array, Int64Array
 
 __all__ = [
     "describe_row_fault",
@@ -54,7 +54,7 @@ def split_rows(content: bytes, *, comment: str = "#") -> tuple[list[str], list[i
 
 def parse_floats(
     rows: Sequence[str], lines: Sequence[int], path: Path, *, columns: slice, what: str
-) -> NDArray[np.float64]:
+) -> Float64Array:
     """Return the numbers in some columns of rows.
 
     Parameters
@@ -87,7 +87,7 @@ def parse_floats(
 
 def _parse_plain_rows(
     rows: Sequence[str], columns: slice, dtype: type[np.generic]
-) -> NDArray[Any] | None:
+) -> AnyArray | None:
     """Return the numbers in some columns at once; None where a row is not plain."""
     if not rows:
         return None
@@ -120,7 +120,7 @@ def _require_numbers(row: Sequence[str], line: int, path: Path) -> None:
 
 def parse_integer_columns(
     rows: Sequence[str], lines: Sequence[int], path: Path, *, columns: slice, what: str
-) -> NDArray[np.int64]:
+) -> Int64Array:
     """Return the whole numbers in some columns of rows, as :func:`parse_floats`."""
     plain = _parse_plain_rows(rows, columns, np.int64)
     if plain is not None:

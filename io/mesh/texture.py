@@ -20,9 +20,7 @@ if TYPE_CHECKING:
     import os
     from pathlib import Path
 
-    import numpy as np
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["MOST_PIXELS", "Texture", "choose_picture", "load_texture"]
@@ -53,7 +51,7 @@ class Texture:
 
     content: bytes
     kind: str
-    places: NDArray[np.float64]
+    places: Float64Array
 
     @property
     def suffix(self) -> str:

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ...arrays import AnyArray, Float64Array, Int32Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
     from .common import Reference
@@ -101,7 +102,7 @@ def read(
     return _add_edge_types(tin, arrays)
 
 
-def _require_elevations(points: NDArray[np.float64], variable: str, path: Path) -> None:
+def _require_elevations(points: Float64Array, variable: str, path: Path) -> None:
     lost = np.isnan(points[:, 2]) & np.isfinite(points[:, :2]).all(axis=1)
     if lost.any():
         count = int(lost.sum())
@@ -169,7 +170,7 @@ def _is_unit(text: str) -> bool:
         return False
 
 
-def _add_edge_types(tin: TIN, arrays: Mapping[str, NDArray[Any]]) -> TIN:
+def _add_edge_types(tin: TIN, arrays: Mapping[str, AnyArray]) -> TIN:
     """Return the TIN with the lines and constrained edges of the file."""
     if "edges" not in arrays:
         return tin
@@ -193,7 +194,7 @@ def _add_edge_types(tin: TIN, arrays: Mapping[str, NDArray[Any]]) -> TIN:
     return add_notes(tin, [f"{counted(lost, 'typed edge')} of the file lie along no edge."])
 
 
-def _find_opposite(triangles: NDArray[np.int32], edges: NDArray[np.int64]) -> NDArray[np.intp]:
+def _find_opposite(triangles: Int32Array, edges: Int64Array) -> NDArray[np.intp]:
     """Return the corner of each triangle that is no end of its edge."""
     is_end = (triangles[:, :, None] == edges[:, None, :]).any(axis=2)
     return np.asarray(np.argmin(is_end, axis=1))

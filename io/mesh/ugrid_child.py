@@ -13,7 +13,7 @@ from ..isolated import Answer, Refusal
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array, Int64Array
 
 __all__ = ["prepare", "read_mesh"]
 
@@ -154,7 +154,7 @@ def _tell_axis(variable: Any) -> str:
     return "z" if name in _ELEVATIONS | _DEPTHS else ""
 
 
-def _read_numbers(variable: Any, shown: str) -> NDArray[np.float64]:
+def _read_numbers(variable: Any, shown: str) -> Float64Array:
     """Return the numbers of a variable of one dimension, NaN where it has none."""
     if variable.ndim != 1 or np.dtype(variable.dtype).kind not in "iuf":
         raise Refusal(
@@ -164,9 +164,7 @@ def _read_numbers(variable: Any, shown: str) -> NDArray[np.float64]:
     return np.ma.filled(np.ma.asarray(variable[:]).astype(np.float64), np.nan)
 
 
-def _read_coordinates(
-    data: Any, mesh: Any, shown: str
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _read_coordinates(data: Any, mesh: Any, shown: str) -> tuple[Float64Array, Float64Array]:
     x, y = (_read_numbers(one, shown) for one in _find_coordinates(data, mesh, shown))
     if len(x) != len(y):
         raise Refusal(
@@ -218,7 +216,7 @@ def _is_depth(variable: Any) -> bool:
     return told == "down" if told else _get_text(variable, "standard_name") in _DEPTHS
 
 
-def _read_faces(data: Any, mesh: Any, shown: str) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _read_faces(data: Any, mesh: Any, shown: str) -> tuple[Int64Array, Int64Array]:
     """Return the corners of all faces, from 0 on, and the offsets of each."""
     name = _get_text(mesh, "face_node_connectivity")
     table = _read_table(_get_variable(data, name, mesh, "faces", shown), shown)
@@ -236,7 +234,7 @@ def _is_transposed(data: Any, mesh: Any, name: str) -> bool:
     return bool(dimension) and data.variables[name].dimensions[1] == dimension
 
 
-def _read_table(variable: Any, shown: str) -> NDArray[np.int64]:
+def _read_table(variable: Any, shown: str) -> Int64Array:
     """Return a table of node numbers from 0 on; -1 where there is none."""
     if variable.ndim != 2 or np.dtype(variable.dtype).kind not in "iuf":
         raise Refusal(
@@ -264,7 +262,7 @@ def _find_start(variable: Any) -> int:
     return int(np.asarray(variable.getncattr("start_index")).ravel()[0])
 
 
-def _read_edges(data: Any, mesh: Any, n_nodes: int) -> dict[str, NDArray[np.int64]]:
+def _read_edges(data: Any, mesh: Any, n_nodes: int) -> dict[str, Int64Array]:
     """Return the edges with a type, as this package writes them; nothing where there are none."""
     name = _get_text(mesh, "edge_node_connectivity")
     types = data.variables.get(f"{mesh.name}_edge_type")

@@ -26,8 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Float64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
     from ..isolated import Answer
@@ -73,7 +72,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     )
 
 
-def _restore_points(arrays: Mapping[str, NDArray[Any]]) -> NDArray[np.float64]:
+def _restore_points(arrays: Mapping[str, AnyArray]) -> Float64Array:
     """Take an exaggeration out of the elevations, and add the origin."""
     points = arrays["points"]
     origin = arrays.get("origin")

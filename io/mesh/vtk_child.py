@@ -13,7 +13,7 @@ from ..isolated import Answer, Refusal
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
+    from ...arrays import AnyArray, Float64Array, Int64Array, UInt8Array
 
 __all__ = ["catch_errors", "load_vtk_class", "prepare", "read_dataset", "read_mesh"]
 
@@ -66,7 +66,7 @@ def read_dataset(found: Any, shown: str) -> Answer:
         raise Refusal(f"'{shown}' is neither a PolyData nor an UnstructuredGrid.")
     faces = _read_poly_data(found, shown) if is_poly_data else _read_faces(found, shown)
     attributes = _read_point_attributes(found)
-    arrays: dict[str, NDArray[Any]] = {
+    arrays: dict[str, AnyArray] = {
         "points": np.array(found.points, np.float64).reshape(-1, 3),
         **faces,
     }
@@ -98,13 +98,13 @@ def catch_errors(pv: Any) -> Iterator[list[Any]]:
         vtkLogger.SetStderrVerbosity(before)
 
 
-def _convert_to_integers(array: Any) -> NDArray[np.int64]:
+def _convert_to_integers(array: Any) -> Int64Array:
     """Return a VTK array of numbers of points or cells."""
-    numbers: NDArray[np.int64] = import_module("pyvista").convert_array(array).astype(np.int64)
+    numbers: Int64Array = import_module("pyvista").convert_array(array).astype(np.int64)
     return numbers
 
 
-def _read_number_fields(found: Any) -> dict[str, NDArray[np.float64]]:
+def _read_number_fields(found: Any) -> dict[str, Float64Array]:
     """Return the fields that tell where the coordinates are, as far as they are sound."""
     fields = {}
     for name, size in (("origin", 3), ("exaggeration", 1), ("elevation_scale", 1)):
@@ -121,7 +121,7 @@ def _read_text_field(found: Any, name: str) -> str | None:
     return (str(values[0]).strip() or None) if len(values) else None
 
 
-def _read_poly_data(found: Any, shown: str) -> dict[str, NDArray[np.int64]]:
+def _read_poly_data(found: Any, shown: str) -> dict[str, Int64Array]:
     if found.n_strips:
         raise Refusal(f"'{shown}' holds triangle strips, which are not read.")
     polys = found.GetPolys()
@@ -135,7 +135,7 @@ def _read_poly_data(found: Any, shown: str) -> dict[str, NDArray[np.int64]]:
     return {"corners": corners, "offsets": offsets, "cells": cells}
 
 
-def _read_faces(found: Any, shown: str) -> dict[str, NDArray[np.int64]]:
+def _read_faces(found: Any, shown: str) -> dict[str, Int64Array]:
     types = np.asarray(found.celltypes)
     odd = ~np.isin(types, list(_NO_FACES | _FACES))
     if odd.any():
@@ -156,7 +156,7 @@ def _read_faces(found: Any, shown: str) -> dict[str, NDArray[np.int64]]:
     return {"corners": corners, "offsets": offsets, "cells": cells}
 
 
-def _read_edge_flags(found: Any, cells: NDArray[np.int64]) -> dict[str, NDArray[np.uint8]]:
+def _read_edge_flags(found: Any, cells: Int64Array) -> dict[str, UInt8Array]:
     """Return the edge flags of the faces if the file has them."""
     if "constrained" not in found.cell_data:
         return {}
@@ -166,6 +166,6 @@ def _read_edge_flags(found: Any, cells: NDArray[np.int64]) -> dict[str, NDArray[
     return {"flags": (flags[cells] != 0).astype(np.uint8)}
 
 
-def _read_point_attributes(found: Any) -> dict[str, NDArray[Any]]:
+def _read_point_attributes(found: Any) -> dict[str, AnyArray]:
     arrays = {str(name): np.array(values) for name, values in found.point_data.items()}
     return {name: a for name, a in arrays.items() if a.ndim == 1 and a.dtype.kind in "biuf"}

@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray
     from ...terrain.results import Raster
 
 __all__ = ["write"]
@@ -119,9 +118,7 @@ def _iterate_rows(raster: Raster, name: str, nodata: float, path: Path) -> Any:
         yield stop / rows, "\n".join(texts) + "\n"
 
 
-def _format_values(
-    values: NDArray[Any], raster: Raster, nodata: float, path: Path
-) -> list[list[str]]:
+def _format_values(values: AnyArray, raster: Raster, nodata: float, path: Path) -> list[list[str]]:
     if values.dtype.kind == "b":
         values = values.astype(np.uint8)
     if values.dtype.kind != "f":

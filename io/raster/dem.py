@@ -30,9 +30,8 @@ if TYPE_CHECKING:
     from contextlib import AbstractContextManager
     from typing import TypeAlias
 
-    from numpy.typing import NDArray
-
     from ..._progress import Tell
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ..isolated import Answer
 
@@ -87,10 +86,10 @@ class _Cells:
         return -(-self.width // self.stride) * -(-self.height // self.stride)
 
     @property
-    def columns(self) -> NDArray[np.int64]:
+    def columns(self) -> Int64Array:
         return np.arange(self.column, self.column + self.width, self.stride)
 
-    def find_rows(self, start: int, stop: int) -> NDArray[np.int64]:
+    def find_rows(self, start: int, stop: int) -> Int64Array:
         """Return the rows wanted among ``start`` to ``stop``."""
         first = start + (self.row - start) % self.stride
         return np.arange(first, stop, self.stride)
@@ -267,7 +266,7 @@ def read_georeference(
     return tuple(dataset.transform), (dataset.height, dataset.width), dataset.crs
 
 
-def _add_void_rings(survey: Survey, valid: NDArray[np.bool_]) -> Survey:
+def _add_void_rings(survey: Survey, valid: BoolArray) -> Survey:
     """Return the survey with the rings at which its surface ends."""
     rings = trace_rings(valid)
     if not rings:
@@ -461,7 +460,7 @@ def find_elevation_unit(
     )
 
 
-def find_middle(dataset: Header) -> NDArray[np.float64]:
+def find_middle(dataset: Header) -> Float64Array:
     """Return the middle of a raster as a (1, 3) array."""
     x, y = dataset.transform.apply(dataset.width / 2, dataset.height / 2)
     return np.array([[x, y, 0.0]])
@@ -595,15 +594,15 @@ def _read_points(
     open_strips: OpenStrips,
     band: int,
     cells: _Cells,
-    marks: NDArray[np.float64],
+    marks: Float64Array,
     progress: Tell | None,
-) -> tuple[NDArray[np.float64], NDArray[np.bool_], int]:
+) -> tuple[Float64Array, BoolArray, int]:
     """Return the points of valid cells, which cells are valid, and how many have no elevation."""
     strips = _cut_into_strips(dataset, cells)
     window = {"band": band, "column": cells.column, "width": cells.width, "stride": cells.stride}
     ends = [[int(rows[0]), int(rows[-1])] for rows in strips]
-    found: list[NDArray[np.float64]] = []
-    kept: list[NDArray[np.bool_]] = []
+    found: list[Float64Array] = []
+    kept: list[BoolArray] = []
     n_nodata, done = 0, Progress(progress)
     with open_strips({**window, "rows": ends}) as answers:
         for rows, answer in zip(strips, answers, strict=False):
@@ -617,7 +616,7 @@ def _read_points(
     return np.concatenate(found), np.concatenate(kept), n_nodata
 
 
-def _cut_into_strips(dataset: Header, cells: _Cells) -> list[NDArray[np.int64]]:
+def _cut_into_strips(dataset: Header, cells: _Cells) -> list[Int64Array]:
     """Cut the rows wanted into strips."""
     height = _choose_strip_height(dataset, cells)
     end = cells.row + cells.height
@@ -637,10 +636,10 @@ def _read_strip(
     dataset: Header,
     band: int,
     cells: _Cells,
-    rows: NDArray[np.int64],
-    arrays: Mapping[str, NDArray[Any]],
-    marks: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.bool_], int]:
+    rows: Int64Array,
+    arrays: Mapping[str, AnyArray],
+    marks: Float64Array,
+) -> tuple[Float64Array, BoolArray, int]:
     values, has_value = arrays["values"], arrays["valid"] != 0
     x, y = _compute_centres(dataset, cells.columns, rows)
     wanted = _find_within(cells.bounds, x, y)
@@ -657,7 +656,7 @@ def _read_strip(
     return points, keep, int(np.count_nonzero(wanted & ~keep))
 
 
-def _require_finite_centres(points: NDArray[np.float64], band: int, path: Path) -> None:
+def _require_finite_centres(points: Float64Array, band: int, path: Path) -> None:
     wrong = ~np.isfinite(points[:, 2])
     if wrong.any():
         count, first = int(wrong.sum()), points[int(np.argmax(wrong))].tolist()
@@ -670,17 +669,15 @@ def _require_finite_centres(points: NDArray[np.float64], band: int, path: Path) 
 
 
 def _compute_centres(
-    dataset: Header, columns: NDArray[np.int64], rows: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    dataset: Header, columns: Int64Array, rows: Int64Array
+) -> tuple[Float64Array, Float64Array]:
     """Return easting and northing of the cell centres, (rows, columns) arrays."""
     x, y = dataset.transform.apply(columns[None, :] + 0.5, rows[:, None] + 0.5)
     return x, y
 
 
-def _find_within(
-    bounds: Bounds | None, x: NDArray[np.float64], y: NDArray[np.float64]
-) -> NDArray[np.bool_]:
+def _find_within(bounds: Bounds | None, x: Float64Array, y: Float64Array) -> BoolArray:
     if bounds is None:
         return np.ones(x.shape, np.bool_)
-    inside: NDArray[np.bool_] = (x >= bounds.xmin) & (x <= bounds.xmax)
+    inside: BoolArray = (x >= bounds.xmin) & (x <= bounds.xmax)
     return inside & (y >= bounds.ymin) & (y <= bounds.ymax)

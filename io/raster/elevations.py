@@ -29,8 +29,7 @@ from .dem import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, BoolArray, Float64Array
     from ...crs import CrsLike, UnitLike
 
 __all__ = ["read_raster"]
@@ -116,7 +115,7 @@ def _make_raster(
     target: CRS | None,
     declared: Unit | None,
     band: int | None,
-    marks: NDArray[np.float64],
+    marks: Float64Array,
 ) -> Raster:
     path, source = header.path, CRS.of(header.crs)
     number = choose_band(header, band, path)
@@ -140,7 +139,7 @@ def _make_raster(
 class _FileBand:
     """A band of a file; cells without an elevation are NaN."""
 
-    def __init__(self, header: Header, number: int, marks: NDArray[np.float64]) -> None:
+    def __init__(self, header: Header, number: int, marks: Float64Array) -> None:
         self._header, self._number, self._marks = header, number, marks
         self._factors = header.scales[number - 1], header.offsets[number - 1]
         self.shape = (header.height, header.width)
@@ -150,7 +149,7 @@ class _FileBand:
         self._rows = slice(0, 0)
         self._strip = np.empty((0, header.width), self.dtype)
 
-    def __getitem__(self, key: Any) -> NDArray[Any]:
+    def __getitem__(self, key: Any) -> AnyArray:
         rows, columns = as_parts(key, self.shape)
         if not (self._rows.start <= rows.start and rows.stop <= self._rows.stop):
             self._strip = np.empty((0, self.shape[1]), self.dtype)  # not two at a time
@@ -158,7 +157,7 @@ class _FileBand:
         first = self._rows.start
         return self._strip[rows.start - first : rows.stop - first, columns]
 
-    def _read(self, rows: slice) -> NDArray[Any]:
+    def _read(self, rows: slice) -> AnyArray:
         """Read rows in their whole width."""
         where = {"band": self._number, "column": 0, "width": self.shape[1], "stride": 1}
         height = max(1, _STRIP_CELLS // self.shape[1])
@@ -171,7 +170,7 @@ class _FileBand:
                 found[first - rows.start : last + 1 - rows.start] = part
         return found
 
-    def _convert(self, values: NDArray[Any], valid: NDArray[np.bool_]) -> NDArray[Any]:
+    def _convert(self, values: AnyArray, valid: BoolArray) -> AnyArray:
         scale, offset = self._factors
         z = values.astype(self.dtype)
         if self._factors != (1.0, 0.0):

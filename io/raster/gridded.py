@@ -11,8 +11,7 @@ from ...terrain.results import Raster
 from ...tin.types import Bounds, Grid
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int64Array
     from ...tin import Survey
 
 __all__ = ["make_raster"]
@@ -83,7 +82,7 @@ def make_raster(survey: Survey) -> Raster:
     )
 
 
-def _find_spacing(points: NDArray[np.float64]) -> float:
+def _find_spacing(points: Float64Array) -> float:
     """Return the distance of neighbouring columns, or else rows, from the extent they span."""
     for axis in (0, 1):
         values = np.unique(points[:, axis])
@@ -95,12 +94,12 @@ def _find_spacing(points: NDArray[np.float64]) -> float:
     raise _describe_no_grid("they are all at one place")
 
 
-def _fit_axis(values: NDArray[np.float64], spacing: float) -> _Axis:
+def _fit_axis(values: Float64Array, spacing: float) -> _Axis:
     start, end = float(values.min()), float(values.max())
     return _Axis(start, spacing, round((end - start) / spacing) + 1)
 
 
-def _find_cells(values: NDArray[np.float64], axis: _Axis) -> NDArray[np.int64]:
+def _find_cells(values: Float64Array, axis: _Axis) -> Int64Array:
     """Return the column or row of each value, which must be its centre."""
     places = (values - axis.start) / axis.spacing
     cells = np.rint(places)

@@ -21,8 +21,7 @@ from .gdal_child import cut_strips, describe
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Float64Array, UInt8Array
     from ...crs import CrsLike, UnitLike
     from ...tin import Bounds, Survey
     from ..isolated import Answer
@@ -173,12 +172,12 @@ class _Cells:
         text = about["crs"]
         self.crs = None if text is None else SimpleNamespace(to_wkt=lambda: text)
 
-    def read(self, band: int, *, window: Any) -> NDArray[Any]:  # noqa: ARG002 - as rasterio
+    def read(self, band: int, *, window: Any) -> AnyArray:  # noqa: ARG002 - as rasterio
         """Return the cells of a window."""
         (top, bottom), (left, right) = window
         return np.ma.getdata(np.asarray(self.values[top:bottom, left:right]))
 
-    def read_masks(self, band: int, *, window: Any) -> NDArray[np.uint8]:
+    def read_masks(self, band: int, *, window: Any) -> UInt8Array:
         """Return 255 for every cell: what has no data is told by its value."""
         return np.full(self.read(band, window=window).shape, 255, np.uint8)
 
@@ -269,7 +268,7 @@ def _parse_transform(mapping: dict[str, Any]) -> tuple[float, ...] | None:
     return a, b, west, d, e, north
 
 
-def _fits(transform: tuple[float, ...], x: NDArray[np.float64], y: NDArray[np.float64]) -> bool:
+def _fits(transform: tuple[float, ...], x: Float64Array, y: Float64Array) -> bool:
     """Whether the centres of an upright transform are the coordinates."""
     a, b, west, d, e, north = transform
     if b != 0.0 or d != 0.0:

@@ -17,8 +17,7 @@ from .surfaces import scale_survey
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...crs import CRS
 
 __all__ = ["SOURCE_FILE", "join_surveys"]
@@ -156,7 +155,7 @@ def _join_findings(surveys: Sequence[Survey], counts: Sequence[int]) -> list[Any
 
 
 def _describe_shared_places(
-    points: NDArray[np.float64], counts: Sequence[int], names: Sequence[str]
+    points: Float64Array, counts: Sequence[int], names: Sequence[str]
 ) -> list[str]:
     """Tell of points that stand where a point of an earlier file does."""
     order = np.lexsort((points[:, 1], points[:, 0]))  # rows of one place in their own order

@@ -15,8 +15,7 @@ from .transformation import convert_elevations, find_utm_zone, reproject, transf
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...crs import CRS, Unit
 
 __all__ = ["DegreesError", "Placed", "place", "settle_unit"]
@@ -43,14 +42,14 @@ class Placed(NamedTuple):
         What was done to the elevations, and whether points lie where the CRS does not apply.
     """
 
-    points: NDArray[np.float64]
+    points: Float64Array
     crs: CRS | None
     elevation_unit: Unit | None
     notes: tuple[str, ...]
 
 
 def place(
-    points: NDArray[np.float64],
+    points: Float64Array,
     *,
     source: CRS | None,
     target: CRS | None,
@@ -97,7 +96,7 @@ def place(
 
 
 def _describe_outside(
-    points: NDArray[np.float64], source: CRS | None, target: CRS | None
+    points: Float64Array, source: CRS | None, target: CRS | None
 ) -> tuple[str, ...]:
     """Tell how many points lie outside the areas of use, and whether an exchange would help."""
     area = AreaOfUse.of(source, target)
@@ -117,7 +116,7 @@ def _describe_outside(
     )
 
 
-def _keep_in_place(points: NDArray[np.float64], crs: CRS | None, unit: Unit | None) -> Placed:
+def _keep_in_place(points: Float64Array, crs: CRS | None, unit: Unit | None) -> Placed:
     """Leave points where they are; elevations take the unit of the CRS's vertical axis."""
     vertical = None if crs is None else crs.vertical_unit
     if vertical is None or unit is None or unit == vertical:
@@ -139,7 +138,7 @@ def settle_unit(declared: Unit | None, found: Unit | None, path: Path) -> Unit |
     return declared if found is None else found
 
 
-def _refuse_degrees(points: NDArray[np.float64], wanted: CRS, source: CRS, path: Path) -> NoReturn:
+def _refuse_degrees(points: Float64Array, wanted: CRS, source: CRS, path: Path) -> NoReturn:
     _require_degrees(points, source, path)
     suggestion = _suggest_zone(points, source)
     fitting = f"crs='{suggestion}'" if suggestion else "the option crs"
@@ -150,7 +149,7 @@ def _refuse_degrees(points: NDArray[np.float64], wanted: CRS, source: CRS, path:
     )
 
 
-def _require_degrees(points: NDArray[np.float64], source: CRS, path: Path) -> None:
+def _require_degrees(points: Float64Array, source: CRS, path: Path) -> None:
     """Refuse coordinates that are in degrees by their CRS, and cannot be."""
     if not source.is_geographic or len(points) == 0:
         return
@@ -164,7 +163,7 @@ def _require_degrees(points: NDArray[np.float64], source: CRS, path: Path) -> No
         )
 
 
-def _suggest_zone(points: NDArray[np.float64], source: CRS) -> str | None:
+def _suggest_zone(points: Float64Array, source: CRS) -> str | None:
     """Return the UTM zone of the middle of the points."""
     if len(points) == 0:
         return None

@@ -16,8 +16,7 @@ from .transformation import reproject as reproject_points
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...crs import CrsLike, UnitLike
 
 __all__ = ["reproject", "scale_survey"]
@@ -107,7 +106,7 @@ def _move_tin(tin: TIN, source: CRS, target: CRS, unit: Unit | None) -> TIN:
     told = reproject_points(tin.points, source, target, unit=unit)
     along, across = source.horizontal_unit, target.horizontal_unit
 
-    def move(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def move(points: Float64Array) -> Float64Array:
         return reproject_points(points, source, target, unit=unit).points
 
     moved = tin.transform(
@@ -127,7 +126,7 @@ def _add_notes(tin: TIN, notes: tuple[str, ...]) -> TIN:
 def _move_survey(survey: Survey, source: CRS, target: CRS, unit: Unit | None) -> Survey:
     told = reproject_points(survey.points, source, target, unit=unit)
 
-    def move(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def move(points: Float64Array) -> Float64Array:
         return reproject_points(points, source, target, unit=unit).points
 
     return replace(
@@ -153,8 +152,8 @@ def scale_survey(survey: Survey, factor: float, unit: Unit | None) -> Survey:
     if factor == 1.0:
         return replace(survey, elevation_unit=unit or survey.elevation_unit)
 
-    def move(points: NDArray[np.float64]) -> NDArray[np.float64]:
-        moved: NDArray[np.float64] = points * np.array([1.0, 1.0, factor])
+    def move(points: Float64Array) -> Float64Array:
+        moved: Float64Array = points * np.array([1.0, 1.0, factor])
         return moved
 
     lines = _Mover(move, None).move_lines(survey)
@@ -164,9 +163,7 @@ def scale_survey(survey: Survey, factor: float, unit: Unit | None) -> Survey:
 class _Mover:
     """Lines of a survey, moved as its points are."""
 
-    def __init__(
-        self, move: Callable[[NDArray[np.float64]], NDArray[np.float64]], target: CRS | None
-    ) -> None:
+    def __init__(self, move: Callable[[Float64Array], Float64Array], target: CRS | None) -> None:
         self._move = move
         self._target = target
 
@@ -181,7 +178,7 @@ class _Mover:
             "extent": [self.move_ring(one) for one in survey.extent],
         }
 
-    def move_ring(self, ring: Any) -> NDArray[np.float64]:
+    def move_ring(self, ring: Any) -> Float64Array:
         """Move an array of two or three columns."""
         given = np.asarray(ring, np.float64)
         if given.shape[1] == 3:

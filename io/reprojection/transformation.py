@@ -16,8 +16,7 @@ from ...tin.validation.points import as_points
 from .quality import Quality, describe_missing_grids, judge
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...crs import CrsLike, UnitLike
 
 __all__ = [
@@ -51,7 +50,7 @@ class Reprojected(NamedTuple):
         What the transformation leaves undone.
     """
 
-    points: NDArray[np.float64]
+    points: Float64Array
     unit: Unit | None
     note: str | None
     quality: Quality = Quality()
@@ -79,12 +78,12 @@ def length_unit(crs: CrsLike | None) -> Unit:
 
 
 def transform_points(
-    points: NDArray[np.float64],
+    points: Float64Array,
     source: CrsLike,
     target: CrsLike,
     *,
     z_unit: UnitLike | None = None,
-) -> NDArray[np.float64]:
+) -> Float64Array:
     """Transform points from one CRS to another.
 
     Parameters
@@ -120,7 +119,7 @@ def transform_points(
 
 
 def reproject(
-    points: NDArray[np.float64],
+    points: Float64Array,
     source: CRS,
     target: CRS,
     *,
@@ -185,15 +184,13 @@ def _describe_missing_datum(source: CRS, target: CRS) -> CrsError:
 
 
 def convert_elevations(
-    points: NDArray[np.float64], unit: Unit | None, wanted: Unit | None
-) -> NDArray[np.float64]:
+    points: Float64Array, unit: Unit | None, wanted: Unit | None
+) -> Float64Array:
     """Return points with elevations in another unit; as they are where either is not known."""
     return _scale_elevations(np.asarray(points, np.float64), unit, wanted)
 
 
-def _scale_elevations(
-    points: NDArray[np.float64], unit: Unit | None, wanted: Unit | None
-) -> NDArray[np.float64]:
+def _scale_elevations(points: Float64Array, unit: Unit | None, wanted: Unit | None) -> Float64Array:
     factor = find_conversion_factor(unit, wanted)
     return points if factor == 1.0 else points * (1.0, 1.0, factor)
 
@@ -221,9 +218,7 @@ def _note_conversion(
     )
 
 
-def _transform(
-    points: NDArray[np.float64], source: CRS, target: CRS
-) -> tuple[NDArray[np.float64], Quality]:
+def _transform(points: Float64Array, source: CRS, target: CRS) -> tuple[Float64Array, Quality]:
     import pyproj
     from pyproj.exceptions import ProjError
 
@@ -239,9 +234,7 @@ def _transform(
     return moved, judge(source, target, transformer) if len(points) else Quality()
 
 
-def _require_images(
-    points: NDArray[np.float64], moved: NDArray[np.float64], names: str, target: CRS
-) -> None:
+def _require_images(points: Float64Array, moved: Float64Array, names: str, target: CRS) -> None:
     lost = ~np.isfinite(moved).all(axis=1)
     if lost.any():
         row = int(np.argmax(lost))

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray
     from ...terrain.results.columns import Units
 
 __all__ = ["header_text", "write"]
@@ -87,7 +86,7 @@ def _tabulate_points(features: Features, path: Path) -> Table:
 
 
 def _iterate_rows(
-    columns: Sequence[NDArray[Any]], count: int, progress: Callable[[float], None] | None
+    columns: Sequence[AnyArray], count: int, progress: Callable[[float], None] | None
 ) -> Iterator[tuple[Any, ...]]:
     for start in range(0, count, _CHUNK_ROWS):
         stop = min(start + _CHUNK_ROWS, count)
@@ -96,7 +95,7 @@ def _iterate_rows(
             progress(stop / count)
 
 
-def _format_cells(values: NDArray[Any]) -> list[Any]:
+def _format_cells(values: AnyArray) -> list[Any]:
     """Return values as CSV has them: empty where there is none."""
     if values.dtype.kind == "b":
         return [("false", "true")[value] for value in values.tolist()]

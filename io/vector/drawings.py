@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 from contextlib import closing
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -16,8 +16,7 @@ from ..cad.dxf.drawing import Drawing, read_drawing
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Int64Array, ObjectArray
     from ...crs import CRS
 
 __all__ = ["DrawnFeatures", "read_drawing_features"]
@@ -31,9 +30,9 @@ _MOST_STEPS = 1_000_000
 class DrawnFeatures(NamedTuple):
     """Features of a drawing, as of another layer: numbers, geometries, columns, CRS, notes."""
 
-    numbers: NDArray[np.int64]
-    geometries: NDArray[np.object_]
-    columns: dict[str, NDArray[Any]]
+    numbers: Int64Array
+    geometries: ObjectArray
+    columns: dict[str, AnyArray]
     crs: CRS | None
     notes: tuple[str, ...]
 
@@ -87,7 +86,7 @@ def read_drawing_features(
 
 def _gather_shapes(
     drawing: Drawing, *, lines_only: bool
-) -> tuple[NDArray[np.object_], dict[str, NDArray[Any]]]:
+) -> tuple[ObjectArray, dict[str, AnyArray]]:
     shapely = _optional.load("shapely")
     shapes = [shapely.LineString(rows) for rows in drawing.lines]
     layers = drawing.arrays["line_layers"].tolist()
@@ -121,7 +120,7 @@ def _describe_rest(drawing: Drawing, *, lines_only: bool) -> list[str]:
     return notes
 
 
-def _select_rows(columns: dict[str, NDArray[Any]], where: str, path: Path) -> NDArray[np.int64]:
+def _select_rows(columns: dict[str, AnyArray], where: str, path: Path) -> Int64Array:
     """Return the rows that a condition chooses, by SQLite on a table in memory."""
     names = ", ".join(columns)
     rows = zip(*(column.tolist() for column in columns.values()), strict=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,8 +12,7 @@ from ...crs import FOOT, US_SURVEY_FOOT, Unit
 from ...errors import OptionError, ReadError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from .features import Features
 
 __all__ = ["Elevations", "find_elevations", "find_named_unit"]
@@ -52,7 +51,7 @@ class Elevations(NamedTuple):
         What was assumed.
     """
 
-    z: NDArray[np.float64]
+    z: Float64Array
     unit: Unit | None = None
     notes: tuple[str, ...] = ()
 
@@ -72,9 +71,9 @@ def find_named_unit(name: str, features: Features) -> Unit | None:
 
 def find_elevations(
     features: Features,
-    z: NDArray[np.float64],
-    has_z: NDArray[np.bool_],
-    rows: NDArray[np.int64],
+    z: Float64Array,
+    has_z: BoolArray,
+    rows: Int64Array,
     z_field: str | None,
 ) -> Elevations:
     """Find the elevation of each vertex, in the geometry or in a column.
@@ -110,9 +109,9 @@ def find_elevations(
 
 def _take_asked(
     features: Features,
-    z: NDArray[np.float64],
-    has_z: NDArray[np.bool_],
-    rows: NDArray[np.int64],
+    z: Float64Array,
+    has_z: BoolArray,
+    rows: Int64Array,
     name: str,
 ) -> Elevations:
     column = features.find_column(name)
@@ -138,10 +137,10 @@ def _take_asked(
 
 def _require_all(
     features: Features,
-    z: NDArray[np.float64],
-    has_z: NDArray[np.bool_],
-    rows: NDArray[np.int64],
-) -> NDArray[np.float64]:
+    z: Float64Array,
+    has_z: BoolArray,
+    rows: Int64Array,
+) -> Float64Array:
     """Refuse a layer in which only some geometries have an elevation that is a number."""
     missing = ~has_z | ~np.isfinite(z)
     if missing.any():
@@ -156,7 +155,7 @@ def _require_all(
     return z
 
 
-def _find_columns(features: Features) -> dict[str, NDArray[np.float64]]:
+def _find_columns(features: Features) -> dict[str, Float64Array]:
     """Return the columns that hold elevations, by their names."""
     found = {}
     for name, column in features.columns.items():
@@ -166,7 +165,7 @@ def _find_columns(features: Features) -> dict[str, NDArray[np.float64]]:
     return found
 
 
-def _as_numbers(column: NDArray[Any]) -> NDArray[np.float64] | None:
+def _as_numbers(column: AnyArray) -> Float64Array | None:
     """Return a column as numbers, NaN where it has none; None if it holds something else."""
     if column.dtype.kind in "iuf":
         values = column.astype(np.float64)
@@ -183,7 +182,7 @@ def _as_numbers(column: NDArray[Any]) -> NDArray[np.float64] | None:
 
 
 def _take_column(
-    features: Features, columns: dict[str, NDArray[np.float64]], rows: NDArray[np.int64]
+    features: Features, columns: dict[str, Float64Array], rows: Int64Array
 ) -> Elevations:
     """Take the only column that can be meant; several that agree are one."""
     if not columns:
@@ -210,10 +209,10 @@ def _take_column(
 
 def _require_same(
     features: Features,
-    z: NDArray[np.float64],
-    values: NDArray[np.float64],
+    z: Float64Array,
+    values: Float64Array,
     name: str,
-    rows: NDArray[np.int64],
+    rows: Int64Array,
 ) -> None:
     """Refuse a column of elevations that differs from the geometry."""
     with np.errstate(invalid="ignore"):

@@ -26,7 +26,7 @@ from .well_known_binary import replace_surfaces
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from ...arrays import AnyArray, ObjectArray
 
 __all__ = ["Features", "read_features"]
 
@@ -115,9 +115,7 @@ def _find_file_crs(text: str | None, path: Path) -> CRS | None:
         raise CrsError(f"'{path}': {error}", crs=text) from error
 
 
-def _decode_columns(
-    value: dict[str, Any], arrays: dict[str, NDArray[Any]]
-) -> dict[str, NDArray[Any]]:
+def _decode_columns(value: dict[str, Any], arrays: dict[str, AnyArray]) -> dict[str, AnyArray]:
     """Return the columns by their names in lower case, see :func:`name_columns`."""
     columns = {}
     for k, name in enumerate(name_columns(value["names"])):
@@ -176,9 +174,7 @@ def _describe_part(layer: str, where: str | None) -> str:
     return f" in layer '{layer}'" if where is None else f" where {where}"
 
 
-def _parse_shapes(
-    arrays: dict[str, NDArray[Any]], path: Path, *, has_surfaces: bool
-) -> NDArray[np.object_]:
+def _parse_shapes(arrays: dict[str, AnyArray], path: Path, *, has_surfaces: bool) -> ObjectArray:
     """Return geometries of shapely; TINs and the like as polygons where surfaces may be."""
     shapely = _optional.load("shapely")
     wkb, lengths = arrays["wkb"].tobytes(), arrays["lengths"]
@@ -186,7 +182,7 @@ def _parse_shapes(
     parts = zip((ends - np.maximum(lengths, 0)).tolist(), ends.tolist(), strict=True)
     geometries = np.array([wkb[start:end] or None for start, end in parts], object)
     with np.errstate(invalid="ignore"):  # what is not finite is refused later
-        shapes: NDArray[np.object_] = shapely.from_wkb(geometries, on_invalid="ignore")
+        shapes: ObjectArray = shapely.from_wkb(geometries, on_invalid="ignore")
         wrong = shapely.is_missing(shapes) & (lengths >= 0)
         if has_surfaces and wrong.any():  # GEOS knows no TINs
             polygons = np.array([replace_surfaces(one) for one in geometries[wrong]], object)

@@ -18,8 +18,7 @@ from .parts import Wanted, crs_notes, move_to_crs
 if TYPE_CHECKING:
     import os
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, ObjectArray
     from ...crs import CrsLike
     from .features import Features as Layer
 
@@ -86,7 +85,7 @@ def read_geometries(
     )
 
 
-def _find_kind(shapes: NDArray[np.object_], read: Layer) -> Any:
+def _find_kind(shapes: ObjectArray, read: Layer) -> Any:
     shapely = _optional.load("shapely")
     types = shapely.get_type_id(shapes).tolist()
     kinds = [_KIND_OF.get(one, "collections") for one in types]
@@ -101,7 +100,7 @@ def _find_kind(shapes: NDArray[np.object_], read: Layer) -> Any:
     return kinds[0]
 
 
-def _require_finite(coordinates: NDArray[np.float64], read: Layer) -> None:
+def _require_finite(coordinates: Float64Array, read: Layer) -> None:
     wrong = ~np.isfinite(coordinates).all(axis=1)
     if wrong.any():
         row = int(np.argmax(wrong))

@@ -21,8 +21,7 @@ from .well_known_binary import encode_equal_shapes
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray
     from ...terrain.results import Features
 
 __all__ = ["write"]
@@ -81,7 +80,7 @@ def _encode_column(pyarrow: Any, features: Features) -> Any:
     return pyarrow.Array.from_buffers(pyarrow.binary(), len(equal), buffers)
 
 
-def _make_column(pyarrow: Any, values: NDArray[Any]) -> Any:
+def _make_column(pyarrow: Any, values: AnyArray) -> Any:
     """Return a column of Arrow; texts and gaps as they are."""
     if values.dtype.kind in "OU":
         return pyarrow.array(values.tolist(), pyarrow.string())

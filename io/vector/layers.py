@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    import numpy as np
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Int64Array, ObjectArray
     from ...crs import CRS
 
 __all__ = ["Features", "name_apart", "name_columns"]
@@ -39,9 +37,9 @@ class Features(NamedTuple):
     """
 
     path: Path
-    numbers: NDArray[np.int64]
-    geometries: NDArray[np.object_]
-    columns: dict[str, NDArray[Any]]
+    numbers: Int64Array
+    geometries: ObjectArray
+    columns: dict[str, AnyArray]
     crs: CRS | None
     notes: tuple[str, ...]
     names: tuple[str, ...] = ()
@@ -51,7 +49,7 @@ class Features(NamedTuple):
         """Return what a feature is called in sentences."""
         return f"'{self.path}': feature {self.numbers[row]}"
 
-    def find_column(self, name: str) -> NDArray[Any] | None:
+    def find_column(self, name: str) -> AnyArray | None:
         """Return the column of a name, whatever its capitals unless they keep two apart."""
         if name in self.columns:
             return self.columns[name]

@@ -14,8 +14,7 @@ from ...tin.topology import find_offsets
 from .surface_features import make_features
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Int64Array
     from ...policies import FeatureKind
 
 __all__ = ["build_collection", "build_frame", "build_stream", "to_features"]
@@ -74,7 +73,7 @@ def _has_lines(tin: TIN) -> bool:
 
 def _make_no_lines(tin: TIN) -> Features:
     texts, numbers = np.empty(0, object), np.empty(0, np.int64)
-    columns: dict[str, NDArray[Any]] = {
+    columns: dict[str, AnyArray] = {
         "id": numbers, "kind": texts, "name": texts, "source": numbers
     }  # fmt: skip
     return Features.of_lines(
@@ -106,7 +105,7 @@ def _make_cells(diagram: Voronoi) -> Features:
     )
 
 
-def _count_within(sizes: NDArray[np.int64]) -> NDArray[np.int64]:
+def _count_within(sizes: Int64Array) -> Int64Array:
     """Return 0, 1, 2, ... for each group of a size."""
     offsets = find_offsets(sizes)
     return np.arange(offsets[-1]) - np.repeat(offsets[:-1], sizes)

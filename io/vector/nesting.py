@@ -14,12 +14,12 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array
 
 __all__ = ["note_nesting"]
 
 
-def note_nesting(polygons: Sequence[Sequence[NDArray[np.float64]]], path: Path) -> list[str]:
+def note_nesting(polygons: Sequence[Sequence[Float64Array]], path: Path) -> list[str]:
     """Tell of polygons that lie within others, where they cut the surface away.
 
     Parameters
@@ -70,7 +70,7 @@ def _describe_nesting(count: int, path: Path) -> list[str]:
     return [f"'{path.name}': {what} within another of the boundary: the surface is cut out there."]
 
 
-def _shape(rings: Sequence[NDArray[np.float64]]) -> Any:
+def _shape(rings: Sequence[Float64Array]) -> Any:
     shapely = _optional.load("shapely")
     outer, *islands = [ring[:, :2] for ring in rings]
     return shapely.Polygon(outer, islands)

@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, BoolArray, ObjectArray
     from ...terrain.results import Features
 
 __all__ = ["describe", "encode_geometries", "require_int64", "write_layer"]
@@ -38,7 +37,7 @@ def write_layer(
     driver: str,
     names: Sequence[str] | None = None,
     metadata: Mapping[str, str] | None = None,
-    geometries: NDArray[np.object_] | None = None,
+    geometries: ObjectArray | None = None,
     geometry_type: str | None = None,
     **options: str,
 ) -> None:
@@ -124,7 +123,7 @@ def describe(features: Features) -> dict[str, str]:
     return told
 
 
-def require_int64(name: str, values: NDArray[Any], path: Path) -> None:
+def require_int64(name: str, values: AnyArray, path: Path) -> None:
     """Refuse whole numbers that GDAL would wrap around."""
     if values.dtype == np.uint64 and len(values) and values.max() > np.iinfo(np.int64).max:
         raise WriteError(
@@ -134,7 +133,7 @@ def require_int64(name: str, values: NDArray[Any], path: Path) -> None:
         )
 
 
-def encode_geometries(features: Features) -> NDArray[np.object_]:
+def encode_geometries(features: Features) -> ObjectArray:
     """Return geometries as well-known binary of the ISO kind."""
     equal = encode_equal_shapes(features)
     if equal is not None:
@@ -146,7 +145,7 @@ def encode_geometries(features: Features) -> NDArray[np.object_]:
     return np.asarray(written, object)
 
 
-def _as_field(name: str, values: NDArray[Any], path: Path) -> NDArray[Any]:
+def _as_field(name: str, values: AnyArray, path: Path) -> AnyArray:
     """Return a column as a type that pyogrio writes."""
     require_int64(name, values, path)
     if values.dtype.kind == "U":
@@ -157,7 +156,7 @@ def _as_field(name: str, values: NDArray[Any], path: Path) -> NDArray[Any]:
     return values.astype(narrow.get(values.dtype, values.dtype))
 
 
-def _find_missing(values: NDArray[Any]) -> NDArray[np.bool_] | None:
+def _find_missing(values: AnyArray) -> BoolArray | None:
     """Return which values are missing, None if none is."""
     if values.dtype.kind == "O":
         gaps = np.array([value is None for value in values], np.bool_)

@@ -15,8 +15,7 @@ from ..reprojection.placement import place, settle_unit
 from ..reprojection.transformation import find_conversion_factor
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array, ObjectArray
     from ...crs import CRS, Unit
     from .features import Features
 
@@ -45,7 +44,7 @@ class Part(NamedTuple):
         0 for lines and outer rings, 1, 2, ... for the inner rings of a polygon.
     """
 
-    coords: NDArray[np.float64]
+    coords: Float64Array
     row: int
     is_closed: bool
     ring: int
@@ -72,9 +71,9 @@ class Wanted(NamedTuple):
 class _Lines(NamedTuple):
     """Shapely lines and rings, the row of the feature of each, and its ring as in Part."""
 
-    shapes: NDArray[np.object_]
-    rows: NDArray[np.int64]
-    rings: NDArray[np.int64]
+    shapes: ObjectArray
+    rows: Int64Array
+    rings: Int64Array
 
 
 def split_into_parts(
@@ -145,7 +144,7 @@ def _split_geometries(features: Features) -> _Lines:
     return _Lines(np.concatenate([shapes[~is_polygon], rings])[order], rows[slots], numbers)
 
 
-def _require_lines(types: NDArray[np.int32], rows: NDArray[np.int64], features: Features) -> None:
+def _require_lines(types: Int32Array, rows: Int64Array, features: Features) -> None:
     points = np.flatnonzero(types == 0)
     if len(points):
         raise ReadError(
@@ -156,10 +155,10 @@ def _require_lines(types: NDArray[np.int32], rows: NDArray[np.int64], features: 
 
 
 def _require_finite_vertices(
-    xyz: NDArray[np.float64],
-    has_z: NDArray[np.bool_],
-    bounds: NDArray[np.int64],
-    rows: NDArray[np.int64],
+    xyz: Float64Array,
+    has_z: BoolArray,
+    bounds: Int64Array,
+    rows: Int64Array,
     features: Features,
 ) -> None:
     wrong = ~np.isfinite(xyz[:, :2]).all(axis=1) | (has_z & ~np.isfinite(xyz[:, 2]))
@@ -178,9 +177,7 @@ def _require_finite_vertices(
 # --------------------------------------------------------------------------- CRS
 
 
-def move_to_crs(
-    xy: NDArray[np.float64], features: Features, crs: CRS | None
-) -> NDArray[np.float64]:
+def move_to_crs(xy: Float64Array, features: Features, crs: CRS | None) -> Float64Array:
     """Reproject places of features in the plane.
 
     Raises

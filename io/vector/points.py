@@ -6,7 +6,7 @@ Elevations are those of the geometry or of a column, never a guess between two t
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array, ObjectArray
     from ...crs import CrsLike, UnitLike
 
 __all__ = ["read"]
@@ -124,16 +123,16 @@ class _Asked(NamedTuple):
     declared: Unit | None
     unit: Unit | None
     z_field: str | None
-    nodata: NDArray[np.float64]
+    nodata: Float64Array
 
 
 class _Vertices(NamedTuple):
     """Vertices, the feature of each, and where single lines or rings begin and end."""
 
-    xyz: NDArray[np.float64]
-    rows: NDArray[np.int64]
-    bounds: NDArray[np.int64]
-    has_z: NDArray[np.bool_]
+    xyz: Float64Array
+    rows: Int64Array
+    bounds: Int64Array
+    has_z: BoolArray
 
 
 def _find_unit(features: Features, declared: Unit | None) -> Unit | None:
@@ -157,7 +156,7 @@ def _list_kinds(features: Features) -> set[int]:
     return {_LINE if kind == _RING else int(kind) for kind in found}
 
 
-def _take_apart(features: Features) -> tuple[NDArray[np.object_], NDArray[np.int64]]:
+def _take_apart(features: Features) -> tuple[ObjectArray, Int64Array]:
     """Return single geometries, and the row of the feature of each; collections may be nested."""
     shapely = _optional.load("shapely")
     shapes, rows = features.geometries, np.arange(len(features.geometries))
@@ -241,7 +240,7 @@ def _make_survey(vertices: _Vertices, features: Features, asked: _Asked) -> Surv
     )
 
 
-def _collect_attributes(features: Features, rows: NDArray[np.int64]) -> dict[str, NDArray[Any]]:
+def _collect_attributes(features: Features, rows: Int64Array) -> dict[str, AnyArray]:
     """Return the columns under the names of the file."""
     names = features.names or tuple(features.columns)
     columns = zip(names, features.columns.values(), strict=True)
@@ -269,7 +268,7 @@ def _make_line_survey(
     return replace(_take_rows(survey, is_open), breaklines=breaklines)
 
 
-def _find_closing(vertices: _Vertices) -> NDArray[np.bool_]:
+def _find_closing(vertices: _Vertices) -> BoolArray:
     """Return which vertices stand for the first of their line again."""
     starts, ends = vertices.bounds[:-1], vertices.bounds[1:] - 1
     closed = (vertices.xyz[starts, :2] == vertices.xyz[ends, :2]).all(axis=1) & (ends > starts)
@@ -279,7 +278,7 @@ def _find_closing(vertices: _Vertices) -> NDArray[np.bool_]:
 
 
 def _make_breaklines(
-    points: NDArray[np.float64], vertices: _Vertices, features: Features
+    points: Float64Array, vertices: _Vertices, features: Features
 ) -> list[Breakline]:
     rows = vertices.rows[vertices.bounds[:-1]]
     names = features.columns.get("name", np.full(len(features.numbers), None, object))[rows]
@@ -291,7 +290,7 @@ def _make_breaklines(
     ]
 
 
-def _take_rows(survey: Survey, keep: NDArray[np.bool_]) -> Survey:
+def _take_rows(survey: Survey, keep: BoolArray) -> Survey:
     attributes = {name: values[keep] for name, values in survey.attributes.items()}
     return replace(survey, points=survey.points[keep], attributes=attributes)
 
@@ -339,8 +338,8 @@ def _make_triangles(features: Features, asked: _Asked) -> TIN:
 
 
 def _join_corners(
-    corners: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    corners: Float64Array,
+) -> tuple[Float64Array, Int64Array]:
     """Return distinct corners, in the order in which they come, and triangles of their numbers."""
     corners = corners + 0.0  # -0.0 is the same place
     order = np.lexsort(corners.T[::-1])

@@ -24,8 +24,7 @@ from .parts import Part, Wanted, find_elevation_factor, split_into_parts
 if TYPE_CHECKING:
     import os
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...crs import CrsLike, UnitLike
 
 __all__ = ["read_lines", "read_polygons", "read_rings", "read_water"]
@@ -129,7 +128,7 @@ def read_rings(
     where: str | None = None,
     drape: bool = False,
     notes: list[str] | None = None,
-) -> list[NDArray[np.float64]]:
+) -> list[Float64Array]:
     """Read rings: polygons, all their rings, and closed lines.
 
     Parameters
@@ -178,7 +177,7 @@ def read_polygons(
     where: str | None = None,
     drape: bool = False,
     notes: list[str] | None = None,
-) -> list[list[NDArray[np.float64]]]:
+) -> list[list[Float64Array]]:
     """Read polygons with their islands, as ``holes`` and ``erase`` of a survey take them.
 
     Parameters
@@ -209,7 +208,7 @@ def read_polygons(
     [[3]]
     """
     features = read_features(as_path(path), layer=layer, where=where, lines_only=True)
-    polygons: list[list[NDArray[np.float64]]] = []
+    polygons: list[list[Float64Array]] = []
     wanted = _parse_wanted(crs, elevation_unit, z_unit)
     for part in split_into_parts(features, wanted, drape=drape, notes=notes):
         if part.ring == 0:
@@ -279,7 +278,7 @@ def read_water(
     ]
 
 
-def _require_ring(part: Part, features: Features) -> NDArray[np.float64]:
+def _require_ring(part: Part, features: Features) -> Float64Array:
     if not part.is_closed:
         raise ReadError(
             f"{features.label(part.row)} is an open line: a polygon or a closed line is needed.",
@@ -380,7 +379,7 @@ def _find_levels(features: Features, wanted: Wanted, z: float | str | None) -> l
 
 
 def _require_level(
-    ring: NDArray[np.float64], levels: list[float | None], row: int, features: Features
+    ring: Float64Array, levels: list[float | None], row: int, features: Features
 ) -> float:
     level = levels[row]
     if level is not None:

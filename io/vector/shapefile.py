@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray
     from ...terrain.results import Features
 
 __all__ = ["short_names", "write", "write_multipatch"]
@@ -151,7 +150,7 @@ def _require_room(features: Features, path: Path) -> None:
         _require_values(name, values, path)
 
 
-def _require_values(name: str, values: NDArray[Any], path: Path) -> None:
+def _require_values(name: str, values: AnyArray, path: Path) -> None:
     if values.dtype.kind in "OU":
         longest = max((len(value.encode()) for value in values if value is not None), default=0)
         if longest > _TEXT_BYTES:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from ...arrays import AnyArray, Float64Array
 
 __all__ = ["make_features", "make_whole_surface"]
 
@@ -81,11 +81,11 @@ def _make_survey_points(survey: Survey) -> Features:
     )
 
 
-def _list_columns(surface: TIN | Survey) -> dict[str, NDArray[Any]]:
+def _list_columns(surface: TIN | Survey) -> dict[str, AnyArray]:
     return {str(name): _as_column(values) for name, values in surface.attributes.items()}
 
 
-def _as_column(values: NDArray[Any]) -> NDArray[Any]:
+def _as_column(values: AnyArray) -> AnyArray:
     """Return an attribute as a column: numbers, truth values or texts."""
     column = np.asarray(values)
     if column.dtype.kind in "biufU":
@@ -112,9 +112,9 @@ def make_whole_surface(tin: TIN) -> Features:
     )
 
 
-def _list_corners(tin: TIN) -> NDArray[np.float64]:
+def _list_corners(tin: TIN) -> Float64Array:
     """Return the rings of the triangles, one after the other."""
-    corners: NDArray[np.float64] = tin.points[tin.triangles[:, [0, 1, 2, 0]].ravel()]
+    corners: Float64Array = tin.points[tin.triangles[:, [0, 1, 2, 0]].ravel()]
     return corners
 
 
@@ -160,7 +160,7 @@ def _make_lines(tin: TIN) -> Features:
     """Return breaklines, boundary, holes and water, with kind, name and number in the input."""
     require_lines(tin)
     chains = list_line_vertices(tin)
-    columns: dict[str, NDArray[Any]] = {"id": np.arange(len(chains))}
+    columns: dict[str, AnyArray] = {"id": np.arange(len(chains))}
     if len(tin.lines):
         columns |= {
             "kind": np.array(tin.lines.kinds, object),

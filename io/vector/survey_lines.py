@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Iterable, Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...crs import UnitLike
     from ...tin import Survey
 
@@ -122,8 +121,8 @@ def _as_sources(sources: Any) -> list[Any]:
 
 
 def _unwrap_ring(
-    rings: list[NDArray[np.float64]],
-) -> NDArray[np.float64] | list[NDArray[np.float64]]:
+    rings: list[Float64Array],
+) -> Float64Array | list[Float64Array]:
     """Return a polygon without islands as its ring."""
     return rings[0] if len(rings) == 1 else rings
 
@@ -137,13 +136,13 @@ def split_layer(source: Source) -> tuple[Path, str | None]:
     return path, None
 
 
-def _list_coords(line: Breakline | Water | list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
+def _list_coords(line: Breakline | Water | list[Float64Array]) -> list[Float64Array]:
     if isinstance(line, list):
         return line
     return [line.coords if isinstance(line, Breakline) else line.ring]
 
 
-def _require_near(survey: Survey, coords: Sequence[NDArray[np.float64]], path: Path) -> None:
+def _require_near(survey: Survey, coords: Sequence[Float64Array], path: Path) -> None:
     """Refuse lines that lie so far away that their CRS must be wrong."""
     if len(survey) == 0:
         return

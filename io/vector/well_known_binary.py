@@ -16,6 +16,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ...arrays import Float64Array
     from ...terrain.results import Features
 
 __all__ = ["encode_equal_shapes", "encode_tin", "replace_surfaces"]
@@ -54,7 +55,7 @@ def encode_equal_shapes(features: Features) -> NDArray[np.void] | None:
     )
 
 
-def encode_tin(rings: NDArray[np.float64]) -> bytes:
+def encode_tin(rings: Float64Array) -> bytes:
     """Return triangles as one TIN.
 
     Parameters
@@ -67,7 +68,7 @@ def encode_tin(rings: NDArray[np.float64]) -> bytes:
 
 
 def _fill_records(
-    kind: int, numbers: tuple[int, ...], coordinates: NDArray[np.float64]
+    kind: int, numbers: tuple[int, ...], coordinates: Float64Array
 ) -> NDArray[np.void]:
     """Return a record for each row of coordinates, (n, vertices, 2 or 3)."""
     record = np.dtype(

@@ -13,8 +13,7 @@ from ...tin.validation.options import require_type
 from .arguments import parse_title
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int32Array
     from ...tin.paper.comparison import Outcome
 
 __all__ = ["comparison_picture"]
@@ -97,9 +96,7 @@ def _describe_outcome(outcome: Outcome, expected: int) -> str:
     return f"{first}\n{violating:,} with a point in the circle, {overlapping:,} overlapping"
 
 
-def _draw_outcome(
-    axes: Any, xy: NDArray[np.float64], hull: NDArray[np.int32], outcome: Outcome
-) -> None:
+def _draw_outcome(axes: Any, xy: Float64Array, hull: Int32Array, outcome: Outcome) -> None:
     is_crowded = len(xy) > _CROWD
     line = 0.35 if is_crowded else 0.8
     axes.fill(*xy[hull].T, facecolor=_GAP, edgecolor=_INK, linewidth=line, zorder=1)
@@ -121,15 +118,13 @@ def _draw_outcome(
     axes.set_axis_off()
 
 
-def _find_edges(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
+def _find_edges(triangles: Int32Array) -> Int32Array:
     """Return every edge once, (k, 2) array."""
     both = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     return np.unique(np.sort(both, axis=1), axis=0)
 
 
-def _make_line_collection(
-    xy: NDArray[np.float64], edges: NDArray[np.int32], color: str, width: float
-) -> Any:
+def _make_line_collection(xy: Float64Array, edges: Int32Array, color: str, width: float) -> Any:
     return _load_collections().LineCollection(xy[edges], colors=color, linewidths=width, zorder=3)
 
 

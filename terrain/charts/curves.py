@@ -12,8 +12,7 @@ from ...errors import OptionError
 from ...tin.validation.options import is_finite_number
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array
     from ..results import Table
 
 __all__ = [
@@ -40,11 +39,11 @@ class Curve:
     """A surface along the line; NaN where it is not."""
 
     name: str
-    stations: NDArray[np.float64]
-    elevations: NDArray[np.float64]
+    stations: Float64Array
+    elevations: Float64Array
     color: str
 
-    def at(self, stations: NDArray[np.float64]) -> NDArray[np.float64]:
+    def at(self, stations: Float64Array) -> Float64Array:
         """Interpolate between rows; NaN beside a row without elevation."""
         return np.interp(stations, self.stations, self.elevations)
 
@@ -63,7 +62,7 @@ class Measure:
         return f"{name}, {self.unit.symbol}{'' if self.is_known else ' assumed'}"
 
 
-def find_curves(table: Table, rows: NDArray[np.bool_], along: str) -> list[Curve]:
+def find_curves(table: Table, rows: BoolArray, along: str) -> list[Curve]:
     """Return the surfaces in some rows of a table, by a column that goes along the line."""
     measured = [name for name in table.columns if name.partition("_")[0] == "elevation"]
     places = table[along][rows]
@@ -73,10 +72,10 @@ def find_curves(table: Table, rows: NDArray[np.bool_], along: str) -> list[Curve
     ]
 
 
-def find_marks(table: Table, rows: NDArray[np.bool_], curve: Curve) -> NDArray[np.float64]:
+def find_marks(table: Table, rows: BoolArray, curve: Curve) -> Float64Array:
     """Return where a surface has breaklines."""
     crossed = table[f"crossed_{curve.name}" if curve.name else "crossed"][rows]
-    marks: NDArray[np.float64] = curve.stations[crossed == "breakline"]
+    marks: Float64Array = curve.stations[crossed == "breakline"]
     return marks
 
 
@@ -111,7 +110,7 @@ def as_factor(value: Any) -> float:
     return float(value)
 
 
-def draw_curves(axes: Any, curves: list[Curve], marks: NDArray[np.float64], floor: float) -> None:
+def draw_curves(axes: Any, curves: list[Curve], marks: Float64Array, floor: float) -> None:
     """Draw surfaces, the first one's breaklines, and what is cut and filled between two."""
     ground = curves[0]
     if len(curves) == 2:
@@ -138,7 +137,7 @@ def _shade(axes: Any, first: Curve, second: Curve) -> None:
             axes.fill_between(stations, ground, bound, **how)
 
 
-def _add_crossings(first: Curve, second: Curve) -> tuple[NDArray[np.float64], ...]:
+def _add_crossings(first: Curve, second: Curve) -> tuple[Float64Array, ...]:
     """Return stations and both elevations, those where one surface crosses the other included."""
     rise = second.elevations - first.elevations
     is_crossed = np.sign(rise[:-1]) * np.sign(rise[1:]) < 0  # not beside a row without elevation

@@ -18,8 +18,7 @@ from .arguments import parse_title
 from .maps import INK, PIXELS, draw_scale, draw_shade, start_map
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...tin import TIN, Grid
     from ..results import Raster
     from .maps import Map
@@ -160,7 +159,7 @@ def _draw_difference(drawn: Map, tin: TIN) -> None:
     draw_scale(drawn, image, "cut (below 0) and fill (above 0)")
 
 
-def _choose_levels(height: NDArray[np.float64]) -> NDArray[np.float64]:
+def _choose_levels(height: Float64Array) -> Float64Array:
     """Return round differences, 0 left out."""
     low, high = float(height.min()), float(height.max())
     most = max(high, -low)
@@ -168,7 +167,7 @@ def _choose_levels(height: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.zeros(0)
     step = round_down(2.0 * most / _LINES)
     numbers = np.arange(np.ceil(low / step), np.floor(high / step) + 1)
-    levels: NDArray[np.float64] = numbers[numbers != 0] * step
+    levels: Float64Array = numbers[numbers != 0] * step
     return levels[(levels > low) & (levels < high)]
 
 

@@ -16,7 +16,7 @@ from ..drawing.rounding import choose_ticks
 from .arguments import parse_text, parse_title
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import BoolArray, Float64Array
 
 __all__ = ["histogram"]
 
@@ -40,9 +40,9 @@ class _Panel:
     """One measure: its values, what it is called, the unit behind numbers, and its axis."""
 
     title: str
-    values: NDArray[np.float64]
+    values: Float64Array
     unit: str
-    edges: NDArray[np.float64]
+    edges: Float64Array
     note: str
     is_log: bool = False
 
@@ -117,14 +117,14 @@ def _choose_panels(quality: Quality, unit: str) -> list[_Panel]:
 
 
 def _make_angle_panel(
-    title: str, values: NDArray[np.float64], span: tuple[float, float], note: str
+    title: str, values: Float64Array, span: tuple[float, float], note: str
 ) -> _Panel:
     edges = np.linspace(*span, _BARS + 1)
     return _Panel(title, np.clip(values, *span), "°", edges, note)
 
 
 def _make_log_panel(
-    title: str, values: NDArray[np.float64], unit: str, *, low: float | None = None
+    title: str, values: Float64Array, unit: str, *, low: float | None = None
 ) -> _Panel:
     """Return a panel whose bars are equally wide on a logarithmic axis."""
     finite = values[np.isfinite(values)]
@@ -142,7 +142,7 @@ def _make_log_panel(
     return _Panel(title, values, unit, edges, note, is_log=True)
 
 
-def _describe_share(chosen: NDArray[np.bool_], what: str) -> str:
+def _describe_share(chosen: BoolArray, what: str) -> str:
     return f"{100 * np.mean(chosen):.1f} % {what}"
 
 

@@ -14,8 +14,7 @@ from .arguments import parse_title, require_features
 from .maps import INK, draw_scale, draw_shade, find_paths, shade_for_map, start_map
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...tin import TIN
     from ..georeference.units import Ground
     from ..results import Features
@@ -118,7 +117,7 @@ def _write_caption(lines: Features | None, ground: Ground) -> str:
     return ", ".join(part for part in spoken if part).capitalize()
 
 
-def _write_steps(levels: NDArray[np.float64], what: str, unit: str) -> str:
+def _write_steps(levels: Float64Array, what: str, unit: str) -> str:
     """Say at which interval levels are, if at one."""
     steps = np.diff(levels).round(9)
     if len(steps) == 0 or (steps != steps[0]).any():
@@ -180,7 +179,7 @@ def _draw_bands(drawn: Map, bands: Features) -> None:
     draw_scale(drawn, scale, "elevation", ticks=bounds[:: 1 + len(bounds) // 14])
 
 
-def _list_bounds(bands: Features) -> NDArray[np.float64]:
+def _list_bounds(bands: Features) -> Float64Array:
     """Return where bands begin and end; an open one is as high as the one beside it."""
     low, high = bands.columns["from"], bands.columns["to"]
     bounds = np.append(low, high[-1])

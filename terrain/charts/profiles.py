@@ -27,8 +27,7 @@ from .curves import (
 )
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...crs import CrsLike
 
 __all__ = ["profile_picture"]
@@ -138,7 +137,7 @@ def profile_picture(
 # ---------------------------------------------------------------- what is drawn
 
 
-def _choose_curves(table: Any, line: Any) -> tuple[list[Curve], NDArray[np.float64]]:
+def _choose_curves(table: Any, line: Any) -> tuple[list[Curve], Float64Array]:
     """Return the surfaces along one line, and the stations where breaklines are crossed."""
     names = set(table.columns) if isinstance(table, Table) else set()
     if not {"line", "station"} <= names or "offset" in names:

@@ -28,8 +28,7 @@ from .curves import (
 )
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array
     from ...crs import CrsLike
 
 __all__ = ["section_picture"]
@@ -52,7 +51,7 @@ class _Section:
 
     station: float
     curves: list[Curve]
-    marks: NDArray[np.float64]
+    marks: Float64Array
 
     @property
     def range(self) -> tuple[float, float]:
@@ -178,7 +177,7 @@ def _choose_sections(table: Any, line: Any) -> list[_Section]:
     return found
 
 
-def _find_section(table: Table, rows: NDArray[np.bool_]) -> _Section:
+def _find_section(table: Table, rows: BoolArray) -> _Section:
     curves = find_curves(table, rows, "offset")
     marks = find_marks(table, rows, curves[0])
     return _Section(float(table["station"][rows][0]), curves, marks)

@@ -14,8 +14,7 @@ from ..georeference.units import find_ground
 from ..relief.gradients import slope
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...tin import TIN
     from ..georeference.units import Ground
 
@@ -100,7 +99,7 @@ def plot_tin(
     return ax
 
 
-def _find_values(tin: TIN, values: Any) -> tuple[NDArray[np.float64] | None, str]:
+def _find_values(tin: TIN, values: Any) -> tuple[Float64Array | None, str]:
     """Return a number for each vertex or triangle, and what it is called."""
     if values is None:
         return None, ""

@@ -10,8 +10,7 @@ from ... import _optional
 from ...tin.topology import edge_keys, edges_at
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Float64Array, Int8Array, Int32Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["EDGE_KINDS", "LineEdges", "add_lines", "add_polylines", "find_line_edges"]
@@ -55,8 +54,8 @@ class LineEdges(NamedTuple):
         Indices into ``EDGE_KINDS``.
     """
 
-    pairs: NDArray[np.int32]
-    kinds: NDArray[np.int8]
+    pairs: Int32Array
+    kinds: Int8Array
 
 
 def find_line_edges(tin: TIN, *, guess: bool = True) -> LineEdges:
@@ -97,9 +96,7 @@ def _find_constrained_edges(tin: TIN) -> LineEdges:
 # ----------------------------------------------------------------------- drawing
 
 
-def add_lines(
-    plotter: Any, tin: TIN, points: NDArray[np.float64], *, factor: float = 1.0
-) -> list[Any]:
+def add_lines(plotter: Any, tin: TIN, points: Float64Array, *, factor: float = 1.0) -> list[Any]:
     """Draw the lines of a TIN: hard ones dark, soft ones dashed, rings brown, water blue.
 
     Parameters
@@ -130,9 +127,7 @@ def add_lines(
     return actors
 
 
-def cut_into_dashes(
-    ends: NDArray[np.float64], pairs: NDArray[np.int32], length: float
-) -> NDArray[np.float64]:
+def cut_into_dashes(ends: Float64Array, pairs: Int32Array, length: float) -> Float64Array:
     """Cut edges into dashes that run on from one edge to the next of the same line.
 
     Parameters
@@ -160,11 +155,11 @@ def cut_into_dashes(
     cut = np.clip(cut, 0.0, 1.0)
     kept = cut[:, 1] > cut[:, 0]
     edge, cut = edge[kept], cut[kept, :, None]
-    made: NDArray[np.float64] = ends[edge, :1] + cut * (ends[edge, 1:] - ends[edge, :1])
+    made: Float64Array = ends[edge, :1] + cut * (ends[edge, 1:] - ends[edge, :1])
     return made
 
 
-def _draw_edges(plotter: Any, ends: NDArray[np.float64], pen: _Pen, factor: float) -> Any:
+def _draw_edges(plotter: Any, ends: Float64Array, pen: _Pen, factor: float) -> Any:
     pv = _optional.load("pyvista", _PURPOSE)
 
     count = len(ends)
@@ -183,9 +178,9 @@ def _draw(plotter: Any, mesh: Any, color: tuple[int, int, int], width: float) ->
 
 def add_polylines(
     plotter: Any,
-    points: NDArray[np.float64],
-    offsets: NDArray[Any],
-    chosen: NDArray[np.int64],
+    points: Float64Array,
+    offsets: AnyArray,
+    chosen: Int64Array,
     *,
     color: tuple[int, int, int],
     width: float,

@@ -15,8 +15,9 @@ from ..relief.gradients import aspect, slope
 
 if TYPE_CHECKING:
     import pyvista
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["choose_origin", "lift"]
@@ -89,7 +90,7 @@ def lift(
     return mesh
 
 
-def choose_origin(tin: TIN) -> NDArray[np.float64]:
+def choose_origin(tin: TIN) -> Float64Array:
     """Return the middle of a TIN, rounded to a tenth of its extent or finer.
 
     Parameters
@@ -105,7 +106,7 @@ def choose_origin(tin: TIN) -> NDArray[np.float64]:
     low, high = tin.points.min(axis=0), tin.points.max(axis=0)
     extents = (max(high[0] - low[0], high[1] - low[1]), high[2] - low[2])
     steps = [_round_down_to_power(extent) for extent in (extents[0], extents[0], extents[1])]
-    origin: NDArray[np.float64] = np.round((low + high) / 2 / steps) * steps
+    origin: Float64Array = np.round((low + high) / 2 / steps) * steps
     return origin
 
 
@@ -120,7 +121,7 @@ def _round_down_to_power(extent: float) -> float:
     return 10.0 ** math.floor(math.log10(extent)) if extent > 0 else 1.0
 
 
-def _parse_origin(origin: ArrayLike) -> NDArray[np.float64]:
+def _parse_origin(origin: ArrayLike) -> Float64Array:
     try:
         shift = np.array(origin, np.float64)
     except (TypeError, ValueError, OverflowError):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from .. import _kernel
 from .reference import Surface
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import AnyArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["Pieces", "cut_pieces", "fan_out", "turns"]
 
@@ -28,12 +28,10 @@ class Pieces:
     """
 
     surface: Surface
-    groups: NDArray[np.int32]
+    groups: Int32Array
 
 
-def fan_out(
-    offsets: NDArray[np.int64], corners: NDArray[np.int32]
-) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+def fan_out(offsets: Int64Array, corners: Int32Array) -> tuple[Int32Array, Int64Array]:
     """Cut convex cells into triangles from their first corners.
 
     Returns
@@ -50,7 +48,7 @@ def fan_out(
     return np.stack([corners[apex], corners[second], corners[second + 1]], axis=1), cells
 
 
-def turns(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[Any]:
+def turns(points: Float64Array, triangles: Int32Array) -> AnyArray:
     """Return +1 for counter-clockwise triangles, -1 for clockwise, 0 for none; exactly."""
     xy = columns(points)
     return orientation(xy, *(triangles[:, k] for k in range(3)))

@@ -22,12 +22,11 @@ from .statistics import percentiles
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from numpy.typing import NDArray
-
     from ..._progress import Tell
+    from ...arrays import Float64Array, Int32Array
     from ...tin import TIN
 
-    _Mesh = tuple[NDArray[np.float64], NDArray[np.int32]]
+    _Mesh = tuple[Float64Array, Int32Array]
 
 __all__ = ["Difference", "difference"]
 
@@ -117,7 +116,7 @@ class Difference:
             notes=self.notes,
         )
 
-    def percentiles(self, shares: Sequence[float]) -> NDArray[np.float64]:
+    def percentiles(self, shares: Sequence[float]) -> Float64Array:
         """Return the differences at and under which given shares of the area lie.
 
         Parameters
@@ -291,9 +290,9 @@ def _sum_differences(first: Surface, second: Surface, progress: Tell | None) -> 
 def _measure_rounding(
     first: Surface,
     second: Surface,
-    vertices: NDArray[np.float64],
-    triangles: NDArray[np.int32],
-    pairs: NDArray[np.int32],
+    vertices: Float64Array,
+    triangles: Int32Array,
+    pairs: Int32Array,
 ) -> float:
     """Return how much a volume changes if the surfaces move by a rounding of their coordinates.
 
@@ -310,22 +309,20 @@ def _measure_rounding(
     return moved if np.isfinite(moved) else 0.0
 
 
-def _measure_doubled(
-    points: NDArray[np.float64], triangles: NDArray[np.int32]
-) -> NDArray[np.float64]:
+def _measure_doubled(points: Float64Array, triangles: Int32Array) -> Float64Array:
     xy = points[triangles, :2]
     (ux, uy), (vx, vy) = (xy[:, 1] - xy[:, 0]).T, (xy[:, 2] - xy[:, 0]).T
-    doubled: NDArray[np.float64] = ux * vy - uy * vx
+    doubled: Float64Array = ux * vy - uy * vx
     return doubled
 
 
-def _measure_rises(surface: Surface) -> NDArray[np.float64]:
+def _measure_rises(surface: Surface) -> Float64Array:
     """Return the rise over run of each triangle times its area, in the units that it has."""
     corners = surface.points[surface.triangles]
     u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     (ux, uy, uz), (vx, vy, vz) = u.T, v.T
     with np.errstate(invalid="ignore", over="ignore"):
-        rises: NDArray[np.float64] = 0.5 * np.hypot(uy * vz - uz * vy, uz * vx - ux * vz)
+        rises: Float64Array = 0.5 * np.hypot(uy * vz - uz * vy, uz * vx - ux * vz)
     return rises
 
 
@@ -346,7 +343,7 @@ def _sum_classes(surface: TIN) -> dict[str, float]:
 
 
 def _make_sound(
-    points: NDArray[np.float64], triangles: NDArray[np.int32], holds: Callable[[Any], Any]
+    points: Float64Array, triangles: Int32Array, holds: Callable[[Any], Any]
 ) -> Iterator[_Mesh]:
     """Yield the overlay mended, with walls a rounding wider, and triangulated anew.
 

@@ -14,7 +14,7 @@ from .cells import turns
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from numpy.typing import NDArray
+    from ...arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
 
 __all__ = ["as_mesh", "cut_at_zero", "mend", "number_parts", "part_places", "rebuild"]
 
@@ -26,9 +26,7 @@ _SNAPS = (0.0, 64.0)
 """Roundings of the largest coordinate: lines closer than this may be brought together."""
 
 
-def mend(
-    points: NDArray[np.float64], triangles: NDArray[np.int32]
-) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
+def mend(points: Float64Array, triangles: Int32Array) -> tuple[Float64Array, Int32Array] | None:
     """Remove triangles that rounding has made flat or turned over; None if that is not enough.
 
     Vertices that were rounded to one place become one. A flat triangle on the boundary is dropped;
@@ -42,8 +40,8 @@ def mend(
 
 
 def _mend_rounds(
-    points: NDArray[np.float64], triangles: NDArray[np.int32]
-) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
+    points: Float64Array, triangles: Int32Array
+) -> tuple[Float64Array, Int32Array] | None:
     merged = _merge_places(points, triangles)
     for _ in range(_MOST_ROUNDS):
         flat = np.flatnonzero(turns(points, merged) <= 0)
@@ -54,14 +52,14 @@ def _mend_rounds(
     return None
 
 
-def _is_sound(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> bool:
+def _is_sound(points: Float64Array, triangles: Int32Array) -> bool:
     """Whether triangles, all of them counter-clockwise, do not lie over each other."""
     if not len(triangles):
         return False
     return bool(check(as_mesh(points, triangles), level=2).ok)
 
 
-def as_mesh(points: NDArray[np.float64], triangles: NDArray[np.int32], **reference: Any) -> TIN:
+def as_mesh(points: Float64Array, triangles: Int32Array, **reference: Any) -> TIN:
     """Return a TIN whose edges are all constrained: none of them may be flipped."""
     return TIN(
         points=points,
@@ -75,8 +73,8 @@ def as_mesh(points: NDArray[np.float64], triangles: NDArray[np.int32], **referen
 
 
 def rebuild(
-    points: NDArray[np.float64], triangles: NDArray[np.int32], holds: Callable[[Any], Any]
-) -> Iterator[tuple[NDArray[np.float64], NDArray[np.int32]]]:
+    points: Float64Array, triangles: Int32Array, holds: Callable[[Any], Any]
+) -> Iterator[tuple[Float64Array, Int32Array]]:
     """Triangulate anew with all edges as lines, which are split where rounding lets them cross.
 
     Parameters
@@ -108,7 +106,7 @@ def rebuild(
             yield found
 
 
-def _is_inside(tin: TIN, holds: Callable[[Any], Any]) -> NDArray[np.bool_]:
+def _is_inside(tin: TIN, holds: Callable[[Any], Any]) -> BoolArray:
     """Tell which triangles are inside, cell by cell.
 
     What is reached from the outside without crossing a line is outside, however thin: the rounded
@@ -121,11 +119,11 @@ def _is_inside(tin: TIN, holds: Callable[[Any], Any]) -> NDArray[np.bool_]:
     order = np.argsort(tin.triangle_areas, kind="stable")
     largest[cell[order]] = order
     centers = tin.points[tin.triangles[largest], :2].mean(axis=1)
-    inside: NDArray[np.bool_] = (holds(centers) & ~is_open)[cell]
+    inside: BoolArray = (holds(centers) & ~is_open)[cell]
     return inside
 
 
-def number_parts(neighbors: NDArray[np.int32], barrier: NDArray[np.bool_]) -> NDArray[np.int32]:
+def number_parts(neighbors: Int32Array, barrier: BoolArray) -> Int32Array:
     """Give the triangles of each part that no barrier divides one number.
 
     Parameters
@@ -145,11 +143,11 @@ def number_parts(neighbors: NDArray[np.int32], barrier: NDArray[np.bool_]) -> ND
         if (smallest == part).all():
             break
         part = smallest
-    numbers: NDArray[np.int32] = np.unique(part, return_inverse=True)[1].astype(np.int32)
+    numbers: Int32Array = np.unique(part, return_inverse=True)[1].astype(np.int32)
     return numbers
 
 
-def _merge_places(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.int32]:
+def _merge_places(points: Float64Array, triangles: Int32Array) -> Int32Array:
     order = np.lexsort((points[:, 1], points[:, 0]))
     is_new = np.ones(len(points), bool)
     is_new[1:] = (np.diff(points[order, :2], axis=0) != 0).any(axis=1)
@@ -162,7 +160,7 @@ def _merge_places(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> 
     return np.ascontiguousarray(merged[(a != b) & (b != c) & (c != a)])
 
 
-def part_places(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.float64]:
+def part_places(points: Float64Array, triangles: Int32Array) -> Float64Array:
     """Move vertices of one place and different elevations apart, by a rounding each.
 
     They are the top and the foot of a wall, rounded to one place: each goes towards the middle of
@@ -181,7 +179,7 @@ def part_places(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> ND
     return parted
 
 
-def _find_walls(points: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _find_walls(points: Float64Array) -> BoolArray:
     """Tell which points share their place with one of another elevation."""
     order = np.lexsort((points[:, 1], points[:, 0]))
     starts = np.flatnonzero(np.append(True, (np.diff(points[order, :2], axis=0) != 0).any(axis=1)))
@@ -192,9 +190,7 @@ def _find_walls(points: NDArray[np.float64]) -> NDArray[np.bool_]:
     return found
 
 
-def _remove_flat(
-    points: NDArray[np.float64], triangles: NDArray[np.int32], flat: NDArray[np.int64]
-) -> NDArray[np.int32]:
+def _remove_flat(points: Float64Array, triangles: Int32Array, flat: Int64Array) -> Int32Array:
     """Drop the flat triangles along the boundary; if there are none, flip edges of the others."""
     neighbors = topology.neighbors_of(triangles, len(points))
     longest = _find_corners_on_edges(points, triangles[flat])
@@ -215,28 +211,22 @@ def _remove_flat(
     return corners
 
 
-def _find_corners_on_edges(
-    points: NDArray[np.float64], triangles: NDArray[np.int32]
-) -> NDArray[np.int64]:
+def _find_corners_on_edges(points: Float64Array, triangles: Int32Array) -> Int64Array:
     """Return the corner of each triangle that lies opposite its longest edge."""
     xy = points[triangles, :2]
     edges = xy[:, [2, 0, 1]] - xy[:, [1, 2, 0]]
-    longest: NDArray[np.int64] = np.argmax(np.hypot(edges[..., 0], edges[..., 1]), axis=1)
+    longest: Int64Array = np.argmax(np.hypot(edges[..., 0], edges[..., 1]), axis=1)
     return longest
 
 
-def _drop_unused(
-    points: NDArray[np.float64], triangles: NDArray[np.int32]
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+def _drop_unused(points: Float64Array, triangles: Int32Array) -> tuple[Float64Array, Int32Array]:
     used = np.zeros(len(points), bool)
     used[triangles.ravel()] = True
     number = np.cumsum(used, dtype=np.int32) - np.int32(1)
     return points[used], np.ascontiguousarray(number[triangles])
 
 
-def cut_at_zero(
-    points: NDArray[np.float64], triangles: NDArray[np.int32]
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+def cut_at_zero(points: Float64Array, triangles: Int32Array) -> tuple[Float64Array, Int32Array]:
     r"""Cut triangles along the line where the elevation is 0, which becomes edges.
 
     It leaves a corner at 0 where there is one, else it cuts two sides::
@@ -264,9 +254,7 @@ def cut_at_zero(
     return points, np.concatenate([triangles[~is_cut], *parts]).astype(np.int32)
 
 
-def _turn_alone_first(
-    corners: NDArray[np.int32], signs: NDArray[np.int8]
-) -> tuple[NDArray[np.int32], NDArray[np.int8]]:
+def _turn_alone_first(corners: Int32Array, signs: Int8Array) -> tuple[Int32Array, Int8Array]:
     """Turn triangles until corner 0 alone has its sign; one at 0, if there is one, is corner 1."""
     first = np.argmax(signs * np.sign(-_sum_signs(signs))[:, None], axis=1)
     zero = np.argmin(np.abs(signs), axis=1)
@@ -275,14 +263,14 @@ def _turn_alone_first(
     return np.take_along_axis(corners, turned, axis=1), np.take_along_axis(signs, turned, axis=1)
 
 
-def _sum_signs(signs: NDArray[np.int8]) -> NDArray[np.int64]:
-    total: NDArray[np.int64] = signs.sum(axis=1, dtype=np.int64)
+def _sum_signs(signs: Int8Array) -> Int64Array:
+    total: Int64Array = signs.sum(axis=1, dtype=np.int64)
     return total
 
 
 def _place_zeros(
-    points: NDArray[np.float64], corners: NDArray[np.int32], signs: NDArray[np.int8]
-) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int32]]:
+    points: Float64Array, corners: Int32Array, signs: Int8Array
+) -> tuple[Float64Array, Int32Array, Int32Array]:
     """Make the vertices at 0 on the edges 0-1 and 0-2; a corner 1 at 0 is one already."""
     is_edge = np.stack([signs[:, 1] != 0, np.ones(len(corners), bool)], axis=1)
     pairs = np.stack([corners[:, [0, 1]], corners[:, [0, 2]]], axis=1)[is_edge]
@@ -293,9 +281,7 @@ def _place_zeros(
     return np.concatenate([points, made]), vertices[:, 0], vertices[:, 1]
 
 
-def _interpolate_zeros(
-    points: NDArray[np.float64], one: NDArray[np.int64], other: NDArray[np.int64]
-) -> NDArray[np.float64]:
+def _interpolate_zeros(points: Float64Array, one: Int64Array, other: Int64Array) -> Float64Array:
     """Return where the elevation is 0 between vertices, from the lower of them on."""
     is_lower = points[one, 2] < points[other, 2]
     low, high = (points[np.where(is_lower, *pair)] for pair in ((one, other), (other, one)))

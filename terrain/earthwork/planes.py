@@ -11,7 +11,7 @@ from ...errors import OptionError
 from ...tin import TIN
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array
 
 __all__ = ["Plane", "as_plane", "level_surface"]
 
@@ -34,11 +34,11 @@ class Plane:
     east: float = 0.0
     north: float = 0.0
 
-    def heights_above(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def heights_above(self, points: Float64Array) -> Float64Array:
         """Return how far the plane lies above (n, 3) points."""
         x, y, z = self.point
         rise = self.east * (points[:, 0] - x) + self.north * (points[:, 1] - y)
-        heights: NDArray[np.float64] = (z - points[:, 2]) + rise
+        heights: Float64Array = (z - points[:, 2]) + rise
         return heights
 
     def steepness(self, up: float) -> float:
@@ -66,7 +66,7 @@ def as_plane(base: Any) -> Plane:
     return _fit_plane(given)
 
 
-def _fit_plane(points: NDArray[np.float64]) -> Plane:
+def _fit_plane(points: Float64Array) -> Plane:
     first, second = points[1] - points[0], points[2] - points[0]
     doubled = first[0] * second[1] - first[1] * second[0]
     if doubled == 0.0:

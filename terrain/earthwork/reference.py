@@ -13,8 +13,7 @@ from ...tin.validation.options import require_tin
 from ..georeference import agree, describe_unknown, find_plane_units
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int32Array
     from ...crs import CRS, Unit
     from ...tin import TIN
     from ..georeference import PlaneUnits
@@ -59,8 +58,8 @@ class Surface:
         Counter-clockwise.
     """
 
-    points: NDArray[np.float64]
-    triangles: NDArray[np.int32]
+    points: Float64Array
+    triangles: Int32Array
 
 
 def find_reference(tin: TIN, purpose: str) -> Reference:
@@ -97,7 +96,7 @@ def find_common_reference(tin: TIN, other: TIN, purpose: str) -> tuple[Reference
     return Reference(found.crs, found.elevation_unit, up, found.notes), first, second
 
 
-def _scale_up(points: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
+def _scale_up(points: Float64Array, factor: float) -> Float64Array:
     if factor == 1.0:
         return points
     return np.ascontiguousarray(points * (1.0, 1.0, factor))
@@ -112,7 +111,7 @@ def _require_lengths(crs: CRS | None, purpose: str) -> None:
         )
 
 
-def require_finite(values: NDArray[np.float64]) -> None:
+def require_finite(values: Float64Array) -> None:
     """Refuse sums that double precision cannot hold.
 
     Raises

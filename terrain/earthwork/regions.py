@@ -17,7 +17,7 @@ from .cells import Pieces
 from .reference import Surface
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array, Int64Array
 
 __all__ = ["as_regions"]
 
@@ -104,7 +104,7 @@ def _take_features(features: Features) -> Iterator[tuple[str, Any]]:
         yield _find_name(properties, number + 1), shape
 
 
-def _triangulate(name: str, shape: Any) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _triangulate(name: str, shape: Any) -> tuple[Float64Array, Int64Array]:
     """Triangulate a polygon; inside is what an odd number of its rings holds."""
     what = f"region '{name}'"
     rings = [ring[:, :2] for polygon in gather_rings_of_regions([shape], what) for ring in polygon]

@@ -11,8 +11,7 @@ from .. import _kernel
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int64Array
     from .reference import Surface
 
 __all__ = ["percentiles"]
@@ -21,7 +20,7 @@ _FAN_OUT = 32
 """Elevations compared with the share wanted at a time."""
 
 
-def percentiles(surface: Surface, shares: Sequence[float]) -> NDArray[np.float64]:
+def percentiles(surface: Surface, shares: Sequence[float]) -> Float64Array:
     """Return the elevations under which given shares of the area lie.
 
     Parameters
@@ -43,8 +42,8 @@ def percentiles(surface: Surface, shares: Sequence[float]) -> NDArray[np.float64
 
 
 def _enclose(
-    surface: Surface, values: NDArray[np.float64], wanted: NDArray[np.float64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    surface: Surface, values: Float64Array, wanted: Float64Array
+) -> tuple[Int64Array, Int64Array]:
     """Find the two of ascending elevations between which areas wanted are reached."""
     low = np.zeros(len(wanted), np.int64)
     high = np.full(len(wanted), len(values) - 1)
@@ -62,7 +61,7 @@ def _enclose(
     return low, high
 
 
-def _measure_below(surface: Surface, levels: NDArray[np.float64]) -> NDArray[np.float64]:
+def _measure_below(surface: Surface, levels: Float64Array) -> Float64Array:
     finite = np.minimum(levels, np.finfo(float).max)
     return _kernel.stage_sums(surface.points, surface.triangles, finite, 1.0)[:, 0]
 

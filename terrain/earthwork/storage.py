@@ -21,8 +21,9 @@ from .regions import as_regions
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["stage_storage"]
@@ -134,7 +135,7 @@ def _find_spill_level(surface: Surface) -> float:
     return float(surface.points[boundary.ravel(), 2].min())
 
 
-def _as_levels(levels: Any, interval: Any, lowest: float, highest: float) -> NDArray[np.float64]:
+def _as_levels(levels: Any, interval: Any, lowest: float, highest: float) -> Float64Array:
     if levels is not None:
         if interval is not None:
             raise OptionError("interval", interval, allowed="None where levels are given")
@@ -149,7 +150,7 @@ def _as_levels(levels: Any, interval: Any, lowest: float, highest: float) -> NDA
     return np.arange(first, last + 1, dtype=np.float64) * step
 
 
-def _as_given_levels(levels: Sequence[float]) -> NDArray[np.float64]:
+def _as_given_levels(levels: Sequence[float]) -> Float64Array:
     try:
         array = np.atleast_1d(np.asarray(levels, np.float64))
     except (TypeError, ValueError):

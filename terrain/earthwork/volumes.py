@@ -20,9 +20,10 @@ from .regions import as_regions
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
     from ..._progress import Tell
+    from ...arrays import Float64Array
     from ...tin import TIN
     from .reference import Reference
 
@@ -149,7 +150,7 @@ def _measure_to_plane(tin: TIN, base: Any, regions: Any) -> Table:
         reference.up,
     )
     sums[:, 7] *= plane.steepness(reference.up)
-    alone: dict[str, NDArray[np.float64]] = {}
+    alone: dict[str, Float64Array] = {}
     if parts is not None:
         alone["base_area_alone"] = _subtract(_measure_areas(parts, len(names)), sums[:, 0])
     return _as_table(names, sums, alone, reference, [*notes, *_describe_overlaps(parts, names)])
@@ -176,7 +177,7 @@ def _sum_between(
     up: float,
     threads: int,
     progress: Tell | None = None,
-) -> NDArray[np.float64]:
+) -> Float64Array:
     return _kernel.sum_between(
         pieces.surface.points,
         pieces.surface.triangles,
@@ -190,11 +191,11 @@ def _sum_between(
     )
 
 
-def _measure_areas(pieces: Pieces, count: int) -> NDArray[np.float64]:
+def _measure_areas(pieces: Pieces, count: int) -> Float64Array:
     return _kernel.sum_areas(pieces.surface.points, pieces.surface.triangles, pieces.groups, count)
 
 
-def _subtract(whole: NDArray[np.float64], part: NDArray[np.float64]) -> NDArray[np.float64]:
+def _subtract(whole: Float64Array, part: Float64Array) -> Float64Array:
     rest = whole - part
     return np.where(rest <= _ROUNDING * whole, 0.0, rest)
 
@@ -217,8 +218,8 @@ def _describe_overlaps(parts: Pieces | None, names: list[str]) -> list[str]:
 
 def _as_table(
     names: list[str],
-    sums: NDArray[np.float64],
-    alone: dict[str, NDArray[np.float64]],
+    sums: Float64Array,
+    alone: dict[str, Float64Array],
     reference: Reference,
     notes: list[str],
 ) -> Table:

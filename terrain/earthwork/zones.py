@@ -12,8 +12,7 @@ from ..results import Features
 from .meshes import number_parts
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
     from ...tin.triangulation import Triangulation
     from .reference import Reference
 
@@ -22,10 +21,10 @@ __all__ = ["classify", "find_zones", "join_segments", "number_zones", "trace_zer
 NAMES = {-1: "cut", 0: "unchanged", 1: "fill"}
 
 
-def classify(mesh: Triangulation) -> NDArray[np.int8]:
+def classify(mesh: Triangulation) -> Int8Array:
     """Return +1 where triangles are filled, -1 where cut, 0 where nothing changes."""
     # No triangle has both signs, but for roundings, which the mean does not mind.
-    classes: NDArray[np.int8] = np.sign(mesh.points[mesh.triangles, 2].sum(axis=1)).astype(np.int8)
+    classes: Int8Array = np.sign(mesh.points[mesh.triangles, 2].sum(axis=1)).astype(np.int8)
     return classes
 
 
@@ -52,13 +51,13 @@ def trace_zero_line(mesh: Triangulation, reference: Reference) -> Features:
     )
 
 
-def _measure_lengths(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> NDArray[np.float64]:
+def _measure_lengths(xy: Float64Array, offsets: Int64Array) -> Float64Array:
     steps = np.hypot(*np.diff(xy.reshape(-1, 2), axis=0, prepend=xy[:1].reshape(-1, 2)).T)
     steps[offsets[:-1]] = 0.0
     return np.add.reduceat(steps, offsets[:-1]) if len(steps) else steps
 
 
-def join_segments(start: NDArray[np.int64], end: NDArray[np.int64]) -> list[list[int]]:
+def join_segments(start: Int64Array, end: Int64Array) -> list[list[int]]:
     """Join directed segments to lines; where more than two meet, lines end."""
     leaving = np.unique(start, return_counts=True)
     arriving = np.unique(end, return_counts=True)
@@ -86,9 +85,7 @@ def _follow(a: int, b: int, following: dict[int, int], inside: set[int]) -> list
     return chain
 
 
-def number_zones(
-    mesh: Triangulation, classes: NDArray[np.int8]
-) -> tuple[NDArray[np.bool_], NDArray[np.int32]]:
+def number_zones(mesh: Triangulation, classes: Int8Array) -> tuple[BoolArray, Int32Array]:
     """Return which edges end a connected part of one class, and the part of each triangle."""
     barrier = (mesh.neighbors < 0) | (classes[mesh.neighbors] != classes[:, None])
     return barrier, number_parts(mesh.neighbors, barrier)
@@ -127,8 +124,8 @@ def find_zones(mesh: Triangulation, reference: Reference) -> Features:
 
 
 def _close_rings(
-    mesh: Triangulation, barrier: NDArray[np.bool_], part: NDArray[np.int32], count: int
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    mesh: Triangulation, barrier: BoolArray, part: Int32Array, count: int
+) -> tuple[Int64Array, Int64Array, Int64Array]:
     """Return the closed rings of the parts, each part's exterior first."""
     cut = np.where(barrier, np.int32(topology.NO_NEIGHBOR), mesh.neighbors)
     rings = topology.boundary_rings(mesh.triangles, cut)
@@ -145,10 +142,10 @@ def _close_rings(
 
 def _find_owners(
     mesh: Triangulation,
-    barrier: NDArray[np.bool_],
-    part: NDArray[np.int32],
-    rings: list[NDArray[np.int32]],
-) -> NDArray[np.int32]:
+    barrier: BoolArray,
+    part: Int32Array,
+    rings: list[Int32Array],
+) -> Int32Array:
     """Return the part on the left of each ring."""
     triangle, corner = np.nonzero(barrier)
     start, end = topology.ends(mesh.triangles, triangle.astype(np.int64), corner.astype(np.int64))
@@ -156,10 +153,10 @@ def _find_owners(
     keys = start * size + end
     order = np.argsort(keys)
     wanted = np.array([int(ring[0]) * size + int(ring[1]) for ring in rings], np.int64)
-    found: NDArray[np.int32] = part[triangle[order[np.searchsorted(keys[order], wanted)]]]
+    found: Int32Array = part[triangle[order[np.searchsorted(keys[order], wanted)]]]
     return found
 
 
-def _measure_doubled_area(ring: NDArray[np.float64]) -> float:
+def _measure_doubled_area(ring: Float64Array) -> float:
     x, y = (ring - ring[0]).T
     return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum())

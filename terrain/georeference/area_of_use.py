@@ -12,7 +12,8 @@ from ...crs import CRS
 
 if TYPE_CHECKING:
     import pyproj
-    from numpy.typing import NDArray
+
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
 
 __all__ = ["AreaOfUse"]
 
@@ -59,9 +60,7 @@ class AreaOfUse:
             f"latitude {area.south:g} to {area.north:g})"
         )
 
-    def covers(
-        self, xy: NDArray[np.float64], *, margin: float = _MARGIN_DEGREES
-    ) -> NDArray[np.bool_]:
+    def covers(self, xy: Float64Array, *, margin: float = _MARGIN_DEGREES) -> BoolArray:
         """Whether each point lies in all areas, a margin around them included.
 
         Parameters
@@ -72,17 +71,17 @@ class AreaOfUse:
             Degrees.
         """
         longitude, latitude = _convert_to_degrees(self.source, xy)
-        inside: NDArray[np.bool_] = np.isfinite(longitude) & np.isfinite(latitude)
+        inside: BoolArray = np.isfinite(longitude) & np.isfinite(latitude)
         for crs in self.targets:
             inside &= _is_within(_find_area(crs), longitude, latitude, margin)
         return inside
 
-    def covers_most(self, xy: NDArray[np.float64]) -> bool:
+    def covers_most(self, xy: Float64Array) -> bool:
         """Whether more than half of some points, spread over all of them, lie in the areas."""
         some = xy[:: max(1, len(xy) // _SPREAD)]
         return bool(2 * self.covers(some).sum() > len(some))
 
-    def is_local(self, xy: NDArray[np.float64]) -> bool:
+    def is_local(self, xy: Float64Array) -> bool:
         """Whether points lie about the origin of the coordinates, and in no area but its margin."""
         if len(xy) == 0 or self.source.is_geographic:
             return False
@@ -90,14 +89,14 @@ class AreaOfUse:
             return False
         return not self.covers(xy[_find_outermost(xy)], margin=0.0).any()
 
-    def find_outside(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+    def find_outside(self, xy: Float64Array) -> Int64Array:
         """Return the rows that lie outside; all are looked at only if the outermost do not fit."""
         if len(xy) == 0 or self.covers(xy[_find_outermost(xy)]).all():
             return np.empty(0, np.int64)
         return np.flatnonzero(~self.covers(xy))
 
 
-def _find_outermost(xy: NDArray[np.float64]) -> list[int]:
+def _find_outermost(xy: Float64Array) -> list[int]:
     """Return the rows of the corners of the octagon around the points, and some between."""
     x, y = xy.T
     with np.errstate(over="ignore", invalid="ignore"):
@@ -106,7 +105,7 @@ def _find_outermost(xy: NDArray[np.float64]) -> list[int]:
     return [*corners, *range(0, len(xy), max(1, len(xy) // _SPREAD))]
 
 
-def _convert_to_degrees(source: CRS, xy: NDArray[np.float64]) -> tuple[NDArray[Any], NDArray[Any]]:
+def _convert_to_degrees(source: CRS, xy: Float64Array) -> tuple[AnyArray, AnyArray]:
     """Return longitude from Greenwich and latitude, infinite where there is no image.
 
     They are those of the CRS's own datum, which are found fast and near enough for a margin of
@@ -148,14 +147,14 @@ def _measure_width(area: pyproj.aoi.AreaOfUse) -> float:
 
 def _is_within(
     area: pyproj.aoi.AreaOfUse,
-    longitude: NDArray[Any],
-    latitude: NDArray[Any],
+    longitude: AnyArray,
+    latitude: AnyArray,
     margin: float,
-) -> NDArray[np.bool_]:
+) -> BoolArray:
     span = (area.east - area.west) % 360.0 or 360.0
     with np.errstate(invalid="ignore"):
         is_between = (longitude - area.west + margin) % 360.0 <= span + 2 * margin
         is_inside = is_between & (latitude >= area.south - margin)
         is_inside &= (latitude <= area.north + margin) & (np.abs(latitude) <= 90.0)
-        inside: NDArray[np.bool_] = is_inside & (np.abs(longitude) <= 360.0)
+        inside: BoolArray = is_inside & (np.abs(longitude) <= 360.0)
     return inside

@@ -10,8 +10,9 @@ import numpy as np
 from ...crs import METRE, Unit, assume_elevation_unit, scale_elevations
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import Float64Array
     from ...crs import CRS
     from ...tin import TIN
 
@@ -139,9 +140,7 @@ def find_scales(crs: CRS | None, unit: Unit | None, northing: ArrayLike) -> Scal
     return Scales(*_measure_degrees(crs, northing), metres or 1.0)
 
 
-def _measure_degrees(
-    crs: CRS, latitude: ArrayLike
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _measure_degrees(crs: CRS, latitude: ArrayLike) -> tuple[Float64Array, Float64Array]:
     """Return metres per CRS unit along a parallel and along a meridian."""
     major, squared, to_radians = _read_ellipsoid(crs)
     turn = np.asarray(latitude, np.float64) * to_radians

@@ -15,9 +15,8 @@ from ..results.gridded import locate_centers
 from .grids import as_parts, locate_edges
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from ..._progress import Progress, Tell
+    from ...arrays import Float64Array
     from ...policies import InterpolationMethod
     from ...tin import TIN, Grid
 
@@ -52,7 +51,7 @@ class SurfaceBand:
         self,
         tin: TIN,
         grid: Grid,
-        values: NDArray[np.float64] | None,
+        values: Float64Array | None,
         *,
         method: InterpolationMethod,
         is_mean: bool,
@@ -70,15 +69,15 @@ class SurfaceBand:
         """Rows and columns."""
         return self._grid.shape
 
-    def __getitem__(self, key: tuple[slice, slice]) -> NDArray[np.float64]:
+    def __getitem__(self, key: tuple[slice, slice]) -> Float64Array:
         """Compute a block; slices have no step."""
         return self._compute(*as_parts(key, self.shape), None)
 
-    def compute(self, progress: Progress) -> NDArray[np.float64]:
+    def compute(self, progress: Progress) -> Float64Array:
         """Compute all cells, and tell how far it is."""
         return self._compute(*as_parts(_ALL, self.shape), progress.stage(0.1, 1.0))
 
-    def _compute(self, rows: slice, columns: slice, progress: Tell | None) -> NDArray[np.float64]:
+    def _compute(self, rows: slice, columns: slice, progress: Tell | None) -> Float64Array:
         if rows.stop <= rows.start or columns.stop <= columns.start:
             return np.empty((max(0, rows.stop - rows.start), max(0, columns.stop - columns.start)))
         if self._method == "linear":
@@ -90,7 +89,7 @@ class SurfaceBand:
                 progress((strip.stop - rows.start) / len(block))
         return block
 
-    def _scan(self, rows: slice, columns: slice, progress: Tell | None) -> NDArray[np.float64]:
+    def _scan(self, rows: slice, columns: slice, progress: Tell | None) -> Float64Array:
         if self._is_mean:
             return self._scan_means(rows, columns, progress)
         x, y = locate_centers(self._grid, rows, columns)
@@ -99,9 +98,7 @@ class SurfaceBand:
             x, y, self._grid.spacing, self._values, threads, progress
         )
 
-    def _scan_means(
-        self, rows: slice, columns: slice, progress: Tell | None
-    ) -> NDArray[np.float64]:
+    def _scan_means(self, rows: slice, columns: slice, progress: Tell | None) -> Float64Array:
         """Compute whole tiles of the raster, so that all blocks of it have the same bits."""
         tiles = [_widen(part, side) for part, side in zip((rows, columns), self.shape, strict=True)]
         x, y = locate_centers(self._grid, *tiles)
@@ -130,7 +127,7 @@ class SurfaceBand:
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_drawn"}
 
-    def _ask(self, rows: slice, columns: slice) -> NDArray[np.float64]:
+    def _ask(self, rows: slice, columns: slice) -> Float64Array:
         x, y = locate_centers(self._grid, rows, columns)
         xy = np.empty((len(y), len(x), 2))
         xy[..., 0], xy[..., 1] = x, y[:, None]

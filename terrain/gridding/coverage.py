@@ -11,8 +11,7 @@ from .bands import SurfaceBand
 from .grids import describe_extent
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...tin import TIN, Grid
 
 __all__ = ["require_covered"]
@@ -67,7 +66,7 @@ def _sample_covers(tin: TIN, grid: Grid, is_mean: bool) -> bool:
     return bool((tin.locate(np.column_stack([x, y])) >= 0).any())
 
 
-def _find_cells(grid: Grid, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+def _find_cells(grid: Grid, xy: Float64Array) -> Float64Array:
     """Return column and row of places."""
     bounds = grid.bounds
     from_corner = np.column_stack([xy[:, 0] - bounds.xmin, bounds.ymax - xy[:, 1]])

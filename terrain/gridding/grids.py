@@ -19,8 +19,7 @@ from ..results.raster import require_grid
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...tin import TIN
 
 __all__ = [
@@ -259,9 +258,7 @@ def _as_crs(crs: Any) -> CRS | None:
     return CRS.of(crs.to_wkt()) if crs else None
 
 
-def locate_edges(
-    grid: Grid, rows: slice, columns: slice
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def locate_edges(grid: Grid, rows: slice, columns: slice) -> tuple[Float64Array, Float64Array]:
     """Return eastings of the sides of columns, and northings of the sides of rows."""
     x, y = (
         np.arange(part.start, part.stop + 1, dtype=np.float64) * grid.spacing

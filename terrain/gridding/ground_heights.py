@@ -14,8 +14,9 @@ from ..georeference import agree, describe_unknown
 from ..results import Table
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import Float64Array
     from ...policies import Extrapolation, InterpolationMethod
     from ...tin import TIN
 
@@ -94,7 +95,7 @@ def height_above(
     )
 
 
-def _place_points(cloud: Any, tin: TIN) -> tuple[NDArray[np.float64], tuple[str, ...]]:
+def _place_points(cloud: Any, tin: TIN) -> tuple[Float64Array, tuple[str, ...]]:
     """Return the points in the TIN's unit, and what was done or assumed."""
     if not isinstance(cloud, Survey):
         return as_points(cloud), describe_unknown(tin.crs, tin.elevation_unit)
@@ -106,7 +107,7 @@ def _place_points(cloud: Any, tin: TIN) -> tuple[NDArray[np.float64], tuple[str,
     return points, found.notes
 
 
-def _describe_outside(ground: NDArray[np.float64]) -> list[str]:
+def _describe_outside(ground: Float64Array) -> list[str]:
     rows = np.flatnonzero(np.isnan(ground))
     if len(rows) == 0:
         return []

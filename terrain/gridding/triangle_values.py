@@ -10,8 +10,7 @@ from ..relief.gradients import aspect, compute_normals, slope
 from ..relief.light import shade
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...policies import RasterValue
     from ...tin import TIN
     from ..relief.light import Light
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["measure_triangles"]
 
 
-def measure_triangles(tin: TIN, value: RasterValue, light: Light) -> NDArray[np.float64] | None:
+def measure_triangles(tin: TIN, value: RasterValue, light: Light) -> Float64Array | None:
     """Return the value of each triangle; None for elevations, which change within them.
 
     Parameters

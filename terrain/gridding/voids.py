@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import BoolArray, Int64Array
 
 __all__ = ["find_border", "find_surface", "trace_cycles", "trace_rings"]
 
@@ -22,7 +22,7 @@ _CORNERS = ((0, 0), (0, 1), (1, 0), (1, 1))
 """Of a square of cells: rows and columns from its northwest."""
 
 
-def trace_rings(valid: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
+def trace_rings(valid: BoolArray) -> list[Int64Array]:
     """Return the rings around the cells that have elevations.
 
     Parameters
@@ -45,7 +45,7 @@ def trace_rings(valid: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
     return [number[ring] for ring in trace_cycles(start, end)]
 
 
-def find_surface(valid: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def find_surface(valid: BoolArray) -> BoolArray:
     """Tell which cells are corners of a square or of half a square of surface.
 
     Examples
@@ -62,7 +62,7 @@ def find_surface(valid: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return found & valid
 
 
-def find_border(valid: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def find_border(valid: BoolArray) -> tuple[Int64Array, Int64Array]:
     """Return the directed edges between cells that have surface on their left only.
 
     Parameters
@@ -95,7 +95,7 @@ def find_border(valid: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np
     return start, end
 
 
-def _shift_flags(flags: NDArray[np.bool_], *, rows: int = 0, columns: int = 0) -> NDArray[np.bool_]:
+def _shift_flags(flags: BoolArray, *, rows: int = 0, columns: int = 0) -> BoolArray:
     """Return the flags of the squares one further up, down, left or right; False beyond."""
     moved = np.zeros_like(flags)
     if rows == 1:
@@ -109,7 +109,7 @@ def _shift_flags(flags: NDArray[np.bool_], *, rows: int = 0, columns: int = 0) -
     return moved
 
 
-def trace_cycles(start: NDArray[np.int64], end: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
+def trace_cycles(start: Int64Array, end: Int64Array) -> Iterator[Int64Array]:
     """Walk directed edges, as many into a cell as out of it, as cycles without a cell twice."""
     order = np.argsort(start, kind="stable")
     ends = end[order].tolist()
@@ -122,7 +122,7 @@ def trace_cycles(start: NDArray[np.int64], end: NDArray[np.int64]) -> Iterator[N
             yield from _trace_from(begin, following)
 
 
-def _trace_from(begin: int, following: dict[int, list[int]]) -> Iterator[NDArray[np.int64]]:
+def _trace_from(begin: int, following: dict[int, list[int]]) -> Iterator[Int64Array]:
     """Follow edges from a cell until there are none, cutting off a cycle at each cell met again."""
     path, place_of = [begin], {begin: 0}
     while following[path[-1]]:

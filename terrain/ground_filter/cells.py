@@ -11,7 +11,7 @@ from ..._sentences import counted
 from ...errors import PointsError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import BoolArray, Float64Array, Int64Array
 
 __all__ = ["Cells", "lay_cells"]
 
@@ -36,10 +36,10 @@ class Cells:
     """
 
     shape: tuple[int, int]
-    number: NDArray[np.int64]
-    order: NDArray[np.int64]
+    number: Int64Array
+    order: Int64Array
 
-    def find_lowest(self, is_taken: NDArray[np.bool_]) -> NDArray[np.int64]:
+    def find_lowest(self, is_taken: BoolArray) -> Int64Array:
         """Return the rows of the lowest of the points taken in each cell that has one."""
         rows = self.order[is_taken[self.order]]
         numbers = self.number[rows]
@@ -47,20 +47,18 @@ class Cells:
         is_first[1:] = numbers[1:] != numbers[:-1]
         return rows[is_first]
 
-    def spread(
-        self, rows: NDArray[np.int64], elevations: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def spread(self, rows: Int64Array, elevations: Float64Array) -> Float64Array:
         """Return a grid of the elevations of one point a cell, infinity where there is none."""
         grid = np.full(self.shape, np.inf)
         grid.reshape(-1)[self.number[rows]] = elevations[rows]
         return grid
 
-    def values_at(self, grid: NDArray[np.float64], rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    def values_at(self, grid: Float64Array, rows: Int64Array) -> Float64Array:
         """Return the values of a grid in the cells of some points."""
         return grid.reshape(-1)[self.number[rows]]
 
 
-def lay_cells(points: NDArray[np.float64], side: float) -> Cells:
+def lay_cells(points: Float64Array, side: float) -> Cells:
     """Lay square cells over points whose least easting and northing are 0.
 
     Raises

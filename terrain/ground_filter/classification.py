@@ -26,9 +26,10 @@ from .surroundings import surround
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
     from ..._progress import Tell
+    from ...arrays import BoolArray, Float64Array, UInt8Array
     from ...policies import GroundReturns
     from .cells import Cells
 
@@ -75,13 +76,13 @@ class GroundPoints:
     """
 
     given: Survey
-    classification: NDArray[np.uint8]
-    heights: NDArray[np.float64]
+    classification: UInt8Array
+    heights: Float64Array
     parameters: Mapping[str, Any]
     notes: tuple[str, ...]
 
     @property
-    def is_ground(self) -> NDArray[np.bool_]:
+    def is_ground(self) -> BoolArray:
         """Whether each point is ground."""
         return np.equal(self.classification, GROUND)
 
@@ -279,23 +280,23 @@ def _find_units(survey: Survey) -> tuple[float, float, tuple[str, ...]]:
     return metres, up, notes
 
 
-def _make_metric(points: NDArray[np.float64], across: float, up: float) -> NDArray[np.float64]:
+def _make_metric(points: Float64Array, across: float, up: float) -> Float64Array:
     """Return fresh points in metres from the least easting, northing and elevation."""
     if len(points) == 0:
         raise PointsError("There are no points: the ground is found among some.")
-    metric: NDArray[np.float64] = points - points.min(axis=0)
+    metric: Float64Array = points - points.min(axis=0)
     metric *= (across, across, up)
     metric[metric < _SMALLEST] = 0.0
     return metric
 
 
 def _classify(
-    points: NDArray[np.float64],
-    may_be_ground: NDArray[np.bool_],
-    is_noise: NDArray[np.bool_],
+    points: Float64Array,
+    may_be_ground: BoolArray,
+    is_noise: BoolArray,
     parameters: Parameters,
     done: Progress,
-) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
+) -> tuple[UInt8Array, Float64Array]:
     """Return the class of each point in metres, and its height above the ground."""
     is_taken = may_be_ground & ~is_noise
     if not is_taken.any():
@@ -316,12 +317,12 @@ def _classify(
 
 
 def _find_surface(
-    points: NDArray[np.float64],
+    points: Float64Array,
     cells: Cells,
-    is_taken: NDArray[np.bool_],
+    is_taken: BoolArray,
     parameters: Parameters,
     done: Progress,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Float64Array, Float64Array]:
     """Return the height of each point above the surface of the ground, and its slope there."""
     lowest = cells.find_lowest(is_taken)
     ring = surround(points, points[lowest], parameters.cell)
@@ -342,13 +343,13 @@ def _find_surface(
 
 
 def _densify(
-    points: NDArray[np.float64],
+    points: Float64Array,
     cells: Cells,
-    is_taken: NDArray[np.bool_],
-    seeds: NDArray[np.float64],
+    is_taken: BoolArray,
+    seeds: Float64Array,
     parameters: Parameters,
     progress: Tell | None,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Float64Array, Float64Array]:
     order = cells.order
     heights, slopes = np.empty(len(points)), np.empty(len(points))
     heights[order], slopes[order] = _kernel.densify(
@@ -363,17 +364,13 @@ def _densify(
     return heights, slopes
 
 
-def _lie_on(
-    heights: NDArray[np.float64], slopes: NDArray[np.float64], parameters: Parameters
-) -> NDArray[np.bool_]:
+def _lie_on(heights: Float64Array, slopes: Float64Array, parameters: Parameters) -> BoolArray:
     """Tell which points lie no higher above the surface than the tolerances allow."""
-    is_on: NDArray[np.bool_] = (
-        heights <= parameters.tolerance + parameters.horizontal_tolerance * slopes
-    )
+    is_on: BoolArray = heights <= parameters.tolerance + parameters.horizontal_tolerance * slopes
     return is_on
 
 
-def _keep_noise(classes: NDArray[np.uint8], survey: Survey) -> None:
+def _keep_noise(classes: UInt8Array, survey: Survey) -> None:
     """Leave points that were given as noise in their class."""
     is_noise = are_noise(survey)
     if is_noise.any():

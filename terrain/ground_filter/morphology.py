@@ -18,9 +18,9 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
+    from ...arrays import BoolArray, Float64Array
 
-    Grid = NDArray[np.float64]
+    Grid = Float64Array
 
 __all__ = ["find_covered", "least_around", "list_windows", "open_grid", "split_columns"]
 
@@ -63,7 +63,7 @@ def split_columns(shape: tuple[int, int], halo: int) -> Iterator[tuple[slice, sl
         yield wide, slice(start - first, end - first), slice(start, end)
 
 
-def open_grid(grid: Grid, window: int, is_covered: NDArray[np.bool_] | None = None) -> Grid:
+def open_grid(grid: Grid, window: int, is_covered: BoolArray | None = None) -> Grid:
     """Erode a grid, and dilate what is left: what is narrower than the window goes.
 
     Parameters
@@ -83,13 +83,13 @@ def open_grid(grid: Grid, window: int, is_covered: NDArray[np.bool_] | None = No
     return _filter(eroded, window, np.maximum, -np.inf)
 
 
-def find_covered(is_full: NDArray[np.bool_], gap: int) -> NDArray[np.bool_]:
+def find_covered(is_full: BoolArray, gap: int) -> BoolArray:
     """Close gaps between cells that are no wider than twice so many cells.
 
     What lies outside the grid counts neither as full nor as empty.
     """
     reached = _filter(is_full.astype(np.float64), gap, np.maximum, 0.0)
-    covered: NDArray[np.bool_] = _filter(reached, gap, np.minimum, 1.0) > 0
+    covered: BoolArray = _filter(reached, gap, np.minimum, 1.0) > 0
     return covered
 
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..._sentences import counted
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, BoolArray
     from ...policies import GroundReturns
     from ...tin import Survey
 
@@ -20,15 +19,13 @@ _NOISE = (7, 18)
 """Low noise and high noise, by the ASPRS LAS specification 1.4."""
 
 
-def are_noise(survey: Survey) -> NDArray[np.bool_]:
+def are_noise(survey: Survey) -> BoolArray:
     """Tell which points are given as noise."""
     classes = _find_numbers(survey, "classification")
     return np.zeros(len(survey), bool) if classes is None else np.isin(classes, _NOISE)
 
 
-def may_be_ground(
-    survey: Survey, returns: GroundReturns
-) -> tuple[NDArray[np.bool_], tuple[str, ...]]:
+def may_be_ground(survey: Survey, returns: GroundReturns) -> tuple[BoolArray, tuple[str, ...]]:
     """Tell which points may be ground by their returns, and what is to be said of them.
 
     A pulse that went through leaves has several returns, and only the last can be the ground.
@@ -55,6 +52,6 @@ def may_be_ground(
     return may_be, tuple(notes)
 
 
-def _find_numbers(survey: Survey, name: str) -> NDArray[Any] | None:
+def _find_numbers(survey: Survey, name: str) -> AnyArray | None:
     values = survey.attributes.get(name)
     return values if values is not None and values.dtype.kind in "iuf" else None

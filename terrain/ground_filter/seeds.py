@@ -20,9 +20,8 @@ from ..._progress import Progress
 from .morphology import find_covered, least_around, list_windows, open_grid, split_columns
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from ..._progress import Tell
+    from ...arrays import BoolArray, Float64Array, Int64Array
     from .cells import Cells
     from .parameters import Parameters
 
@@ -41,12 +40,12 @@ _GAP = 4
 
 
 def find_low_noise(
-    points: NDArray[np.float64],
+    points: Float64Array,
     cells: Cells,
-    is_taken: NDArray[np.bool_],
+    is_taken: BoolArray,
     parameters: Parameters,
     progress: Tell | None = None,
-) -> NDArray[np.bool_]:
+) -> BoolArray:
     """Find points that lie deeper than all around them, alone or in a small group."""
     done = Progress(progress)
     is_noise = np.zeros(len(points), bool)
@@ -64,9 +63,7 @@ def find_low_noise(
     return is_noise
 
 
-def _find_least_around(
-    grid: NDArray[np.float64], core: int, reach: int, is_whole: bool
-) -> NDArray[np.float64]:
+def _find_least_around(grid: Float64Array, core: int, reach: int, is_whole: bool) -> Float64Array:
     around = np.empty_like(grid)
     for wide, inner, own in split_columns(grid.shape, reach):
         around[own] = least_around(grid[wide], core, reach, is_whole=is_whole)[inner]
@@ -74,12 +71,12 @@ def _find_least_around(
 
 
 def find_seeds(
-    heights: NDArray[np.float64],
+    heights: Float64Array,
     cells: Cells,
-    lowest: NDArray[np.int64],
+    lowest: Int64Array,
     parameters: Parameters,
     progress: Tell | None = None,
-) -> NDArray[np.bool_]:
+) -> BoolArray:
     """Tell which of the lowest points of cells, by their rows, are part of no object.
 
     Openings by growing windows take off whatever is narrower: what one of them lifts by more than
@@ -89,13 +86,13 @@ def find_seeds(
     grid = cells.spread(lowest, heights)
     half = max(1, int(np.ceil(parameters.building / (2 * parameters.cell))))
     is_object = _find_objects(grid, list_windows(half), parameters, Progress(progress))
-    is_seed: NDArray[np.bool_] = ~is_object.reshape(-1)[cells.number[lowest]]
+    is_seed: BoolArray = ~is_object.reshape(-1)[cells.number[lowest]]
     return is_seed
 
 
 def _find_objects(
-    grid: NDArray[np.float64], windows: list[int], parameters: Parameters, done: Progress
-) -> NDArray[np.bool_]:
+    grid: Float64Array, windows: list[int], parameters: Parameters, done: Progress
+) -> BoolArray:
     is_empty = np.isinf(grid)
     is_object = np.zeros(grid.shape, bool)
     rounding = np.finfo(float).eps * np.abs(grid[~is_empty]).max(initial=0.0)

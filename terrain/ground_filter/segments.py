@@ -32,8 +32,7 @@ from ...tin import triangulate
 from ..relief.dissolving import join_components
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int64Array
     from .parameters import Parameters
 
 __all__ = ["Links", "link", "list_continuing"]
@@ -57,13 +56,13 @@ class Links(NamedTuple):
         Whether the points differ by no more than noise and the terrain's slope allow.
     """
 
-    one: NDArray[np.int64]
-    other: NDArray[np.int64]
-    rise: NDArray[np.float64]
-    is_even: NDArray[np.bool_]
+    one: Int64Array
+    other: Int64Array
+    rise: Float64Array
+    is_even: BoolArray
 
 
-def link(points: NDArray[np.float64], ring: NDArray[np.float64], parameters: Parameters) -> Links:
+def link(points: Float64Array, ring: Float64Array, parameters: Parameters) -> Links:
     """Link points that are neighbours in their TIN, and no further apart than the edge length.
 
     Parameters
@@ -83,7 +82,7 @@ def link(points: NDArray[np.float64], ring: NDArray[np.float64], parameters: Par
     return Links(one[is_near], other[is_near], rise[is_near], is_even[is_near])
 
 
-def list_continuing(links: Links, is_ground: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def list_continuing(links: Links, is_ground: BoolArray) -> BoolArray:
     """Tell which points that are not ground belong to segments that continue it.
 
     Of the links between such a segment and the ground enough are even, or lead up to the ground.
@@ -101,5 +100,5 @@ def list_continuing(links: Links, is_ground: NDArray[np.bool_]) -> NDArray[np.bo
         for which in (slice(None), is_even, leads_down)
     )
     continues = (even >= _FEWEST) & (total - down >= _SHARE * total)
-    found: NDArray[np.bool_] = continues[segment] & ~is_ground
+    found: BoolArray = continues[segment] & ~is_ground
     return found

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import BoolArray, Float64Array, Int64Array
 
-    Doubles = NDArray[np.float64]
+    Doubles = Float64Array
 
 __all__ = ["surround"]
 
@@ -69,9 +69,7 @@ def _raise_side(side: _Side, seeds: Doubles) -> Doubles:
     return made
 
 
-def _find_nearest(
-    stretch: NDArray[np.int64], away: Doubles, seeds: Doubles, count: int
-) -> NDArray[np.int64]:
+def _find_nearest(stretch: Int64Array, away: Doubles, seeds: Doubles, count: int) -> Int64Array:
     """Return the seed nearest to the side in each stretch of it, or in the nearest that has one."""
     least = np.full(count, np.inf)
     np.minimum.at(least, stretch, away)
@@ -88,10 +86,10 @@ def _find_nearest(
 def _extrapolate(
     side: _Side,
     seeds: Doubles,
-    stretch: NDArray[np.int64],
+    stretch: Int64Array,
     away: Doubles,
-    nearest: NDArray[np.int64],
-) -> tuple[Doubles, NDArray[np.bool_]]:
+    nearest: Int64Array,
+) -> tuple[Doubles, BoolArray]:
     """Return elevations of the planes of least squares at the points of a side, and which have one.
 
     Each plane is that of the seeds of three stretches behind the nearest seed.
@@ -115,7 +113,7 @@ def _extrapolate(
     return seeds[nearest, 2] + heights, is_sound
 
 
-def _sum_products(own: NDArray[np.int64], terms: list[Doubles], like: Doubles) -> Doubles:
+def _sum_products(own: Int64Array, terms: list[Doubles], like: Doubles) -> Doubles:
     """Return the sums of the products of terms for each point of a side."""
     sums = np.empty_like(like)
     for i, j in np.ndindex(like.shape[1:]):
@@ -123,7 +121,7 @@ def _sum_products(own: NDArray[np.int64], terms: list[Doubles], like: Doubles) -
     return sums
 
 
-def _solve_planes(matrix: Doubles, right: Doubles) -> tuple[Doubles, NDArray[np.bool_]]:
+def _solve_planes(matrix: Doubles, right: Doubles) -> tuple[Doubles, BoolArray]:
     """Return the planes' heights at the points of a side, and which are told by enough seeds."""
     spread = np.linalg.eigvalsh(matrix)
     is_sound = (matrix[:, 0, 0] >= _FEWEST) & (spread[:, 0] > _FLATTEST * spread[:, 2])

@@ -13,8 +13,7 @@ from .falls import FINEST, measure_fall, round_share
 from .vertices import NOWHERE, find_exits, sort_edges_at
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int8Array, Int64Array
     from .falls import Falls
     from .filling import Filling
     from .vertices import Exits
@@ -56,14 +55,14 @@ class Drops(NamedTuple):
         ``MOVING``, or how they ended; one that ended on an edge is still in the triangle before.
     """
 
-    vertices: NDArray[np.int64]
-    triangles: NDArray[np.int64]
-    edges: NDArray[np.int64]
-    shares: NDArray[np.float64]
-    targets: NDArray[np.int64]
-    ends: NDArray[np.int8]
+    vertices: Int64Array
+    triangles: Int64Array
+    edges: Int64Array
+    shares: Float64Array
+    targets: Int64Array
+    ends: Int8Array
 
-    def choose(self, rows: NDArray[np.int64]) -> Drops:
+    def choose(self, rows: Int64Array) -> Drops:
         """Return some of them."""
         return Drops._make(array[rows] for array in self)
 
@@ -74,9 +73,7 @@ class Drops(NamedTuple):
             whole[rows] = part
 
 
-def interpolate_edges(
-    start: NDArray[np.float64], end: NDArray[np.float64], share: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def interpolate_edges(start: Float64Array, end: Float64Array, share: Float64Array) -> Float64Array:
     """Return places on edges, counted from the nearer end: the same for the edge in reverse."""
     step = end - start
     return np.where(share <= 0.5, start + share * step, end - (1.0 - share) * step)
@@ -115,7 +112,7 @@ class Walker:
         self,
         falls: Falls,
         filling: Filling | None = None,
-        vertices: NDArray[np.int64] | None = None,
+        vertices: Int64Array | None = None,
     ) -> None:
         self.falls, self.filling = falls, filling
         self.is_boundary = find_boundary_vertices(
@@ -143,7 +140,7 @@ class Walker:
         moved.vertices[follows] = drops.targets[follows]
         return moved
 
-    def locate(self, drops: Drops) -> NDArray[np.float64]:
+    def locate(self, drops: Drops) -> Float64Array:
         """Return where drops are, (k, 3)."""
         points = self.falls.points
         at_vertex = drops.vertices != NOWHERE
@@ -154,7 +151,7 @@ class Walker:
         xyz[on_edge] = interpolate_edges(points[start], points[end], share)
         return xyz
 
-    def runs_level(self, drops: Drops) -> NDArray[np.bool_]:
+    def runs_level(self, drops: Drops) -> BoolArray:
         """Tell which drops go on over level ground of a filled surface."""
         filling = self.filling
         if filling is None:
@@ -165,12 +162,12 @@ class Walker:
         start = np.where(at_vertex | (drops.triangles == NOWHERE), goes, start)
         end = np.where(at_vertex | (drops.triangles == NOWHERE), goes, end)
         z = self.falls.points[:, 2]
-        is_level: NDArray[np.bool_] = (goes != NOWHERE) & (z[start] == z[end])
+        is_level: BoolArray = (goes != NOWHERE) & (z[start] == z[end])
         return is_level
 
     # ------------------------------------------------------------------ from vertices
 
-    def _leave_vertices(self, vertices: NDArray[np.int64]) -> Drops:
+    def _leave_vertices(self, vertices: Int64Array) -> Drops:
         exits = self.find_exits(vertices)
         moved = make_drops(len(vertices))
         moved.vertices[:] = np.where(exits.vertices == NOWHERE, vertices, exits.vertices)
@@ -183,7 +180,7 @@ class Walker:
         moved.put(rows, self.arrive(triangles, edges, shares))
         return moved
 
-    def find_exits(self, vertices: NDArray[np.int64]) -> Exits:
+    def find_exits(self, vertices: Int64Array) -> Exits:
         """Find the way of water from vertices."""
         if self.filling is None:
             return find_exits(self.falls, self._half_edges, vertices, self.is_boundary)
@@ -217,8 +214,8 @@ class Walker:
         return moved
 
     def _follow_to_one(
-        self, triangles: NDArray[np.int64], edges: NDArray[np.int64], shares: NDArray[np.float64]
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        self, triangles: Int64Array, edges: Int64Array, shares: Float64Array
+    ) -> tuple[Int64Array, Float64Array]:
         """Where one edge drains, all fall lines go there."""
         out = np.argmax(self.falls.signs[triangles] > 0, axis=1)
         split = self.falls.shares(triangles, out)
@@ -226,8 +223,8 @@ class Walker:
         return out, found
 
     def _follow_to_two(
-        self, triangles: NDArray[np.int64], edges: NDArray[np.int64], shares: NDArray[np.float64]
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.int64]]:
+        self, triangles: Int64Array, edges: Int64Array, shares: Float64Array
+    ) -> tuple[Int64Array, Float64Array, Int64Array]:
         """Where two drain, the fall line through the corner between them parts the others."""
         split = self.falls.shares(triangles, edges)
         side = np.sign(shares - split)
@@ -252,9 +249,7 @@ class Walker:
 
     # ------------------------------------------------------------------ that it descends
 
-    def _require_descent(
-        self, drops: Drops, out: NDArray[np.int64], found: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def _require_descent(self, drops: Drops, out: Int64Array, found: Float64Array) -> Float64Array:
         """Return shares of the edges reached, all lower than before."""
         found = round_share(found)
         before, size = self._interpolate(drops.triangles, drops.edges, drops.shares)
@@ -267,8 +262,8 @@ class Walker:
         return found
 
     def _interpolate(
-        self, triangles: NDArray[np.int64], edges: NDArray[np.int64], shares: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        self, triangles: Int64Array, edges: Int64Array, shares: Float64Array
+    ) -> tuple[Float64Array, Float64Array]:
         low, high = (self.falls.points[end, 2] for end in self.falls.ends(triangles, edges))
         return low + shares * (high - low), np.maximum(np.abs(low), np.abs(high))
 
@@ -291,9 +286,7 @@ class Walker:
 
     # ------------------------------------------------------------------ at edges
 
-    def arrive(
-        self, triangles: NDArray[np.int64], edges: NDArray[np.int64], shares: NDArray[np.float64]
-    ) -> Drops:
+    def arrive(self, triangles: Int64Array, edges: Int64Array, shares: Float64Array) -> Drops:
         """Return drops that come to an edge from within a triangle."""
         falls = self.falls
         moved = make_drops(len(edges))
@@ -318,7 +311,7 @@ class Walker:
             moved.ends[hit] = MOVING
         return moved
 
-    def _choose_end(self, start: NDArray[np.int64], end: NDArray[np.int64]) -> NDArray[np.int64]:
+    def _choose_end(self, start: Int64Array, end: Int64Array) -> Int64Array:
         """Return to which end of an edge water runs."""
         z = self.falls.points[:, 2]
         lower = np.where(z[start] < z[end], start, end)

@@ -14,8 +14,7 @@ from .strips import SAME, Bases, follow
 from .water import Patches
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int32Array, Int64Array
     from .networks import Network
 
 __all__ = ["cut_at_divides"]
@@ -41,19 +40,17 @@ class _Cuts(NamedTuple):
         Triangles with a place on an edge of theirs, beyond the cut ones.
     """
 
-    triangles: NDArray[np.int64]
-    lower: NDArray[np.int64]
-    upper: NDArray[np.int64]
-    before: NDArray[np.int32]
-    beyond: NDArray[np.int32]
-    places: NDArray[np.float64]
-    edges: NDArray[np.int64]
-    touched: NDArray[np.int32]
+    triangles: Int64Array
+    lower: Int64Array
+    upper: Int64Array
+    before: Int32Array
+    beyond: Int32Array
+    places: Float64Array
+    edges: Int64Array
+    touched: Int32Array
 
 
-def cut_at_divides(
-    network: Network, labels: NDArray[np.int32], level: NDArray[np.int32]
-) -> Patches:
+def cut_at_divides(network: Network, labels: Int32Array, level: Int32Array) -> Patches:
     """Return triangles that share their vertices, each of one label.
 
     Parameters
@@ -84,9 +81,9 @@ def cut_at_divides(
 
 def _place_cuts(
     network: Network,
-    rows: NDArray[np.int64],
-    triangles: NDArray[np.int64],
-    labels: NDArray[np.int32],
+    rows: Int64Array,
+    triangles: Int64Array,
+    labels: Int32Array,
 ) -> _Cuts:
     """Place the ends of cuts, once for both triangles of an edge."""
     falls, shares = network.walker.falls, network.strips.starts[rows]
@@ -126,14 +123,14 @@ def _place_cuts(
     )
 
 
-def _name_edges(corners: NDArray[np.int32], count: int) -> NDArray[np.int64]:
+def _name_edges(corners: Int32Array, count: int) -> Int64Array:
     """Return a number for each edge, the same in both of its triangles: opposite corners."""
     return topology.edge_keys(corners[:, [[1, 2], [2, 0], [0, 1]]], count)
 
 
 def _cut_triangles(
-    network: Network, cuts: _Cuts, triangles: NDArray[np.int64], whole: NDArray[np.int32]
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    network: Network, cuts: _Cuts, triangles: Int64Array, whole: Int32Array
+) -> tuple[Int32Array, Int32Array]:
     """Cut triangles into cells, and these into triangles; return them, and their labels."""
     falls, count = network.walker.falls, len(network.walker.falls.points)
     turns = np.array([1, 2, 0]) + network.surface.bases_of(triangles)[0][:, None]
@@ -154,9 +151,7 @@ def _cut_triangles(
     return np.ascontiguousarray(made, np.int32), labels[numbers][cell]
 
 
-def _label_first(
-    cuts: _Cuts, offsets: NDArray[np.int64], whole: NDArray[np.int32]
-) -> NDArray[np.int32]:
+def _label_first(cuts: _Cuts, offsets: Int64Array, whole: Int32Array) -> Int32Array:
     """Return the label before the first cut of triangles."""
     labels = whole.copy()
     has_cuts = np.flatnonzero(np.diff(offsets))

@@ -28,8 +28,7 @@ from .water_bodies import BOUNDARY_NOTE
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int32Array, Int64Array, ObjectArray
     from ...tin import TIN
     from .filling import Filling
     from .networks import Network
@@ -234,21 +233,15 @@ def flow_accumulation(
     )
 
 
-def _find_kinds(
-    filling: Filling, start: NDArray[np.int64], end: NDArray[np.int64]
-) -> NDArray[np.object_]:
+def _find_kinds(filling: Filling, start: Int64Array, end: Int64Array) -> ObjectArray:
     """Tell which edges lead across water or level ground."""
     is_level = filling.levels[start] == filling.levels[end]
     is_wet = (filling.ponds[start] != NOWHERE) | (filling.ponds[end] != NOWHERE)
-    kinds: NDArray[np.object_] = KINDS[
-        np.where(is_level, np.where(is_wet, POND, FLAT_GROUND), DESCENT)
-    ]
+    kinds: ObjectArray = KINDS[np.where(is_level, np.where(is_wet, POND, FLAT_GROUND), DESCENT)]
     return kinds
 
 
-def _label(
-    network: Network, numbers: NDArray[np.int32]
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+def _label(network: Network, numbers: Int32Array) -> tuple[Int32Array, Int32Array]:
     """Return the number of each strip's end, and of level triangles; ``NOWHERE`` for none."""
     falls = network.walker.falls
     ends = find_ends(network.nexts)
@@ -259,18 +252,16 @@ def _label(
     return labels, level
 
 
-def _measure(
-    network: Network, labels: NDArray[np.int32], level: NDArray[np.int32], count: int
-) -> NDArray[np.float64]:
+def _measure(network: Network, labels: Int32Array, level: Int32Array, count: int) -> Float64Array:
     found = np.bincount(labels + 1, network.measure_strips(), count + 1)[1:]
-    areas: NDArray[np.float64] = found.astype(np.float64)  # without strips they are whole numbers
+    areas: Float64Array = found.astype(np.float64)  # without strips they are whole numbers
     flat = level != NOWHERE
     np.add.at(areas, level[flat], network.areas[flat])
     return areas
 
 
 def _describe_catchments(
-    tin: TIN, network: Network, nodes: NDArray[np.int64], numbers: NDArray[np.int64], is_all: bool
+    tin: TIN, network: Network, nodes: Int64Array, numbers: Int64Array, is_all: bool
 ) -> dict[str, Any]:
     """Name what the water of catchments comes to: all ends there are, or outlets by number."""
     vertices = nodes - network.first_vertex
@@ -281,7 +272,7 @@ def _describe_catchments(
     return {"vertex": np.where(nodes == len(network.nexts) - 1, NOWHERE, vertices)}
 
 
-def _describe_pits(tin: TIN, network: Network, nodes: NDArray[np.int64]) -> dict[str, Any]:
+def _describe_pits(tin: TIN, network: Network, nodes: Int64Array) -> dict[str, Any]:
     """Name what water ends in: a pit if nothing descends from the level ground there."""
     z, count = tin.points[:, 2], len(tin.points)
     leaves = network.walker.is_boundary.copy()
@@ -300,9 +291,7 @@ def _describe_pits(tin: TIN, network: Network, nodes: NDArray[np.int64]) -> dict
     return {"pit": vertices, "end": ends}
 
 
-def _place_outlets(
-    tin: TIN, network: Network, outlets: Any
-) -> tuple[NDArray[np.int64], tuple[str, ...]]:
+def _place_outlets(tin: TIN, network: Network, outlets: Any) -> tuple[Int64Array, tuple[str, ...]]:
     """Return the nodes of the vertices that drops come to, which fall at outlets."""
     xy, notes = as_places(tin, outlets, "the outlets")
     drops = place_drops(tin, network.walker, xy)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,8 +14,7 @@ from ..results import Features
 from .falls import find_falls
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Float64Array, Int64Array
     from ...tin import TIN
     from .falls import Falls
 
@@ -99,19 +98,19 @@ def ridges_and_valleys(tin: TIN, *, min_angle: float = 0.0) -> Features:
 
 
 def _measure_angles(
-    falls: Falls, triangle: NDArray[np.int64], edge: NDArray[np.int64], up: float
-) -> NDArray[np.float64]:
+    falls: Falls, triangle: Int64Array, edge: Int64Array, up: float
+) -> Float64Array:
     """Return the angle between the normals of the triangles at edges, degrees."""
     one = _measure_normals(falls, triangle, up)
     other = _measure_normals(falls, falls.neighbors[triangle, edge], up)
     sine = np.linalg.norm(np.cross(one, other), axis=1)
-    found: NDArray[np.float64] = np.degrees(np.arctan2(sine, (one * other).sum(axis=1)))
+    found: Float64Array = np.degrees(np.arctan2(sine, (one * other).sum(axis=1)))
     return found
 
 
-def _measure_normals(falls: Falls, triangle: NDArray[Any], up: float) -> NDArray[np.float64]:
+def _measure_normals(falls: Falls, triangle: AnyArray, up: float) -> Float64Array:
     corners = falls.points[falls.triangles[triangle]] * (1.0, 1.0, up)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
-    unit: NDArray[np.float64] = normals / np.where(lengths > 0.0, lengths, math.inf)[:, None]
+    unit: Float64Array = normals / np.where(lengths > 0.0, lengths, math.inf)[:, None]
     return unit

@@ -12,8 +12,7 @@ from ...tin.topology import NO_NEIGHBOR
 from ...tin.validation.points import require_exact_range
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["FINEST", "Falls", "find_corners", "find_falls", "measure_fall", "round_share"]
@@ -47,20 +46,20 @@ class Falls(NamedTuple):
                      edge k
     """
 
-    points: NDArray[np.float64]
-    triangles: NDArray[np.int32]
-    neighbors: NDArray[np.int32]
-    signs: NDArray[np.int8]
-    values: NDArray[np.float64]
+    points: Float64Array
+    triangles: Int32Array
+    neighbors: Int32Array
+    signs: Int8Array
+    values: Float64Array
 
     @property
-    def is_level(self) -> NDArray[np.bool_]:
+    def is_level(self) -> BoolArray:
         """Whether each triangle is level."""
         one, other, last = self.signs.T
-        is_level: NDArray[np.bool_] = (one | other | last) == 0
+        is_level: BoolArray = (one | other | last) == 0
         return is_level
 
-    def ends(self, triangle: Any, edge: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def ends(self, triangle: Any, edge: Any) -> tuple[Int64Array, Int64Array]:
         """Return start and end vertex of edges."""
         corners, first = self.triangles.reshape(-1), 3 * np.asarray(triangle, np.int64)
         return (
@@ -68,33 +67,31 @@ class Falls(NamedTuple):
             corners.take(first + _BEFORE.take(edge), mode="wrap").astype(np.int64),
         )
 
-    def cross(self, triangle: Any, edge: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def cross(self, triangle: Any, edge: Any) -> tuple[Int64Array, Int64Array]:
         """Return the triangle across each edge, and which of its edges it is; -1 outside."""
         _, end = self.ends(triangle, edge)
         other = self.neighbors[triangle, edge].astype(np.int64)
         return other, _BEFORE.take(find_corners(self.triangles, other, end))
 
-    def sign_beyond(self, triangle: Any, edge: Any) -> NDArray[np.int8]:
+    def sign_beyond(self, triangle: Any, edge: Any) -> Int8Array:
         """Return the sign of the other triangle at each edge; 0 outside."""
         other, its_edge = self.cross(triangle, edge)
         return np.where(other == NO_NEIGHBOR, np.int8(0), self.signs[other, its_edge])
 
-    def shares(self, triangle: Any, edge: Any) -> NDArray[np.float64]:
+    def shares(self, triangle: Any, edge: Any) -> Float64Array:
         """Return where the fall line through the corner opposite meets each edge, from 0 to 1."""
         part = -self.values[triangle, (edge + 2) % 3]
         with np.errstate(divide="ignore", invalid="ignore"):
             found = np.clip(part / self.values[triangle, edge], 0.0, 1.0)
-        shares: NDArray[np.float64] = round_share(found)
+        shares: Float64Array = round_share(found)
         return shares
 
 
-def find_corners(
-    triangles: NDArray[np.int32], chosen: NDArray[np.int64], vertices: NDArray[np.int64]
-) -> NDArray[np.int64]:
+def find_corners(triangles: Int32Array, chosen: Int64Array, vertices: Int64Array) -> Int64Array:
     """Return which corner of each chosen triangle a vertex of it is."""
     found = triangles.take(chosen, axis=0, mode="wrap")
     is_one, is_two = found[:, 1] == vertices, found[:, 2] == vertices
-    corners: NDArray[np.int64] = is_one + 2 * is_two.astype(np.int64)
+    corners: Int64Array = is_one + 2 * is_two.astype(np.int64)
     return corners
 
 
@@ -130,8 +127,8 @@ def find_falls(tin: TIN) -> Falls:
 
 
 def _measure_falls(
-    points: NDArray[np.float64], triangles: NDArray[np.int32], k: int
-) -> tuple[NDArray[np.int8], NDArray[np.float64]]:
+    points: Float64Array, triangles: Int32Array, k: int
+) -> tuple[Int8Array, Float64Array]:
     """Return signs and values of the edges opposite corner k."""
     a, b, c = (triangles[:, (k + turn) % 3] for turn in (1, 2, 0))
     signs, values, bounds = falls_across(points, a, b, c)
@@ -141,7 +138,7 @@ def _measure_falls(
     return signs, values
 
 
-def measure_fall(points: NDArray[np.float64], a: int, b: int, c: int) -> Fraction:
+def measure_fall(points: Float64Array, a: int, b: int, c: int) -> Fraction:
     """Return the value of :func:`falls_across` without any rounding."""
     p, q, r = ([Fraction(value) for value in points[vertex].tolist()] for vertex in (a, b, c))
     ux, uy, uz = (end - start for start, end in zip(p, q, strict=True))

@@ -11,8 +11,7 @@ from .hierarchy import build_hierarchy, rank_vertices
 from .vertices import NOWHERE
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int64Array
     from ...tin import TIN
     from .hierarchy import Hierarchy
 
@@ -40,13 +39,13 @@ class Filling(NamedTuple):
     """
 
     hierarchy: Hierarchy
-    levels: NDArray[np.float64]
-    ponds: NDArray[np.int64]
-    nexts: NDArray[np.int64]
-    steps: NDArray[np.int64]
-    ranks: NDArray[np.int64]
+    levels: Float64Array
+    ponds: Int64Array
+    nexts: Int64Array
+    steps: Int64Array
+    ranks: Int64Array
 
-    def choose_way(self, *vertices: NDArray[np.int64]) -> NDArray[np.int64]:
+    def choose_way(self, *vertices: Int64Array) -> Int64Array:
         """Return of vertices of one level that with the shortest way; under water if any is."""
         found = vertices[0]
         for other in vertices[1:]:
@@ -58,7 +57,7 @@ class Filling(NamedTuple):
         return found
 
 
-def _is_less(one: tuple[Any, ...], other: tuple[Any, ...]) -> NDArray[np.bool_]:
+def _is_less(one: tuple[Any, ...], other: tuple[Any, ...]) -> BoolArray:
     """Compare keys, column after column."""
     found = np.zeros(len(one[0]), np.bool_)
     for left, right in zip(one[::-1], other[::-1], strict=True):
@@ -111,20 +110,20 @@ def fill(tin: TIN) -> Filling:
 class _Ways(NamedTuple):
     """Edges between vertices of one level, in both directions."""
 
-    starts: NDArray[np.int64]
-    ends: NDArray[np.int64]
+    starts: Int64Array
+    ends: Int64Array
 
-    def choose(self, rows: NDArray[np.bool_]) -> _Ways:
+    def choose(self, rows: BoolArray) -> _Ways:
         """Return some of them."""
         return _Ways(self.starts[rows], self.ends[rows])
 
 
-def _list_ways(edges: NDArray[np.int64], filling: Filling) -> _Ways:
+def _list_ways(edges: Int64Array, filling: Filling) -> _Ways:
     edges = edges[filling.levels[edges[:, 0]] == filling.levels[edges[:, 1]]]
     return _Ways(np.append(edges[:, 0], edges[:, 1]), np.append(edges[:, 1], edges[:, 0]))
 
 
-def _cross_level_ground(tin: TIN, filling: Filling, ways: _Ways) -> NDArray[np.int64]:
+def _cross_level_ground(tin: TIN, filling: Filling, ways: _Ways) -> Int64Array:
     """Find the way on from dry vertices; return where each depression spills, if it is outermost.
 
     Nodes are vertices, and behind them ponds.
@@ -148,7 +147,7 @@ def _cross_level_ground(tin: TIN, filling: Filling, ways: _Ways) -> NDArray[np.i
     return found[count:]
 
 
-def _cross_ponds(filling: Filling, ways: _Ways, exits: NDArray[np.int64]) -> None:
+def _cross_ponds(filling: Filling, ways: _Ways, exits: Int64Array) -> None:
     """Find the way from vertices under water to where their pond spills."""
     is_wet = filling.ponds != NOWHERE
     spills = np.append(exits, NOWHERE)[filling.ponds]
@@ -160,8 +159,8 @@ def _cross_ponds(filling: Filling, ways: _Ways, exits: NDArray[np.int64]) -> Non
 
 
 def _spread(
-    sources: NDArray[np.int64], ways: _Ways, ranks: NDArray[np.int64], count: int
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    sources: Int64Array, ways: _Ways, ranks: Int64Array, count: int
+) -> tuple[Int64Array, Int64Array]:
     """Search breadth first from sources, against the direction of ways.
 
     Returns

@@ -10,8 +10,7 @@ from ...tin.topology import find_boundary_vertices
 from .vertices import NOWHERE
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["Hierarchy", "build_hierarchy", "rank_vertices"]
@@ -33,12 +32,12 @@ class Hierarchy(NamedTuple):
         it leaves the surface; it need not be under water then.
     """
 
-    pits: NDArray[np.int64]
-    spill_vertices: NDArray[np.int64]
-    parents: NDArray[np.int64]
-    basins: NDArray[np.int64]
+    pits: Int64Array
+    spill_vertices: Int64Array
+    parents: Int64Array
+    basins: Int64Array
 
-    def find_roots(self) -> NDArray[np.int64]:
+    def find_roots(self) -> Int64Array:
         """Return the outermost depression of each."""
         roots = np.where(self.parents == NOWHERE, np.arange(len(self.parents)), self.parents)
         while True:
@@ -47,7 +46,7 @@ class Hierarchy(NamedTuple):
                 return roots
             roots = further
 
-    def find_depths(self) -> NDArray[np.int64]:
+    def find_depths(self) -> Int64Array:
         """Return how many depressions each is a part of."""
         depths = np.zeros(len(self.parents), np.int64)
         for one in range(len(depths) - 1, -1, -1):  # parents stand behind their parts
@@ -56,7 +55,7 @@ class Hierarchy(NamedTuple):
         return depths
 
 
-def build_hierarchy(tin: TIN, rank: NDArray[np.int64] | None = None) -> Hierarchy:
+def build_hierarchy(tin: TIN, rank: Int64Array | None = None) -> Hierarchy:
     """Find the depressions of a surface from which water runs off freely at the boundary.
 
     Parameters
@@ -109,14 +108,14 @@ def build_hierarchy(tin: TIN, rank: NDArray[np.int64] | None = None) -> Hierarch
     )
 
 
-def rank_vertices(points: NDArray[np.float64]) -> NDArray[np.int64]:
+def rank_vertices(points: Float64Array) -> Int64Array:
     """Return the place of each vertex in the order of elevations, no two the same."""
     rank = np.empty(len(points), np.int64)
     rank[np.lexsort((points[:, 1], points[:, 0], points[:, 2]))] = np.arange(len(points))
     return rank
 
 
-def _find_basins(rank: NDArray[np.int64], edges: NDArray[np.int64]) -> NDArray[np.int64]:
+def _find_basins(rank: Int64Array, edges: Int64Array) -> Int64Array:
     """Return the pit of each vertex, by way of the lowest neighbours."""
     lowest = rank.copy()
     for near, far in (edges.T, edges.T[::-1]):
@@ -134,14 +133,12 @@ def _find_basins(rank: NDArray[np.int64], edges: NDArray[np.int64]) -> NDArray[n
 class _Passes(NamedTuple):
     """Where basins meet, the lowest such vertex first; basin ``NOWHERE`` is the outside."""
 
-    vertices: NDArray[np.int64]
-    one: NDArray[np.int64]
-    other: NDArray[np.int64]
+    vertices: Int64Array
+    one: Int64Array
+    other: Int64Array
 
 
-def _list_passes(
-    tin: TIN, rank: NDArray[np.int64], edges: NDArray[np.int64], number: NDArray[np.int64]
-) -> _Passes:
+def _list_passes(tin: TIN, rank: Int64Array, edges: Int64Array, number: Int64Array) -> _Passes:
     """Return the lowest pass between any two basins, in the order in which water comes to them."""
     rim = np.flatnonzero(find_boundary_vertices(tin.triangles, tin.neighbors, len(tin.points)))
     edges = edges[number[edges[:, 0]] != number[edges[:, 1]]]
@@ -157,8 +154,8 @@ def _list_passes(
     return _Passes(vertices[order], one[order], other[order])
 
 
-def _is_higher(rank: NDArray[np.int64], edges: NDArray[np.int64]) -> NDArray[np.bool_]:
-    is_higher: NDArray[np.bool_] = rank[edges[:, 0]] > rank[edges[:, 1]]
+def _is_higher(rank: Int64Array, edges: Int64Array) -> BoolArray:
+    is_higher: BoolArray = rank[edges[:, 0]] > rank[edges[:, 1]]
     return is_higher
 
 
@@ -168,7 +165,7 @@ class _Joining:
     Nodes are depressions, with and without depth, those that join before what they make.
     """
 
-    def __init__(self, rank: NDArray[np.int64], pits: NDArray[np.int64]) -> None:
+    def __init__(self, rank: Int64Array, pits: Int64Array) -> None:
         self._rank = rank
         self._joined = list(range(len(pits) + 1))
         self._node = [*range(len(pits)), NOWHERE]  # of each set of basins
@@ -211,7 +208,7 @@ class _Joining:
         self._node[first] = made
 
 
-def _leave_out_shallow(found: _Joining, z: NDArray[np.float64]) -> NDArray[np.int64]:
+def _leave_out_shallow(found: _Joining, z: Float64Array) -> Int64Array:
     """Leave out nodes without depth, and those that are the only part of another one.
 
     Returns
@@ -235,7 +232,7 @@ def _leave_out_shallow(found: _Joining, z: NDArray[np.float64]) -> NDArray[np.in
     return _join_single_parts(parents, deep)
 
 
-def _join_single_parts(parents: list[int], deep: list[bool]) -> NDArray[np.int64]:
+def _join_single_parts(parents: list[int], deep: list[bool]) -> Int64Array:
     """Let a node stand for its part if it has one only, the others being without depth."""
     parts = [0] * len(deep)
     for node, parent in enumerate(parents):

@@ -15,9 +15,8 @@ from .strips import Strips, cut_strips, leave_strips, settle
 from .vertices import NOWHERE
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from ..._progress import Tell
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...tin import TIN
     from .descent import Drops
     from .falls import Falls
@@ -49,10 +48,10 @@ class Network(NamedTuple):
     walker: Walker
     surface: _kernel.FallingSurface
     strips: Strips
-    grounds: NDArray[np.int32]
-    nexts: NDArray[np.int32]
-    uppers: NDArray[np.int32]
-    areas: NDArray[np.float64]
+    grounds: Int32Array
+    nexts: Int32Array
+    uppers: Int32Array
+    areas: Float64Array
 
     @property
     def first_vertex(self) -> int:
@@ -64,18 +63,18 @@ class Network(NamedTuple):
         """The node of the ground of vertex 0."""
         return self.first_vertex + len(self.grounds)
 
-    def measure_strips(self) -> NDArray[np.float64]:
+    def measure_strips(self) -> Float64Array:
         """Return the areas of the strips."""
         return self.surface.measure_strips(*self.strips, self.areas)
 
-    def find_level_nodes(self, level: NDArray[np.int64]) -> NDArray[np.int64]:
+    def find_level_nodes(self, level: Int64Array) -> Int64Array:
         """Return the nodes to which water of level triangles goes."""
         corners, filling = self.walker.falls.triangles[level].astype(np.int64), self.walker.filling
         if filling is None:
             return self.first_end + self.grounds[corners[:, 0]].astype(np.int64)
         return self.first_vertex + filling.choose_way(*corners.T)
 
-    def find_leaving(self) -> NDArray[np.int64]:
+    def find_leaving(self) -> Int64Array:
         """Return the nodes of vertices at which water leaves the surface, and the outside."""
         vertices = np.flatnonzero(self.walker.is_boundary)
         walker = Walker(self.walker.falls, self.walker.filling, vertices)
@@ -133,22 +132,22 @@ def _read_falls(falls: Falls, filling: Filling | None) -> _kernel.FallingSurface
     return _kernel.FallingSurface(*falls, levels)
 
 
-def _measure_areas(falls: Falls) -> NDArray[np.float64]:
+def _measure_areas(falls: Falls) -> Float64Array:
     x, y = (axis[falls.triangles.T] for axis in falls.points.T[:2])
     twice = (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0])
-    areas: NDArray[np.float64] = np.abs(twice) / 2
+    areas: Float64Array = np.abs(twice) / 2
     return areas
 
 
-def _connect_level_ground(tin: TIN) -> NDArray[np.int32]:
+def _connect_level_ground(tin: TIN) -> Int32Array:
     z = tin.points[:, 2]
     level = tin.edges[z[tin.edges[:, 0]] == z[tin.edges[:, 1]]].astype(np.int64)
     return join_components(len(z), level[:, 0], level[:, 1]).astype(np.int32)
 
 
-def _runs_on(drops: Drops) -> NDArray[np.bool_]:
+def _runs_on(drops: Drops) -> BoolArray:
     """Tell which drops are about to enter a triangle."""
-    on: NDArray[np.bool_] = (
+    on: BoolArray = (
         (drops.vertices == NOWHERE) & (drops.targets == NOWHERE) & (drops.ends == MOVING)
     )
     return on
@@ -173,7 +172,7 @@ def _link_vertices(found: Network) -> None:
     found.uppers[nodes[along]] = left[along]
 
 
-def _link(found: Network, nodes: NDArray[np.int64], drops: Drops) -> None:
+def _link(found: Network, nodes: Int64Array, drops: Drops) -> None:
     """Set what is below nodes whose water comes to a vertex, to a channel or to an end."""
     falls = found.walker.falls
     start, end = falls.ends(drops.triangles, drops.edges)
@@ -199,12 +198,12 @@ def _break_circles(found: Network) -> None:
         _link(found, strips[on], drops)
 
 
-def find_ends(nexts: NDArray[np.int32]) -> NDArray[np.int32]:
+def find_ends(nexts: Int32Array) -> Int32Array:
     """Return the node at which the water of each ends."""
     return _kernel.find_ends(nexts)
 
 
-def accumulate(found: Network) -> NDArray[np.float64]:
+def accumulate(found: Network) -> Float64Array:
     """Return the area whose water passes each node, its own included."""
     total = np.zeros(len(found.nexts))
     total[: found.first_vertex] = found.measure_strips()

@@ -22,8 +22,7 @@ from .starts import place_drops
 from .vertices import NOWHERE
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int64Array
     from ...tin import TIN
     from .filling import Filling
     from .routes import Trace
@@ -140,8 +139,8 @@ def flow_path(tin: TIN, points: Any, *, fill_depressions: bool = False) -> Featu
 
 
 def _describe_paths(
-    trace: Trace, lengths: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], NDArray[np.int64], dict[str, Any]]:
+    trace: Trace, lengths: Int64Array
+) -> tuple[Float64Array, Int64Array, dict[str, Any]]:
     """Return the paths of more than one place: coordinates, offsets, columns."""
     kept = np.flatnonzero(lengths >= 2)
     ends = np.array([ENDS[end] for end in trace.ends[kept].tolist()], object)
@@ -151,7 +150,7 @@ def _describe_paths(
 
 def _describe_parts(
     trace: Trace, filling: Filling
-) -> tuple[NDArray[np.float64], NDArray[np.int64], dict[str, Any]]:
+) -> tuple[Float64Array, Int64Array, dict[str, Any]]:
     """Return the parts of paths over a filled surface: coordinates, offsets, columns."""
     parts = cut_parts(trace, filling)
     rows = np.arange(len(parts.owners))
@@ -168,9 +167,7 @@ def _describe_parts(
     return parts.coordinates, parts.offsets, columns
 
 
-def _measure_lines(
-    coordinates: NDArray[np.float64], offsets: NDArray[np.int64]
-) -> dict[str, NDArray[np.float64]]:
+def _measure_lines(coordinates: Float64Array, offsets: Int64Array) -> dict[str, Float64Array]:
     """Return lengths in the plane and drops in elevation."""
     steps = np.diff(coordinates, axis=0)
     spans = np.append(np.hypot(steps[:, 0], steps[:, 1]), 0.0)
@@ -181,7 +178,7 @@ def _measure_lines(
     }
 
 
-def as_places(tin: TIN, points: Any, what: str) -> tuple[NDArray[np.float64], tuple[str, ...]]:
+def as_places(tin: TIN, points: Any, what: str) -> tuple[Float64Array, tuple[str, ...]]:
     """Return places on a surface, and what was assumed of them.
 
     Raises

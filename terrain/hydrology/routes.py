@@ -11,8 +11,7 @@ from .descent import MOVING
 from .vertices import NOWHERE
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int8Array, Int64Array
     from .descent import Drops, Walker
     from .filling import Filling
 
@@ -39,11 +38,11 @@ class Trace(NamedTuple):
         How each drop ended.
     """
 
-    coordinates: NDArray[np.float64]
-    owners: NDArray[np.int64]
-    vertices: NDArray[np.int64]
-    is_level: NDArray[np.bool_]
-    ends: NDArray[np.int8]
+    coordinates: Float64Array
+    owners: Int64Array
+    vertices: Int64Array
+    is_level: BoolArray
+    ends: Int8Array
 
 
 class Parts(NamedTuple):
@@ -58,14 +57,14 @@ class Parts(NamedTuple):
         The drop; ``DESCENT``, ``POND`` or ``FLAT_GROUND``; the depression, ``NOWHERE`` for none.
     """
 
-    coordinates: NDArray[np.float64]
-    offsets: NDArray[np.int64]
-    owners: NDArray[np.int64]
-    kinds: NDArray[np.int64]
-    ponds: NDArray[np.int64]
+    coordinates: Float64Array
+    offsets: Int64Array
+    owners: Int64Array
+    kinds: Int64Array
+    ponds: Int64Array
 
 
-def trace_down(walker: Walker, start: NDArray[np.float64], drops: Drops) -> Trace:
+def trace_down(walker: Walker, start: Float64Array, drops: Drops) -> Trace:
     """Follow drops to their ends; a place that repeats the one before is left out."""
     numbers = np.arange(len(start))
     ends = drops.ends.copy()
@@ -114,7 +113,7 @@ def cut_parts(trace: Trace, filling: Filling) -> Parts:
     return _join_segments(begins[real], ends[real], owners[real], kinds[real], pond[real])
 
 
-def _find_water(trace: Trace, filling: Filling) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _find_water(trace: Trace, filling: Filling) -> tuple[Float64Array, Int64Array]:
     """Return water level and pond of places: what comes under water stays there to a vertex."""
     count = len(trace.vertices)
     at_vertex = np.where(trace.vertices != NOWHERE, np.arange(count), count)
@@ -130,9 +129,7 @@ def _find_water(trace: Trace, filling: Filling) -> tuple[NDArray[np.float64], ND
     )
 
 
-def _find_shores(
-    places: NDArray[np.float64], rows: NDArray[np.int64], levels: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _find_shores(places: Float64Array, rows: Int64Array, levels: Float64Array) -> Float64Array:
     """Return where the way from places to the next ones, on the bed of a pond, meets its water."""
     begin, end = places[rows], places[rows + 1]
     share = ((begin[:, 2] - levels) / (begin[:, 2] - end[:, 2]))[:, None]
@@ -140,11 +137,11 @@ def _find_shores(
 
 
 def _join_segments(
-    begins: NDArray[np.float64],
-    ends: NDArray[np.float64],
-    owners: NDArray[np.int64],
-    kinds: NDArray[np.int64],
-    ponds: NDArray[np.int64],
+    begins: Float64Array,
+    ends: Float64Array,
+    owners: Int64Array,
+    kinds: Int64Array,
+    ponds: Int64Array,
 ) -> Parts:
     """Join segments of one kind to lines."""
     keys = np.column_stack([owners, kinds, ponds])

@@ -11,8 +11,7 @@ from .descent import FLAT, MOVING, Drops, Walker, make_drops
 from .falls import measure_fall, round_share
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["place_drops"]
@@ -20,7 +19,7 @@ __all__ = ["place_drops"]
 _Place: TypeAlias = tuple[Fraction, Fraction]
 
 
-def place_drops(tin: TIN, walker: Walker, xy: NDArray[np.float64]) -> Drops:
+def place_drops(tin: TIN, walker: Walker, xy: Float64Array) -> Drops:
     """Return drops at the first edge or vertex that they come to.
 
     Parameters

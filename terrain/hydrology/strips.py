@@ -14,8 +14,7 @@ from .. import _kernel
 from .descent import MOVING, Drops, make_drops
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int64Array
     from .descent import Walker
 
 __all__ = [
@@ -51,9 +50,9 @@ class Bases(NamedTuple):
         Whether water leaves across the base.
     """
 
-    edges: NDArray[np.int64]
-    splits: NDArray[np.float64]
-    drains: NDArray[np.bool_]
+    edges: Int64Array
+    splits: Float64Array
+    drains: BoolArray
 
 
 class Strips(NamedTuple):
@@ -67,10 +66,10 @@ class Strips(NamedTuple):
         Shares of the base; each ends where the next one of the triangle starts, the last at 1.
     """
 
-    offsets: NDArray[np.int64]
-    starts: NDArray[np.float64]
+    offsets: Int64Array
+    starts: Float64Array
 
-    def find_triangles(self, strips: NDArray[np.int64]) -> NDArray[np.int64]:
+    def find_triangles(self, strips: Int64Array) -> Int64Array:
         """Return the triangles that strips are part of."""
         return self.offsets.searchsorted(strips, "right") - 1
 
@@ -99,8 +98,8 @@ def cut_strips(surface: _kernel.FallingSurface) -> Strips:
 
 
 def follow(
-    bases: Bases, edges: NDArray[np.int64], shares: NDArray[np.float64]
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    bases: Bases, edges: Int64Array, shares: Float64Array
+) -> tuple[Int64Array, Float64Array]:
     """Return where the fall line through a place on an edge meets the base, or from it the side."""
     base, split = bases.edges, bases.splits
     on_base, before = edges == base, shares < split
@@ -114,7 +113,7 @@ def follow(
 
 
 def leave_strips(
-    walker: Walker, surface: _kernel.FallingSurface, strips: Strips, rows: NDArray[np.int64]
+    walker: Walker, surface: _kernel.FallingSurface, strips: Strips, rows: Int64Array
 ) -> Drops:
     """Return drops where the water from the middle of some strips leaves its triangle."""
     triangles = strips.find_triangles(rows)
@@ -128,7 +127,7 @@ def leave_strips(
     return walker.arrive(triangles, edges, np.where(bases.drains, shares, at_side))
 
 
-def settle(walker: Walker, drops: Drops) -> tuple[Drops, NDArray[np.int64]]:
+def settle(walker: Walker, drops: Drops) -> tuple[Drops, Int64Array]:
     """Follow drops until each has come to a vertex or to an edge that is a channel, or has ended.
 
     Returns

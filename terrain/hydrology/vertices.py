@@ -12,8 +12,7 @@ from ...tin.topology import NO_NEIGHBOR, find_triangles, gather, sort_half_edges
 from .falls import find_corners
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...tin.topology import HalfEdges
     from .falls import Falls
 
@@ -41,27 +40,27 @@ class Exits(NamedTuple):
         Whether water leaves the surface there.
     """
 
-    vertices: NDArray[np.int64]
-    triangles: NDArray[np.int64]
-    slopes: NDArray[np.float64]
-    leaves: NDArray[np.bool_]
+    vertices: Int64Array
+    triangles: Int64Array
+    slopes: Float64Array
+    leaves: BoolArray
 
 
 class _Candidates(NamedTuple):
     """Ways down from vertices, those of each together."""
 
-    owners: NDArray[np.int64]
-    vertices: NDArray[np.int64]
-    triangles: NDArray[np.int64]
-    slopes: NDArray[np.float64]
+    owners: Int64Array
+    vertices: Int64Array
+    triangles: Int64Array
+    slopes: Float64Array
 
 
 def find_exits(
     falls: Falls,
     half_edges: HalfEdges,
-    vertices: NDArray[np.int64],
-    is_boundary: NDArray[np.bool_],
-    levels: NDArray[np.float64] | None = None,
+    vertices: Int64Array,
+    is_boundary: BoolArray,
+    levels: Float64Array | None = None,
 ) -> Exits:
     """Find the steepest descent from vertices.
 
@@ -103,9 +102,7 @@ def find_exits(
     return Exits(to_vertex, to_triangle, slopes, leaves)
 
 
-def sort_edges_at(
-    triangles: NDArray[np.int32], vertices: NDArray[np.int64], count: int
-) -> HalfEdges:
+def sort_edges_at(triangles: Int32Array, vertices: Int64Array, count: int) -> HalfEdges:
     """Sort the edges of the triangles at some of so many vertices, and of no others."""
     is_asked = np.zeros(count, np.bool_)
     is_asked[vertices] = True
@@ -115,9 +112,7 @@ def sort_edges_at(
     return found._replace(triangles=near[found.triangles])
 
 
-def _list_candidates(
-    falls: Falls, half_edges: HalfEdges, vertices: NDArray[np.int64]
-) -> _Candidates:
+def _list_candidates(falls: Falls, half_edges: HalfEdges, vertices: Int64Array) -> _Candidates:
     """List the edge on one side of each triangle, at the boundary that on the other side, and it.
 
     In this order, so that those of each vertex are together.
@@ -147,28 +142,26 @@ def _list_candidates(
     return found
 
 
-def _measure_edges(
-    falls: Falls, starts: NDArray[np.int64], ends: NDArray[np.int64]
-) -> NDArray[np.float64]:
+def _measure_edges(falls: Falls, starts: Int64Array, ends: Int64Array) -> Float64Array:
     step = falls.points[ends] - falls.points[starts]
     slopes = -step[:, 2] / np.hypot(step[:, 0], step[:, 1])
     # Of a fall that underflows there is still a descent.
-    found: NDArray[np.float64] = np.maximum(slopes, 5e-324)
+    found: Float64Array = np.maximum(slopes, 5e-324)
     return found
 
 
-def _measure_triangles(falls: Falls, triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+def _measure_triangles(falls: Falls, triangles: Int64Array) -> Float64Array:
     a, b, c = (falls.points[falls.triangles[triangles, k]] for k in range(3))
     (east, north, area), poor = _cross(b - a, c - a)
     slopes = np.hypot(east, north) / area
     for row in np.flatnonzero(poor).tolist():
         x, y, whole = _cross_exactly(falls, int(triangles[row]))
         slopes[row] = math.hypot(float(x / whole), float(y / whole))
-    found: NDArray[np.float64] = slopes
+    found: Float64Array = slopes
     return found
 
 
-def _cross(u: NDArray[np.float64], v: NDArray[np.float64]) -> tuple[Any, NDArray[np.bool_]]:
+def _cross(u: Float64Array, v: Float64Array) -> tuple[Any, BoolArray]:
     """Return the components of cross products, and where rounding spoils one."""
     normals, poor = [], np.zeros(len(u), np.bool_)
     for i, j in ((1, 2), (2, 0), (0, 1)):
@@ -188,7 +181,7 @@ def _cross_exactly(falls: Falls, triangle: int) -> tuple[Fraction, Fraction, Fra
 
 
 def _leave_out_water(
-    falls: Falls, vertices: NDArray[np.int64], found: _Candidates, levels: NDArray[np.float64]
+    falls: Falls, vertices: Int64Array, found: _Candidates, levels: Float64Array
 ) -> _Candidates:
     """Leave out ways down under water that stands as high as the vertex."""
     z = falls.points[:, 2]
@@ -199,9 +192,7 @@ def _leave_out_water(
     return _Candidates._make(array[kept] for array in found)
 
 
-def _choose_steepest(
-    falls: Falls, vertices: NDArray[np.int64], found: _Candidates
-) -> NDArray[np.int64]:
+def _choose_steepest(falls: Falls, vertices: Int64Array, found: _Candidates) -> Int64Array:
     """Return the number of the steepest candidate of each vertex that has one."""
     if len(found.owners) == 0:
         return np.zeros(0, np.int64)
@@ -210,7 +201,7 @@ def _choose_steepest(
     best = np.maximum.reduceat(found.slopes, firsts)[group]
     close = np.flatnonzero(found.slopes >= best - _CLOSE * best)
     is_first = np.append(True, np.diff(group[close]) != 0)
-    chosen: NDArray[np.int64] = close[is_first]
+    chosen: Int64Array = close[is_first]
     same = (found.vertices[close] == found.vertices[chosen][group[close]]) & (
         found.triangles[close] == found.triangles[chosen][group[close]]
     )
@@ -239,8 +230,8 @@ def _measure_exactly(
 
 
 def _drains_outwards(
-    falls: Falls, half_edges: HalfEdges, vertices: NDArray[np.int64], ends: NDArray[np.int64]
-) -> NDArray[np.bool_]:
+    falls: Falls, half_edges: HalfEdges, vertices: Int64Array, ends: Int64Array
+) -> BoolArray:
     """Tell which edges are of the boundary, with their triangle draining across them."""
     drains = np.zeros(len(vertices), np.bool_)
     chosen = np.flatnonzero(ends != NOWHERE)

@@ -14,7 +14,7 @@ from ..isolines.mending import PolygonParts, mend_polygons
 from ..relief.dissolving import dissolve
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["Patches", "Polygons", "Waters", "cut_below", "gather_polygons", "measure_waters"]
 
@@ -31,20 +31,20 @@ class Patches(NamedTuple):
     regions : (m,) int64 array
     """
 
-    points: NDArray[np.float64]
-    triangles: NDArray[np.int32]
-    neighbors: NDArray[np.int32]
-    regions: NDArray[np.int64]
+    points: Float64Array
+    triangles: Int32Array
+    neighbors: Int32Array
+    regions: Int64Array
 
 
 class Polygons(NamedTuple):
     """Polygons as :meth:`Features.of_polygons` takes them, and the region of each feature."""
 
-    points: NDArray[np.float64]
-    ring_offsets: NDArray[np.int64]
-    polygon_offsets: NDArray[np.int64]
-    feature_offsets: NDArray[np.int64]
-    regions: NDArray[np.int64]
+    points: Float64Array
+    ring_offsets: Int64Array
+    polygon_offsets: Int64Array
+    feature_offsets: Int64Array
+    regions: Int64Array
     notes: tuple[str, ...]
 
 
@@ -60,14 +60,14 @@ class Waters(NamedTuple):
     levels : (w,) float64 array
     """
 
-    triangles: NDArray[np.int64]
-    numbers: NDArray[np.int64]
-    levels: NDArray[np.float64]
+    triangles: Int64Array
+    numbers: Int64Array
+    levels: Float64Array
 
 
 def measure_waters(
-    points: NDArray[np.float64], triangles: NDArray[np.int32], waters: Waters, up: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    points: Float64Array, triangles: Int32Array, waters: Waters, up: float
+) -> tuple[Float64Array, Float64Array]:
     """Measure areas and volumes of waters, exact but for rounding.
 
     Parameters
@@ -94,7 +94,7 @@ def measure_waters(
     return sums[:, column("fill_area")], sums[:, column("fill")] * up
 
 
-def cut_below(points: NDArray[np.float64], triangles: NDArray[np.int32], waters: Waters) -> Patches:
+def cut_below(points: Float64Array, triangles: Int32Array, waters: Waters) -> Patches:
     r"""Cut off what of triangles lies above the water in them.
 
     A corner at the level is dry. A place where the level crosses an edge is made once for both
@@ -113,7 +113,7 @@ def cut_below(points: NDArray[np.float64], triangles: NDArray[np.int32], waters:
     depths = levels[:, None] - points[corners, 2]
     wet = depths > 0.0
     shore = _cross_edges(points, corners, levels, wet)
-    cells: list[list[NDArray[np.int64]]] = []
+    cells: list[list[Int64Array]] = []
     for k in range(3):
         cells += [
             [np.where(wet[:, k], corners[:, k], -1)],
@@ -132,15 +132,15 @@ def cut_below(points: NDArray[np.float64], triangles: NDArray[np.int32], waters:
 class _Shore(NamedTuple):
     """Where levels cross the edges opposite corners: vertices, -1 where they do not."""
 
-    points: NDArray[np.float64]
-    vertices: NDArray[np.int64]
+    points: Float64Array
+    vertices: Int64Array
 
 
 def _cross_edges(
-    points: NDArray[np.float64],
-    corners: NDArray[np.int64],
-    levels: NDArray[np.float64],
-    wet: NDArray[np.bool_],
+    points: Float64Array,
+    corners: Int64Array,
+    levels: Float64Array,
+    wet: BoolArray,
 ) -> _Shore:
     vertices = np.full(corners.shape, -1)
     rows, k = np.nonzero(np.roll(wet, -1, axis=1) != np.roll(wet, -2, axis=1))

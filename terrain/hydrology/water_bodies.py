@@ -20,8 +20,7 @@ from .vertices import NOWHERE, sort_edges_at
 from .water import Waters, cut_below, gather_polygons, measure_waters
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ...tin import TIN
     from ..earthwork.reference import Reference
     from .filling import Filling
@@ -208,16 +207,14 @@ def ponds(tin: TIN, level: float) -> Features:
 # ---------------------------------------------------------------- which waters
 
 
-def _choose_depressions(
-    tin: TIN, found: Hierarchy, nested: bool, min_depth: float
-) -> NDArray[np.int64]:
+def _choose_depressions(tin: TIN, found: Hierarchy, nested: bool, min_depth: float) -> Int64Array:
     z = tin.points[:, 2]
     depths = z[found.spill_vertices] - z[found.pits]
     chosen = np.flatnonzero((depths >= min_depth) & (nested | (found.parents == NOWHERE)))
     return chosen[np.lexsort((found.pits[chosen], -depths[chosen]))]
 
 
-def _list_waters(tin: TIN, found: Hierarchy, chosen: NDArray[np.int64]) -> Waters:
+def _list_waters(tin: TIN, found: Hierarchy, chosen: Int64Array) -> Waters:
     """Return the triangles in which each depression has water when it is full."""
     z = tin.points[:, 2]
     levels = z[found.spill_vertices]
@@ -241,7 +238,7 @@ def _list_waters(tin: TIN, found: Hierarchy, chosen: NDArray[np.int64]) -> Water
     return _gather_triangles(tin, wet, waters, levels[chosen])
 
 
-def _skip_to(parents: NDArray[np.int64], numbers: NDArray[np.int64]) -> NDArray[np.int64]:
+def _skip_to(parents: Int64Array, numbers: Int64Array) -> Int64Array:
     """Return for each depression itself if it has a number, else what it is part of that has one.
 
     The last one returned is for ``NOWHERE``.
@@ -257,7 +254,7 @@ def _skip_to(parents: NDArray[np.int64], numbers: NDArray[np.int64]) -> NDArray[
 
 
 def _gather_triangles(
-    tin: TIN, wet: list[NDArray[np.int64]], waters: list[NDArray[np.int64]], levels: NDArray[Any]
+    tin: TIN, wet: list[Int64Array], waters: list[Int64Array], levels: AnyArray
 ) -> Waters:
     """Return the triangles that have a vertex in each water."""
     if not wet:
@@ -271,8 +268,8 @@ def _gather_triangles(
 
 
 def _part_waters(
-    tin: TIN, is_wet: NDArray[np.bool_], chosen: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    tin: TIN, is_wet: BoolArray, chosen: Int64Array
+) -> tuple[Int64Array, Float64Array]:
     """Return numbers of waters that are connected, and the lowest elevation in each."""
     wet_edge = np.roll(is_wet[tin.triangles], -1, axis=1) | np.roll(
         is_wet[tin.triangles], 1, axis=1
@@ -297,7 +294,7 @@ def _list_units(reference: Reference, columns: dict[str, Any]) -> dict[str, Any]
     return {name: known[name] for name in columns if name in known}
 
 
-def _describe_spills(tin: TIN, found: Hierarchy, chosen: NDArray[np.int64]) -> dict[str, Any]:
+def _describe_spills(tin: TIN, found: Hierarchy, chosen: Int64Array) -> dict[str, Any]:
     spills = found.spill_vertices[chosen]
     x, y, z = tin.points[spills].T
     return {
@@ -309,7 +306,7 @@ def _describe_spills(tin: TIN, found: Hierarchy, chosen: NDArray[np.int64]) -> d
     }
 
 
-def _describe_places(tin: TIN, filling: Filling, chosen: NDArray[np.int64]) -> dict[str, Any]:
+def _describe_places(tin: TIN, filling: Filling, chosen: Int64Array) -> dict[str, Any]:
     """Name depressions, those they are part of, and those that they run over into."""
     found, numbers = filling.hierarchy, np.full(len(filling.hierarchy.pits) + 1, NOWHERE)
     numbers[chosen] = np.arange(len(chosen))
@@ -324,9 +321,7 @@ def _describe_places(tin: TIN, filling: Filling, chosen: NDArray[np.int64]) -> d
     }
 
 
-def _run_over(
-    tin: TIN, filling: Filling, ponds: NDArray[np.int64], is_listed: NDArray[np.bool_]
-) -> NDArray[np.int64]:
+def _run_over(tin: TIN, filling: Filling, ponds: Int64Array, is_listed: BoolArray) -> Int64Array:
     """Return the next listed depression that water of full ones comes to, ``NOWHERE`` for none."""
     roots = np.unique(filling.ponds)
     roots = roots[roots != NOWHERE]
@@ -337,12 +332,12 @@ def _run_over(
     while True:
         skipped = further[further]
         if np.array_equal(skipped, further):
-            into: NDArray[np.int64] = further[nexts[ponds]]
+            into: Int64Array = further[nexts[ponds]]
             return into
         further = skipped
 
 
-def _find_next_ponds(walker: Walker, ponds: NDArray[np.int64]) -> NDArray[np.int64]:
+def _find_next_ponds(walker: Walker, ponds: Int64Array) -> Int64Array:
     """Return the next pond from where ponds spill, ``NOWHERE`` if water leaves first."""
     filling: Any = walker.filling
     network = build_vertex_network(walker)
@@ -352,7 +347,7 @@ def _find_next_ponds(walker: Walker, ponds: NDArray[np.int64]) -> NDArray[np.int
     network.nexts[wet] = wet
     ends = find_ends(network.nexts)[begins]
     outside = np.full(len(network.nexts) - len(is_wet), NOWHERE)
-    found: NDArray[np.int64] = np.append(filling.ponds, outside)[ends]
+    found: Int64Array = np.append(filling.ponds, outside)[ends]
     return found
 
 

@@ -10,23 +10,22 @@ from ...errors import LinesError, PointsError
 from .findings import DROPPED
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Int32Array, Int64Array
     from ...tin import TIN
     from ..results import Table
 
 __all__ = ["drop_blunders", "list_wrong_rows"]
 
 
-def list_wrong_rows(table: Table) -> NDArray[np.int64]:
+def list_wrong_rows(table: Table) -> Int64Array:
     """Return the rows that are wrong by themselves, but for those of low certainty, ascending."""
     is_wrong = np.isin(table["reason"].astype(str), DROPPED)
     is_wrong &= table["certainty"].astype(str) != "low"
-    rows: NDArray[np.int64] = np.unique(table["row"][is_wrong])
+    rows: Int64Array = np.unique(table["row"][is_wrong])
     return rows
 
 
-def drop_blunders(tin: TIN, table: Table) -> NDArray[np.int64]:
+def drop_blunders(tin: TIN, table: Table) -> Int64Array:
     """Remove the points from a TIN, in place, that look like blunders.
 
     Those of low certainty stay, and those that only say that another row has the same number or
@@ -51,11 +50,11 @@ def drop_blunders(tin: TIN, table: Table) -> NDArray[np.int64]:
     if not _remove(tin, vertices):
         for vertex in vertices[::-1]:  # those behind a removed one move up
             _remove(tin, vertex[None])
-    gone: NDArray[np.int64] = rows[tin.vertex_of[rows] < 0]
+    gone: Int64Array = rows[tin.vertex_of[rows] < 0]
     return gone
 
 
-def _remove(tin: TIN, vertices: NDArray[np.int32]) -> bool:
+def _remove(tin: TIN, vertices: Int32Array) -> bool:
     try:
         tin.remove(vertices)
     except (PointsError, LinesError):

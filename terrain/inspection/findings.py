@@ -22,9 +22,8 @@ from .suspects import CERTAINTIES, REASONS, Rows, Suspect
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
     from ..._progress import Tell
+    from ...arrays import AnyArray, Int64Array
     from .heights import Heights
 
 __all__ = ["DROPPED", "blunders", "screen"]
@@ -261,7 +260,7 @@ def _rank(one: Suspect) -> tuple[Any, ...]:
     return (CERTAINTIES.index(one.certainty), -times, one.row, REASONS.index(one.reason), one.place)
 
 
-def _find_numbers(tin: TIN, rows: NDArray[np.int64]) -> NDArray[Any]:
+def _find_numbers(tin: TIN, rows: Int64Array) -> AnyArray:
     numbers = tin.row_attributes.get("number")
     found = np.full(len(rows), "", object)
     if numbers is not None:

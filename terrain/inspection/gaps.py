@@ -11,8 +11,7 @@ from ...tin.topology import NO_NEIGHBOR
 from ..relief.gradients import slope
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array
     from ...tin import TIN
 
 __all__ = ["describe_gaps"]
@@ -70,7 +69,7 @@ def describe_gaps(tin: TIN) -> list[str]:
     ]
 
 
-def _square_lengths(tin: TIN) -> NDArray[np.float64]:
+def _square_lengths(tin: TIN) -> Float64Array:
     """Return the squares of the lengths of the edges opposite the corners, (m, 3), in the plane."""
     x, y = (np.ascontiguousarray(axis)[tin.triangles] for axis in tin.points[:, :2].T)
     squares = np.empty(tin.triangles.shape)
@@ -86,7 +85,7 @@ def _round_up(length: float) -> float:
     return float(f"{np.ceil(length / unit) * unit:.6g}")
 
 
-def _describe_outer(squares: NDArray[np.float64], limit: float, unit: str) -> list[str]:
+def _describe_outer(squares: Float64Array, limit: float, unit: str) -> list[str]:
     if len(squares) == 0:
         return []
     return [
@@ -96,7 +95,7 @@ def _describe_outer(squares: NDArray[np.float64], limit: float, unit: str) -> li
     ]
 
 
-def _describe_inner(squares: NDArray[np.float64], limit: float, unit: str) -> list[str]:
+def _describe_inner(squares: Float64Array, limit: float, unit: str) -> list[str]:
     if len(squares) == 0:
         return []
     return [
@@ -105,9 +104,7 @@ def _describe_inner(squares: NDArray[np.float64], limit: float, unit: str) -> li
     ]
 
 
-def _describe_slivers(
-    tin: TIN, squares: NDArray[np.float64], stays: NDArray[np.bool_]
-) -> list[str]:
+def _describe_slivers(tin: TIN, squares: Float64Array, stays: BoolArray) -> list[str]:
     """Tell of triangles along the hull that are far steeper than the ground."""
     is_outer = (tin.neighbors == NO_NEIGHBOR) & ~tin.constrained
     outer = np.flatnonzero(is_outer.any(axis=1) & stays)
@@ -127,13 +124,13 @@ def _describe_slivers(
     ]
 
 
-def _compute_gradients(tin: TIN, chosen: Any) -> NDArray[np.float64]:
+def _compute_gradients(tin: TIN, chosen: Any) -> Float64Array:
     """Return the gradients of some triangles, in whatever units there are."""
     a, b, c = (tin.points[tin.triangles[chosen, k]] for k in range(3))
     east, north, up = np.cross(b - a, c - a).T
     with np.errstate(divide="ignore", invalid="ignore"):
         gradients = np.hypot(east, north) / up
-    steep: NDArray[np.float64] = np.nan_to_num(gradients, nan=0.0)  # infinite is the largest
+    steep: Float64Array = np.nan_to_num(gradients, nan=0.0)  # infinite is the largest
     return steep
 
 

@@ -16,9 +16,8 @@ from .residuals import Residuals, fit_plane
 from .scales import find_rounding, measure_scales
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from ..._progress import Tell
+    from ...arrays import Float64Array, Int32Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["STRICT", "Heights", "Judgement", "find_heights", "find_peaks_and_pits"]
@@ -49,10 +48,10 @@ class Heights(NamedTuple):
         Beyond which a residual is suspicious: more on a line and on the boundary.
     """
 
-    vertices: NDArray[np.int32]
-    residuals: NDArray[np.float64]
-    scales: NDArray[np.float64]
-    limits: NDArray[np.float64]
+    vertices: Int32Array
+    residuals: Float64Array
+    scales: Float64Array
+    limits: Float64Array
 
 
 class Judgement(NamedTuple):
@@ -71,8 +70,8 @@ class Judgement(NamedTuple):
 
 def find_heights(
     tin: TIN,
-    judged: NDArray[np.int32],
-    wrong: NDArray[np.int32],
+    judged: Int32Array,
+    wrong: Int32Array,
     *,
     sample: int | None = None,
     progress: Tell | None = None,
@@ -125,15 +124,13 @@ class _Search:
     """What is known of the vertices so far; arrays of one value a vertex."""
 
     known: Residuals
-    residuals: NDArray[np.float64]  # NaN for those that are not, or no longer, judged
-    scales: NDArray[np.float64]
-    limits: NDArray[np.float64]
-    found: list[NDArray[np.int32]]
+    residuals: Float64Array  # NaN for those that are not, or no longer, judged
+    scales: Float64Array
+    limits: Float64Array
+    found: list[Int32Array]
 
     @classmethod
-    def start(
-        cls, tin: TIN, judged: NDArray[np.int32], wrong: NDArray[np.int32], sample: int | None
-    ) -> _Search:
+    def start(cls, tin: TIN, judged: Int32Array, wrong: Int32Array, sample: int | None) -> _Search:
         known = Residuals.of(tin.triangulation)
         known.xyz[wrong, 2] -= np.nan_to_num(known.measure(wrong))
         count = len(known.xyz)
@@ -171,7 +168,7 @@ class _Search:
         self._correct(striking[is_first])
         return True
 
-    def _correct(self, chosen: NDArray[np.int32]) -> None:
+    def _correct(self, chosen: Int32Array) -> None:
         """Correct vertices further than two edges apart, and undo it where that is no help."""
         known = self.known
         own = known.xyz[chosen, 2].copy()
@@ -191,11 +188,11 @@ class _Search:
 
     def _measure_beyond(
         self,
-        offsets: NDArray[np.int64],
-        near: NDArray[np.int32],
-        chosen: NDArray[np.int32],
-        own: NDArray[np.float64],
-    ) -> NDArray[np.float64]:
+        offsets: Int64Array,
+        near: Int32Array,
+        chosen: Int32Array,
+        own: Float64Array,
+    ) -> Float64Array:
         """Return how far neighbours lie off the plane through them, on the side of the vertex."""
         beyond = np.zeros(len(near))
         for i, vertex in enumerate(chosen.tolist()):
@@ -219,16 +216,16 @@ class _Reach(NamedTuple):
     """
 
     size: int
-    owners: NDArray[np.int64]
-    vertices: NDArray[np.int32]
+    owners: Int64Array
+    vertices: Int32Array
 
     @classmethod
     def of(
         cls,
         known: Residuals,
-        chosen: NDArray[np.int32],
-        offsets: NDArray[np.int64],
-        near: NDArray[np.int32],
+        chosen: Int32Array,
+        offsets: Int64Array,
+        near: Int32Array,
     ) -> _Reach:
         """Gather them from the neighbours of those chosen."""
         wide, around = known.list_neighbors(near)
@@ -239,7 +236,7 @@ class _Reach(NamedTuple):
         elsewhere = reach != chosen[owner]
         return cls(len(chosen), owner[elsewhere], reach[elsewhere].astype(np.int32))
 
-    def measure_most(self, known: Residuals) -> NDArray[np.float64]:
+    def measure_most(self, known: Residuals) -> Float64Array:
         """Return the largest residual around each, when the one that has it is corrected, too.
 
         So a second blunder beside the first hides neither.
@@ -256,36 +253,34 @@ class _Reach(NamedTuple):
         np.maximum.at(most, self.owners, left)
         return most
 
-    def _measure(self, known: Residuals) -> NDArray[np.float64]:
+    def _measure(self, known: Residuals) -> Float64Array:
         unique, place = np.unique(self.vertices, return_inverse=True)
-        left: NDArray[np.float64] = np.nan_to_num(known.measure(unique))[place]
+        left: Float64Array = np.nan_to_num(known.measure(unique))[place]
         return left
 
 
-def _find_largest(
-    count: int, owners: NDArray[np.int64], values: NDArray[np.float64]
-) -> NDArray[np.int64]:
+def _find_largest(count: int, owners: Int64Array, values: Float64Array) -> Int64Array:
     """Return where the largest value of each part stands, of the parts that have one."""
     order = np.lexsort((values, owners))
     last = np.cumsum(np.bincount(owners, minlength=count)) - 1
     return order[np.unique(last[last >= 0])]
 
 
-def _rank(values: NDArray[np.float64]) -> NDArray[np.int64]:
+def _rank(values: Float64Array) -> Int64Array:
     """Return the rank of each value, equal ones in their order."""
     ranks = np.empty(len(values), np.int64)
     ranks[np.argsort(values, kind="stable")] = np.arange(len(values))
     return ranks
 
 
-def _find_care(known: Residuals, vertices: NDArray[np.int32]) -> NDArray[np.int32]:
+def _find_care(known: Residuals, vertices: Int32Array) -> Int32Array:
     """Return those of some vertices that are on lines or on the boundary."""
     surface = known.surface
     on_boundary = find_boundary_vertices(surface.triangles, surface.neighbors, len(known.xyz))
     return vertices[known.on_line[vertices] | on_boundary[vertices]]
 
 
-def _find_second(offsets: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _find_second(offsets: Int64Array, values: Float64Array) -> Float64Array:
     """Return the second largest value of each part of a ragged array, 0 if there is none."""
     owner = find_owners(offsets)
     order = np.lexsort((-values, owner))
@@ -309,18 +304,18 @@ def _measure_without(tin: TIN, search: _Search, *, is_exact: bool) -> Heights:
     return Heights(vertices, residuals[stays], search.scales[vertices], limits[vertices])
 
 
-def _interpolate_without(tin: TIN, vertices: NDArray[np.int32]) -> NDArray[np.float64]:
+def _interpolate_without(tin: TIN, vertices: Int32Array) -> Float64Array:
     """Return the elevation at some vertices of the surface without them; NaN outside of it."""
     rest = copy(tin)
     try:
         rest.remove(vertices)
     except (PointsError, LinesError):  # what is left has no triangle, or a line goes through
         return np.full(len(vertices), np.nan)
-    elevations: NDArray[np.float64] = rest.interpolate(tin.points[vertices, :2])
+    elevations: Float64Array = rest.interpolate(tin.points[vertices, :2])
     return elevations
 
 
-def find_peaks_and_pits(tin: TIN) -> NDArray[np.int32]:
+def find_peaks_and_pits(tin: TIN) -> Int32Array:
     """Return the vertices further beyond all their neighbours than these are apart."""
     lowest, highest, _ = _kernel.measure_neighbors(tin.points, tin.triangles).T
     z = tin.points[:, 2]

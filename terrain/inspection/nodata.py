@@ -12,7 +12,7 @@ from ...errors import OptionError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array
 
 __all__ = [
     "SuspectElevation",
@@ -39,7 +39,7 @@ _BEYOND = 50_000.0
 """No elevation of the earth is larger, in feet or in metres."""
 
 
-def parse_nodata(nodata: float | Sequence[float] | None) -> NDArray[np.float64]:
+def parse_nodata(nodata: float | Sequence[float] | None) -> Float64Array:
     """Return the elevations that a caller names as no data, (k,) array.
 
     Raises
@@ -63,7 +63,7 @@ class SuspectElevation:
     highest: float
 
 
-def find_suspect_elevations(z: NDArray[np.float64]) -> list[SuspectElevation]:
+def find_suspect_elevations(z: Float64Array) -> list[SuspectElevation]:
     """Find elevations that may stand for "no data".
 
     Parameters
@@ -113,13 +113,13 @@ def is_customary(value: float) -> bool:
     return value in _CUSTOMARY
 
 
-def _find_extremes(z: NDArray[np.float64]) -> tuple[float, float]:
+def _find_extremes(z: Float64Array) -> tuple[float, float]:
     """Return lowest and highest value, the one of larger size first."""
     low, high = float(z.min()), float(z.max())
     return (high, low) if abs(high) > abs(low) else (low, high)
 
 
-def _find_suspect(z: NDArray[np.float64], value: float) -> SuspectElevation | None:
+def _find_suspect(z: Float64Array, value: float) -> SuspectElevation | None:
     """Return the lowest or highest value if it may stand for no data."""
     # Fewer others make gap and range look no less suspicious: most values are cleared by some.
     for others in (z[:: max(1, len(z) // _SOME)], z):
@@ -134,7 +134,7 @@ def _find_suspect(z: NDArray[np.float64], value: float) -> SuspectElevation | No
     return SuspectElevation(value, count, float(others.min()), float(others.max()))
 
 
-def _is_far_from(value: float, others: NDArray[np.float64], count: int) -> bool:
+def _is_far_from(value: float, others: Float64Array, count: int) -> bool:
     low, high = float(others.min()), float(others.max())
     size = max(abs(low), abs(high))
     half_gap = low / 2 - value / 2 if value < low else value / 2 - high / 2
@@ -155,7 +155,7 @@ def describe_suspects(suspects: Iterable[SuspectElevation], what: str = "point")
     ]
 
 
-def describe_elevations(z: NDArray[np.float64], what: str = "point") -> list[str]:
+def describe_elevations(z: Float64Array, what: str = "point") -> list[str]:
     """Say which elevations may stand for no data, or that all of them may.
 
     Parameters

@@ -11,8 +11,7 @@ from ..georeference.area_of_use import AreaOfUse
 from .slips import FACTORS
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int64Array
     from ...crs import CRS
     from .suspects import Rows, Suspect
 
@@ -33,11 +32,11 @@ _MOST_FAR = 2_000
 class _Box(NamedTuple):
     """Where most of the points lie."""
 
-    low: NDArray[np.float64]
-    high: NDArray[np.float64]
+    low: Float64Array
+    high: Float64Array
 
     @classmethod
-    def of(cls, xy: NDArray[np.float64]) -> _Box:
+    def of(cls, xy: Float64Array) -> _Box:
         low, high = np.percentile(xy, _CENTRE, axis=0)
         pad = (high - low) * (1 / _WHOLE - 1) / 2
         return cls(low - pad, high + pad)
@@ -46,10 +45,10 @@ class _Box(NamedTuple):
     def diagonal(self) -> float:
         return float(np.hypot(*(self.high - self.low)))
 
-    def measure_distances(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    def measure_distances(self, xy: Float64Array) -> Float64Array:
         """Return how far places are beyond the box, in diagonals of it."""
         beyond = np.maximum(np.maximum(self.low - xy, xy - self.high), 0.0)
-        distances: NDArray[np.float64] = np.hypot(*beyond.T) / self.diagonal
+        distances: Float64Array = np.hypot(*beyond.T) / self.diagonal
         return distances
 
 
@@ -109,7 +108,7 @@ def _explain(rows: Rows, i: int, box: _Box) -> tuple[str, str] | None:
     return None
 
 
-def _is_in_company(rows: Rows, i: int, far: NDArray[np.int64], box: _Box) -> bool:
+def _is_in_company(rows: Rows, i: int, far: Int64Array, box: _Box) -> bool:
     """Whether some far points lie together, which are then a site of their own."""
     apart = np.hypot(*(rows.xyz[far, :2] - rows.xyz[i, :2]).T)
     return int((apart < box.diagonal).sum()) >= _SITE

@@ -9,8 +9,7 @@ import numpy as np
 from .suspects import Suspect
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Int64Array
     from ...tin import TIN
     from .suspects import Rows
 
@@ -44,7 +43,7 @@ def find_repeated_numbers(tin: TIN, rows: Rows) -> tuple[list[Suspect], list[str
     ], []
 
 
-def _as_names(numbers: NDArray[Any]) -> NDArray[Any]:
+def _as_names(numbers: AnyArray) -> AnyArray:
     """Return whole numbers as they are, others as texts."""
     if numbers.dtype.kind in "iu":
         return numbers
@@ -57,7 +56,7 @@ def _write(value: Any) -> str:
     return "" if is_none else str(value).strip()
 
 
-def _name_others(text: str, same: NDArray[np.int64], own: int) -> str:
+def _name_others(text: str, same: Int64Array, own: int) -> str:
     others = same[same != own].tolist()
     shown = ", ".join(map(str, others[:_SHOWN])) + (", ..." if len(others) > _SHOWN else "")
     return f"Point number {text} is also that of row {shown}."

@@ -12,8 +12,7 @@ from ...tin.validation.threads import thread_count
 from .. import _kernel
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...tin.triangulation import Triangulation
 
 __all__ = ["Residuals", "fit_plane"]
@@ -38,9 +37,9 @@ class Residuals:
     """
 
     surface: Triangulation
-    xyz: NDArray[np.float64]
-    on_line: NDArray[np.bool_]
-    chords: NDArray[np.int32]
+    xyz: Float64Array
+    on_line: BoolArray
+    chords: Int32Array
     _without: _kernel.LeaveOneOut = field(init=False)
 
     def __post_init__(self) -> None:
@@ -63,13 +62,11 @@ class Residuals:
         chords[degree == 2] = end[order][inner].reshape(-1, 2)
         return cls(surface, surface.points.copy(), degree > 0, chords)
 
-    def measure(self, vertices: NDArray[np.int32]) -> NDArray[np.float64]:
+    def measure(self, vertices: Int32Array) -> Float64Array:
         """Return the residuals of some vertices, as :meth:`measure_with_moments`."""
         return self.measure_with_moments(vertices)[0]
 
-    def measure_with_moments(
-        self, vertices: NDArray[np.int32]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def measure_with_moments(self, vertices: Int32Array) -> tuple[Float64Array, Float64Array]:
         """Return residuals of some vertices, and from how far they are measured; NaN for none.
 
         The moment is the mean square of the distances to the points that the elevation is
@@ -89,7 +86,7 @@ class Residuals:
             found[at_corner] = self._extrapolate(vertices[at_corner])
         return self.xyz[vertices, 2] - found[:, 0], found[:, 1]
 
-    def _interpolate(self, vertices: NDArray[np.int32]) -> NDArray[np.float64]:
+    def _interpolate(self, vertices: Int32Array) -> Float64Array:
         found = np.full((len(vertices), 2), np.nan)
         on_line = self.on_line[vertices]
         has_chord = self.chords[vertices, 0] >= 0
@@ -98,7 +95,7 @@ class Residuals:
         found[~on_line] = self._without.interpolate(free, thread_count(None, len(free)))
         return found
 
-    def _interpolate_chords(self, vertices: NDArray[np.int32]) -> NDArray[np.float64]:
+    def _interpolate_chords(self, vertices: Int32Array) -> Float64Array:
         before, behind = (self.xyz[self.chords[vertices, k]] for k in range(2))
         place = self.xyz[vertices]
         to_before = np.hypot(*(place - before)[:, :2].T)
@@ -107,7 +104,7 @@ class Residuals:
         expected = (1 - share) * before[:, 2] + share * behind[:, 2]
         return np.column_stack([expected, to_before * to_behind])
 
-    def _extrapolate(self, vertices: NDArray[np.int32]) -> NDArray[np.float64]:
+    def _extrapolate(self, vertices: Int32Array) -> Float64Array:
         """Return elevations of planes through the vertices within two edges of some."""
         found = np.full((len(vertices), 2), np.nan)
         for i, vertex in enumerate(vertices.tolist()):
@@ -119,16 +116,12 @@ class Residuals:
                 found[i] = expected, (apart**2).sum(axis=1).max()
         return found
 
-    def list_neighbors(
-        self, vertices: NDArray[np.int32]
-    ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+    def list_neighbors(self, vertices: Int32Array) -> tuple[Int64Array, Int32Array]:
         """Return the vertices joined to some by edges, as offsets and vertices."""
         return self._without.list_neighbors(np.ascontiguousarray(vertices))
 
 
-def fit_plane(
-    points: NDArray[np.float64], place: NDArray[np.float64]
-) -> tuple[float, NDArray[np.float64]]:
+def fit_plane(points: Float64Array, place: Float64Array) -> tuple[float, Float64Array]:
     """Return the elevation at a place of the plane that fits points best, and how far they are.
 
     Returns

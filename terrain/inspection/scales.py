@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array, Int64Array
 
 __all__ = ["NORMAL", "find_rounding", "measure_scales"]
 
@@ -24,11 +24,11 @@ _MOST_DECIMALS = 7
 
 
 def measure_scales(
-    xy: NDArray[np.float64],
-    residuals: NDArray[np.float64],
-    moments: NDArray[np.float64],
+    xy: Float64Array,
+    residuals: Float64Array,
+    moments: Float64Array,
     least: float,
-) -> NDArray[np.float64]:
+) -> Float64Array:
     """Return the robust scale of the residuals around each place.
 
     Points are taken in blocks of 64 that lie together. The scale of a block is 1.4826 times the
@@ -70,7 +70,7 @@ def measure_scales(
     return scales
 
 
-def _order_in_strips(xy: NDArray[np.float64], axis: int) -> NDArray[np.int64]:
+def _order_in_strips(xy: Float64Array, axis: int) -> Int64Array:
     """Return points in strips along an axis, forth and back, so that 64 of them lie together."""
     count = len(xy)
     strips = max(1, round(float(np.sqrt(count / _BLOCK))))
@@ -80,7 +80,7 @@ def _order_in_strips(xy: NDArray[np.float64], axis: int) -> NDArray[np.int64]:
     return np.lexsort((along, strip))
 
 
-def _find_medians(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _find_medians(values: Float64Array) -> Float64Array:
     """Return for each value the median of the 64 that it is one of, without NaN; NaN of none."""
     blocks = -(-len(values) // _BLOCK)
     padded = np.full(blocks * _BLOCK, np.nan)
@@ -94,7 +94,7 @@ def _find_medians(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.repeat(medians, _BLOCK)[: len(values)]
 
 
-def find_rounding(z: NDArray[np.float64]) -> float:
+def find_rounding(z: Float64Array) -> float:
     """Return the standard deviation of what elevations lost when they were rounded to decimals.
 
     Examples

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int32Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["CERTAINTIES", "REASONS", "Rows", "Suspect"]
@@ -66,9 +65,9 @@ class Rows:
     xyz : (k, 3) float64 array
     """
 
-    numbers: NDArray[np.int64]
-    vertices: NDArray[np.int32]
-    xyz: NDArray[np.float64]
+    numbers: Int64Array
+    vertices: Int32Array
+    xyz: Float64Array
 
     @classmethod
     def of(cls, tin: TIN) -> Rows:

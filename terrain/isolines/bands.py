@@ -17,8 +17,9 @@ from .mending import PolygonParts, is_whole, mend_polygons, require_whole
 from .rebuilding import rebuild_wrong_bands
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["contour_bands"]
@@ -109,6 +110,6 @@ def contour_bands(
     )
 
 
-def _list_bounds(levels: NDArray[np.float64]) -> NDArray[np.float64]:
+def _list_bounds(levels: Float64Array) -> Float64Array:
     """Return where bands begin and end, from below all levels to above them."""
     return np.concatenate([[np.nan], levels, [np.nan]])

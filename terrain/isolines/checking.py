@@ -14,8 +14,7 @@ from ...tin.validation.options import require_tin
 from ..results import Features
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int64Array, ObjectArray
     from ...tin import TIN
 
 __all__ = ["ContourCheck", "check_contours"]
@@ -61,9 +60,9 @@ class ContourCheck:
 class _Segments(NamedTuple):
     """Segments of lines, one after the other, and the line of each."""
 
-    start: NDArray[np.float64]
-    end: NDArray[np.float64]
-    line: NDArray[np.int64]
+    start: Float64Array
+    end: Float64Array
+    line: Int64Array
 
 
 def check_contours(tin: TIN, lines: Features) -> ContourCheck:
@@ -138,15 +137,13 @@ def _find_contacts(tin: TIN, segments: _Segments) -> tuple[int, int, tuple[tuple
     return contacts, shared, tuple(dict.fromkeys(pairs))[:5]
 
 
-def _build_shapes(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.object_]:
+def _build_shapes(start: Float64Array, end: Float64Array) -> ObjectArray:
     shapely = _optional.load("shapely")
-    shapes: NDArray[np.object_] = shapely.linestrings(np.stack([start[:, :2], end[:, :2]], axis=1))
+    shapes: ObjectArray = shapely.linestrings(np.stack([start[:, :2], end[:, :2]], axis=1))
     return shapes
 
 
-def _are_joined(
-    segments: _Segments, one: NDArray[np.int64], other: NDArray[np.int64]
-) -> NDArray[np.bool_]:
+def _are_joined(segments: _Segments, one: Int64Array, other: Int64Array) -> BoolArray:
     """Tell which pairs follow each other in a line and share that point alone."""
     start, end, line = segments
     follows = (end[one] == start[other]).all(axis=1)
@@ -159,7 +156,7 @@ def _are_joined(
     columns = np.ascontiguousarray(corners[:, 0]), np.ascontiguousarray(corners[:, 1])
     turns = orientation(columns, rows, rows + len(one), rows + 2 * len(one))
     is_back = (turns == 0) & (((joint - before) * (after - joint))[:, :2].sum(axis=1) <= 0)
-    is_joint: NDArray[np.bool_] = (line[one] == line[other]) & (follows | leads) & ~is_back
+    is_joint: BoolArray = (line[one] == line[other]) & (follows | leads) & ~is_back
     return is_joint
 
 
@@ -186,11 +183,11 @@ def _find_largest_deviation(tin: TIN, segments: _Segments) -> float:
 
 
 def _measure_deviations(
-    start: NDArray[np.float64],
-    end: NDArray[np.float64],
-    p: NDArray[np.float64],
-    q: NDArray[np.float64],
-) -> NDArray[np.float64]:
+    start: Float64Array,
+    end: Float64Array,
+    p: Float64Array,
+    q: Float64Array,
+) -> Float64Array:
     """Return how far the elevation is from that of a segment where it crosses an edge p-q."""
     along, at_p, at_q = end - start, p - start, q - start
     right = along[:, 0] * at_p[:, 1] - along[:, 1] * at_p[:, 0]
@@ -198,6 +195,6 @@ def _measure_deviations(
     total = right - left
     is_parallel = total == 0.0
     share = np.clip(right / np.where(is_parallel, 1.0, total), 0.0, 1.0)
-    off: NDArray[np.float64] = np.abs(p[:, 2] + share * (q[:, 2] - p[:, 2]) - start[:, 2])
+    off: Float64Array = np.abs(p[:, 2] + share * (q[:, 2] - p[:, 2]) - start[:, 2])
     off[is_parallel] = 0.0  # along the edge: its ends are compared, or edges that meet it
     return off

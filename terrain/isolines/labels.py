@@ -12,7 +12,7 @@ from ...tin.validation.options import is_finite_number
 from ..results import Features
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import AnyArray, Float64Array, Int64Array
 
 __all__ = ["contour_labels"]
 
@@ -104,7 +104,7 @@ def _choose_spacing(lines: Features) -> float:
     return max(bounds.xmax - bounds.xmin, bounds.ymax - bounds.ymin) / _SHARE_OF_EXTENT
 
 
-def _place_labels(lines: Features, chosen: NDArray[np.int64], spacing: float) -> list[_Label]:
+def _place_labels(lines: Features, chosen: Int64Array, spacing: float) -> list[_Label]:
     placed: list[_Label] = []
     taken = _TakenPlaces(_APART * spacing)
     for number in chosen.tolist():
@@ -120,7 +120,7 @@ def _place_labels(lines: Features, chosen: NDArray[np.int64], spacing: float) ->
 class _Way:
     """A line by the distance along it."""
 
-    def __init__(self, xy: NDArray[np.float64], is_closed: bool) -> None:
+    def __init__(self, xy: Float64Array, is_closed: bool) -> None:
         self._xy = xy
         self._along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(xy, axis=0).T))])
         self._is_closed = is_closed
@@ -154,7 +154,7 @@ class _Way:
         uphill = "above" if is_upright else "below"
         return _Label(float(x), float(y), rotation, uphill, number)
 
-    def _at(self, along: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _at(self, along: Float64Array) -> Float64Array:
         if self._is_closed:
             along = along % self.length
         along = np.clip(along, 0.0, self.length)
@@ -188,7 +188,7 @@ def _as_features(lines: Features, labels: list[_Label]) -> Features:
     levels = lines.columns["elevation"][numbers]
     decimals = _count_decimals(lines.columns["elevation"])
     places = np.array([(label.x, label.y) for label in labels], np.float64).reshape(-1, 2)
-    columns: dict[str, NDArray[Any]] = {
+    columns: dict[str, AnyArray] = {
         "text": np.array([f"{level + 0.0:.{decimals}f}" for level in levels] or [], object),
         "elevation": levels,
         "rotation": np.array([label.rotation for label in labels], np.float64),
@@ -206,7 +206,7 @@ def _as_features(lines: Features, labels: list[_Label]) -> Features:
     )
 
 
-def _count_decimals(levels: NDArray[np.float64]) -> int:
+def _count_decimals(levels: Float64Array) -> int:
     """Return how many decimals tell the levels to a millionth of the least step between them."""
     levels = np.unique(levels)
     steps = np.diff(levels) if len(levels) > 1 else np.abs(levels)

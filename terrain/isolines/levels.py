@@ -15,8 +15,7 @@ from ...tin.types import seal
 from ...tin.validation.options import is_finite_number, is_whole_number
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, BoolArray, Float64Array
     from ...tin import TIN
 
 __all__ = ["MOST_CROSSINGS", "MOST_LEVELS", "LevelOptions", "Levels"]
@@ -41,8 +40,8 @@ class Levels:
         What is to be told of them.
     """
 
-    values: NDArray[np.float64]
-    is_index: NDArray[np.bool_]
+    values: Float64Array
+    is_index: BoolArray
     notes: tuple[str, ...] = ()
 
 
@@ -99,9 +98,7 @@ class LevelOptions:
             return OptionError("number of levels", len(as_levels(self.levels)), allowed=allowed)
         return OptionError("interval", self.interval, allowed=f"so large {most} {count:,}")
 
-    def _at_interval(
-        self, lowest: float, highest: float
-    ) -> tuple[NDArray[Any], NDArray[np.float64]]:
+    def _at_interval(self, lowest: float, highest: float) -> tuple[AnyArray, Float64Array]:
         """Return levels around and between two elevations, and their numbers from the base on.
 
         They are decimal numbers, each rounded once: 3 x 0.1 is 0.3, as a vertex has it.
@@ -133,7 +130,7 @@ class LevelOptions:
             )
         return Levels(values, self._find_index(np.arange(len(values))), notes)
 
-    def _find_index(self, numbers: NDArray[Any]) -> NDArray[np.bool_]:
+    def _find_index(self, numbers: AnyArray) -> BoolArray:
         if self.index is None:
             return np.zeros(len(numbers), np.bool_)
         return np.array(numbers % int(self.index) == 0, np.bool_)
@@ -163,7 +160,7 @@ def elevation_range(tin: TIN) -> tuple[float, float]:
     return (float(z.min()), float(z.max())) if len(z) else (0.0, 0.0)
 
 
-def as_levels(given: Any) -> NDArray[np.float64]:
+def as_levels(given: Any) -> Float64Array:
     """Return explicit levels in ascending order, each once.
 
     Raises

@@ -9,16 +9,15 @@ import numpy as np
 from ..georeference.units import find_scales
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int64Array
     from ...crs import CRS
 
 __all__ = ["measure_lengths", "measure_ring_areas", "sum_parts"]
 
 
 def measure_lengths(
-    crs: CRS | None, coordinates: NDArray[np.float64], offsets: NDArray[np.int64]
-) -> NDArray[np.float64]:
+    crs: CRS | None, coordinates: Float64Array, offsets: Int64Array
+) -> Float64Array:
     """Measure lines in the plane.
 
     Parameters
@@ -45,8 +44,8 @@ def measure_lengths(
 
 
 def measure_ring_areas(
-    crs: CRS | None, coordinates: NDArray[np.float64], offsets: NDArray[np.int64]
-) -> NDArray[np.float64]:
+    crs: CRS | None, coordinates: Float64Array, offsets: Int64Array
+) -> Float64Array:
     """Measure the areas inside closed rings.
 
     Parameters
@@ -73,9 +72,9 @@ def measure_ring_areas(
     return 0.5 * sum_parts(doubled, offsets[:-1])
 
 
-def sum_parts(values: NDArray[np.float64], starts: NDArray[np.int64]) -> NDArray[np.float64]:
+def sum_parts(values: Float64Array, starts: Int64Array) -> Float64Array:
     """Sum consecutive parts of an array, none of them empty, that start at these places."""
     if len(starts) == 0:
         return np.zeros(0)
-    sums: NDArray[np.float64] = np.add.reduceat(values, starts)
+    sums: Float64Array = np.add.reduceat(values, starts)
     return sums

@@ -12,8 +12,7 @@ from ...errors import PointsError
 from .measures import measure_lengths, measure_ring_areas
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int32Array, Int64Array, ObjectArray
     from ...tin import TIN
 
 __all__ = ["PolygonParts", "as_parts", "is_whole", "mend_polygons", "require_whole", "turn"]
@@ -35,10 +34,10 @@ class PolygonParts(NamedTuple):
         Of each polygon.
     """
 
-    points: NDArray[np.float64]
-    ring_offsets: NDArray[np.int64]
-    polygon_offsets: NDArray[np.int64]
-    band: NDArray[np.int32]
+    points: Float64Array
+    ring_offsets: Int64Array
+    polygon_offsets: Int64Array
+    band: Int32Array
 
 
 def mend_polygons(
@@ -71,12 +70,12 @@ def mend_polygons(
     return as_parts(np.concatenate(pieces), np.concatenate(numbers)), (note,)
 
 
-def _make_valid(shapes: NDArray[np.object_]) -> NDArray[np.object_]:
+def _make_valid(shapes: ObjectArray) -> ObjectArray:
     shapely = _optional.load("shapely")
     whole = shapely.union_all(shapely.make_valid(shapes))
     found = shapely.get_parts(whole)
     polygons = found[shapely.get_type_id(found) == shapely.GeometryType.POLYGON]
-    kept: NDArray[np.object_] = np.array([turn(one) for one in polygons], object)
+    kept: ObjectArray = np.array([turn(one) for one in polygons], object)
     return kept
 
 
@@ -86,7 +85,7 @@ def turn(polygon: Any) -> Any:
     return orient(polygon)
 
 
-def as_parts(shapes: NDArray[np.object_], band: NDArray[np.int32]) -> PolygonParts:
+def as_parts(shapes: ObjectArray, band: Int32Array) -> PolygonParts:
     """Return polygons of shapely as the kernel returns its own."""
     shapely = _optional.load("shapely")
     if len(shapes) == 0:  # nothing is left of what is thinner than rounding

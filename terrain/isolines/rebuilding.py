@@ -13,8 +13,7 @@ from .measures import measure_lengths, measure_ring_areas, sum_parts
 from .mending import PolygonParts, as_parts, turn
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int32Array, ObjectArray
     from ...tin import TIN
 
 __all__ = ["rebuild_wrong_bands"]
@@ -26,7 +25,7 @@ _SHARE = 1e-9
 
 
 def rebuild_wrong_bands(
-    tin: TIN, levels: NDArray[np.float64], parts: PolygonParts
+    tin: TIN, levels: Float64Array, parts: PolygonParts
 ) -> tuple[PolygonParts, tuple[str, ...]]:
     """Build the bands anew whose area is not what lies between their levels, and say so.
 
@@ -63,7 +62,7 @@ def rebuild_wrong_bands(
     return as_parts(every[order], number[order]), (note,)
 
 
-def _find_wrong(tin: TIN, levels: NDArray[np.float64], parts: PolygonParts) -> NDArray[np.bool_]:
+def _find_wrong(tin: TIN, levels: Float64Array, parts: PolygonParts) -> BoolArray:
     """Tell which bands have another area than the surface has between their levels."""
     under = _kernel.stage_sums(tin.points, tin.triangles, levels, 1.0)[:, 0]
     true = np.diff(np.concatenate([[0.0], under, [float(tin.area)]]))
@@ -76,18 +75,18 @@ def _find_wrong(tin: TIN, levels: NDArray[np.float64], parts: PolygonParts) -> N
     rounding = float(np.spacing(np.abs(tin.points[:, :2]).max(initial=0.0)))
     extent = float(np.ptp(tin.points[:, :2], axis=0).sum())
     slack = _SHARE * tin.area + _ROUNDINGS * rounding * (around + extent)
-    wrong: NDArray[np.bool_] = np.abs(found - true) > slack
+    wrong: BoolArray = np.abs(found - true) > slack
     return wrong
 
 
-def _list_shapes(parts: PolygonParts) -> tuple[NDArray[np.object_], NDArray[np.int32]]:
+def _list_shapes(parts: PolygonParts) -> tuple[ObjectArray, Int32Array]:
     shapely = _optional.load("shapely")
     offsets = parts.ring_offsets, parts.polygon_offsets
     shapes: Any = shapely.from_ragged_array(shapely.GeometryType.POLYGON, parts.points, offsets)
     return shapes, np.asarray(parts.band, np.int32)
 
 
-def _join_parts(tin: TIN, levels: NDArray[np.float64], band: int) -> NDArray[np.object_]:
+def _join_parts(tin: TIN, levels: Float64Array, band: int) -> ObjectArray:
     """Return the polygons of a band: the parts of all triangles in it, joined."""
     shapely = _optional.load("shapely")
     bounds = np.concatenate([[-np.inf], levels, [np.inf]])
@@ -100,7 +99,7 @@ def _join_parts(tin: TIN, levels: NDArray[np.float64], band: int) -> NDArray[np.
     parts = parts[shapely.is_valid(parts) & (shapely.area(parts) > 0.0)]
     joined = shapely.get_parts(shapely.union_all(parts))
     polygons = joined[shapely.get_type_id(joined) == shapely.GeometryType.POLYGON]
-    kept: NDArray[np.object_] = np.array([turn(one) for one in polygons], object)
+    kept: ObjectArray = np.array([turn(one) for one in polygons], object)
     return kept
 
 

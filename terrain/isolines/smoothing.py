@@ -11,8 +11,7 @@ from ...tin.validation.options import is_finite_number
 from .. import _kernel
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["TracedLines", "require_tolerance", "smooth_lines"]
@@ -39,11 +38,11 @@ class TracedLines(NamedTuple):
         In the plane of the coordinates.
     """
 
-    coordinates: NDArray[np.float64]
-    offsets: NDArray[np.int64]
-    level: NDArray[np.int32]
-    is_closed: NDArray[np.bool_]
-    length: NDArray[np.float64]
+    coordinates: Float64Array
+    offsets: Int64Array
+    level: Int32Array
+    is_closed: BoolArray
+    length: Float64Array
 
 
 def require_tolerance(option: str, value: Any) -> float:
@@ -65,7 +64,7 @@ def require_tolerance(option: str, value: Any) -> float:
 def smooth_lines(
     tin: TIN,
     lines: TracedLines,
-    levels: NDArray[np.float64],
+    levels: Float64Array,
     *,
     smooth: float,
     simplify: float,
@@ -129,7 +128,7 @@ def _require_few(lines: TracedLines, **tolerances: float) -> None:
         raise OptionError(name, value, allowed=allowed)
 
 
-def _find_places(tin: TIN, lines: TracedLines) -> NDArray[np.int32]:
+def _find_places(tin: TIN, lines: TracedLines) -> Int32Array:
     """Return a triangle for each point but those repeated."""
     xy = np.ascontiguousarray(lines.coordinates[:, :2])
     places = np.array(tin.locate(xy))

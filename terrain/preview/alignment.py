@@ -11,9 +11,7 @@ from ...tin.validation.options import require_tin
 from ..georeference import agree
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...crs import CRS, Unit
     from ...tin import Survey
 
@@ -37,7 +35,7 @@ class Aligned(NamedTuple):
     """
 
     surfaces: dict[str, TIN]
-    labelled: NDArray[np.float64] | None
+    labelled: Float64Array | None
     notes: tuple[str, ...]
 
 

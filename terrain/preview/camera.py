@@ -11,7 +11,7 @@ import numpy as np
 from ...tin import Bounds
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array
 
 __all__ = [
     "VIEWS",
@@ -91,7 +91,7 @@ class View:
         return f"Parallel view from the {point}, {abs(self.height):.0f}° {side} the horizon"
 
     @property
-    def axes(self) -> NDArray[np.float64]:
+    def axes(self) -> Float64Array:
         """Unit vectors to the right, up the picture, and towards the viewer, (3, 3) rows."""
         azimuth, height = math.radians(self.azimuth), math.radians(self.height)
         east, north = math.sin(azimuth), math.cos(azimuth)
@@ -119,7 +119,7 @@ def name_direction(azimuth: float) -> str:
 
 
 def aim(
-    camera: Any, points: NDArray[np.float64], *, view: View, frame: Bounds, size: tuple[int, int]
+    camera: Any, points: Float64Array, *, view: View, frame: Bounds, size: tuple[int, int]
 ) -> None:
     """Point a camera so that all points just fit into a frame of the window.
 
@@ -154,7 +154,7 @@ def _fit(drawn: Bounds, frame: Bounds) -> float:
 
 def place_camera(
     camera: Any,
-    points: NDArray[np.float64],
+    points: Float64Array,
     *,
     view: View,
     middle: tuple[float, float],
@@ -189,12 +189,12 @@ def measure_pixels_per_unit(camera: Any, height: float) -> float:
     return float(height / 2 / camera.parallel_scale)
 
 
-def project_ground_axes(camera: Any) -> NDArray[np.float64]:
+def project_ground_axes(camera: Any) -> Float64Array:
     """Return where east and north point in the picture, (2, 2) rows, foreshortened."""
     return _read_axes(camera)[:2, :2].T
 
 
-def _read_axes(camera: Any) -> NDArray[np.float64]:
+def _read_axes(camera: Any) -> Float64Array:
     """Return a camera's unit vectors to the right, up and towards the viewer, (3, 3) rows."""
     toward = np.subtract(camera.position, camera.focal_point)
     toward /= np.linalg.norm(toward)

@@ -16,8 +16,7 @@ from .tints import interpolate_tints
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, UInt8Array
     from ...tin import TIN
     from ..georeference.units import Ground
 
@@ -59,7 +58,7 @@ def _describe(tin: TIN) -> Iterator[tuple[str, str]]:
     yield from describe_bounds(tin.points)
 
 
-def draw_map(tin: TIN, *, size: tuple[int, int] = SIZE) -> NDArray[np.uint8]:
+def draw_map(tin: TIN, *, size: tuple[int, int] = SIZE) -> UInt8Array:
     """Draw a surface from above, north up, with hypsometric tints and hillshade.
 
     Parameters
@@ -77,7 +76,7 @@ def draw_map(tin: TIN, *, size: tuple[int, int] = SIZE) -> NDArray[np.uint8]:
         return _draw(tin, size)
 
 
-def _draw(tin: TIN, size: tuple[int, int]) -> NDArray[np.uint8]:
+def _draw(tin: TIN, size: tuple[int, int]) -> UInt8Array:
     ground = find_ground(tin)
     heights, pixel = _sample(tin, ground, size)
     shown = measure_relief(tin, ground)
@@ -92,7 +91,7 @@ def _draw(tin: TIN, size: tuple[int, int]) -> NDArray[np.uint8]:
     return picture
 
 
-def _sample(tin: TIN, ground: Ground, size: tuple[int, int]) -> tuple[NDArray[np.float64], float]:
+def _sample(tin: TIN, ground: Ground, size: tuple[int, int]) -> tuple[Float64Array, float]:
     """Return the elevations at the centres of square pixels, and how wide these are on the ground.
 
     The surface is asked place by place: that takes as long for many triangles as for few.
@@ -107,7 +106,7 @@ def _sample(tin: TIN, ground: Ground, size: tuple[int, int]) -> tuple[NDArray[np
     return tin.interpolate(places).reshape(rows, columns), pixel
 
 
-def _shade(heights: NDArray[np.float64], pixel: float) -> NDArray[np.float64]:
+def _shade(heights: Float64Array, pixel: float) -> Float64Array:
     """Return the light on each pixel, 1 on level ground."""
     east, south = np.zeros_like(heights), np.zeros_like(heights)
     if heights.shape[1] > 1:
@@ -119,11 +118,9 @@ def _shade(heights: NDArray[np.float64], pixel: float) -> NDArray[np.float64]:
     cosine = (towards[2] - east * towards[0] + south * towards[1]) / np.sqrt(
         1.0 + east**2 + south**2
     )
-    lit: NDArray[np.float64] = _AMBIENT + (1.0 - _AMBIENT) * np.clip(
-        cosine / towards[2], 0.0, _BRIGHTEST
-    )
+    lit: Float64Array = _AMBIENT + (1.0 - _AMBIENT) * np.clip(cosine / towards[2], 0.0, _BRIGHTEST)
     return lit
 
 
-def _limit(slopes: NDArray[np.float64]) -> NDArray[np.float64]:
+def _limit(slopes: Float64Array) -> Float64Array:
     return np.clip(np.nan_to_num(slopes), -_STEEPEST, _STEEPEST)

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int32Array
     from ...tin import TIN, Bounds
     from ..georeference.units import Ground
     from .camera import View
@@ -68,9 +67,9 @@ class Strips(NamedTuple):
         Design pixels for a length of 1.
     """
 
-    edges: NDArray[np.float64]
-    lows: NDArray[np.float64]
-    highs: NDArray[np.float64]
+    edges: Float64Array
+    lows: Float64Array
+    highs: Float64Array
     scale: float
 
     @property
@@ -116,9 +115,7 @@ def measure_mean_width(tin: TIN, ground: Ground) -> float:
     return 2.0 * tin.area * float(scale.prod()) / float(sum(sides))
 
 
-def cut_into_strips(
-    points: NDArray[np.float64], edges: NDArray[np.int32], view: View, frame: Bounds
-) -> Strips:
+def cut_into_strips(points: Float64Array, edges: Int32Array, view: View, frame: Bounds) -> Strips:
     """Cut a picture into as many strips as make it largest.
 
     Parameters
@@ -147,9 +144,9 @@ def cut_into_strips(
 
 def _plan(
     count: int,
-    across: NDArray[np.float64],
-    along: NDArray[np.float64],
-    edges: NDArray[np.int32],
+    across: Float64Array,
+    along: Float64Array,
+    edges: Int32Array,
     frame: Bounds,
 ) -> Strips:
     """Measure what is within each strip, where edges are cut too, and how large all can be."""
@@ -171,11 +168,9 @@ def _plan(
     return Strips(cuts, lows, highs, min(scale, room / total) if total > 0 else scale)
 
 
-def _meet(
-    cut: float, across: NDArray[np.float64], along: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _meet(cut: float, across: Float64Array, along: Float64Array) -> Float64Array:
     """Return where edges, (k, 2) ends, cross a line up the picture."""
     is_cut = (across.min(axis=1) < cut) & (across.max(axis=1) > cut)
     (a, b), (low, high) = across[is_cut].T, along[is_cut].T
-    met: NDArray[np.float64] = low + (cut - a) / (b - a) * (high - low)
+    met: Float64Array = low + (cut - a) / (b - a) * (high - low)
     return met

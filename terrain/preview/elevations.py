@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import BoolArray, Float64Array
 
 __all__ = ["ElevationRange", "find_elevation_range"]
 
@@ -34,10 +34,10 @@ class ElevationRange(NamedTuple):
 
     low: float
     high: float
-    is_far_off: NDArray[np.bool_]
+    is_far_off: BoolArray
 
 
-def find_elevation_range(elevations: NDArray[np.float64], extent: float) -> ElevationRange:
+def find_elevation_range(elevations: Float64Array, extent: float) -> ElevationRange:
     """Find the range of elevations, without a blunder that would hide all relief.
 
     Parameters
@@ -73,7 +73,7 @@ def find_elevation_range(elevations: NDArray[np.float64], extent: float) -> Elev
     return ElevationRange(low, high, (elevations < low) | (elevations > high))
 
 
-def _count_beyond(steps: NDArray[np.float64], gap: float) -> int:
+def _count_beyond(steps: Float64Array, gap: float) -> int:
     """Return how many of the outermost points lie beyond the first step outwards above a gap."""
     is_wide = steps > gap
     return len(steps) - int(is_wide.argmax()) if is_wide.any() else 0

@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, UInt8Array
     from ...tin import TIN
 
 __all__ = ["MOST_PIXELS", "Ortho", "read_ortho"]
@@ -61,7 +60,7 @@ class Ortho:
     kind: str
     shape: tuple[int, int]
     transform: tuple[float, ...]
-    opacity: NDArray[np.uint8] | None = None
+    opacity: UInt8Array | None = None
     gap: float = 0.0
     told: tuple[str, ...] = ()
 
@@ -74,14 +73,14 @@ class Ortho:
             )
 
     @property
-    def placement(self) -> NDArray[np.float64]:
+    def placement(self) -> Float64Array:
         """The (2, 3) affine transform from eastings and northings to :meth:`place`."""
         a, b, x, d, e, y = self.transform
         turn = np.array([[e, -b], [-d, a]]) / (a * e - b * d)
         matrix = np.column_stack([turn, -turn @ (x, y)])
         return np.asarray(matrix / np.array(self.shape)[::-1, None])
 
-    def place(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def place(self, points: Float64Array) -> Float64Array:
         """Return where in the picture points lie, (n, 2): from the left and from the top, 0 to 1.
 
         Parameters
@@ -95,7 +94,7 @@ class Ortho:
         pixels = np.column_stack([(e * along - b * up) / area, (a * up - d * along) / area])
         return np.asarray(pixels / np.array(self.shape)[::-1])
 
-    def decode(self) -> NDArray[np.uint8]:
+    def decode(self) -> UInt8Array:
         """Return red, green, blue and opacity, (rows, columns, 4)."""
         from PIL import Image  # comes with what draws pictures
 
@@ -117,7 +116,7 @@ class Ortho:
         bare = [self._find_bare(tin.points[np.unique(tin.triangles)]) for tin in tins]
         return float(np.concatenate(bare).mean())
 
-    def _find_bare(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    def _find_bare(self, points: Float64Array) -> BoolArray:
         places = self.place(points)
         bare = ((places < -_OUTSIDE) | (places > 1.0 + _OUTSIDE)).any(axis=1)
         if self.opacity is None:
@@ -140,7 +139,7 @@ class Ortho:
         return not apart.all()
 
 
-def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+def _cross(a: Float64Array, b: Float64Array) -> Float64Array:
     return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import UInt8Array
     from .palette import Color
 
 __all__ = ["Overlay"]
@@ -70,7 +71,7 @@ class Overlay:
         self.draw_polygon([(x, y), (x + w, y), (x + w, y + h), (x, y + h)], color)
 
     def draw_scale(
-        self, corner: tuple[float, float], size: tuple[float, float], colors: NDArray[np.uint8]
+        self, corner: tuple[float, float], size: tuple[float, float], colors: UInt8Array
     ) -> None:
         """Fill a rectangle, given its lower left corner, with equal parts of (k, 3) colors."""
         step = size[0] / len(colors)

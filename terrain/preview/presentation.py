@@ -29,8 +29,7 @@ from .window import open_window
 if TYPE_CHECKING:
     import os
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ..georeference.units import Ground
     from .elevations import ElevationRange
 
@@ -347,7 +346,7 @@ def preview(
 
 def _add_difference(
     surfaces: Mapping[str, TIN],
-) -> tuple[dict[str, TIN], dict[str, NDArray[np.float64]]]:
+) -> tuple[dict[str, TIN], dict[str, Float64Array]]:
     """Return the surfaces and, of two, the second with cut and fill at its vertices."""
     if len(surfaces) != 2:
         return dict(surfaces), {}

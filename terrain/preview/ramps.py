@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from ..relief.gradients import aspect, slope
 from .tints import interpolate_tints, mix_tints
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, UInt8Array
     from ...policies import Tint
     from ...tin import TIN
 
@@ -40,12 +37,12 @@ class Legend(NamedTuple):
     """
 
     name: str
-    colors: NDArray[np.uint8]
+    colors: UInt8Array
     ends: tuple[float, float]
     ticks: tuple[tuple[float, str], ...] = ()
 
 
-def choose_ramp(tint: Tint, count: int) -> NDArray[np.uint8]:
+def choose_ramp(tint: Tint, count: int) -> UInt8Array:
     """Return a ramp of colours, (count, 3).
 
     Parameters
@@ -61,7 +58,7 @@ def choose_ramp(tint: Tint, count: int) -> NDArray[np.uint8]:
 
 def measure_tint(
     tin: TIN, tint: Tint, elevations: tuple[float, float], unit: str
-) -> tuple[NDArray[np.float64] | None, Legend | None]:
+) -> tuple[Float64Array | None, Legend | None]:
     """Return what is to be coloured, and its legend.
 
     Parameters

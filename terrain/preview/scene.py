@@ -15,8 +15,7 @@ from .elevations import ElevationRange, find_elevation_range
 from .ramps import PLAIN, choose_ramp, measure_tint
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float32Array, Float64Array, Int32Array
     from ...policies import Tint
     from ...tin import TIN
     from ..georeference.units import Ground
@@ -111,7 +110,7 @@ def measure_extent(tin: TIN, ground: Ground) -> float:
     return float((np.ptp(tin.points[:, :2], axis=0) * ground.scale[:2]).max())
 
 
-def place_vertices(tin: TIN, ground: Ground, exaggeration: float) -> NDArray[np.float64]:
+def place_vertices(tin: TIN, ground: Ground, exaggeration: float) -> Float64Array:
     """Return the vertices as drawn: true to scale on the ground, near the origin."""
     east, north, height = ground.scale
     return (tin.points - choose_origin(tin)) * (east, north, height * exaggeration)
@@ -120,14 +119,14 @@ def place_vertices(tin: TIN, ground: Ground, exaggeration: float) -> NDArray[np.
 def add_terrain(
     plotter: Any,
     tin: TIN,
-    points: NDArray[np.float64],
+    points: Float64Array,
     *,
     edges: bool,
     elevations: tuple[float, float] | None = None,
     tint: Tint = "elevation",
-    is_far_off: NDArray[np.bool_] | None = None,
+    is_far_off: BoolArray | None = None,
     has_block: bool = True,
-) -> tuple[Any, NDArray[np.float64]]:
+) -> tuple[Any, Float64Array]:
     """Add the surface and its block to a plotter.
 
     Parameters
@@ -175,16 +174,14 @@ def add_terrain(
     return actor, np.vstack([kept, rim])
 
 
-def _without(points: NDArray[np.float64], kept: NDArray[np.float64]) -> NDArray[np.float64]:
+def _without(points: Float64Array, kept: Float64Array) -> Float64Array:
     """Return the points of a block, base last, but for corners far above it or below its base."""
     height = points[:, 2]
-    rim: NDArray[np.float64] = points[(height >= height[-1]) & (height <= kept[:, 2].max())]
+    rim: Float64Array = points[(height >= height[-1]) & (height <= kept[:, 2].max())]
     return rim
 
 
-def add_ortho(
-    plotter: Any, tin: TIN, points: NDArray[np.float64], ortho: Ortho, surface: Any
-) -> Any:
+def add_ortho(plotter: Any, tin: TIN, points: Float64Array, ortho: Ortho, surface: Any) -> Any:
     """Lay a picture over the surface, and return its actor; where it has none, the tints are seen.
 
     Parameters
@@ -281,9 +278,7 @@ def _choose_tints(
     return {"scalars": tint, "cmap": table}
 
 
-def _average_normals(
-    points: NDArray[np.float64], triangles: NDArray[np.int32]
-) -> NDArray[np.float32]:
+def _average_normals(points: Float64Array, triangles: Int32Array) -> Float32Array:
     """Average the unit normals of the triangles at each vertex, weighted by area in the plane.
 
     So the steep slivers along a hull, which have hardly any area in the plane, do not darken
@@ -299,7 +294,7 @@ def _average_normals(
     return (normals / np.where(lengths > 0, lengths, 1.0)).astype(np.float32)
 
 
-def _make_block(pv: Any, tin: TIN, points: NDArray[np.float64], lowest: float) -> Any:
+def _make_block(pv: Any, tin: TIN, points: Float64Array, lowest: float) -> Any:
     """Return the walls from the boundary down to a level base."""
     start, stop = edges_at(tin.triangles, tin.neighbors < 0).T
     extent = float(np.ptp(points[:, :2], axis=0).max())

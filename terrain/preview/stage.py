@@ -36,8 +36,7 @@ from .scene import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...tin import TIN
     from ..georeference.units import Ground
     from .camera import View
@@ -109,7 +108,7 @@ class Stage:
         return self.caption.exaggeration
 
     @property
-    def points(self) -> NDArray[np.float64]:
+    def points(self) -> Float64Array:
         """The vertices as drawn."""
         return place_vertices(self.tin, self.ground, self.exaggeration)
 
@@ -210,13 +209,13 @@ class Show:
             )
         self.update()
 
-    def _aim(self, seen: NDArray[np.float64], window: tuple[int, int]) -> None:
+    def _aim(self, seen: Float64Array, window: tuple[int, int]) -> None:
         sheet, factor = fit_sheet(window)
         frame = Bounds(*(factor * side for side in astuple(sheet.frame)))
         aim(self.plotter.camera, seen, view=self.stage.view, frame=frame, size=window)
         self.plotter.renderer.ResetCameraClippingRange()
 
-    def _build(self, window: tuple[int, int]) -> NDArray[np.float64]:
+    def _build(self, window: tuple[int, int]) -> Float64Array:
         """Add the terrain, and return what must be seen."""
         before = set(self.plotter.renderer.actors)
         self.surfaces, seen = add_stage(self.plotter, self.stage, fit_sheet(window)[1])
@@ -258,7 +257,7 @@ def open_plotter(stage: Stage, window: tuple[int, int], *, off_screen: bool) -> 
     return plotter
 
 
-def add_stage(plotter: Any, stage: Stage, factor: float) -> tuple[list[Any], NDArray[np.float64]]:
+def add_stage(plotter: Any, stage: Stage, factor: float) -> tuple[list[Any], Float64Array]:
     """Add terrain and lines to a plotter; return actors with edges, and what must be seen.
 
     Parameters
@@ -300,9 +299,9 @@ def _add_contours(plotter: Any, stage: Stage, interval: float, factor: float) ->
             add_polylines(plotter, *lines, color=_CONTOUR_COLOR, width=width * factor)
 
 
-def place_on_stage(stage: Stage, points: NDArray[np.float64]) -> NDArray[np.float64]:
+def place_on_stage(stage: Stage, points: Float64Array) -> Float64Array:
     """Return where points, (k, 3) in the units of the TIN, are drawn."""
-    placed: NDArray[np.float64] = (points - choose_origin(stage.tin)) * stage.ground.scale
+    placed: Float64Array = (points - choose_origin(stage.tin)) * stage.ground.scale
     return placed * (1.0, 1.0, stage.exaggeration)
 
 

@@ -16,8 +16,7 @@ from .stage import add_stage, fit_sheet, open_plotter
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, UInt8Array
     from .annotations import Sheet
     from .corridor import Strips
     from .stage import Show, Stage
@@ -67,7 +66,7 @@ def label_strips(show: Show) -> None:
         show.overlay.draw_text(corner, words, caption.palette.grey, size=_LABEL_SIZE)
 
 
-def paste_strips(pixels: NDArray[np.uint8], stage: Stage) -> None:
+def paste_strips(pixels: UInt8Array, stage: Stage) -> None:
     """Draw the strips of a corridor into a picture that has all but the terrain.
 
     Parameters
@@ -87,7 +86,7 @@ def paste_strips(pixels: NDArray[np.uint8], stage: Stage) -> None:
         room[:] = strip[: room.shape[0], : room.shape[1]]
 
 
-def _draw_strips(stage: Stage, strips: Strips, factor: float) -> Iterator[NDArray[np.uint8]]:
+def _draw_strips(stage: Stage, strips: Strips, factor: float) -> Iterator[UInt8Array]:
     """Draw each strip alone, as large as it is in the picture."""
     scale = factor * strips.scale
     heights = [math.ceil(scale * one) for one in (strips.highs - strips.lows)]
@@ -109,7 +108,7 @@ def _draw_strips(stage: Stage, strips: Strips, factor: float) -> Iterator[NDArra
 
 def _look_at_strip(
     plotter: Any,
-    seen: NDArray[np.float64],
+    seen: Float64Array,
     stage: Stage,
     strips: Strips,
     k: int,

@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array, UInt8Array
 
 __all__ = ["compute_lightness", "interpolate_tints", "mix_tints"]
 
@@ -37,7 +37,7 @@ _CONES_TO_LINEAR = np.array(
 )
 
 
-def interpolate_tints(count: int = 256) -> NDArray[np.uint8]:
+def interpolate_tints(count: int = 256) -> UInt8Array:
     """Return the ramp of hypsometric tints, low to high.
 
     Parameters
@@ -55,7 +55,7 @@ def interpolate_tints(count: int = 256) -> NDArray[np.uint8]:
     return mix_tints(list(zip(lightness, _CHROMAS, _HUES, strict=True)), count)
 
 
-def mix_tints(rungs: Sequence[tuple[float, float, float]], count: int) -> NDArray[np.uint8]:
+def mix_tints(rungs: Sequence[tuple[float, float, float]], count: int) -> UInt8Array:
     """Return a ramp of colours between rungs at even distances.
 
     Parameters
@@ -79,15 +79,15 @@ def mix_tints(rungs: Sequence[tuple[float, float, float]], count: int) -> NDArra
     return np.round(255 * _encode_gamma(np.clip(linear, 0.0, 1.0))).astype(np.uint8)
 
 
-def compute_lightness(colors: NDArray[np.uint8]) -> NDArray[np.float64]:
+def compute_lightness(colors: UInt8Array) -> Float64Array:
     """Return the perceived lightness (Oklab L, 0 black to 1 white) of (k, 3) sRGB colours."""
     encoded = colors / 255.0
     linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
     cones = np.cbrt(linear @ np.linalg.inv(_CONES_TO_LINEAR).T)
-    light: NDArray[np.float64] = (cones @ np.linalg.inv(_OKLAB_TO_CONES).T)[:, 0]
+    light: Float64Array = (cones @ np.linalg.inv(_OKLAB_TO_CONES).T)[:, 0]
     return light
 
 
-def _encode_gamma(linear: NDArray[np.float64]) -> NDArray[np.float64]:
+def _encode_gamma(linear: Float64Array) -> Float64Array:
     """Encode linear light as sRGB."""
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)

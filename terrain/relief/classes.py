@@ -19,8 +19,9 @@ from .statistics import SYMBOLS
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import AnyArray, Float64Array
     from ...tin import TIN
 
 __all__ = ["aspect_classes", "slope_classes"]
@@ -143,7 +144,7 @@ def aspect_classes(tin: TIN) -> Features:
     return _as_features(tin, classes, legend, "°", "aspect_classes")
 
 
-def _as_breaks(breaks: Any, unit: str) -> NDArray[np.float64]:
+def _as_breaks(breaks: Any, unit: str) -> Float64Array:
     """Return limits between classes, or say what is wrong with them."""
     allowed = "a sequence of ascending numbers above 0"
     try:
@@ -167,9 +168,7 @@ def _write_range(low: float, high: float, symbol: str, most: float) -> str:
     return f"{low:g} to {high:g}{behind}"
 
 
-def _as_features(
-    tin: TIN, classes: NDArray[Any], legend: _Legend, symbol: str, name: str
-) -> Features:
+def _as_features(tin: TIN, classes: AnyArray, legend: _Legend, symbol: str, name: str) -> Features:
     found = dissolve(tin, classes.astype(np.int64))
     ground = measure_plane_areas(tin)
     measured = np.bincount(classes, ground, len(legend.labels))[found.classes]

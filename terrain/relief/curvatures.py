@@ -14,8 +14,7 @@ from .. import _kernel
 from ..georeference.units import find_scales
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["curvature"]
@@ -27,16 +26,16 @@ _CHUNK = 1 << 15
 class _Derivatives(NamedTuple):
     """First and second derivatives of the elevation, to the east (x) and the north (y)."""
 
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    xx: NDArray[np.float64]
-    xy: NDArray[np.float64]
-    yy: NDArray[np.float64]
+    x: Float64Array
+    y: Float64Array
+    xx: Float64Array
+    xy: Float64Array
+    yy: Float64Array
 
 
 def curvature(
     tin: TIN, *, kind: CurvatureKind = "profile", per: SurfacePart = "vertex"
-) -> NDArray[np.float64]:
+) -> Float64Array:
     """Measure how a surface is curved at each vertex.
 
     Parameters
@@ -98,7 +97,7 @@ def curvature(
     return found
 
 
-def _fit(tin: TIN) -> NDArray[np.float64]:
+def _fit(tin: TIN) -> Float64Array:
     """Return the derivatives of the quadratic surface that fits around each vertex, (5, n)."""
     points, triangles = tin.triangulation.points, tin.triangulation.triangles
     scales = find_scales(tin.crs, tin.elevation_unit, points[:, 1])
@@ -110,37 +109,37 @@ def _fit(tin: TIN) -> NDArray[np.float64]:
 # ------------------------------------------------------------------------------ formulas
 
 
-def _compute_profile(d: _Derivatives) -> NDArray[np.float64]:
+def _compute_profile(d: _Derivatives) -> Float64Array:
     along = d.xx * d.x**2 + 2 * d.xy * d.x * d.y + d.yy * d.y**2
     return _divide(-along, _measure_steepness(d) * (1 + _measure_steepness(d)) ** 1.5)
 
 
-def _compute_plan(d: _Derivatives) -> NDArray[np.float64]:
+def _compute_plan(d: _Derivatives) -> Float64Array:
     return _divide(-_sum_across(d), _measure_steepness(d) ** 1.5)
 
 
-def _compute_tangential(d: _Derivatives) -> NDArray[np.float64]:
+def _compute_tangential(d: _Derivatives) -> Float64Array:
     return _divide(-_sum_across(d), _measure_steepness(d) * np.sqrt(1 + _measure_steepness(d)))
 
 
-def _compute_mean(d: _Derivatives) -> NDArray[np.float64]:
+def _compute_mean(d: _Derivatives) -> Float64Array:
     bend = (1 + d.y**2) * d.xx - 2 * d.x * d.y * d.xy + (1 + d.x**2) * d.yy
     return _divide(-bend, 2 * (1 + _measure_steepness(d)) ** 1.5)
 
 
-def _compute_gaussian(d: _Derivatives) -> NDArray[np.float64]:
+def _compute_gaussian(d: _Derivatives) -> Float64Array:
     return _divide(d.xx * d.yy - d.xy**2, (1 + _measure_steepness(d)) ** 2)
 
 
-def _measure_steepness(d: _Derivatives) -> NDArray[np.float64]:
+def _measure_steepness(d: _Derivatives) -> Float64Array:
     return np.asarray(d.x**2 + d.y**2)
 
 
-def _sum_across(d: _Derivatives) -> NDArray[np.float64]:
+def _sum_across(d: _Derivatives) -> Float64Array:
     return np.asarray(d.xx * d.y**2 - 2 * d.xy * d.x * d.y + d.yy * d.x**2)
 
 
-def _divide(value: NDArray[np.float64], divisor: NDArray[np.float64]) -> NDArray[np.float64]:
+def _divide(value: Float64Array, divisor: Float64Array) -> Float64Array:
     """Divide, and return NaN where the divisor is 0."""
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(divisor == 0.0, np.nan, value / divisor)

@@ -12,8 +12,7 @@ from ..results import Features
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int32Array, Int64Array
     from ...tin import TIN
     from ..results.columns import Units
 
@@ -24,15 +23,15 @@ class Mesh(Protocol):
     """Triangles that share their vertices: a TIN, or what has these of its arrays."""
 
     @property
-    def points(self) -> NDArray[np.float64]:
+    def points(self) -> Float64Array:
         """Vertices, (n, 2) or (n, 3)."""
 
     @property
-    def triangles(self) -> NDArray[np.int32]:
+    def triangles(self) -> Int32Array:
         """Of vertices, counter-clockwise."""
 
     @property
-    def neighbors(self) -> NDArray[np.int32]:
+    def neighbors(self) -> Int32Array:
         """Across each edge, -1 outside."""
 
 
@@ -49,14 +48,14 @@ class Dissolved(NamedTuple):
         Those that have a triangle, ascending.
     """
 
-    vertices: NDArray[np.int64]
-    ring_offsets: NDArray[np.int64]
-    polygon_offsets: NDArray[np.int64]
-    feature_offsets: NDArray[np.int64]
-    classes: NDArray[np.int64]
+    vertices: Int64Array
+    ring_offsets: Int64Array
+    polygon_offsets: Int64Array
+    feature_offsets: Int64Array
+    classes: Int64Array
 
 
-def dissolve(tin: Mesh, classes: NDArray[np.int64]) -> Dissolved:
+def dissolve(tin: Mesh, classes: Int64Array) -> Dissolved:
     """Join the triangles of each class to polygons.
 
     Parameters
@@ -99,7 +98,7 @@ def make_polygons(
     units: Units,
     name: str,
     notes: Sequence[str],
-    points: NDArray[np.float64] | None = None,
+    points: Float64Array | None = None,
 ) -> Features:
     """Return the polygons of classes as features, in the plane of the CRS of their TIN.
 
@@ -121,18 +120,18 @@ def make_polygons(
 class _Rings(NamedTuple):
     """Open rings, one after the other, and the component that each bounds."""
 
-    vertices: NDArray[np.int64]
-    offsets: NDArray[np.int64]
-    parts: NDArray[np.int64]
+    vertices: Int64Array
+    offsets: Int64Array
+    parts: Int64Array
 
 
-def _part_classes(neighbors: NDArray[np.int32], classes: NDArray[np.int64]) -> NDArray[np.int32]:
+def _part_classes(neighbors: Int32Array, classes: Int64Array) -> Int32Array:
     """Return the neighbours of the same class, ``NO_NEIGHBOR`` for others."""
     is_same = (neighbors != NO_NEIGHBOR) & (classes[neighbors] == classes[:, None])
     return np.where(is_same, neighbors, np.int32(NO_NEIGHBOR))
 
 
-def number_components(neighbors: NDArray[np.int32]) -> NDArray[np.int64]:
+def number_components(neighbors: Int32Array) -> Int64Array:
     """Return the smallest triangle that each is connected to.
 
     Roots hook onto the smallest root beside them, then every path is halved until it is one step
@@ -143,9 +142,7 @@ def number_components(neighbors: NDArray[np.int32]) -> NDArray[np.int64]:
     return join_components(len(neighbors), triangle, across)
 
 
-def join_components(
-    count: int, one: NDArray[np.int64], other: NDArray[np.int64]
-) -> NDArray[np.int64]:
+def join_components(count: int, one: Int64Array, other: Int64Array) -> Int64Array:
     """Return the smallest of so many numbers that each is connected to, by pairs of them."""
     root = np.arange(count)
     while len(one):
@@ -162,10 +159,10 @@ def join_components(
 
 
 def _trace_rings(
-    triangles: NDArray[np.int32],
-    neighbors: NDArray[np.int32],
-    parts: NDArray[np.int64],
-    classes: NDArray[np.int64],
+    triangles: Int32Array,
+    neighbors: Int32Array,
+    parts: Int64Array,
+    classes: Int64Array,
 ) -> _Rings:
     """Return rings that never meet a vertex twice."""
     edges, offsets = boundary_walks(triangles, neighbors)
@@ -222,9 +219,7 @@ def _cut_at_repeats(walk: list[int]) -> list[list[int]]:
     return rings
 
 
-def _sort_exteriors_first(
-    rings: _Rings, classes: NDArray[np.int64], points: NDArray[np.float64]
-) -> NDArray[np.int64]:
+def _sort_exteriors_first(rings: _Rings, classes: Int64Array, points: Float64Array) -> Int64Array:
     """Sort rings by class, by polygon, and within it the exterior before the holes."""
     is_used = np.zeros(len(points), np.bool_)
     is_used[rings.vertices] = True
@@ -237,7 +232,7 @@ def _sort_exteriors_first(
     return np.lexsort((-areas, western, rings.parts, classes[rings.parts]))
 
 
-def _measure_ring_areas(points: NDArray[np.float64], rings: _Rings) -> NDArray[np.float64]:
+def _measure_ring_areas(points: Float64Array, rings: _Rings) -> Float64Array:
     """Return twice the signed area of each ring."""
     starts, ends = rings.offsets[:-1], rings.offsets[1:]
     x, y = (np.ascontiguousarray(axis)[rings.vertices] for axis in points[:, :2].T)
@@ -246,11 +241,11 @@ def _measure_ring_areas(points: NDArray[np.float64], rings: _Rings) -> NDArray[n
     following = np.arange(1, len(rings.vertices) + 1)
     following[ends - 1] = starts
     turns = x * y[following] - x[following] * y
-    areas: NDArray[np.float64] = np.add.reduceat(turns, starts)
+    areas: Float64Array = np.add.reduceat(turns, starts)
     return areas
 
 
-def _as_levels(rings: _Rings, order: NDArray[np.int64], classes: NDArray[np.int64]) -> Dissolved:
+def _as_levels(rings: _Rings, order: Int64Array, classes: Int64Array) -> Dissolved:
     """Close the rings in some order, and count them by polygon and by class."""
     parts = rings.parts[order]
     slots, owner = gather(rings.offsets, order)

@@ -15,8 +15,9 @@ from .. import _kernel
 from ..georeference.units import find_scales
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import Float64Array
     from ...crs import CRS
     from ...tin import TIN
 
@@ -32,9 +33,7 @@ __all__ = [
 ]
 
 
-def slope(
-    tin: TIN, *, unit: SlopeUnit = "degrees", per: SurfacePart = "triangle"
-) -> NDArray[np.float64]:
+def slope(tin: TIN, *, unit: SlopeUnit = "degrees", per: SurfacePart = "triangle") -> Float64Array:
     """Measure the slope of each triangle, or at each vertex.
 
     Parameters
@@ -75,7 +74,7 @@ def slope(
     return measure_slopes(sum_normals(tin, per), unit)
 
 
-def measure_slopes(upward: NDArray[np.float64], unit: SlopeUnit) -> NDArray[np.float64]:
+def measure_slopes(upward: Float64Array, unit: SlopeUnit) -> Float64Array:
     """Return the slope of planes with some upward normals, (k, 3), NaN where there is none."""
     east, north, up = upward.T
     run = np.hypot(east, north)
@@ -84,11 +83,11 @@ def measure_slopes(upward: NDArray[np.float64], unit: SlopeUnit) -> NDArray[np.f
     else:
         with np.errstate(divide="ignore", invalid="ignore"):
             found = run / up * (100.0 if unit == "percent" else 1.0)
-    values: NDArray[np.float64] = np.where((run == 0.0) & (up == 0.0), np.nan, found)
+    values: Float64Array = np.where((run == 0.0) & (up == 0.0), np.nan, found)
     return values
 
 
-def aspect(tin: TIN, *, per: SurfacePart = "triangle") -> NDArray[np.float64]:
+def aspect(tin: TIN, *, per: SurfacePart = "triangle") -> Float64Array:
     """Find the direction in which each triangle, or the surface at each vertex, falls.
 
     Parameters
@@ -116,14 +115,14 @@ def aspect(tin: TIN, *, per: SurfacePart = "triangle") -> NDArray[np.float64]:
     array([270.])
     """
     east, north, _ = sum_normals(tin, per).T
-    azimuth: NDArray[np.float64] = np.degrees(np.arctan2(east, north)) % 360.0
+    azimuth: Float64Array = np.degrees(np.arctan2(east, north)) % 360.0
     # A hair west of north rounds up to the full circle, which is north.
     azimuth[azimuth == 360.0] = 0.0
     azimuth[(east == 0.0) & (north == 0.0)] = np.nan
     return azimuth
 
 
-def measure_plane_areas(tin: TIN) -> NDArray[np.float64]:
+def measure_plane_areas(tin: TIN) -> Float64Array:
     """Measure the area of each triangle in the plane, in the units of `find_plane_units`.
 
     Parameters
@@ -136,11 +135,11 @@ def measure_plane_areas(tin: TIN) -> NDArray[np.float64]:
         In CRS units squared, as all products have it; above longitude and latitude square metres.
     """
     scales = find_scales(tin.crs, None, _average_northings(tin))
-    measured: NDArray[np.float64] = tin.triangle_areas * scales.east * scales.north
+    measured: Float64Array = tin.triangle_areas * scales.east * scales.north
     return measured
 
 
-def measure_areas(tin: TIN) -> NDArray[np.float64]:
+def measure_areas(tin: TIN) -> Float64Array:
     """Measure the area of each triangle in the plane in square metres, as GeoJSON tells it.
 
     Parameters
@@ -152,13 +151,11 @@ def measure_areas(tin: TIN) -> NDArray[np.float64]:
     (m,) float64 array
         In square metres; in CRS units squared where those are not known.
     """
-    measured: NDArray[np.float64] = tin.triangle_areas * find_area_scale(
-        tin.crs, _average_northings(tin)
-    )
+    measured: Float64Array = tin.triangle_areas * find_area_scale(tin.crs, _average_northings(tin))
     return measured
 
 
-def measure_ring_area(crs: CRS | None, ring: NDArray[np.float64]) -> float:
+def measure_ring_area(crs: CRS | None, ring: Float64Array) -> float:
     """Measure the area inside a ring in the plane on the ground, as :func:`measure_areas` does.
 
     Parameters
@@ -185,7 +182,7 @@ def find_area_scale(crs: CRS | None, northing: ArrayLike) -> Any:
     return scales.east * scales.north * (metres or 1.0) ** 2
 
 
-def compute_normals(tin: TIN) -> NDArray[np.float64]:
+def compute_normals(tin: TIN) -> Float64Array:
     """Return the upward normal of each triangle, its length twice the triangle's area in space.
 
     Parameters
@@ -216,7 +213,7 @@ def _find_normal_factors(tin: TIN) -> tuple[Any, Any, Any]:
     return north * up, east * up, east * north
 
 
-def _compute_exact_normal(*corners: NDArray[np.float64]) -> list[float]:
+def _compute_exact_normal(*corners: Float64Array) -> list[float]:
     """Return the normal of a triangle, each component rounded once.
 
     The corners of a sliver lie nearly in a line, so that the products of its sides cancel.
@@ -227,7 +224,7 @@ def _compute_exact_normal(*corners: NDArray[np.float64]) -> list[float]:
     return [float(u[i] * v[j] - u[j] * v[i]) for i, j in turns]
 
 
-def sum_normals(tin: TIN, per: SurfacePart) -> NDArray[np.float64]:
+def sum_normals(tin: TIN, per: SurfacePart) -> Float64Array:
     """Return the upward normals of triangles, or their sums at each vertex, (n, 3).
 
     Raises

@@ -12,7 +12,7 @@ from ...tin.validation.options import is_finite_number
 from .. import _kernel
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array, UInt8Array
 
 __all__ = ["BRIGHTEST", "DARKEST", "Light", "as_light", "normalise", "shade"]
 
@@ -49,7 +49,7 @@ def as_light(azimuth: Any, altitude: Any) -> Light:
     return Light(float(azimuth), float(altitude))
 
 
-def shade(upward: NDArray[np.float64], light: Light) -> NDArray[np.uint8]:
+def shade(upward: Float64Array, light: Light) -> UInt8Array:
     """Return the light on planes: 1 (none) to 255 (from straight above), the cosine of the angle.
 
     Parameters
@@ -68,7 +68,7 @@ def shade(upward: NDArray[np.float64], light: Light) -> NDArray[np.uint8]:
     return _kernel.shade_planes(upward, *towards, DARKEST, BRIGHTEST)
 
 
-def normalise(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+def normalise(vectors: Float64Array) -> Float64Array:
     """Return vectors of length 1, NaN for those without a direction."""
     with np.errstate(invalid="ignore"):
         small = vectors / np.abs(vectors).max(axis=1, keepdims=True)  # no square is 0 or infinite

@@ -21,8 +21,7 @@ from .gradients import sum_normals
 from .light import as_light, normalise, shade
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, UInt8Array
     from ...tin import TIN, Grid
     from .light import Light
 
@@ -124,13 +123,13 @@ def _choose_spacing(tin: TIN) -> float:
     return round_down(max(tin.bounds.width, tin.bounds.height) / _USUAL_SIDE)
 
 
-def _as_flat_band(tin: TIN, cells: Grid, shades: NDArray[np.uint8]) -> SurfaceBand:
+def _as_flat_band(tin: TIN, cells: Grid, shades: UInt8Array) -> SurfaceBand:
     """Return the light of the triangle at each cell's centre, NaN outside."""
     values = shades.astype(np.float64)
     return SurfaceBand(tin, cells, values, method="linear", is_mean=False, threads=None)
 
 
-def _grid_normals(tin: TIN, unit: NDArray[np.float64]) -> tuple[_kernel.GriddedSurface, ...]:
+def _grid_normals(tin: TIN, unit: Float64Array) -> tuple[_kernel.GriddedSurface, ...]:
     """Return surfaces of the three parts of the normals, for elevations those of vertices."""
     surface = tin.triangulation
     xy = surface.points[:, :2]
@@ -141,7 +140,7 @@ def _grid_normals(tin: TIN, unit: NDArray[np.float64]) -> tuple[_kernel.GriddedS
 
 def _shade_smoothly(
     parts: tuple[_kernel.GriddedSurface, ...], light: Light, cells: Grid, rows: slice
-) -> NDArray[np.uint8]:
+) -> UInt8Array:
     """Return the light in the cells of some rows, normals turned evenly between vertices."""
     x, y = locate_centers(cells, rows, slice(0, cells.shape[1]))
     threads = thread_count(None, len(x) * len(y))

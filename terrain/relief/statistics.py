@@ -13,8 +13,9 @@ from ..results import Table
 from .gradients import measure_plane_areas, slope
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["SYMBOLS", "find_weighted_percentiles", "slope_statistics"]
@@ -78,8 +79,8 @@ def slope_statistics(
 
 
 def find_weighted_percentiles(
-    values: NDArray[np.float64], weights: NDArray[np.float64], shares: NDArray[np.float64]
-) -> NDArray[np.float64]:
+    values: Float64Array, weights: Float64Array, shares: Float64Array
+) -> Float64Array:
     """Return the least values that so many percent of the weight do not exceed.
 
     Examples
@@ -92,11 +93,11 @@ def find_weighted_percentiles(
     reached = np.cumsum(weights[order])
     wanted = shares / 100.0 * reached[-1]
     places = np.minimum(np.searchsorted(reached, wanted), len(values) - 1)
-    found: NDArray[np.float64] = values[order][places]
+    found: Float64Array = values[order][places]
     return found
 
 
-def _as_percentiles(percentiles: ArrayLike) -> NDArray[np.float64]:
+def _as_percentiles(percentiles: ArrayLike) -> Float64Array:
     allowed = "a sequence of numbers from 0 to 100"
     try:
         shares = np.asarray(percentiles, np.float64)

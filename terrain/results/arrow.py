@@ -17,8 +17,7 @@ from ...errors import OptionError
 from .columns import UNKNOWN_UNIT, unit_text
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Int64Array
     from .parts import FeatureParts
 
 __all__ = ["build_table"]
@@ -78,7 +77,7 @@ def _build_geometries(pa: Any, features: FeatureParts) -> Any:
     return built
 
 
-def _nest(pa: Any, values: Any, name: str, offsets: NDArray[np.int64]) -> Any:
+def _nest(pa: Any, values: Any, name: str, offsets: Int64Array) -> Any:
     """Return lists of values, with offsets of 32 bits where they fit."""
     member = pa.field(name, values.type, False)
     if offsets[-1] > _LARGEST_OFFSET:

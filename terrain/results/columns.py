@@ -14,7 +14,7 @@ from ...tin.types import seal
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from numpy.typing import NDArray
+    from ...arrays import AnyArray
 
 __all__ = [
     "FrozenMapping",
@@ -64,12 +64,12 @@ class FrozenMapping(Mapping[str, Value], Generic[Value]):
         return repr(self._items)
 
 
-def frozen_copy(values: NDArray[Any]) -> NDArray[Any]:
+def frozen_copy(values: AnyArray) -> AnyArray:
     """Return an array as it is if it is read-only already, else a read-only copy."""
     return seal(np.array(values)) if values.flags.writeable else values
 
 
-def as_columns(columns: Any, count: int | None, what: str) -> FrozenMapping[NDArray[Any]]:
+def as_columns(columns: Any, count: int | None, what: str) -> FrozenMapping[AnyArray]:
     """Return named columns of equal length.
 
     Parameters
@@ -110,7 +110,7 @@ def named_items(option: str, mapping: Any) -> list[tuple[str, Any]]:
     return [(str(name), value) for name, value in items]
 
 
-def _as_column(name: str, values: Any) -> NDArray[Any]:
+def _as_column(name: str, values: Any) -> AnyArray:
     array = np.asarray(values)
     if array.dtype.kind == "T":
         array = array.astype(object)
@@ -126,7 +126,7 @@ def _as_column(name: str, values: Any) -> NDArray[Any]:
     return frozen_copy(array)
 
 
-def _as_texts(name: str, array: NDArray[Any]) -> NDArray[Any]:
+def _as_texts(name: str, array: AnyArray) -> AnyArray:
     """Return a column of objects, all of them texts or None."""
     texts = np.array([None if _is_missing(value) else value for value in array] or [], object)
     for row, value in enumerate(texts):

@@ -17,8 +17,9 @@ from .columns import as_columns, as_name, as_notes, as_units, frozen_copy
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import AnyArray, Float64Array, Int64Array, ObjectArray
     from ...crs import CrsLike, UnitLike
     from .columns import Units
 
@@ -73,9 +74,9 @@ class Features(Frozen):
     """
 
     kind: Kind
-    coordinates: NDArray[np.float64]
-    offsets: tuple[NDArray[np.int64], ...] = ()
-    columns: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    coordinates: Float64Array
+    offsets: tuple[Int64Array, ...] = ()
+    columns: Mapping[str, AnyArray] = field(default_factory=dict)
     units: Units = field(default_factory=dict)
     crs: CRS | None = None
     elevation_unit: Unit | None = None
@@ -272,7 +273,7 @@ class Features(Frozen):
 
     # ------------------------------------------------------------------ other libraries
 
-    def to_shapely(self) -> NDArray[np.object_]:
+    def to_shapely(self) -> ObjectArray:
         """Return the geometries of shapely.
 
         Returns
@@ -357,7 +358,7 @@ def _make(
 # ------------------------------------------------------------------------ validation
 
 
-def _as_coordinates(given: Any) -> NDArray[np.float64]:
+def _as_coordinates(given: Any) -> Float64Array:
     try:
         array = np.asarray(given, np.float64)
     except (TypeError, ValueError):
@@ -381,7 +382,7 @@ def _as_coordinates(given: Any) -> NDArray[np.float64]:
     return frozen_copy(array)
 
 
-def _as_levels(kind: Any, levels: Any, count: int) -> tuple[NDArray[np.int64], ...]:
+def _as_levels(kind: Any, levels: Any, count: int) -> tuple[Int64Array, ...]:
     """Return the offsets of every level, each of which must cover the level below."""
     if not isinstance(kind, str) or kind not in _LEVELS:
         raise OptionError("kind", kind, allowed="one of points, lines, polygons")
@@ -399,7 +400,7 @@ def _as_levels(kind: Any, levels: Any, count: int) -> tuple[NDArray[np.int64], .
     return tuple(checked)
 
 
-def _as_offsets(given: Any, count: int, least: int, what: str) -> NDArray[np.int64]:
+def _as_offsets(given: Any, count: int, least: int, what: str) -> Int64Array:
     array = np.asarray(given)
     is_index = array.dtype.kind in "iu" and array.ndim == 1 and len(array) > 0
     if not is_index or array[0] != 0 or array[-1] != count:
@@ -418,7 +419,7 @@ def _as_offsets(given: Any, count: int, least: int, what: str) -> NDArray[np.int
     return frozen_copy(offsets)
 
 
-def _require_closed(coordinates: NDArray[np.float64], offsets: NDArray[np.int64]) -> None:
+def _require_closed(coordinates: Float64Array, offsets: Int64Array) -> None:
     first, last = coordinates[offsets[:-1]], coordinates[offsets[1:] - 1]
     is_open = ((first != last) & ~(np.isnan(first) & np.isnan(last))).any(axis=1)
     if is_open.any():

@@ -11,14 +11,13 @@ from ...errors import OptionError
 from .columns import unit_text
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, ObjectArray
     from .parts import FeatureParts
 
 __all__ = ["build_collection", "build_frame", "build_geometries"]
 
 
-def build_geometries(features: FeatureParts) -> NDArray[np.object_]:
+def build_geometries(features: FeatureParts) -> ObjectArray:
     """Return the geometries of shapely, one a feature.
 
     Parameters
@@ -28,7 +27,7 @@ def build_geometries(features: FeatureParts) -> NDArray[np.object_]:
     shapely = _optional.load("shapely")
     kind = shapely.GeometryType[features.geometry_type.upper()]
     levels: Any = features.offsets or None
-    made: NDArray[np.object_] = shapely.from_ragged_array(kind, features.coordinates, levels)
+    made: ObjectArray = shapely.from_ragged_array(kind, features.coordinates, levels)
     return made
 
 
@@ -72,7 +71,7 @@ def build_collection(features: FeatureParts) -> dict[str, Any]:
     }
 
 
-def _as_plain_values(values: NDArray[Any]) -> list[Any]:
+def _as_plain_values(values: AnyArray) -> list[Any]:
     """Return values of Python, None for NaN."""
     plain: list[Any] = values.tolist()
     if values.dtype.kind == "f" and np.isnan(values).any():

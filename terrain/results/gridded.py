@@ -10,8 +10,7 @@ from ... import _optional
 from .columns import unit_text
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...tin.types import Grid
     from .parts import RasterParts
 
@@ -22,7 +21,7 @@ _MAPPING = "spatial_ref"
 
 def locate_centers(
     grid: Grid, rows: slice | None = None, columns: slice | None = None
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Float64Array, Float64Array]:
     """Return the eastings of columns and the northings of rows, at the cell centres.
 
     Parameters
@@ -43,7 +42,7 @@ def locate_centers(
     return x, y
 
 
-def _list_numbers(part: slice | None, count: int) -> NDArray[np.float64]:
+def _list_numbers(part: slice | None, count: int) -> Float64Array:
     chosen = slice(0, count) if part is None else part
     return np.arange(chosen.start, chosen.stop, dtype=np.float64)
 

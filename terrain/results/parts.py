@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray
     from ...crs import CRS, Unit
     from ...tin.types import Grid
 
@@ -41,15 +40,15 @@ class FeatureParts(_Described, Protocol):
     """As :class:`tinsmith.Features` has them."""
 
     @property
-    def coordinates(self) -> NDArray[Any]:
+    def coordinates(self) -> AnyArray:
         """One after the other."""
 
     @property
-    def offsets(self) -> tuple[NDArray[Any], ...]:
+    def offsets(self) -> tuple[AnyArray, ...]:
         """Of each level."""
 
     @property
-    def columns(self) -> Mapping[str, NDArray[Any]]:
+    def columns(self) -> Mapping[str, AnyArray]:
         """A value for each feature."""
 
     @property
@@ -71,7 +70,7 @@ class RasterParts(_Described, Protocol):
     """As :class:`tinsmith.Raster` has them."""
 
     @property
-    def bands(self) -> Mapping[str, NDArray[Any]]:
+    def bands(self) -> Mapping[str, AnyArray]:
         """By name."""
 
     @property

@@ -18,8 +18,7 @@ from .columns import FrozenMapping, as_name, as_notes, as_units, frozen_copy, na
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray
     from .columns import Units
 
 __all__ = ["Raster", "require_grid"]
@@ -66,7 +65,7 @@ class Raster(Frozen):
     <Raster: 2 rows by 3 columns, spacing 1, bands elevation, crs EPSG:32616>
     """
 
-    bands: Mapping[str, NDArray[Any]]
+    bands: Mapping[str, AnyArray]
     grid: Grid
     crs: CRS | None = field(default=None, kw_only=True)
     nodata: float = field(default=math.nan, kw_only=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ... import _optional
 from ..._methods import make_card
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     import pandas as pd
-    from numpy.typing import NDArray
 
+    from ...arrays import AnyArray
     from .columns import Units
     from .parts import FeatureParts
 
@@ -54,7 +54,7 @@ class Table(Frozen):
     array([ 0. , 52.5])
     """
 
-    columns: Mapping[str, NDArray[Any]]
+    columns: Mapping[str, AnyArray]
     units: Units = field(default_factory=dict, kw_only=True)
     name: str = field(default="", kw_only=True)
     notes: Sequence[str] = field(default=(), kw_only=True)
@@ -71,7 +71,7 @@ class Table(Frozen):
     def __len__(self) -> int:
         return len(next(iter(self.columns.values())))
 
-    def __getitem__(self, name: str) -> NDArray[Any]:
+    def __getitem__(self, name: str) -> AnyArray:
         return self.columns[name]
 
     def to_dataframe(self) -> pd.DataFrame:

@@ -10,8 +10,7 @@ from ...errors import LinesError
 from ...tin.topology import NO_NEIGHBOR, find_owners
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int8Array, Int32Array, Int64Array
     from ...tin import TIN
     from .segments import Segments
 
@@ -44,22 +43,20 @@ class Breaks(NamedTuple):
         opposite; -1 for none.
     """
 
-    segments: NDArray[np.int64]
-    ratios: NDArray[np.float64]
-    xy: NDArray[np.float64]
-    elevations: NDArray[np.float64]
-    crossed: NDArray[np.int8]
-    triangles: NDArray[np.int32]
-    vertices: NDArray[np.int32]
-    edges: NDArray[np.int32]
+    segments: Int64Array
+    ratios: Float64Array
+    xy: Float64Array
+    elevations: Float64Array
+    crossed: Int8Array
+    triangles: Int32Array
+    vertices: Int32Array
+    edges: Int32Array
 
     def scale_elevations(self, factor: float) -> Breaks:
         """Return the breaks with elevations times a factor."""
         return self if factor == 1.0 else self._replace(elevations=self.elevations * factor)
 
-    def interpolate_after(
-        self, breaks: NDArray[np.int64], xy: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def interpolate_after(self, breaks: Int64Array, xy: Float64Array) -> Float64Array:
         """Interpolate elevations between breaks and those that follow them.
 
         Parameters

@@ -28,8 +28,9 @@ from .surfaces import as_surfaces
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import Float64Array, Int64Array
     from ...tin import TIN
     from .rows import Rows
     from .surfaces import Surfaces
@@ -50,8 +51,8 @@ class _Axes(NamedTuple):
     """
 
     segments: Segments
-    lines: NDArray[np.int64]
-    stations: NDArray[np.float64]
+    lines: Int64Array
+    stations: Float64Array
 
 
 class _Cut(NamedTuple):
@@ -252,7 +253,7 @@ def _as_reaches(width: Any, left: Any, right: Any) -> tuple[float, float]:
 
 def _choose_stations(
     segments: Segments, interval: Any, given: Any
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+) -> tuple[Int64Array, Float64Array]:
     """Return the stations of sections, and the segment of each, the one that begins there."""
     if interval is None and given is None:
         raise OptionError("interval", None, allowed="given, or stations")
@@ -272,7 +273,7 @@ def _choose_stations(
     return segment, stations
 
 
-def _list_multiples(ends: NDArray[np.float64], interval: float) -> NDArray[np.float64]:
+def _list_multiples(ends: Float64Array, interval: float) -> Float64Array:
     """Return line and station of every multiple of an interval, and of both ends of each line."""
     require_few("interval", interval, ends[:, 1] - ends[:, 0])
     first, last = np.ceil(ends[:, 0] / interval), np.floor(ends[:, 1] / interval)
@@ -285,7 +286,7 @@ def _list_multiples(ends: NDArray[np.float64], interval: float) -> NDArray[np.fl
     return np.column_stack([lines, np.concatenate(found)])
 
 
-def _find_on_lines(ends: NDArray[np.float64], given: Any) -> NDArray[np.float64]:
+def _find_on_lines(ends: Float64Array, given: Any) -> Float64Array:
     """Return line and station of stations, on every line that is long enough for them."""
     try:
         stations = np.atleast_1d(as_elevations(given))
@@ -310,8 +311,8 @@ def _find_on_lines(ends: NDArray[np.float64], given: Any) -> NDArray[np.float64]
 
 def _lay_axes(
     segments: Segments,
-    segment: NDArray[np.int64],
-    stations: NDArray[np.float64],
+    segment: Int64Array,
+    stations: Float64Array,
     left: float,
     right: float,
 ) -> _Axes:
@@ -340,8 +341,8 @@ def _lay_axes(
 
 
 def _find_directions(
-    segments: Segments, segment: NDArray[np.int64], stations: NDArray[np.float64]
-) -> NDArray[np.float64]:
+    segments: Segments, segment: Int64Array, stations: Float64Array
+) -> Float64Array:
     """Return unit vectors along the centreline, at its vertices the mean of both segments'."""
     along = segments.directions
     found = along[segment]

@@ -20,8 +20,7 @@ from .segments import as_segments
 from .surfaces import as_surfaces
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ...tin import TIN
     from .rows import Rows
 
@@ -116,10 +115,10 @@ def _drape_points(tin: TIN, given: Features, outside: OutsidePolicy) -> Features
 
 def _tell(
     given: Features,
-    is_outside: NDArray[np.bool_],
+    is_outside: BoolArray,
     outside: OutsidePolicy,
     rows: Rows,
-    lines: NDArray[Any],
+    lines: AnyArray,
 ) -> Features:
     """Say which pieces of features are outside, or refuse them."""
     if not is_outside.any():
@@ -130,7 +129,7 @@ def _tell(
 
 
 def _note_outside(
-    given: Features, is_outside: NDArray[np.bool_], outside: OutsidePolicy, place: Any, what: str
+    given: Features, is_outside: BoolArray, outside: OutsidePolicy, place: Any, what: str
 ) -> Features:
     count, first = int(is_outside.sum()), int(np.argmax(is_outside))
     all_of = counted(len(is_outside), what)
@@ -147,13 +146,13 @@ def _note_outside(
     return replace(given, notes=(*given.notes, f"{text}: they {became}."))
 
 
-def _keep_whole(given: Features, rows: Rows, lines: NDArray[np.int64]) -> Features:
+def _keep_whole(given: Features, rows: Rows, lines: Int64Array) -> Features:
     xyz = np.column_stack([rows.places.xy, rows.elevations[:, 0]])
     pieces = find_offsets(np.bincount(lines, minlength=len(given.offsets[0]) - 1))
     return replace(given, coordinates=xyz, offsets=(pieces, *given.offsets[1:]))
 
 
-def _cut_runs(given: Features, rows: Rows, lines: NDArray[np.int64]) -> Features:
+def _cut_runs(given: Features, rows: Rows, lines: Int64Array) -> Features:
     runs = find_runs(rows)
     owner = lines[runs.first_rows]
     if given.is_multi:
@@ -163,9 +162,9 @@ def _cut_runs(given: Features, rows: Rows, lines: NDArray[np.int64]) -> Features
 
 def _choose(
     given: Features,
-    coordinates: NDArray[np.float64],
-    offsets: tuple[NDArray[np.int64], ...],
-    owner: NDArray[np.int64],
+    coordinates: Float64Array,
+    offsets: tuple[Int64Array, ...],
+    owner: Int64Array,
 ) -> Features:
     """Return the features that still have parts; ``owner`` says whose each part is."""
     kept, counts = np.unique(owner, return_counts=True)

@@ -19,8 +19,7 @@ from ...tin.validation.points import require_exact_range
 from ..results import Features
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray
     from ...tin.validation.geometries import Geometries
 
 __all__ = ["as_features"]
@@ -157,12 +156,12 @@ def _gather(items: list[_Item], crs: CRS | None, what: str) -> Features:
     )
 
 
-def _gather_columns(rows: list[Mapping[str, Any]]) -> dict[str, NDArray[Any]]:
+def _gather_columns(rows: list[Mapping[str, Any]]) -> dict[str, AnyArray]:
     names = dict.fromkeys(str(name) for row in rows for name in row)
     return {name: _as_column([row.get(name) for row in rows]) for name in names}
 
 
-def _as_column(values: list[Any]) -> NDArray[Any]:
+def _as_column(values: list[Any]) -> AnyArray:
     """Return values as truth values, whole numbers, numbers, or else as texts."""
     plain = [value.item() if isinstance(value, np.generic) else value for value in values]
     kinds = {type(value) for value in plain}

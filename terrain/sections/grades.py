@@ -9,8 +9,7 @@ import numpy as np
 from ...tin.topology import NO_NEIGHBOR
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int32Array, Int64Array
     from ...tin import TIN
     from .rows import Rows
     from .segments import Segments
@@ -22,7 +21,7 @@ _SPLITTER = 2.0**27 + 1
 """Dekker's: cuts a double into two halves of 26 bits."""
 
 
-def measure_grades(surfaces: Surfaces, segments: Segments, rows: Rows) -> NDArray[np.float64]:
+def measure_grades(surfaces: Surfaces, segments: Segments, rows: Rows) -> Float64Array:
     """Measure the slope of each surface along the line from each row to the next one.
 
     Returns
@@ -50,8 +49,8 @@ def measure_grades(surfaces: Surfaces, segments: Segments, rows: Rows) -> NDArra
 
 
 def _measure_rise_over_run(
-    rows: Rows, has: NDArray[np.int64], k: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    rows: Rows, has: Int64Array, k: int
+) -> tuple[Float64Array, Float64Array]:
     """Return the grades from rows to the next ones, and how far off rounding may have them."""
     xy, z = rows.places.xy, rows.elevations[:, k]
     run = np.hypot(*(xy[has + 1] - xy[has]).T)
@@ -61,7 +60,7 @@ def _measure_rise_over_run(
     return grade, (heights + places * np.abs(grade)) / run
 
 
-def _compute_gradients(tin: TIN, triangles: NDArray[np.int32]) -> NDArray[np.float64]:
+def _compute_gradients(tin: TIN, triangles: Int32Array) -> Float64Array:
     """Return the rise of triangles eastwards and northwards, (n, 2).
 
     Counted from the corner opposite the longest side, so that differences lose the least.
@@ -81,23 +80,21 @@ def _compute_gradients(tin: TIN, triangles: NDArray[np.int32]) -> NDArray[np.flo
 
 
 def _subtract_products(
-    a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64], d: NDArray[np.float64]
-) -> NDArray[np.float64]:
+    a: Float64Array, b: Float64Array, c: Float64Array, d: Float64Array
+) -> Float64Array:
     """Return a b - c d, good to a few roundings: what each product loses is given back."""
     left, right = a * b, c * d
     mended = (left - right) + (_find_lost(a, b, left) - _find_lost(c, d, right))
     return np.where(np.isfinite(mended), mended, left - right)
 
 
-def _find_lost(
-    a: NDArray[np.float64], b: NDArray[np.float64], product: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _find_lost(a: Float64Array, b: Float64Array, product: Float64Array) -> Float64Array:
     """Return what a rounded product is short of the true one."""
     (p, q), (r, s) = _split(a), _split(b)
     return q * s - (((product - p * r) - q * r) - p * s)
 
 
-def _split(value: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _split(value: Float64Array) -> tuple[Float64Array, Float64Array]:
     scaled = _SPLITTER * value
     high = scaled - (scaled - value)
     return high, value - high

@@ -21,8 +21,7 @@ from .surfaces import as_surfaces
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Float64Array, Int64Array, StrArray
     from ...tin import TIN
     from ..results import Features
     from .rows import Rows
@@ -156,7 +155,7 @@ def measure_rows(
     surfaces: Surfaces,
     segments: Segments,
     rows: Rows,
-    columns: dict[str, NDArray[Any]],
+    columns: dict[str, AnyArray],
     *,
     name: str,
     notes: Sequence[str],
@@ -183,7 +182,7 @@ def measure_rows(
     return Table(columns, units=units, name=name, notes=notes)
 
 
-def _name_stations(crossed: NDArray[np.str_]) -> NDArray[np.str_]:
+def _name_stations(crossed: StrArray) -> StrArray:
     """Say of rows where no surface has a break that they were asked for."""
     named = crossed.copy()
     named[(crossed == "").all(axis=1)] = "station"
@@ -278,7 +277,7 @@ def _place_at_interval(segments: Segments, interval: float) -> Places:
     return places_at(segments, segment, (first[segment] + turn) * interval)
 
 
-def require_few(option: str, interval: float, lengths: NDArray[np.float64]) -> None:
+def require_few(option: str, interval: float, lengths: Float64Array) -> None:
     """Refuse an interval that makes more stations than anybody can use.
 
     Raises
@@ -291,9 +290,7 @@ def require_few(option: str, interval: float, lengths: NDArray[np.float64]) -> N
         raise OptionError(option, interval, allowed=allowed)
 
 
-def places_at(
-    segments: Segments, segment: NDArray[np.int64], stations: NDArray[np.float64]
-) -> Places:
+def places_at(segments: Segments, segment: Int64Array, stations: Float64Array) -> Places:
     """Return the places at stations within segments; those at a segment's ends are left out."""
     begin, end = segments.start_stations[segment], segments.end_stations[segment]
     share = ((stations - begin) / (end - begin))[:, None]

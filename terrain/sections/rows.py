@@ -12,8 +12,7 @@ from .breaks import CROSSED, trace_breaks
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array, StrArray
     from .breaks import Breaks
     from .segments import Segments
     from .surfaces import Surfaces
@@ -34,9 +33,9 @@ class Places(NamedTuple):
     xy : (n, 2) float64 array
     """
 
-    segments: NDArray[np.int64]
-    stations: NDArray[np.float64]
-    xy: NDArray[np.float64]
+    segments: Int64Array
+    stations: Float64Array
+    xy: Float64Array
 
 
 class Rows(NamedTuple):
@@ -56,19 +55,19 @@ class Rows(NamedTuple):
     """
 
     places: Places
-    is_last: NDArray[np.bool_]
-    elevations: NDArray[np.float64]
-    crossed: NDArray[np.str_]
-    triangles: NDArray[np.int32]
+    is_last: BoolArray
+    elevations: Float64Array
+    crossed: StrArray
+    triangles: Int32Array
 
     @property
-    def is_gap(self) -> NDArray[np.bool_]:
+    def is_gap(self) -> BoolArray:
         """Whether a surface is missing from each row to the next one, (n, k)."""
-        is_gap: NDArray[np.bool_] = (self.triangles == NO_NEIGHBOR) & ~self.is_last[:, None]
+        is_gap: BoolArray = (self.triangles == NO_NEIGHBOR) & ~self.is_last[:, None]
         return is_gap
 
     @property
-    def steps(self) -> NDArray[np.float64]:
+    def steps(self) -> Float64Array:
         """Difference of station to the next row, 0 at the last one of a line."""
         stations = self.places.stations
         return np.where(self.is_last, 0.0, np.roll(stations, -1) - stations)
@@ -113,7 +112,7 @@ def cut_rows(surfaces: Surfaces, segments: Segments, extra: Places | None = None
     return _mark_gaps(_choose(rows, keep), traced, before[keep])
 
 
-def _choose(rows: Rows, chosen: NDArray[np.bool_]) -> Rows:
+def _choose(rows: Rows, chosen: BoolArray) -> Rows:
     if chosen.all():
         return rows
     places = Places._make(array[chosen] for array in rows.places)
@@ -124,7 +123,7 @@ def _find_places(breaks: Breaks, segments: Segments) -> Places:
     return Places(breaks.segments, segments.stations(breaks.segments, breaks.ratios), breaks.xy)
 
 
-def _number_turns(breaks: Breaks, places: Places) -> NDArray[np.int64]:
+def _number_turns(breaks: Breaks, places: Places) -> Int64Array:
     """Count breaks of a segment that fall together when rounded, so that none is lost."""
     is_new = np.ones(len(places.xy), np.bool_)
     is_new[1:] = (np.diff(places.xy, axis=0) != 0).any(axis=1) | (np.diff(places.segments) != 0)
@@ -137,8 +136,8 @@ def _number_turns(breaks: Breaks, places: Places) -> NDArray[np.int64]:
 
 
 def _merge(
-    sources: Sequence[Places], turns: Sequence[NDArray[np.int64]], segments: Segments
-) -> tuple[Places, list[NDArray[np.int64]]]:
+    sources: Sequence[Places], turns: Sequence[Int64Array], segments: Segments
+) -> tuple[Places, list[Int64Array]]:
     """Sort places along their segments, those of several sources together.
 
     Returns
@@ -174,16 +173,14 @@ def _merge(
     return places, own
 
 
-def _find_ends(places: Places, segments: Segments) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _find_ends(places: Places, segments: Segments) -> tuple[BoolArray, BoolArray]:
     """Tell which rows stay, all but ends of segments that are continued, and which end a line."""
     is_end = np.append(np.diff(places.segments) != 0, True)
     is_continued = segments.is_continued[places.segments]
     return ~(is_end & is_continued), is_end & ~is_continued
 
 
-def _interpolate_places(
-    breaks: Breaks, own: NDArray[np.int64], xy: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _interpolate_places(breaks: Breaks, own: Int64Array, xy: Float64Array) -> Float64Array:
     found = breaks.elevations[own]
     foreign = np.flatnonzero(own < 0)
     if len(foreign):
@@ -192,12 +189,12 @@ def _interpolate_places(
     return found
 
 
-def _name_crossed(breaks: Breaks, own: NDArray[np.int64]) -> NDArray[np.str_]:
+def _name_crossed(breaks: Breaks, own: Int64Array) -> StrArray:
     words = np.array([*CROSSED, ""])
     return words[np.where(own >= 0, breaks.crossed[own], -1)]
 
 
-def _mark_gaps(rows: Rows, traced: Sequence[Breaks], before: NDArray[np.int64]) -> Rows:
+def _mark_gaps(rows: Rows, traced: Sequence[Breaks], before: Int64Array) -> Rows:
     """Add a row in the middle of every gap that has elevations at both ends and no row between."""
     has = ~np.isnan(rows.elevations)
     both = has & np.roll(has, -1, axis=0) & rows.is_gap

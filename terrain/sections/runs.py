@@ -9,8 +9,7 @@ import numpy as np
 from ...tin.topology import find_offsets
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int64Array
     from .rows import Rows
 
 __all__ = ["Runs", "find_runs"]
@@ -28,9 +27,9 @@ class Runs(NamedTuple):
         The row where each begins.
     """
 
-    coordinates: NDArray[np.float64]
-    offsets: NDArray[np.int64]
-    first_rows: NDArray[np.int64]
+    coordinates: Float64Array
+    offsets: Int64Array
+    first_rows: Int64Array
 
 
 def find_runs(rows: Rows, k: int = 0) -> Runs:

@@ -10,7 +10,7 @@ from ...errors import LinesError
 from ...tin.topology import find_owners
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import BoolArray, Float64Array, Int64Array
 
 __all__ = ["Segments", "as_segments"]
 
@@ -26,28 +26,26 @@ class Segments(NamedTuple):
         The line that each belongs to, in ascending order.
     """
 
-    starts: NDArray[np.float64]
-    ends: NDArray[np.float64]
-    start_stations: NDArray[np.float64]
-    end_stations: NDArray[np.float64]
-    lines: NDArray[np.int64]
+    starts: Float64Array
+    ends: Float64Array
+    start_stations: Float64Array
+    end_stations: Float64Array
+    lines: Int64Array
 
     @property
-    def directions(self) -> NDArray[np.float64]:
+    def directions(self) -> Float64Array:
         """Unit vectors along them, (m, 2)."""
         steps = self.ends - self.starts
         return steps / np.hypot(steps[:, 0], steps[:, 1])[:, None]
 
     @property
-    def is_continued(self) -> NDArray[np.bool_]:
+    def is_continued(self) -> BoolArray:
         """Whether the next segment goes on where each ends."""
         is_continued = np.zeros(len(self.lines), np.bool_)
         is_continued[:-1] = np.diff(self.lines) == 0
         return is_continued
 
-    def stations(
-        self, segment: NDArray[np.int64], ratio: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def stations(self, segment: Int64Array, ratio: Float64Array) -> Float64Array:
         """Return the stations of shares of the way along segments, between those of their ends."""
         first, last = self.start_stations[segment], self.end_stations[segment]
         between = first + ratio * (last - first)
@@ -56,7 +54,7 @@ class Segments(NamedTuple):
 
 
 def as_segments(
-    xy: NDArray[np.float64], offsets: NDArray[np.int64], *, start: float = 0.0, what: str = "line"
+    xy: Float64Array, offsets: Int64Array, *, start: float = 0.0, what: str = "line"
 ) -> Segments:
     """Return the segments of polylines, each line's stations counted from its first vertex.
 
@@ -98,9 +96,7 @@ def as_segments(
     return Segments(xy[at], xy[at + 1], begins, ends, lines[at])
 
 
-def _sum_by_line(
-    lengths: NDArray[np.float64], lines: NDArray[np.int64], start: float
-) -> NDArray[np.float64]:
+def _sum_by_line(lengths: Float64Array, lines: Int64Array, start: float) -> Float64Array:
     """Add lengths up, from the start again for each line."""
     firsts = np.flatnonzero(np.append(True, np.diff(lines) != 0))
     sums = [

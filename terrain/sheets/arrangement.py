@@ -18,8 +18,7 @@ from .windows import MatchLine, Window
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, BoolArray, Float64Array
     from ...crs import Unit
     from .footprint import Footprint
     from .layout import Layout
@@ -166,7 +165,7 @@ def _find_room(layout: Layout, length: float) -> tuple[float, float]:
     return (frame.width - 2 * _AIR) / length, (frame.height - 2 * _AIR) / length
 
 
-def _find_ground(footprint: Footprint, boxes: NDArray[Any]) -> NDArray[np.bool_]:
+def _find_ground(footprint: Footprint, boxes: AnyArray) -> BoolArray:
     """Tell which rectangles hold some of a footprint."""
     shapely = _optional.load("shapely")
     shapely.prepare(footprint.faces)
@@ -210,7 +209,7 @@ def require_few(n_sheets: float, scale: Scale, layout: Layout) -> None:
 
 
 def cut_strip_windows(
-    ground: Ground, layout: Layout, scale: Scale, axis: NDArray[np.float64] | None
+    ground: Ground, layout: Layout, scale: Scale, axis: Float64Array | None
 ) -> list[Window]:
     """Return windows one after the other along an axis, the way on to the right of each.
 
@@ -240,7 +239,7 @@ def _as_window(number: int, strips: Sequence[Any], layout: Layout, length: float
     return Window(plain.center, plain.angle, length, layout.frame, matches)
 
 
-def _reach(window: Window, joint: Any) -> NDArray[np.float64]:
+def _reach(window: Window, joint: Any) -> Float64Array:
     """Return the ends of a match line so long that it crosses all of the frame."""
     reach = (window.frame.width + window.frame.height) / window.mm_per_unit
     across = np.array([-math.sin(joint.angle), math.cos(joint.angle)])
@@ -248,7 +247,7 @@ def _reach(window: Window, joint: Any) -> NDArray[np.float64]:
 
 
 def _describe_too_wide(
-    ground: Ground, layout: Layout, given: Scale, axis: NDArray[np.float64] | None
+    ground: Ground, layout: Layout, given: Scale, axis: Float64Array | None
 ) -> str:
     """Say at which smaller scale strips would be wide enough."""
     of = f"strips of {layout.paper.name} along {'its own' if axis is None else 'the given'} axis"

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from typing import IO
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from .papers import Paper
 
 __all__ = ["INK", "METADATA", "POINTS_PER_MM", "Canvas", "Pen", "drawing_rules"]
@@ -83,7 +82,7 @@ class Canvas:
         self._order = 1
         self._names: Counter[str] = Counter()
 
-    def draw_paths(self, parts: Sequence[NDArray[np.float64]], pen: Pen, name: str) -> None:
+    def draw_paths(self, parts: Sequence[Float64Array], pen: Pen, name: str) -> None:
         """Draw polylines; ``name`` is that of their group in an SVG."""
         if len(parts) == 0:
             return
@@ -102,7 +101,7 @@ class Canvas:
         drawn.set_gid(self._choose_name(name))
         self._axes.add_collection(drawn, autolim=False)
 
-    def fill(self, rings: Sequence[NDArray[np.float64]], color: str, name: str) -> None:
+    def fill(self, rings: Sequence[Float64Array], color: str, name: str) -> None:
         """Fill the area within rings, each closed; what lies in two of them is left out."""
         path = _optional.load("matplotlib.path", PURPOSE).Path
         patch = _optional.load("matplotlib.patches", PURPOSE).PathPatch

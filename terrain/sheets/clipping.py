@@ -12,8 +12,7 @@ from ...tin.topology import find_owners
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int64Array
     from ...tin import Bounds
 
 __all__ = ["Paths", "clip_paths", "join_paths"]
@@ -31,26 +30,26 @@ class Paths(NamedTuple):
         The polyline that each path is a part of.
     """
 
-    coordinates: NDArray[np.float64]
-    offsets: NDArray[np.int64]
-    sources: NDArray[np.int64]
+    coordinates: Float64Array
+    offsets: Int64Array
+    sources: Int64Array
 
     @classmethod
-    def whole(cls, coordinates: NDArray[np.float64], offsets: NDArray[np.int64]) -> Paths:
+    def whole(cls, coordinates: Float64Array, offsets: Int64Array) -> Paths:
         """Return one path for each polyline."""
         return cls(coordinates, offsets, np.arange(len(offsets) - 1))
 
-    def parts(self) -> list[NDArray[np.float64]]:
+    def parts(self) -> list[Float64Array]:
         """Return the coordinates of each path."""
         return [self.coordinates[first:last] for first, last in pairwise(self.offsets.tolist())]
 
-    def choose(self, is_chosen: NDArray[np.bool_]) -> list[NDArray[np.float64]]:
+    def choose(self, is_chosen: BoolArray) -> list[Float64Array]:
         """Return the coordinates of some of the paths, by what is said of their sources."""
         parts = self.parts()
         return [parts[k] for k in np.flatnonzero(is_chosen[self.sources])]
 
 
-def join_paths(parts: Sequence[NDArray[np.float64]], sources: Iterable[int] | None = None) -> Paths:
+def join_paths(parts: Sequence[Float64Array], sources: Iterable[int] | None = None) -> Paths:
     """Return polylines as paths."""
     lengths = [len(part) for part in parts]
     offsets = np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
@@ -85,8 +84,8 @@ def clip_paths(paths: Paths, box: Bounds) -> Paths:
 
 
 def _find_ratios(
-    start: NDArray[np.float64], step: NDArray[np.float64], box: Bounds
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    start: Float64Array, step: Float64Array, box: Bounds
+) -> tuple[Float64Array, Float64Array]:
     """Return the shares of each segment at which it enters and leaves the rectangle."""
     enter, leave = np.zeros(len(start)), np.ones(len(start))
     for axis, (low, high) in enumerate(((box.xmin, box.xmax), (box.ymin, box.ymax))):
@@ -103,10 +102,10 @@ def _find_ratios(
 
 
 def _chain(
-    first: NDArray[np.float64],
-    last: NDArray[np.float64],
-    is_begin: NDArray[np.bool_],
-    sources: NDArray[np.int64],
+    first: Float64Array,
+    last: Float64Array,
+    is_begin: BoolArray,
+    sources: Int64Array,
 ) -> Paths:
     """Join segments into paths; one begins where ``is_begin``."""
     begins = np.flatnonzero(is_begin)

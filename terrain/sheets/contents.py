@@ -22,8 +22,7 @@ from .lettering import clean_text
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Float64Array
     from ...tin import TIN, Survey
     from ..results import Features
     from .footprint import Footprint
@@ -54,7 +53,7 @@ class Marks(NamedTuple):
         What stands beside each; empty if nothing does.
     """
 
-    places: NDArray[np.float64]
+    places: Float64Array
     numbers: list[str]
     elevations: list[str]
 
@@ -180,7 +179,7 @@ def find_lines(tin: TIN) -> LineEdges:
     return LineEdges(found.pairs[is_inner], found.kinds[is_inner])
 
 
-def _chain_edges(points: NDArray[np.float64], pairs: NDArray[Any]) -> Paths:
+def _chain_edges(points: Float64Array, pairs: AnyArray) -> Paths:
     """Return edges as paths; one that begins where the one before ends goes on with it."""
     if len(pairs) == 0:
         return join_paths([])

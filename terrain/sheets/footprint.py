@@ -11,8 +11,7 @@ from ... import _optional
 from ..drawing.linework import EDGE_KINDS, find_line_edges
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["Footprint", "Pieces", "cut_into_pieces", "find_footprint"]
@@ -27,8 +26,8 @@ class Footprint(NamedTuple):
     is_water : (k,) bool array
     """
 
-    faces: NDArray[Any]
-    is_water: NDArray[np.bool_]
+    faces: AnyArray
+    is_water: BoolArray
 
 
 class Pieces(NamedTuple):
@@ -46,10 +45,10 @@ class Pieces(NamedTuple):
         Means of their corners.
     """
 
-    corners: NDArray[np.float64]
-    owners: NDArray[np.int64]
-    cells: NDArray[np.int64]
-    centers: NDArray[np.float64]
+    corners: Float64Array
+    owners: Int64Array
+    cells: Int64Array
+    centers: Float64Array
 
 
 def find_footprint(tin: TIN) -> Footprint:
@@ -71,9 +70,7 @@ def find_footprint(tin: TIN) -> Footprint:
     return Footprint(faces, _find_water(tin, faces, inside, edges))
 
 
-def _find_water(
-    tin: TIN, faces: NDArray[Any], triangles: NDArray[np.int32], edges: NDArray[np.int32]
-) -> NDArray[np.bool_]:
+def _find_water(tin: TIN, faces: AnyArray, triangles: Int32Array, edges: Int32Array) -> BoolArray:
     """Tell which faces are water: flat, along a shore, and in a ring of it if all are closed."""
     shapely = _optional.load("shapely")
     shores = {tuple(place) for place in tin.points[np.unique(edges)][:, :2].tolist()}
@@ -95,7 +92,7 @@ def _touches(outer: list[list[float]], shores: set[tuple[float, ...]]) -> bool:
     return any(tuple(a) in shores and tuple(b) in shores for a, b in pairwise(outer))
 
 
-def _list_water_rings(tin: TIN) -> NDArray[Any]:
+def _list_water_rings(tin: TIN) -> AnyArray:
     """Return the closed rings of water as polygons; none if one of them is cut."""
     shapely = _optional.load("shapely")
     kinds = zip(tin.lines.chains(), tin.lines.kinds, strict=True)
@@ -108,7 +105,7 @@ def _list_water_rings(tin: TIN) -> NDArray[Any]:
 # ---------------------------------------------------------------- in cells
 
 
-def cut_into_pieces(faces: NDArray[Any], side: float) -> Pieces:
+def cut_into_pieces(faces: AnyArray, side: float) -> Pieces:
     """Cut polygons into what lies in each cell of a square grid.
 
     Parameters

@@ -14,8 +14,7 @@ from .lettering import measure_text
 from .windows import turn
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array
     from ...tin import Bounds
     from .canvas import Canvas
     from .windows import Window
@@ -62,7 +61,7 @@ def find_spacing(mm_per_unit: float) -> float:
     return round_down(_WIDEST / mm_per_unit)
 
 
-def find_cross_places(window: Window) -> NDArray[np.float64]:
+def find_cross_places(window: Window) -> Float64Array:
     """Return where lines of the grid cross on paper, within the frame."""
     spacing = find_spacing(window.mm_per_unit)
     eastings, northings = (_list_multiples(window, axis, spacing) for axis in (0, 1))
@@ -77,12 +76,12 @@ def _list_multiples(window: Window, axis: int, spacing: float) -> list[float]:
     return [round(k * spacing, 9) for k in range(first, last + 1)]
 
 
-def _is_inside(places: NDArray[np.float64], box: Bounds) -> NDArray[np.bool_]:
+def _is_inside(places: Float64Array, box: Bounds) -> BoolArray:
     x, y = places[:, 0], places[:, 1]
     return (x >= box.xmin) & (x <= box.xmax) & (y >= box.ymin) & (y <= box.ymax)
 
 
-def _list_lines(window: Window) -> list[tuple[str, NDArray[np.float64]]]:
+def _list_lines(window: Window) -> list[tuple[str, Float64Array]]:
     """Return each line of the grid on paper, with what is written at it, clipped to the frame."""
     spacing = find_spacing(window.mm_per_unit)
     decimals = max(0, -math.floor(math.log10(spacing)))
@@ -160,7 +159,7 @@ def draw_grid(canvas: Canvas, window: Window, style: str) -> None:
         _write_label(canvas, label, window.frame)
 
 
-def _list_arms(window: Window) -> list[NDArray[np.float64]]:
+def _list_arms(window: Window) -> list[Float64Array]:
     """Return both arms of every cross, along the lines of the grid."""
     arms = []
     for place in find_cross_places(window):
@@ -173,7 +172,7 @@ def _list_arms(window: Window) -> list[NDArray[np.float64]]:
 _OUTWARD = {"bottom": (0, -1), "top": (0, 1), "left": (-1, 0), "right": (1, 0)}
 
 
-def _make_tick(label: Label) -> NDArray[np.float64]:
+def _make_tick(label: Label) -> Float64Array:
     outward = np.array(_OUTWARD[label.side])
     return np.array([label.place, label.place + _TICK_LENGTH * outward])
 

@@ -20,8 +20,7 @@ from .placing import Room, outline_text
 from .windows import list_corners, turn
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Float64Array
     from .contents import Contents, Marks
     from .windows import MatchLine, Window
 
@@ -84,7 +83,7 @@ class _Text(NamedTuple):
     center: tuple[float, float]
     rotation: float
     text: str
-    corners: NDArray[np.float64]
+    corners: Float64Array
     source: int  # the contour that it is of
 
 
@@ -275,7 +274,7 @@ def _make_outline(center: tuple[float, float], rotation: float, text: str, sourc
     return _Text(center, rotation, text, corners, source)
 
 
-def _write_levels(levels: NDArray[np.float64]) -> dict[float, str]:
+def _write_levels(levels: Float64Array) -> dict[float, str]:
     """Write levels with as many decimals as the finest of them has."""
     values = np.unique(levels).tolist()
     decimals = max((_count_decimals(value) for value in values), default=0)
@@ -298,7 +297,7 @@ def _cut_out(paths: Paths, texts: list[_Text]) -> Paths:
     )
     boxes = shapely.polygons([text.corners for text in texts])
     hit, box = shapely.STRtree(boxes).query(lines, predicate="intersects")
-    kept: list[NDArray[np.float64]] = []
+    kept: list[Float64Array] = []
     sources: list[int] = []
     for number, part in enumerate(parts):
         own = boxes[box[hit == number]]
@@ -308,7 +307,7 @@ def _cut_out(paths: Paths, texts: list[_Text]) -> Paths:
     return join_paths(kept, sources)
 
 
-def _subtract(line: Any, boxes: NDArray[Any]) -> list[NDArray[np.float64]]:
+def _subtract(line: Any, boxes: AnyArray) -> list[Float64Array]:
     shapely = _optional.load("shapely")
     rest = shapely.difference(line, shapely.union_all(boxes))
     pieces = [shapely.get_coordinates(part) for part in shapely.get_parts(rest)]
@@ -338,9 +337,7 @@ def _draw_marks(canvas: Canvas, window: Window, marks: Marks, room: Room, drawn:
         drawn.crowded += max(0, len(seen) - _MOST_MARK_LABELS)
 
 
-def _write_mark(
-    canvas: Canvas, marks: Marks, number: int, place: NDArray[np.float64], room: Room
-) -> bool:
+def _write_mark(canvas: Canvas, marks: Marks, number: int, place: Float64Array, room: Room) -> bool:
     """Write the number above and the elevation below on the right of a point, if there is room."""
     texts = [
         (written[number], side, name)

@@ -9,8 +9,7 @@ import numpy as np
 from .windows import turn
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...tin import Bounds
 
 __all__ = ["Room", "outline_text"]
@@ -21,10 +20,10 @@ _CELL = 8.0
 
 def outline_text(
     center: tuple[float, float], width: float, height: float, rotation: float = 0.0
-) -> NDArray[np.float64]:
+) -> Float64Array:
     """Return the corners of the rectangle around a text, (4, 2)."""
     half = np.array([(-width, -height), (width, -height), (width, height), (-width, height)]) / 2
-    corners: NDArray[np.float64] = turn(half, rotation) + np.asarray(center)
+    corners: Float64Array = turn(half, rotation) + np.asarray(center)
     return corners
 
 
@@ -38,9 +37,9 @@ class Room:
 
     def __init__(self, frame: Bounds) -> None:
         self._frame = frame
-        self._taken: dict[tuple[int, int], list[NDArray[np.float64]]] = {}
+        self._taken: dict[tuple[int, int], list[Float64Array]] = {}
 
-    def take(self, corners: NDArray[np.float64]) -> bool:
+    def take(self, corners: Float64Array) -> bool:
         """Take the room of a text, unless it leaves the frame or meets another one."""
         low, high = corners.min(axis=0), corners.max(axis=0)
         frame = self._frame
@@ -57,7 +56,7 @@ class Room:
         return True
 
 
-def _overlap(one: NDArray[np.float64], other: NDArray[np.float64]) -> bool:
+def _overlap(one: Float64Array, other: Float64Array) -> bool:
     """Tell whether two rectangles overlap: no side of either parts them."""
     for sides in (one, other):
         for across in (sides[1] - sides[0], sides[3] - sides[0]):

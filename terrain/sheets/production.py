@@ -37,8 +37,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...crs import Unit, UnitLike
     from ...tin import TIN
     from .contents import Contents
@@ -137,7 +136,7 @@ class Plan:
         return (*self._notes, *self._notes_of_drawing)
 
     @property
-    def frames(self) -> NDArray[np.float64]:
+    def frames(self) -> Float64Array:
         """Corners on the ground of the map on each sheet, (n, 4, 2), from the lower left one."""
         return np.array([sheet.window.corners for sheet in self._sheets])
 
@@ -377,7 +376,7 @@ def _find_ground(tin: TIN, unit: Unit) -> Ground:
     return Ground(Bounds.of(shapely.get_coordinates(footprint.faces)), footprint, unit)
 
 
-def _as_axis(axis: Any, tin: TIN, layout: str) -> tuple[NDArray[np.float64] | None, list[str]]:
+def _as_axis(axis: Any, tin: TIN, layout: str) -> tuple[Float64Array | None, list[str]]:
     """Return the vertices of the line that strips follow, and notes on it."""
     if axis is None:
         return None, []
@@ -399,7 +398,7 @@ def _arrange(
     layouts: Sequence[Layout],
     scale: Scale | None,
     layout: str,
-    axis: NDArray[np.float64] | None,
+    axis: Float64Array | None,
 ) -> list[_Sheet]:
     """Return the sheets; where there are several, the index sheet before them."""
     if layout == "single":

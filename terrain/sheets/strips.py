@@ -14,8 +14,7 @@ from .footprint import cut_into_pieces
 from .windows import turn
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from .footprint import Footprint, Pieces
 
 __all__ = ["Joint", "Strip", "cut_strips", "find_axis"]
@@ -41,7 +40,7 @@ class Joint(NamedTuple):
         Direction of the axis there, radians.
     """
 
-    place: NDArray[np.float64]
+    place: Float64Array
     angle: float
 
 
@@ -66,7 +65,7 @@ def cut_strips(
     footprint: Footprint,
     step: float,
     room: tuple[float, float],
-    axis: NDArray[np.float64] | None,
+    axis: Float64Array | None,
 ) -> list[Strip] | None:
     """Cover a footprint with rectangles along an axis.
 
@@ -176,20 +175,20 @@ class _Walk:
         east, north = np.subtract(*self._at(high, low))
         return math.degrees(math.atan2(north, east))
 
-    def _at(self, *stations: float) -> NDArray[np.float64]:
+    def _at(self, *stations: float) -> Float64Array:
         shapely = _optional.load("shapely")
         found = shapely.line_interpolate_point(self._axis, list(stations))
-        places: NDArray[np.float64] = shapely.get_coordinates(found)
+        places: Float64Array = shapely.get_coordinates(found)
         return places
 
-    def _list_axis(self, begin: float, end: float) -> NDArray[np.float64]:
+    def _list_axis(self, begin: float, end: float) -> Float64Array:
         return self._at(*np.linspace(begin, end, 5).tolist())
 
 
 # ---------------------------------------------------------------- the axis of a surface
 
 
-def find_axis(footprint: Footprint, pieces: Pieces, height: float) -> NDArray[np.float64]:
+def find_axis(footprint: Footprint, pieces: Pieces, height: float) -> Float64Array:
     """Return a line along a footprint, from west to east.
 
     Parameters
@@ -217,7 +216,7 @@ def find_axis(footprint: Footprint, pieces: Pieces, height: float) -> NDArray[np
     return straight if curved is None else curved
 
 
-def _find_straight_axis(footprint: Footprint, height: float) -> tuple[NDArray[np.float64], bool]:
+def _find_straight_axis(footprint: Footprint, height: float) -> tuple[Float64Array, bool]:
     shapely = _optional.load("shapely")
     around = shapely.oriented_envelope(shapely.MultiPoint(shapely.get_coordinates(footprint.faces)))
     corners = shapely.get_coordinates(around)[:4]
@@ -232,12 +231,12 @@ def _find_straight_axis(footprint: Footprint, height: float) -> tuple[NDArray[np
     return _turn_east(ends), bool(sides.min() <= height)
 
 
-def _turn_east(axis: NDArray[np.float64]) -> NDArray[np.float64]:
+def _turn_east(axis: Float64Array) -> Float64Array:
     is_westward = tuple(axis[-1]) < tuple(axis[0])
     return axis[::-1].copy() if is_westward else axis
 
 
-def _find_curved_axis(pieces: Pieces, side: float) -> NDArray[np.float64] | None:
+def _find_curved_axis(pieces: Pieces, side: float) -> Float64Array | None:
     """Return the middles of bands at equal distances from one end; None for separate parts."""
     distances = _measure_distances(pieces, 0)
     if not np.isfinite(distances).all():
@@ -256,7 +255,7 @@ def _find_curved_axis(pieces: Pieces, side: float) -> NDArray[np.float64] | None
     return _turn_east(line)
 
 
-def _measure_distances(pieces: Pieces, start: int) -> NDArray[np.float64]:
+def _measure_distances(pieces: Pieces, start: int) -> Float64Array:
     """Return the distances of pieces from one along the surface (Dijkstra 1959).
 
     Pieces in one cell or in cells side by side are neighbours.

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...tin import Bounds
 
 __all__ = ["MatchLine", "Window", "list_corners", "turn"]
@@ -26,7 +25,7 @@ class MatchLine(NamedTuple):
         Number of the other sheet's window, from 0.
     """
 
-    ends: NDArray[np.float64]
+    ends: Float64Array
     window: int
 
 
@@ -53,26 +52,26 @@ class Window:
     frame: Bounds
     matches: tuple[MatchLine, ...] = field(default=())
 
-    def to_paper(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    def to_paper(self, xy: Float64Array) -> Float64Array:
         """Return where places on the ground are on paper, millimetres."""
         moved = self.mm_per_unit * (np.asarray(xy, np.float64)[..., :2] - self.center)
         turned = turn(moved, -self.angle) + self.frame.center
-        placed: NDArray[np.float64] = turned
+        placed: Float64Array = turned
         return placed
 
-    def to_ground(self, mm: NDArray[np.float64]) -> NDArray[np.float64]:
+    def to_ground(self, mm: Float64Array) -> Float64Array:
         """Return the places on the ground of places on paper."""
         moved = (np.asarray(mm, np.float64) - self.frame.center) / self.mm_per_unit
-        found: NDArray[np.float64] = turn(moved, self.angle) + self.center
+        found: Float64Array = turn(moved, self.angle) + self.center
         return found
 
     @property
-    def corners(self) -> NDArray[np.float64]:
+    def corners(self) -> Float64Array:
         """Corners of the frame on the ground, (4, 2), from the lower left one to the right."""
         return self.to_ground(list_corners(self.frame))
 
 
-def turn(xy: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
+def turn(xy: Float64Array, angle: float) -> Float64Array:
     """Turn vectors counter-clockwise by degrees; by none they stay the same to the bit."""
     if angle == 0.0:
         return xy
@@ -81,7 +80,7 @@ def turn(xy: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
     return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
 
 
-def list_corners(box: Bounds) -> NDArray[np.float64]:
+def list_corners(box: Bounds) -> Float64Array:
     """Return the corners of a rectangle, from the lower left one to the right."""
     west, south, east, north = box.xmin, box.ymin, box.xmax, box.ymax
     return np.array([(west, south), (east, south), (east, north), (west, north)])

@@ -12,8 +12,7 @@ from ..hydrology.paths import as_places
 from .lines import as_height, raise_places
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["View", "as_view", "measure_distances"]
@@ -22,7 +21,7 @@ __all__ = ["View", "as_view", "measure_distances"]
 class View(NamedTuple):
     """An eye, and how it sees."""
 
-    eye: NDArray[np.float64]
+    eye: Float64Array
     target_height: float
     radius: float
     fall: float
@@ -42,7 +41,7 @@ def as_view(
     return View(raise_places(tin, xy, above[0])[0], above[1], reach, fall), notes
 
 
-def measure_distances(points: NDArray[np.float64], eye: NDArray[np.float64]) -> NDArray[np.float64]:
+def measure_distances(points: Float64Array, eye: Float64Array) -> Float64Array:
     """Return the distances of points from the eye in the plane."""
-    found: NDArray[np.float64] = np.hypot(points[:, 0] - eye[0], points[:, 1] - eye[1])
+    found: Float64Array = np.hypot(points[:, 0] - eye[0], points[:, 1] - eye[1])
     return found

@@ -15,8 +15,7 @@ from ..results import Features
 from .rays import Rays, find_blocks, find_curvature
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["as_height", "line_of_sight", "raise_places"]
@@ -134,12 +133,12 @@ def as_height(option: str, value: Any) -> float:
     return float(value)
 
 
-def raise_places(tin: TIN, xy: NDArray[np.float64], height: float) -> NDArray[np.float64]:
+def raise_places(tin: TIN, xy: Float64Array, height: float) -> Float64Array:
     """Return places at a height above the ground, (k, 3)."""
     return np.column_stack([xy, tin.interpolate(xy) + height])
 
 
-def _pair(eyes: int, targets: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _pair(eyes: int, targets: int) -> tuple[Int64Array, Int64Array]:
     if eyes not in (1, targets):
         raise PointsError(
             f"There are {counted(eyes, 'eye')} for {counted(targets, 'target')}: give one for all, "

@@ -10,8 +10,7 @@ from ...tin.topology import find_offsets, neighbors_of
 from .. import _kernel
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array, UInt8Array
     from ...tin import TIN
     from .eyes import View
 
@@ -35,21 +34,21 @@ class DividedMesh(NamedTuple):
         The triangle of the TIN that each is a part of.
     """
 
-    points: NDArray[np.float64]
-    triangles: NDArray[np.int32]
-    neighbors: NDArray[np.int32]
-    is_seen: NDArray[np.bool_]
-    owners: NDArray[np.int64]
+    points: Float64Array
+    triangles: Int32Array
+    neighbors: Int32Array
+    is_seen: BoolArray
+    owners: Int64Array
 
 
 class _Cells(NamedTuple):
     """Convex polygons of vertices, and the line on which the side after each corner lies."""
 
-    owners: NDArray[np.int64]
-    is_seen: NDArray[np.bool_]
-    counts: NDArray[np.int64]
-    corners: NDArray[np.int64]
-    lines: NDArray[np.int64]
+    owners: Int64Array
+    is_seen: BoolArray
+    counts: Int64Array
+    corners: Int64Array
+    lines: Int64Array
 
 
 def divide(tin: TIN, view: View) -> DividedMesh:
@@ -82,9 +81,7 @@ def divide(tin: TIN, view: View) -> DividedMesh:
     )
 
 
-def _number_corners(
-    tin: TIN, corners: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _number_corners(tin: TIN, corners: Float64Array) -> tuple[Float64Array, Int64Array]:
     """Return the vertices of the TIN and all other corners once each, and the corners' numbers."""
     places = np.concatenate([tin.points[:, :2], corners])
     order = np.lexsort((np.arange(len(places)), places[:, 1], places[:, 0]))
@@ -99,9 +96,7 @@ def _number_corners(
     return points, numbers[len(tin.points) :]
 
 
-def _join_thin(
-    tin: TIN, cells: _Cells, parts: NDArray[np.uint8]
-) -> tuple[_Cells, NDArray[np.uint8]]:
+def _join_thin(tin: TIN, cells: _Cells, parts: UInt8Array) -> tuple[_Cells, UInt8Array]:
     """Leave triangles whole that are thinner than coordinates can tell: seen if a part is."""
     a, b, c = (tin.points[tin.triangles[:, k], :2] for k in range(3))
     squares = [((q - p) ** 2).sum(axis=1) for p, q in ((a, b), (b, c), (c, a))]
@@ -117,7 +112,7 @@ def _drop_points(cells: _Cells) -> _Cells:
     return _choose(cells, cells.corners != cells.corners[_find_next(cells.counts)])
 
 
-def _choose(cells: _Cells, keep: NDArray[np.bool_]) -> _Cells:
+def _choose(cells: _Cells, keep: BoolArray) -> _Cells:
     """Return cells with some corners alone, those that have three of them at least."""
     cell = np.repeat(np.arange(len(cells.counts)), cells.counts)
     counts = np.bincount(cell[keep], minlength=len(cells.counts))
@@ -132,7 +127,7 @@ def _choose(cells: _Cells, keep: NDArray[np.bool_]) -> _Cells:
     )
 
 
-def _find_next(counts: NDArray[np.int64]) -> NDArray[np.int64]:
+def _find_next(counts: Int64Array) -> Int64Array:
     """Return for each corner of polygons with so many the place of the next one."""
     ends = np.cumsum(counts)
     following = np.arange(1, counts.sum() + 1)
@@ -140,9 +135,7 @@ def _find_next(counts: NDArray[np.int64]) -> NDArray[np.int64]:
     return following
 
 
-def _add_whole_triangles(
-    tin: TIN, cells: _Cells, parts: NDArray[np.uint8]
-) -> tuple[_Cells, NDArray[np.bool_]]:
+def _add_whole_triangles(tin: TIN, cells: _Cells, parts: UInt8Array) -> tuple[_Cells, BoolArray]:
     """Add triangles beside divided ones, and tell which triangles are cells now."""
     is_divided = parts == _DIVIDED
     across = np.where(tin.neighbors >= 0, is_divided[tin.neighbors], False)
@@ -163,7 +156,7 @@ def _add_whole_triangles(
     return added, is_divided
 
 
-def _complete_sides(cells: _Cells, points: NDArray[np.float64]) -> _Cells:
+def _complete_sides(cells: _Cells, points: Float64Array) -> _Cells:
     """Give each side the vertices of other cells that lie on it."""
     start, end = cells.corners, cells.corners[_find_next(cells.counts)]
     on_line = np.flatnonzero(cells.lines >= 0)
@@ -189,11 +182,11 @@ def _complete_sides(cells: _Cells, points: NDArray[np.float64]) -> _Cells:
 
 
 def _sort_along_lines(
-    lines: NDArray[np.int64],
-    places: NDArray[np.float64],
-    start: NDArray[np.int64],
-    end: NDArray[np.int64],
-) -> NDArray[np.int64]:
+    lines: Int64Array,
+    places: Float64Array,
+    start: Int64Array,
+    end: Int64Array,
+) -> Int64Array:
     """Sort places by their line, and along it, by the direction of its longest side."""
     ways = places[end] - places[start]
     by_length = np.argsort(np.hypot(*ways.T), kind="stable")
@@ -207,9 +200,7 @@ def _sort_along_lines(
     return np.lexsort((along, lines))
 
 
-def _fan_out(
-    cells: _Cells, points: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int64]]:
+def _fan_out(cells: _Cells, points: Float64Array) -> tuple[Float64Array, Int32Array, Int64Array]:
     """Return the points with the middles of cells, triangles, and the cell of each."""
     cell = np.repeat(np.arange(len(cells.counts)), cells.counts)
     places = points[cells.corners]

@@ -13,8 +13,7 @@ from ..sections.breaks import trace_breaks
 from ..sections.segments import Segments
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array
     from ...tin import TIN
     from ..earthwork.reference import Reference
     from ..sections.breaks import Breaks
@@ -33,8 +32,8 @@ _ROUNDING = 32 * 2.0**-53
 class Rays(NamedTuple):
     """Rays from eyes to targets, (k, 3) each, apart in the plane."""
 
-    eyes: NDArray[np.float64]
-    targets: NDArray[np.float64]
+    eyes: Float64Array
+    targets: Float64Array
 
 
 class Blocks(NamedTuple):
@@ -52,10 +51,10 @@ class Blocks(NamedTuple):
         Whether it passes over places without surface.
     """
 
-    is_blocked: NDArray[np.bool_]
-    ratios: NDArray[np.float64]
-    clearances: NDArray[np.float64]
-    leaves: NDArray[np.bool_]
+    is_blocked: BoolArray
+    ratios: Float64Array
+    clearances: Float64Array
+    leaves: BoolArray
 
 
 def find_curvature(reference: Reference, curvature: Any, refraction: Any) -> float:
@@ -134,20 +133,18 @@ def _trace(tin: TIN, rays: Rays) -> Breaks:
     return trace_breaks(tin, segments)
 
 
-def _measure_heights(breaks: Breaks, rays: Rays, fall: float) -> NDArray[np.float64]:
+def _measure_heights(breaks: Breaks, rays: Rays, fall: float) -> Float64Array:
     """Return the height of the ground above the ray at each break, rounded."""
     eye, target = (end[breaks.segments] for end in rays)
     square = ((target - eye)[:, :2] ** 2).sum(axis=1)
     share = breaks.ratios
     level = eye[:, 2] + share * (target[:, 2] - eye[:, 2])
     # The earth falls as the square of the distance; a straight line from end to end, by chords.
-    bulge: NDArray[np.float64] = fall * square * share * (1.0 - share)
+    bulge: Float64Array = fall * square * share * (1.0 - share)
     return breaks.elevations - level + bulge
 
 
-def _make_sure(
-    tin: TIN, breaks: Breaks, rays: Rays, heights: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _make_sure(tin: TIN, breaks: Breaks, rays: Rays, heights: Float64Array) -> Float64Array:
     """Return heights with the exact sign, and 0 where the ray touches."""
     eye, target = (end[breaks.segments, 2] for end in rays)
     size = np.maximum(np.maximum(np.abs(eye), np.abs(target)), np.abs(breaks.elevations))
@@ -186,9 +183,7 @@ def _divide(a: list[Fraction], b: list[Fraction], p: list[Fraction], q: list[Fra
 # ---------------------------------------------------------------- where a ray goes in
 
 
-def _find_entries(
-    breaks: Breaks, heights: NDArray[np.float64], above: NDArray[np.bool_]
-) -> NDArray[np.float64]:
+def _find_entries(breaks: Breaks, heights: Float64Array, above: BoolArray) -> Float64Array:
     """Return for breaks above the ray the share of the way at which it goes in before them."""
     entries = np.full(len(heights), np.inf)
     rows = np.flatnonzero(above)
@@ -199,9 +194,7 @@ def _find_entries(
     return entries
 
 
-def _find_bulges(
-    breaks: Breaks, rays: Rays, heights: NDArray[np.float64], fall: float
-) -> NDArray[np.float64]:
+def _find_bulges(breaks: Breaks, rays: Rays, heights: Float64Array, fall: float) -> Float64Array:
     """Return where rays go into ground that bulges between two breaks, both of them below."""
     entries = np.full(len(heights), np.inf)
     same = (np.diff(breaks.segments) == 0) & (breaks.triangles[:-1] >= 0)

@@ -15,8 +15,7 @@ from .eyes import as_view, measure_distances
 from .rays import Rays, find_blocks, find_curvature
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int64Array, UInt8Array
     from ...tin import TIN
     from .eyes import View
 
@@ -43,7 +42,7 @@ def visible_vertices(
     radius: float | None = None,
     curvature: bool = False,
     refraction: float | None = None,
-) -> NDArray[np.bool_]:
+) -> BoolArray:
     """Tell which vertices of a surface are seen from a place.
 
     Parameters
@@ -85,7 +84,7 @@ def visible_vertices(
     return seal(see_vertices(tin, view))
 
 
-def see_vertices(tin: TIN, view: View) -> NDArray[np.bool_]:
+def see_vertices(tin: TIN, view: View) -> BoolArray:
     """Look at each vertex that a triangle has."""
     distances = measure_distances(tin.points, view.eye)
     wanted = np.zeros(len(tin.points), np.bool_)
@@ -93,7 +92,7 @@ def see_vertices(tin: TIN, view: View) -> NDArray[np.bool_]:
     wanted &= distances <= view.radius
     is_eye = distances == 0.0
     verdicts = judge_vertices(tin, view, wanted & ~is_eye)
-    seen: NDArray[np.bool_] = (verdicts == _SEEN) | (wanted & is_eye)
+    seen: BoolArray = (verdicts == _SEEN) | (wanted & is_eye)
     unknown = np.flatnonzero(verdicts == _UNKNOWN)
     unknown = unknown[np.argsort(distances[unknown], kind="stable")]
     seen[unknown] = look_one_by_one(tin, view, unknown)
@@ -101,12 +100,12 @@ def see_vertices(tin: TIN, view: View) -> NDArray[np.bool_]:
 
 
 def judge_vertices(
-    tin: TIN, view: View, wanted: NDArray[np.bool_], threads: int | None = None
-) -> NDArray[np.uint8]:
+    tin: TIN, view: View, wanted: BoolArray, threads: int | None = None
+) -> UInt8Array:
     """Return ``_SEEN``, ``_HIDDEN`` or ``_UNKNOWN`` for each vertex."""
     if not are_heights_exact(tin, view):
         return np.where(wanted, _UNKNOWN, _HIDDEN).astype(np.uint8)
-    verdicts: NDArray[np.uint8] = _kernel.find_seen_vertices(
+    verdicts: UInt8Array = _kernel.find_seen_vertices(
         tin.points,
         tin.triangles,
         tin.neighbors,
@@ -131,7 +130,7 @@ def are_heights_exact(tin: TIN, view: View) -> bool:
     return bool(((sizes == 0.0) | ((sizes >= smallest) & (sizes <= largest))).all())
 
 
-def look_one_by_one(tin: TIN, view: View, wanted: NDArray[np.int64]) -> NDArray[np.bool_]:
+def look_one_by_one(tin: TIN, view: View, wanted: Int64Array) -> BoolArray:
     """Look at some vertices, sorted by distance, along a line of sight each."""
     seen = np.zeros(len(wanted), np.bool_)
     begin = 0
@@ -146,7 +145,7 @@ def look_one_by_one(tin: TIN, view: View, wanted: NDArray[np.int64]) -> NDArray[
     return seen
 
 
-def _find_triangles_at(tin: TIN, eye: NDArray[np.float64]) -> NDArray[np.int64]:
+def _find_triangles_at(tin: TIN, eye: Float64Array) -> Int64Array:
     """Return the triangles that hold the eye, and perhaps some more."""
     is_near = np.ones(len(tin.triangles), np.bool_)
     for axis in (0, 1):

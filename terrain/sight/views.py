@@ -19,14 +19,13 @@ from .vertices import are_heights_exact, see_vertices
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int64Array
     from ...tin import TIN
     from ..relief.dissolving import Mesh
     from ..results import Features
     from .eyes import View
 
-    _Numbers = NDArray[np.int64]
+    _Numbers = Int64Array
 
 __all__ = ["viewshed"]
 
@@ -104,7 +103,7 @@ def viewshed(
     mesh, classes, owners = _judge_triangles(tin, view) if as_whole else _divide(tin, view)
     done(0.7)
     near = (measure_distances(tin.points, view.eye) <= view.radius)[tin.triangles]
-    is_near: NDArray[np.bool_] = np.logical_or.reduce(near, axis=1)
+    is_near: BoolArray = np.logical_or.reduce(near, axis=1)
     classes[~is_near[owners]] = -1
     found = _as_features(tin, mesh, classes, owners, notes)
     done.end()
@@ -126,13 +125,13 @@ def _divide(tin: TIN, view: View) -> tuple[Mesh, _Numbers, _Numbers]:
     return parts, np.where(parts.is_seen, 0, 2), parts.owners
 
 
-def _faces_away(tin: TIN, eye: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _faces_away(tin: TIN, eye: Float64Array) -> BoolArray:
     """Tell which triangles have the eye below their plane."""
     a, b, c = (tin.points[tin.triangles[:, k]] for k in range(3))
     normals = np.cross(b - a, c - a)
     sizes = np.abs(normals) * np.abs(eye - a)
     offsets = (normals * (eye - a)).sum(axis=1)
-    away: NDArray[np.bool_] = offsets < -_DOUBT * sizes.sum(axis=1)
+    away: BoolArray = offsets < -_DOUBT * sizes.sum(axis=1)
     return away
 
 
@@ -163,8 +162,8 @@ def _as_features(
     )
 
 
-def _measure_areas(mesh: Mesh) -> NDArray[np.float64]:
+def _measure_areas(mesh: Mesh) -> Float64Array:
     a, b, c = (mesh.points[mesh.triangles[:, k], :2] for k in range(3))
     one, other = b - a, c - a
-    measured: NDArray[np.float64] = 0.5 * (one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
+    measured: Float64Array = 0.5 * (one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
     return measured

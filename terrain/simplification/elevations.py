@@ -13,8 +13,7 @@ from ..results.gridded import locate_centers
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int64Array
     from ...crs import Unit
     from ..results import Raster
 
@@ -63,19 +62,19 @@ class Block(NamedTuple):
             slice(self.columns.start - column, self.columns.stop - column),
         )
 
-    def to_raster(self, cells: NDArray[np.int64], width: int) -> NDArray[np.int64]:
+    def to_raster(self, cells: Int64Array, width: int) -> Int64Array:
         """Return cells of the block as cells of a raster with so many columns."""
         row, column = np.divmod(cells, self.shape[1])
-        found: NDArray[np.int64] = (row + self.rows.start) * width + column + self.columns.start
+        found: Int64Array = (row + self.rows.start) * width + column + self.columns.start
         return found
 
-    def find(self, cells: NDArray[np.int64], width: int) -> NDArray[np.int64]:
+    def find(self, cells: Int64Array, width: int) -> Int64Array:
         """Return the cells of a raster that lie in the block, as cells of the block."""
         row, column = np.divmod(cells, width)
         row, column = row - self.rows.start, column - self.columns.start
         height, across = self.shape
         inside = (row >= 0) & (row < height) & (column >= 0) & (column < across)
-        found: NDArray[np.int64] = (row * across + column)[inside]
+        found: Int64Array = (row * across + column)[inside]
         return found
 
 
@@ -94,7 +93,7 @@ class Elevations:
     def __init__(self, raster: Raster) -> None:
         name = _choose_band(raster)
         self._band, self._nodata = raster.bands[name], raster.nodata
-        self._last: tuple[Block, NDArray[np.float64]] | None = None
+        self._last: tuple[Block, Float64Array] | None = None
         unit = raster.units.get(name)
         self.unit: Unit | str | None = unit
         self.shape = (int(raster.shape[0]), int(raster.shape[1]))
@@ -106,13 +105,13 @@ class Elevations:
                 "rows and columns are the least."
             )
 
-    def read(self, block: Block) -> NDArray[np.float64]:
+    def read(self, block: Block) -> Float64Array:
         """Return the elevations of a block, not to be changed; the last one is kept."""
         if self._last is None or self._last[0] != block:
             self._last = block, seal(self._read(block))
         return self._last[1]
 
-    def _read(self, block: Block) -> NDArray[np.float64]:
+    def _read(self, block: Block) -> Float64Array:
         band = np.asarray(self._band[block.rows, block.columns])
         z = np.array(band, np.float64)
         is_finite = np.isfinite(z)
@@ -122,7 +121,7 @@ class Elevations:
             z[band == self._nodata] = np.nan
         return z
 
-    def is_rectangle(self, rings: Sequence[NDArray[np.int64]]) -> bool:
+    def is_rectangle(self, rings: Sequence[Int64Array]) -> bool:
         """Whether rings are the outer cells of the raster."""
         if len(rings) != 1:
             return False
@@ -131,7 +130,7 @@ class Elevations:
         is_outer |= (column == 0) | (column == self.shape[1] - 1)
         return bool(is_outer.all()) and len(row) == 2 * sum(self.shape) - 4
 
-    def points(self, cells: NDArray[np.int64], z: NDArray[np.float64]) -> NDArray[np.float64]:
+    def points(self, cells: Int64Array, z: Float64Array) -> Float64Array:
         """Return the points of cells."""
         row, column = np.divmod(cells, self.shape[1])
         return np.column_stack([self.x[column], self.y[row], z])
@@ -146,15 +145,15 @@ class Heights:
         Ascending, each once.
     """
 
-    def __init__(self, cells: NDArray[np.int64], z: NDArray[np.float64]) -> None:
+    def __init__(self, cells: Int64Array, z: Float64Array) -> None:
         self.cells, first = np.unique(cells, return_index=True)
         self._z = z[first]
 
-    def of(self, cells: NDArray[np.int64]) -> NDArray[np.float64]:
+    def of(self, cells: Int64Array) -> Float64Array:
         """Return the elevations of cells, which are some of them."""
         return self._z[np.searchsorted(self.cells, cells)]
 
-    def join(self, cells: NDArray[np.int64], z: NDArray[np.float64]) -> Heights:
+    def join(self, cells: Int64Array, z: Float64Array) -> Heights:
         """Return the elevations of these cells and others."""
         return Heights(np.append(self.cells, cells), np.append(self._z, z))
 

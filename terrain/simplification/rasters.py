@@ -29,9 +29,10 @@ from .elevations import Block, Elevations, Heights, cut_blocks
 from .seams import Frame, find_frame, trace_block
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
     from ..._progress import Tell
+    from ...arrays import BoolArray, Float64Array, Int64Array
     from ...tin import TIN
     from ..results import Raster
 
@@ -50,18 +51,18 @@ _CHOOSING = 0.75
 class _Chosen(NamedTuple):
     """The cells of a block that are left, how many were removed again, and those kept."""
 
-    cells: NDArray[np.int64]
-    z: NDArray[np.float64]
+    cells: Int64Array
+    z: Float64Array
     needless: int
-    kept: NDArray[np.int64]
+    kept: Int64Array
 
 
 class _Measured(NamedTuple):
     """Cells, their elevations, and how far the surface is from these."""
 
-    cells: NDArray[np.int64]
-    z: NDArray[np.float64]
-    error: NDArray[np.float64]
+    cells: Int64Array
+    z: Float64Array
+    error: Float64Array
 
 
 def simplify_raster(
@@ -110,7 +111,7 @@ def simplify_raster(
     return simple
 
 
-def _as_cells(keep: ArrayLike, count: int) -> NDArray[np.int64]:
+def _as_cells(keep: ArrayLike, count: int) -> Int64Array:
     """Return the cells to be kept."""
     cells = np.asarray(keep)
     if cells.size == 0:
@@ -142,7 +143,7 @@ class _Work:
         goal: Goal,
         threads: int,
         blocks: list[Block],
-        kept: NDArray[np.int64],
+        kept: Int64Array,
     ) -> None:
         self.elevations, self.goal, self.threads = elevations, goal, threads
         self.blocks, self.kept = blocks, kept
@@ -153,7 +154,7 @@ class _Work:
 
     # ------------------------------------------------------------- which cells are left
 
-    def choose_cells(self, progress: Tell) -> tuple[NDArray[np.int64], int]:
+    def choose_cells(self, progress: Tell) -> tuple[Int64Array, int]:
         """Return the cells that are left, and how many were removed again."""
         chosen = []
         for block in self._simplify_blocks():
@@ -179,7 +180,7 @@ class _Work:
                 parts = [self.elevations.read(block) for block in blocks]
                 yield from pool.map(self._simplify_block, blocks, parts)
 
-    def _simplify_block(self, block: Block, z: NDArray[np.float64]) -> _Chosen:
+    def _simplify_block(self, block: Block, z: Float64Array) -> _Chosen:
         valid = np.isfinite(z)
         is_used = valid if valid.all() else find_surface(valid)
         width = self.elevations.shape[1]
@@ -217,9 +218,9 @@ class _Work:
     def _build_skeleton(
         self,
         block: Block,
-        z: NDArray[np.float64],
-        valid: NDArray[np.bool_],
-        required: NDArray[np.int64],
+        z: Float64Array,
+        valid: BoolArray,
+        required: Int64Array,
     ) -> TIN:
         """Triangulate what must be left of a block."""
         cells = block.to_raster(required, self.elevations.shape[1])
@@ -229,7 +230,7 @@ class _Work:
 
     # --------------------------------------------------------------------- the result
 
-    def build(self, cells: NDArray[np.int64]) -> TIN:
+    def build(self, cells: Int64Array) -> TIN:
         """Triangulate cells within the boundary."""
         points = self.elevations.points(cells, self._heights.of(cells))
         self._cells = cells
@@ -258,7 +259,7 @@ class _Work:
         worst = self._choose_worst(tin, _Measured(*map(np.concatenate, zip(*far, strict=True))))
         return Errors(worst, largest, float(np.sqrt(squares / max(count, 1))))
 
-    def _choose_worst(self, tin: TIN, far: _Measured) -> NDArray[np.int64]:
+    def _choose_worst(self, tin: TIN, far: _Measured) -> Int64Array:
         """Return the cell of each triangle that is farthest from it, of those too far."""
         if len(far.cells) == 0:
             return far.cells
@@ -276,9 +277,7 @@ class _Meter:
     eastings and northings. Elsewhere the surface is interpolated at each centre.
     """
 
-    def __init__(
-        self, elevations: Elevations, tin: TIN, cells: NDArray[np.int64], threads: int
-    ) -> None:
+    def __init__(self, elevations: Elevations, tin: TIN, cells: Int64Array, threads: int) -> None:
         self.elevations, self.tin, self.threads = elevations, tin, threads
         row, column = np.divmod(cells, elevations.shape[1])
         self._places = np.column_stack([column, -row])
@@ -286,7 +285,7 @@ class _Meter:
         if not (_is_even(elevations.x) and _is_even(elevations.y)):
             self._drawn = _kernel.GriddedSurface(tin.points, tin.triangles)
 
-    def measure(self, wide: Block, own: Block) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def measure(self, wide: Block, own: Block) -> tuple[Float64Array, Float64Array]:
         """Return elevations and errors of cells, within a block that holds their neighbours.
 
         Elevations are NaN where there is no surface, errors where it was not built.
@@ -298,7 +297,7 @@ class _Meter:
         rows, columns = own.within(wide)
         return z[rows, columns], self._measure(wide, z)[rows, columns]
 
-    def _measure(self, wide: Block, z: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _measure(self, wide: Block, z: Float64Array) -> Float64Array:
         if self._drawn is None:
             south_west = [-wide.columns.start, wide.rows.stop - 1]
             error = _kernel.measure_cells(
@@ -314,15 +313,15 @@ class _Meter:
         return np.abs(np.asarray(values) - z)
 
 
-def _is_even(centres: NDArray[np.float64]) -> bool:
+def _is_even(centres: Float64Array) -> bool:
     steps = np.diff(centres)
     return bool((steps == steps[0]).all())
 
 
 def _triangulate(
-    points: NDArray[np.float64],
-    cells: NDArray[np.int64],
-    rings: list[NDArray[np.int64]],
+    points: Float64Array,
+    cells: Int64Array,
+    rings: list[Int64Array],
     threads: int,
 ) -> TIN:
     """Triangulate the points of cells within rings, of which the cells given are followed."""
@@ -334,7 +333,7 @@ def _triangulate(
     return triangulate(Survey(points=points, extent=extent), threads=threads)
 
 
-def _turn_over(cells: NDArray[np.int64], shape: tuple[int, int]) -> NDArray[np.int64]:
+def _turn_over(cells: Int64Array, shape: tuple[int, int]) -> Int64Array:
     """Return the numbers of cells from the southernmost row on; of such, those from the north."""
     row, column = np.divmod(cells, shape[1])
     return (shape[0] - 1 - row) * shape[1] + column

@@ -18,8 +18,7 @@ from .elevations import Heights
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int64Array
     from ...tin.meshing.simplification import Goal
     from .elevations import Block, Elevations
 
@@ -39,12 +38,12 @@ class Frame(NamedTuple):
         By how much elevations may differ because they are rounded.
     """
 
-    rings: list[NDArray[np.int64]]
-    required: NDArray[np.int64]
+    rings: list[Int64Array]
+    required: Int64Array
     rounding: float
 
 
-def trace_block(valid: NDArray[np.bool_]) -> list[NDArray[np.int64]]:
+def trace_block(valid: BoolArray) -> list[Int64Array]:
     """Return the rings around the cells of a block that have elevations, as cells of the block."""
     if not valid.all():
         return list(trace_cycles(*find_border(valid)))
@@ -114,25 +113,21 @@ def _join(elevations: Elevations, parts: Frame, heights: Heights, goal: Goal) ->
     return Frame(border, required, parts.rounding)
 
 
-def _find_corners(
-    elevations: Elevations, rings: list[NDArray[np.int64]]
-) -> list[NDArray[np.int64]]:
+def _find_corners(elevations: Elevations, rings: list[Int64Array]) -> list[Int64Array]:
     """Return the corners of rings, and cells that they pass twice."""
     found = [ring[~are_straight(elevations.points(ring, np.zeros(len(ring))))] for ring in rings]
     cells, visits = np.unique(np.concatenate(rings), return_counts=True)
     return [*found, cells[visits > 1]]
 
 
-def _find_shared(start: NDArray[np.int64], end: NDArray[np.int64]) -> NDArray[np.bool_]:
+def _find_shared(start: Int64Array, end: Int64Array) -> BoolArray:
     """Tell which edges another block has in the other direction."""
     pairs = np.column_stack([np.minimum(start, end), np.maximum(start, end)])
     _, place, count = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
     return np.asarray(count[place.ravel()] > 1)
 
 
-def _list_chains(
-    edges: NDArray[np.int64], required: NDArray[np.int64], width: int
-) -> Iterator[NDArray[np.int64]]:
+def _list_chains(edges: Int64Array, required: Int64Array, width: int) -> Iterator[Int64Array]:
     """Yield the cells along seams, from one that is required to the next."""
     for step in (1, width):
         cells = np.unique(edges[edges[:, 1] - edges[:, 0] == step, 0])
@@ -142,7 +137,7 @@ def _list_chains(
             yield np.append(run, run[-1:] + step)
 
 
-def choose_vertices(z: NDArray[np.float64], limit: float) -> NDArray[np.int64]:
+def choose_vertices(z: Float64Array, limit: float) -> Int64Array:
     """Return the places between the ends of a profile that keep all within a limit.
 
     By halving at the farthest (D. H. Douglas, T. K. Peucker, "Algorithms for the reduction of the

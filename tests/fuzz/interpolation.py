@@ -6,16 +6,14 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from support import oracles
 from support.natural_oracle import laplace_weights, sibson_weights
 
 import tinsmith as ts
+from tinsmith.arrays import Float64Array
 
 from .campaign import Campaign, Case
 from .coordinates import points
-
-Floats = NDArray[np.float64]
 
 METHODS = ("linear", "nearest", "laplace", "natural", "c1")
 _MOST_PLACES = 6
@@ -73,7 +71,7 @@ def build(case: Case) -> Any:
         return None
 
 
-def places(tin: Any, case: Case) -> Floats:
+def places(tin: Any, case: Case) -> Float64Array:
     """Places within triangles, on edges, next to them, and outside."""
     found = []
     for shares, kind in zip(np.array(case["shares"]), case["kinds"], strict=True):
@@ -95,7 +93,7 @@ def places(tin: Any, case: Case) -> Floats:
     return xy[(np.abs(xy) < large).all(axis=1)]
 
 
-def require_bounds(tin: Any, xy: Floats) -> None:
+def require_bounds(tin: Any, xy: Float64Array) -> None:
     """An elevation inside and none outside; between those of the vertices but for C1."""
     inside = tin.locate(xy) >= 0
     low, high = tin.points[:, 2].min(), tin.points[:, 2].max()
@@ -154,7 +152,7 @@ def require_line(tin: Any) -> None:
         assert (off <= _ROUNDING * spread).all(), f"{method} on a line: {off}"
 
 
-def elevation_on(start: Floats, end: Floats, place: Floats) -> float:
+def elevation_on(start: Float64Array, end: Float64Array, place: Float64Array) -> float:
     """Return the elevation of a segment at a place, NaN beside it."""
     a, b, p = (oracles.place(at) for at in (start, end, place))
     if oracles.orientation(a, b, p) != 0:
@@ -164,7 +162,7 @@ def elevation_on(start: Floats, end: Floats, place: Floats) -> float:
     return float(Fraction(start[2]) + share * (Fraction(end[2]) - Fraction(start[2])))
 
 
-def inner(tin: Any, xy: Floats) -> list[list[float]]:
+def inner(tin: Any, xy: Float64Array) -> list[list[float]]:
     """Return the places strictly inside the hull, at no vertex."""
     hull = [oracles.place(tin.points[v]) for v in tin.hull]
     sides = list(zip(hull, [*hull[1:], hull[0]], strict=True))

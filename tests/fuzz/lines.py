@@ -7,14 +7,13 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 import tinsmith as ts
+from tinsmith.arrays import Float64Array
 
 from .campaign import Campaign, Case
 from .coordinates import KINDS, coordinates
 
-Floats = NDArray[np.float64]
 PLAIN_KINDS = ("lattice", "utm_centimetres", "fractions", "thirds", "clustered")
 
 
@@ -42,7 +41,7 @@ def generate(rng: np.random.Generator) -> Case:
     return case | _options(rng, pool)
 
 
-def _options(rng: np.random.Generator, pool: Floats) -> Case:
+def _options(rng: np.random.Generator, pool: Float64Array) -> Case:
     extent = float(np.ptp(pool, axis=0).max()) or 1.0
     return {
         "snap": float(rng.choice([0.0, 0.0, 0.0, 1e-15, 1e-3, 0.05])) * extent,
@@ -54,17 +53,17 @@ def _options(rng: np.random.Generator, pool: Floats) -> Case:
     }
 
 
-def _places(rng: np.random.Generator, pool: Floats, n: int, kind: str) -> Floats:
+def _places(rng: np.random.Generator, pool: Float64Array, n: int, kind: str) -> Float64Array:
     fresh = coordinates(rng, n, kind) if n else np.empty((0, 2))
     return np.where(rng.random((n, 1)) < 0.5, pool[rng.integers(0, len(pool), n)], fresh)
 
 
-def _with_elevations(rng: np.random.Generator, xy: Floats) -> list[list[float]]:
+def _with_elevations(rng: np.random.Generator, xy: Float64Array) -> list[list[float]]:
     rows: list[list[float]] = np.column_stack([xy, rng.integers(-5, 6, len(xy))]).tolist()
     return rows
 
 
-def _line(rng: np.random.Generator, pool: Floats, kind: str) -> Case:
+def _line(rng: np.random.Generator, pool: Float64Array, kind: str) -> Case:
     xy = _places(rng, pool, int(rng.integers(2, 6)), kind)
     if rng.random() < 0.2:
         xy = np.concatenate([xy, xy[:1]])
@@ -76,7 +75,7 @@ def _line(rng: np.random.Generator, pool: Floats, kind: str) -> Case:
     }
 
 
-def _ring(rng: np.random.Generator, pool: Floats, kind: str) -> list[list[float]]:
+def _ring(rng: np.random.Generator, pool: Float64Array, kind: str) -> list[list[float]]:
     """Return corners by their direction from the middle, so that most rings are simple."""
     xy = _places(rng, pool, int(rng.integers(3, 8)), kind)
     away = xy - xy.mean(axis=0)
@@ -85,7 +84,7 @@ def _ring(rng: np.random.Generator, pool: Floats, kind: str) -> list[list[float]
 
 
 def _rings(
-    rng: np.random.Generator, pool: Floats, kind: str, share: float, *, can_have_heights: bool
+    rng: np.random.Generator, pool: Float64Array, kind: str, share: float, *, can_have_heights: bool
 ) -> list[list[list[float]]]:
     count = int(rng.random() < share) * int(rng.integers(1, 3))
     rings = [_ring(rng, pool, kind) for _ in range(count)]
@@ -135,11 +134,11 @@ def build(case: Case, **more: Any) -> ts.TIN:
     )
 
 
-def _rows(case: Case) -> Floats:
+def _rows(case: Case) -> Float64Array:
     return np.array(case["points"], np.float64).reshape(-1, 3)
 
 
-def _arrays(rings: list[Any]) -> list[Floats]:
+def _arrays(rings: list[Any]) -> list[Float64Array]:
     return [np.array(ring, np.float64) for ring in rings]
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import tinsmith as ts
+from tinsmith.arrays import Float64Array
 
 from .campaign import Case
 from .coordinates import points
@@ -41,7 +41,7 @@ def triangulate(case: Case) -> Any:
     return tin if ts.check(tin).ok else "not ours: unsound before"
 
 
-def line(rng: np.random.Generator, xy: NDArray[np.float64]) -> list[list[float]]:
+def line(rng: np.random.Generator, xy: Float64Array) -> list[list[float]]:
     """Return two or three vertices of the points, or near them, with elevations."""
     rows = xy[rng.integers(0, len(xy), int(rng.integers(2, 4)))]
     if rng.random() < 0.3:
@@ -49,7 +49,7 @@ def line(rng: np.random.Generator, xy: NDArray[np.float64]) -> list[list[float]]
     return [[*row, float(rng.integers(0, 9))] for row in rows.tolist()]
 
 
-def ring(rng: np.random.Generator, xy: NDArray[np.float64]) -> list[list[float]]:
+def ring(rng: np.random.Generator, xy: Float64Array) -> list[list[float]]:
     """Return three to five vertices of the points or within their bounds."""
     low, high = xy.min(axis=0), xy.max(axis=0)
     rows = low + rng.random((int(rng.integers(3, 6)), 2)) * (high - low)

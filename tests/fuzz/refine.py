@@ -6,9 +6,9 @@ import warnings
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import tinsmith as ts
+from tinsmith.arrays import Float64Array
 
 from .campaign import Campaign, Case
 from .linework import surface, triangulate
@@ -66,7 +66,7 @@ def require_goal(
     assert not (told & well).any(), "a good triangle is told as bad"
 
 
-def rounding_of_angles(mesh: Any, shapes: Any) -> NDArray[np.float64]:
+def rounding_of_angles(mesh: Any, shapes: Any) -> Float64Array:
     """Return how much the rounding of coordinates may turn the angles, degrees."""
     rounding = np.spacing(np.abs(mesh.points[:, :2]).max())
     shortest = shapes.edge_lengths.min(axis=1)

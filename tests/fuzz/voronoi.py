@@ -8,10 +8,10 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from shapely.geometry import Point, Polygon
 
 import tinsmith as ts
+from tinsmith.arrays import Float64Array
 
 from .campaign import Campaign, Case
 from .coordinates import points
@@ -29,7 +29,7 @@ def generate(rng: np.random.Generator) -> Case:
     return case
 
 
-def ring_about(rng: np.random.Generator, xy: NDArray[np.float64]) -> list[list[float]]:
+def ring_about(rng: np.random.Generator, xy: Float64Array) -> list[list[float]]:
     """Return a star of corners about the middle of the points, most of them convex."""
     low, high = xy.min(axis=0), xy.max(axis=0)
     angles = np.sort(rng.random(int(rng.integers(3, 9)))) * 2 * np.pi
@@ -81,7 +81,7 @@ def require_tiling(diagram: Any) -> None:
         assert on_wall or walks[b, a] == times, f"the side from {a} to {b} is not shared"
 
 
-def require_truth(diagram: Any, xy: NDArray[np.float64]) -> None:
+def require_truth(diagram: Any, xy: Float64Array) -> None:
     """Each cell is the exact one but for roundings, and holds its vertex."""
     exact = exact_cells(list(map(exactly, xy.tolist())), diagram.boundary)
     rounding = float(rounding_of(diagram))
@@ -110,7 +110,7 @@ def rounding_of(diagram: Any) -> Fraction:
     return 8 * Fraction(float(np.spacing(np.abs(diagram.boundary).max())))
 
 
-def length_of(ring: NDArray[np.float64]) -> float:
+def length_of(ring: Float64Array) -> float:
     return float(np.hypot(*(np.roll(ring, -1, axis=0) - ring).T).sum())
 
 
@@ -123,7 +123,7 @@ def exact_area(ring: list[Place]) -> Fraction:
     return doubled / 2
 
 
-def exact_cells(places: list[Place], boundary: NDArray[np.float64]) -> list[list[Place]]:
+def exact_cells(places: list[Place], boundary: Float64Array) -> list[list[Place]]:
     """Cut the boundary by the bisectors with all other places."""
     cells = []
     for p in places:

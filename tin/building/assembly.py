@@ -21,9 +21,8 @@ from .constrained import ConstrainedTriangulation, triangulate_constrained
 from .duplicates import merge_rows
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from ..._progress import Tell
+    from ...arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
     from .inputs import BuildInputs
 
 __all__ = ["Built", "assemble"]
@@ -46,11 +45,11 @@ class Built(NamedTuple):
     """
 
     surface: Surface
-    vertex_of: NDArray[np.int32]
+    vertex_of: Int32Array
     lines: Lines
     report: Report
-    line_xy: NDArray[np.float64]
-    line_vertices: NDArray[np.int32]
+    line_xy: Float64Array
+    line_vertices: Int32Array
 
 
 def assemble(inputs: BuildInputs, progress: Progress | None = None) -> Built:
@@ -84,8 +83,8 @@ def _assemble_plain(inputs: BuildInputs, progress: Progress) -> Built:
     )
 
 
-def _choose_kept(xyz: NDArray[np.float64], kept_row: NDArray[np.int32]) -> NDArray[np.float64]:
-    kept: NDArray[np.float64] = xyz[kept_row == np.arange(len(xyz), dtype=np.int32)]
+def _choose_kept(xyz: Float64Array, kept_row: Int32Array) -> Float64Array:
+    kept: Float64Array = xyz[kept_row == np.arange(len(xyz), dtype=np.int32)]
     return kept
 
 
@@ -148,7 +147,7 @@ def _with_lines(inputs: BuildInputs, progress: Progress) -> Built:
 def _triangulate_with_lines(
     inputs: BuildInputs,
     ground: _Ground,
-    rows: NDArray[np.int64],
+    rows: Int64Array,
     progress: Tell | None = None,
 ) -> tuple[ConstrainedTriangulation, Pslg]:
     made = triangulate_constrained(
@@ -163,7 +162,7 @@ def _triangulate_with_lines(
 
 
 def _gather_pslg(
-    inputs: BuildInputs, ground: _Ground, made: ConstrainedTriangulation, rows: NDArray[np.int64]
+    inputs: BuildInputs, ground: _Ground, made: ConstrainedTriangulation, rows: Int64Array
 ) -> Pslg:
     lines = ground.lines
     vertex_of = np.full(len(inputs.points), -1, np.int32)
@@ -185,7 +184,7 @@ def _gather_pslg(
     )
 
 
-def _find_groups(inputs: BuildInputs, lines: LineSet) -> NDArray[np.int64]:
+def _find_groups(inputs: BuildInputs, lines: LineSet) -> Int64Array:
     """Return the group of each line among the rings; that of other lines says nothing."""
     of_ring = [
         *([BOUNDARY] * len(inputs.boundary)),
@@ -202,13 +201,13 @@ def _find_groups(inputs: BuildInputs, lines: LineSet) -> NDArray[np.int64]:
     return np.array(found, np.int64)
 
 
-def _renumber(vertices: NDArray[np.int32], number_of: NDArray[np.int32]) -> NDArray[np.int32]:
+def _renumber(vertices: Int32Array, number_of: Int32Array) -> Int32Array:
     """Renumber vertices of which some are -1, for none."""
-    found: NDArray[np.int32] = np.append(number_of, np.int32(-1))[vertices]
+    found: Int32Array = np.append(number_of, np.int32(-1))[vertices]
     return found
 
 
-def _find_erased(inputs: BuildInputs) -> NDArray[np.bool_]:
+def _find_erased(inputs: BuildInputs) -> BoolArray:
     """Tell which rows are left out before anything is built: masked or erased ones."""
     is_erased = np.zeros(len(inputs.points), np.bool_)
     if inputs.is_masked is not None:
@@ -218,7 +217,7 @@ def _find_erased(inputs: BuildInputs) -> NDArray[np.bool_]:
     return is_erased
 
 
-def _drape_lines(rows: NDArray[np.int64], inputs: BuildInputs, progress: Tell | None) -> _Ground:
+def _drape_lines(rows: Int64Array, inputs: BuildInputs, progress: Tell | None) -> _Ground:
     """Give all lines elevations: draped ones from the surface of everything else."""
     lines = inputs.lines
     is_draped = lines.is_draped
@@ -244,9 +243,9 @@ def _drape_lines(rows: NDArray[np.int64], inputs: BuildInputs, progress: Tell | 
 def _gather_account(
     inputs: BuildInputs,
     made: ConstrainedTriangulation,
-    number_of: NDArray[np.int32],
-    is_erased: NDArray[np.bool_],
-    vertex_of: NDArray[np.int32],
+    number_of: Int32Array,
+    is_erased: BoolArray,
+    vertex_of: Int32Array,
     ground: _Ground,
 ) -> dict[str, Any]:
     """Return the report's fields about merged rows, left-out rows and lines that cross."""
@@ -266,7 +265,7 @@ def _gather_account(
     }
 
 
-def _renumber_crossings(made: ConstrainedTriangulation, final: NDArray[np.int32]) -> Crossings:
+def _renumber_crossings(made: ConstrainedTriangulation, final: Int32Array) -> Crossings:
     """Return the crossings by the numbers of the TIN, the earlier line in front."""
     found = made.noded.crossings
     order = np.argsort(found.lines, axis=1, kind="stable")
@@ -277,7 +276,7 @@ def _renumber_crossings(made: ConstrainedTriangulation, final: NDArray[np.int32]
     )
 
 
-def _drop_lost_merges(account: dict[str, Any], final: NDArray[np.int32]) -> dict[str, Any]:
+def _drop_lost_merges(account: dict[str, Any], final: Int32Array) -> dict[str, Any]:
     """Return the merges at vertices that are left, numbered as in the TIN."""
     if not account:
         return account
@@ -295,10 +294,10 @@ def _drop_lost_merges(account: dict[str, Any], final: NDArray[np.int32]) -> dict
 
 def _find_reasons(
     inputs: BuildInputs,
-    rows: NDArray[np.int32],
-    is_erased: NDArray[np.bool_],
+    rows: Int32Array,
+    is_erased: BoolArray,
     made: ConstrainedTriangulation,
-) -> NDArray[np.int8]:
+) -> Int8Array:
     """Return why each row was left out, as indices into ``LEFT_OUT``."""
     xy = inputs.points[rows, :2]
     why = np.full(len(rows), LEFT_OUT.index("trimmed"), np.int8)

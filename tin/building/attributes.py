@@ -17,7 +17,7 @@ from ..types import seal
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
+    from ...arrays import AnyArray, Int32Array, Int64Array
 
 __all__ = [
     "Attributes",
@@ -32,7 +32,7 @@ _EXACT = 2**53
 """Whole numbers up to here are exact as floats."""
 
 
-class Attributes(Mapping[str, "NDArray[Any]"]):
+class Attributes(Mapping[str, "AnyArray"]):
     """Columns of some rows of a table; each is taken when it is asked for.
 
     Parameters
@@ -43,12 +43,12 @@ class Attributes(Mapping[str, "NDArray[Any]"]):
     """
 
     def __init__(
-        self, columns: Mapping[str, NDArray[Any]], find_rows: Callable[[], NDArray[np.int64]]
+        self, columns: Mapping[str, AnyArray], find_rows: Callable[[], Int64Array]
     ) -> None:
         self._columns = columns
         self._find_rows = find_rows
 
-    def __getitem__(self, name: str) -> NDArray[Any]:
+    def __getitem__(self, name: str) -> AnyArray:
         return seal(_take(self._columns[name], self._find_rows()))
 
     def __iter__(self) -> Iterator[str]:
@@ -61,7 +61,7 @@ class Attributes(Mapping[str, "NDArray[Any]"]):
         return f"<Attributes: {', '.join(self) or 'none'}>"
 
 
-def _take(column: NDArray[Any], rows: NDArray[np.int64]) -> NDArray[Any]:
+def _take(column: AnyArray, rows: Int64Array) -> AnyArray:
     """Return values of rows; where a row is missing or beyond the column, there is none."""
     is_missing = (rows < 0) | (rows >= len(column))
     if not is_missing.any():
@@ -82,7 +82,7 @@ def _take(column: NDArray[Any], rows: NDArray[np.int64]) -> NDArray[Any]:
 _EMPTY = {"U": "", "S": b""}
 
 
-def find_first_rows(vertex_of: NDArray[np.int32], n_vertices: int) -> NDArray[np.int64]:
+def find_first_rows(vertex_of: Int32Array, n_vertices: int) -> Int64Array:
     """Return the first row that each vertex stands for, -1 for none.
 
     Examples
@@ -97,8 +97,8 @@ def find_first_rows(vertex_of: NDArray[np.int32], n_vertices: int) -> NDArray[np
 
 
 def join_columns(
-    tables: Sequence[Mapping[str, NDArray[Any]]], counts: Sequence[int]
-) -> dict[str, NDArray[Any]]:
+    tables: Sequence[Mapping[str, AnyArray]], counts: Sequence[int]
+) -> dict[str, AnyArray]:
     """Return the columns of several tables, one behind the other; what one lacks is missing.
 
     Examples
@@ -111,7 +111,7 @@ def join_columns(
     return {name: _join([one.get(name) for one in tables], counts) for name in names}
 
 
-def _join(columns: Sequence[NDArray[Any] | None], counts: Sequence[int]) -> NDArray[Any]:
+def _join(columns: Sequence[AnyArray | None], counts: Sequence[int]) -> AnyArray:
     there = [(one, n) for one, n in zip(columns, counts, strict=True) if one is not None and n]
     kinds = {one.dtype.kind for one, _ in there}
     if len(kinds) > 1 and not (kinds <= {"i", "f"} and _are_exact(one for one, _ in there)):
@@ -127,13 +127,13 @@ def _join(columns: Sequence[NDArray[Any] | None], counts: Sequence[int]) -> NDAr
     return _take(together, np.concatenate(rows))
 
 
-def _are_exact(columns: Iterable[NDArray[Any]]) -> bool:
+def _are_exact(columns: Iterable[AnyArray]) -> bool:
     """Whether whole numbers of columns stay what they are among floats."""
     whole = (one.astype(float) for one in columns if one.dtype.kind == "i")
     return all((np.abs(one) < _EXACT).all() for one in whole)
 
 
-def as_row_attributes(given: Any, n_rows: int) -> dict[str, NDArray[Any]]:
+def as_row_attributes(given: Any, n_rows: int) -> dict[str, AnyArray]:
     """Return columns of the first rows of a TIN as read-only views.
 
     Raises
@@ -149,7 +149,7 @@ def as_row_attributes(given: Any, n_rows: int) -> dict[str, NDArray[Any]]:
     return {name: seal(column.view()) for name, column in columns.items()}
 
 
-def as_columns(attributes: Any, shape: tuple[int, ...] | None) -> dict[str, NDArray[Any]]:
+def as_columns(attributes: Any, shape: tuple[int, ...] | None) -> dict[str, AnyArray]:
     """Return columns as arrays of one value a point; those of a data frame too.
 
     Parameters
@@ -164,7 +164,7 @@ def as_columns(attributes: Any, shape: tuple[int, ...] | None) -> dict[str, NDAr
     return {name: _as_column(name, given[name], shape) for name in given}
 
 
-def _as_column(name: str, values: Any, shape: tuple[int, ...] | None) -> NDArray[Any]:
+def _as_column(name: str, values: Any, shape: tuple[int, ...] | None) -> AnyArray:
     try:
         column = _as_array(values)
     except Exception:
@@ -174,7 +174,7 @@ def _as_column(name: str, values: Any, shape: tuple[int, ...] | None) -> NDArray
     return column
 
 
-def _as_array(values: Any) -> NDArray[Any]:
+def _as_array(values: Any) -> AnyArray:
     """Return values as an array that holds them as they are: no number as text, none rounded."""
     if isinstance(values, np.ma.MaskedArray):
         return _fill_masked(values)
@@ -189,7 +189,7 @@ def _as_array(values: Any) -> NDArray[Any]:
     return mixed
 
 
-def _fill_masked(values: np.ma.MaskedArray[Any, Any]) -> NDArray[Any]:
+def _fill_masked(values: np.ma.MaskedArray[Any, Any]) -> AnyArray:
     """Return values with NaN, or None where the others are no floats, for those masked."""
     if not np.ma.is_masked(values):
         return np.asarray(values.data)

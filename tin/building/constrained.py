@@ -24,9 +24,8 @@ from ..validation.points import require_three
 from .duplicates import merge_rows
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from ..._progress import Tell
+    from ...arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
 
 __all__ = ["ConstrainedTriangulation", "CrossingPolicy", "LineOptions", "triangulate_constrained"]
 
@@ -63,18 +62,18 @@ class ConstrainedTriangulation(NamedTuple):
     """
 
     surface: Surface
-    vertex_of: NDArray[np.int32]
-    line_vertices: NDArray[np.int32]
+    vertex_of: Int32Array
+    line_vertices: Int32Array
     polylines: Polylines
     merges: dict[str, Any]
     noded: Noded
     overruled: Overruled
-    number_of: NDArray[np.int32]
+    number_of: Int32Array
 
 
 class _Merged(NamedTuple):
-    points: NDArray[np.float64]
-    vertex_of: NDArray[np.int32]
+    points: Float64Array
+    vertex_of: Int32Array
     polylines: Polylines
     growth: _kernel.Growth
     merges: dict[str, Any]
@@ -82,8 +81,8 @@ class _Merged(NamedTuple):
 
 
 def triangulate_constrained(
-    points: NDArray[np.float64],
-    rows: NDArray[np.int64],
+    points: Float64Array,
+    rows: Int64Array,
     lines: LineSet,
     options: LineOptions,
     *,
@@ -168,8 +167,8 @@ def _node(merged: _Merged, lines: LineSet, options: LineOptions) -> Noded:
 
 
 def _merge(
-    xyz: NDArray[np.float64],
-    rows_of: NDArray[np.int64],
+    xyz: Float64Array,
+    rows_of: Int64Array,
     lines: LineSet,
     options: LineOptions,
     progress: Tell | None,
@@ -194,10 +193,10 @@ def _merge(
 
 
 def _merge_points(
-    xyz: NDArray[np.float64],
-    rows_of: NDArray[np.int64],
-    vertex_of: NDArray[np.int32],
-    points: NDArray[np.float64],
+    xyz: Float64Array,
+    rows_of: Int64Array,
+    vertex_of: Int32Array,
+    points: Float64Array,
     policy: DuplicatePolicy,
 ) -> dict[str, Any]:
     """Give vertices the elevations of their points; return the account of merged rows."""
@@ -219,7 +218,7 @@ def _merge_points(
 
 
 def _set_line_elevations(
-    points: NDArray[np.float64], vertex_of: NDArray[np.int32], n: int, lines: LineSet
+    points: Float64Array, vertex_of: Int32Array, n: int, lines: LineSet
 ) -> Overruled:
     """Give vertices on lines the elevation of the line that counts most there, its lowest."""
     vertices, line_of = vertex_of[n:], lines.line_of
@@ -242,7 +241,7 @@ def _set_line_elevations(
     )
 
 
-def _add_touches(points: NDArray[np.float64], noded: Noded, overruled: Overruled) -> Overruled:
+def _add_touches(points: Float64Array, noded: Noded, overruled: Overruled) -> Overruled:
     """Add the elevations of lines that run through a vertex of others, where they differ."""
     touches = noded.touches
     elevation = points[touches.vertex, 2]
@@ -260,8 +259,8 @@ def _add_touches(points: NDArray[np.float64], noded: Noded, overruled: Overruled
 
 
 def _leave_out_water(
-    points: NDArray[np.float64], polylines: Polylines, lines: LineSet, overruled: Overruled
-) -> tuple[Polylines, NDArray[np.bool_], Overruled]:
+    points: Float64Array, polylines: Polylines, lines: LineSet, overruled: Overruled
+) -> tuple[Polylines, BoolArray, Overruled]:
     """Put shores at the elevation of their water, and leave out what is in it.
 
     Parameters
@@ -300,7 +299,7 @@ def _leave_out_water(
 
 
 def _set_level(
-    points: NDArray[np.float64], vertices: NDArray[np.int32], level: float, overruled: Overruled
+    points: Float64Array, vertices: Int32Array, level: float, overruled: Overruled
 ) -> Overruled:
     wrong = vertices[points[vertices, 2] != level]
     before = points[wrong, 2]
@@ -313,9 +312,7 @@ def _set_level(
     )
 
 
-def _are_chords_within(
-    xy: NDArray[np.float64], segments: NDArray[np.int32], shore: NDArray[np.int32]
-) -> NDArray[np.bool_]:
+def _are_chords_within(xy: Float64Array, segments: Int32Array, shore: Int32Array) -> BoolArray:
     """Tell which segments go through water from shore to shore; noded, all others end in it.
 
     Their middles, rounded, may lie on the wrong side of a shore that is near.
@@ -330,9 +327,7 @@ def _are_chords_within(
     return is_chord
 
 
-def _is_ring_around(
-    ring: NDArray[np.float64], start: NDArray[np.float64], end: NDArray[np.float64]
-) -> bool:
+def _is_ring_around(ring: Float64Array, start: Float64Array, end: Float64Array) -> bool:
     """Tell if a segment that no edge of a closed ring crosses lies inside, exactly.
 
     Inside, a ray from the segment over its end crosses an odd number of edges: to the left of the
@@ -349,21 +344,17 @@ def _is_ring_around(
     return bool(np.count_nonzero(_orient(left, right, end) <= 0) % 2)
 
 
-def _orient(
-    a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]
-) -> NDArray[np.int8]:
+def _orient(a: Float64Array, b: Float64Array, c: Float64Array) -> Int8Array:
     a, b, c = (np.ascontiguousarray(places) for places in np.broadcast_arrays(a, b, c))
     return _kernel.orientation(a, b, c)
 
 
-def _runs_along(
-    segments: NDArray[np.int32], chain: NDArray[np.int32], n_vertices: int
-) -> NDArray[np.bool_]:
+def _runs_along(segments: Int32Array, chain: Int32Array, n_vertices: int) -> BoolArray:
     own = np.stack([chain[:-1], chain[1:]], axis=1)
     return np.isin(edge_keys(segments, n_vertices), edge_keys(own, n_vertices))
 
 
-def _find_inside(xy: NDArray[np.float64], ring: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _find_inside(xy: Float64Array, ring: Float64Array) -> BoolArray:
     """Tell which places lie strictly inside a ring whose first corner is repeated."""
     if len(ring) < 4:
         return np.zeros(len(xy), np.bool_)

@@ -12,7 +12,7 @@ from ...policies import DuplicatePolicy
 from ..validation.points import SHOWN
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["DuplicatePolicy", "Merged", "merge_rows"]
 
@@ -20,16 +20,16 @@ __all__ = ["DuplicatePolicy", "Merged", "merge_rows"]
 class Merged(NamedTuple):
     """Vertices, the vertex of every row, and the report's fields about merges."""
 
-    points: NDArray[np.float64]
-    vertex_of: NDArray[np.int32]
+    points: Float64Array
+    vertex_of: Int32Array
     account: dict[str, Any]
 
 
 def merge_rows(
-    xyz: NDArray[np.float64],
-    kept_row: NDArray[np.int32] | None,
+    xyz: Float64Array,
+    kept_row: Int32Array | None,
     policy: DuplicatePolicy,
-    rows_of: NDArray[np.int64] | None = None,
+    rows_of: Int64Array | None = None,
 ) -> Merged:
     """Merge rows that share a kept row.
 
@@ -73,8 +73,8 @@ def merge_rows(
 
 
 def _group_rows(
-    vertex_of: NDArray[np.int32], kept_row: NDArray[np.int32], is_kept: NDArray[np.bool_]
-) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]:
+    vertex_of: Int32Array, kept_row: Int32Array, is_kept: BoolArray
+) -> tuple[Int32Array, Int32Array, Int32Array]:
     """Return rows of merged vertices, group after group and ascending within, with offsets."""
     is_shared = np.zeros(len(kept_row), np.bool_)
     is_shared[kept_row[~is_kept]] = True
@@ -87,8 +87,8 @@ def _group_rows(
 
 
 def _choose_elevations(
-    elevations: NDArray[np.float64], offsets: NDArray[np.int32], policy: DuplicatePolicy
-) -> NDArray[np.float64]:
+    elevations: Float64Array, offsets: Int32Array, policy: DuplicatePolicy
+) -> Float64Array:
     starts, ends = offsets[:-1], offsets[1:]
     if policy == "first":
         return elevations[starts]
@@ -102,8 +102,8 @@ def _choose_elevations(
 
 
 def _average_elevations(
-    elevations: NDArray[np.float64], starts: NDArray[np.int32], counts: NDArray[np.int32]
-) -> NDArray[np.float64]:
+    elevations: Float64Array, starts: Int32Array, counts: Int32Array
+) -> Float64Array:
     """Average what lies above the lowest of each group, all made small enough not to overflow."""
     group = np.repeat(np.arange(len(counts)), counts)
     ascending = elevations[np.lexsort((elevations, group))]
@@ -114,7 +114,7 @@ def _average_elevations(
     return np.asarray(np.ldexp(lowest + excess, halvings), np.float64)
 
 
-def _count_halvings(elevations: NDArray[np.float64], counts: NDArray[np.int32]) -> int:
+def _count_halvings(elevations: Float64Array, counts: Int32Array) -> int:
     """Return how often to halve so that differences and their sums stay finite."""
     _, size = np.frexp(np.abs(elevations).max(initial=0.0))
     _, most = np.frexp(float(counts.max(initial=1)))
@@ -122,10 +122,10 @@ def _count_halvings(elevations: NDArray[np.float64], counts: NDArray[np.int32]) 
 
 
 def _refuse(
-    xyz: NDArray[np.float64],
-    rows: NDArray[np.int32],
-    offsets: NDArray[np.int32],
-    rows_of: NDArray[np.int64] | None,
+    xyz: Float64Array,
+    rows: Int32Array,
+    offsets: Int32Array,
+    rows_of: Int64Array | None,
 ) -> None:
     surplus = len(rows) - (len(offsets) - 1)
     group = rows[offsets[0] : offsets[1]]

@@ -32,8 +32,9 @@ from .reference import adds_to, settle_crs
 from .survey import Survey
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import BoolArray, Float64Array
     from ...crs import CrsLike, UnitLike
     from ..constraints.breaklines import Breakline, Water
     from ..types import GeometriesLike, PointsLike
@@ -63,13 +64,13 @@ class BuildInputs:
         Whether some of the lines are edges of the boundary of existing triangles.
     """
 
-    points: NDArray[np.float64]
-    is_masked: NDArray[np.bool_] | None
+    points: Float64Array
+    is_masked: BoolArray | None
     lines: LineSet
-    boundary: list[NDArray[np.float64]]
-    extent: list[NDArray[np.float64]]
-    holes: list[list[NDArray[np.float64]]]
-    erase: list[list[NDArray[np.float64]]]
+    boundary: list[Float64Array]
+    extent: list[Float64Array]
+    holes: list[list[Float64Array]]
+    erase: list[list[Float64Array]]
     max_edge: float
     trim: TrimPolicy
     conforming: bool
@@ -115,7 +116,7 @@ class BuildInputs:
         )
 
 
-def _choose_rings(lines: LineSet, kind: str) -> list[NDArray[np.float64]]:
+def _choose_rings(lines: LineSet, kind: str) -> list[Float64Array]:
     """Return the rings of a kind, the first corner not repeated."""
     return [
         lines.xy[lines.offsets[line] : lines.offsets[line + 1] - 1]

@@ -14,12 +14,11 @@ from ..validation.points import as_points
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int64Array
     from ...crs import CRS, Unit
     from .inputs import BuildInputs
 
-    Move = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+    Move = Callable[[Float64Array], Float64Array]
 
 __all__ = ["move_inputs", "move_points", "require_move"]
 
@@ -79,7 +78,7 @@ def require_move(function: Any, length: Any) -> None:
         raise OptionError("length", length, "a factor > 0")
 
 
-def move_points(points: NDArray[np.float64], move: Move) -> NDArray[np.float64]:
+def move_points(points: Float64Array, move: Move) -> Float64Array:
     """Return where a function puts points.
 
     Raises
@@ -96,7 +95,7 @@ def move_points(points: NDArray[np.float64], move: Move) -> NDArray[np.float64]:
     return moved
 
 
-def _move_places(xyz: NDArray[np.float64], move: Move) -> NDArray[np.float64]:
+def _move_places(xyz: Float64Array, move: Move) -> Float64Array:
     """Move what has coordinates; an elevation that is not known stays so."""
     found = xyz.copy()
     is_place = np.isfinite(xyz[:, :2]).all(axis=1)
@@ -109,13 +108,11 @@ def _move_places(xyz: NDArray[np.float64], move: Move) -> NDArray[np.float64]:
     return found
 
 
-def _move_ring(ring: NDArray[np.float64], move: Move) -> NDArray[np.float64]:
+def _move_ring(ring: Float64Array, move: Move) -> Float64Array:
     return move_points(np.column_stack([ring, np.zeros(len(ring))]), move)[:, :2].copy()
 
 
-def _level_water(
-    xyz: NDArray[np.float64], offsets: NDArray[np.int64], kinds: tuple[str, ...]
-) -> None:
+def _level_water(xyz: Float64Array, offsets: Int64Array, kinds: tuple[str, ...]) -> None:
     for line, kind in enumerate(kinds):
         if kind == "water":
             part = slice(offsets[line], offsets[line + 1])

@@ -21,7 +21,7 @@ from .attributes import as_columns, as_mapping
 from .reference import settle_crs
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import AnyArray, BoolArray, Float64Array
 
 __all__ = ["Survey"]
 
@@ -88,14 +88,14 @@ class Survey:
     <Survey: 3 points, crs EPSG:32616>
     """
 
-    points: NDArray[np.float64]
-    breaklines: Sequence[Breakline | NDArray[np.float64]] = ()
+    points: Float64Array
+    breaklines: Sequence[Breakline | Float64Array] = ()
     boundary: Sequence[Any] = ()
     holes: Sequence[Any] = ()
     erase: Sequence[Any] = ()
     water: Sequence[Water] = ()
-    extent: Sequence[NDArray[np.float64]] = ()
-    attributes: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    extent: Sequence[Float64Array] = ()
+    attributes: Mapping[str, AnyArray] = field(default_factory=dict)
     crs: CRS | None = None
     elevation_unit: Unit | None = None
     source: str | None = None
@@ -124,7 +124,7 @@ class Survey:
         if table.is_masked is not None:
             self._leave_out(table.is_masked)
 
-    def _leave_out(self, is_masked: NDArray[np.bool_]) -> None:
+    def _leave_out(self, is_masked: BoolArray) -> None:
         columns = {name: values[~is_masked] for name, values in self.attributes.items()}
         object.__setattr__(self, "points", self.points[~is_masked])
         object.__setattr__(self, "attributes", columns)

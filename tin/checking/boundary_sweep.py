@@ -32,7 +32,7 @@ import numpy as np
 from ..predicates import ORIENTATION_BOUND
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array, Int8Array, Int64Array
 
 __all__ = ["Boundary", "BoundaryFault", "find_fault", "find_sides"]
 
@@ -49,9 +49,9 @@ class Boundary(NamedTuple):
         Vertices.
     """
 
-    points: NDArray[np.float64]
-    start: NDArray[np.int64]
-    end: NDArray[np.int64]
+    points: Float64Array
+    start: Int64Array
+    end: Int64Array
 
 
 class BoundaryFault(NamedTuple):
@@ -96,7 +96,7 @@ def find_fault(boundary: Boundary) -> BoundaryFault | None:
     return None
 
 
-def find_sides(boundary: Boundary, points: NDArray[np.float64]) -> NDArray[np.int8]:
+def find_sides(boundary: Boundary, points: Float64Array) -> Int8Array:
     """Tell where (k, 2) places lie: +1 strictly inside the surface, 0 on its boundary, -1 outside.
 
     The boundary must be without faults.

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int64Array
     from ..constraints.breaklines import Lines
     from ..constraints.constraint_set import LineSet
 
@@ -48,7 +47,7 @@ class Walk(NamedTuple):
         Lines with a chain that is not found on them.
     """
 
-    between: NDArray[np.int64]
+    between: Int64Array
     gap_rows: list[int]
     gap_points: list[Point]
     gap_lines: list[int]
@@ -57,9 +56,7 @@ class Walk(NamedTuple):
     lost: list[int]
 
 
-def walk_along(
-    xy: NDArray[np.float64], lines: Lines, given: LineSet, *, snap: float, unit: float
-) -> Walk:
+def walk_along(xy: Float64Array, lines: Lines, given: LineSet, *, snap: float, unit: float) -> Walk:
     """Follow the chains of every given line.
 
     Parameters
@@ -237,7 +234,7 @@ class _Walker:
 
     def _measure_offsets(
         self, rows: list[int], at: int, here: int | None, chain: range
-    ) -> NDArray[np.float64]:
+    ) -> Float64Array:
         """Return how far from each segment a chain's first step is; inf if it goes back there."""
         first, second = (np.array([self._points[position]]) for position in chain[:2])
         a, b = self._xy[rows[at:-1]], self._xy[rows[at + 1 :]]
@@ -249,9 +246,7 @@ class _Walker:
             off[:1][begin[:1] < passed] = np.inf
         return off
 
-    def _measure(
-        self, between: list[Between]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
+    def _measure(self, between: list[Between]) -> tuple[Float64Array, Float64Array, Int64Array]:
         """Return how far vertices are off their line, and back of the one before; its rows."""
         positions, before, after = np.array(between, np.int64).reshape(-1, 3).T
         points = np.array([self._points[position] for position in positions]).reshape(-1, 2)
@@ -361,22 +356,18 @@ def _measure_distance(p: Point, q: Point) -> float:
     return hypot(p[0] - q[0], p[1] - q[1])
 
 
-def _project(
-    p: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _project(p: Float64Array, a: Float64Array, b: Float64Array) -> Float64Array:
     """Return how far along the segments a-b the feet of p are."""
-    foot: NDArray[np.float64] = ((p - a) * (b - a)).sum(axis=1) / np.hypot(*(b - a).T)
+    foot: Float64Array = ((p - a) * (b - a)).sum(axis=1) / np.hypot(*(b - a).T)
     return foot
 
 
-def distance(
-    p: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def distance(p: Float64Array, a: Float64Array, b: Float64Array) -> Float64Array:
     """Measure from places to segments a-b, (k, 2) arrays."""
     u, v = b - a, p - a
     square = (u * u).sum(axis=1)
     share = np.clip((u * v).sum(axis=1) / np.where(square > 0, square, 1.0), 0.0, 1.0)
     across = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / np.sqrt(np.where(square, square, 1.0))
     to_end = np.hypot(*(v - share[:, None] * u).T)
-    measured: NDArray[np.float64] = np.where((share > 0) & (share < 1), across, to_end)
+    measured: Float64Array = np.where((share > 0) & (share < 1), across, to_end)
     return measured

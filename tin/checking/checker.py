@@ -44,9 +44,9 @@ from .shape import check_shape, has_sound_boundary
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import numpy as np
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import Float64Array
     from ..constraints.breaklines import Breakline
     from ..constraints.constraint_set import LineSet
     from ..surface import TIN
@@ -213,7 +213,7 @@ def check(
     return CheckResult(level, tuple(found.problems), tuple(found.notes), found.counts)
 
 
-def _as_rows(points: Survey | ArrayLike | None) -> NDArray[np.float64] | None:
+def _as_rows(points: Survey | ArrayLike | None) -> Float64Array | None:
     if points is None:
         return None
     return as_masked_points(points.points if isinstance(points, Survey) else points).values
@@ -229,9 +229,7 @@ def _as_lines(
     return gather_lines(together, points.boundary, points.holes, points.water)
 
 
-def _check_given(
-    tin: TIN, rows: NDArray[np.float64] | None, lines: LineSet, found: Findings
-) -> None:
+def _check_given(tin: TIN, rows: Float64Array | None, lines: LineSet, found: Findings) -> None:
     """Check lines and rows, as far as the surface is fit to be asked about them."""
     if has_sound_chains(found):
         check_segments(tin, found)

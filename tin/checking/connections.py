@@ -11,8 +11,7 @@ from ..predicates import EXACT_RANGE, blocks
 from ..report import LEFT_OUT
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..surface import TIN
     from .findings import Findings
 
@@ -58,7 +57,7 @@ def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
     )
 
 
-def _check_coordinates(points: NDArray[np.float64], found: Findings) -> None:
+def _check_coordinates(points: Float64Array, found: Findings) -> None:
     found.report(
         "coordinates",
         np.flatnonzero(~np.isfinite(points).all(axis=1)),
@@ -101,7 +100,7 @@ def _check_ranges(tin: TIN, found: Findings) -> None:
         )
 
 
-def _check_left_out(tin: TIN, found: Findings) -> NDArray[np.bool_]:
+def _check_left_out(tin: TIN, found: Findings) -> BoolArray:
     """Check the report's rows without a vertex; tell which they are."""
     rows, why = np.asarray(tin.report.left_out_rows), np.asarray(tin.report.left_out_why)
     is_left_out = np.zeros(len(tin.vertex_of), np.bool_)
@@ -167,7 +166,7 @@ def check_connections(tin: TIN, found: Findings) -> bool:
     return is_reliable
 
 
-def _find_one_sided(tin: TIN) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _find_one_sided(tin: TIN) -> tuple[BoolArray, BoolArray]:
     """Find triangles with a neighbour that is not one in return, and with flags that differ."""
     count = len(tin.triangles)
     lonely, unequal = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
@@ -183,8 +182,8 @@ def _find_one_sided(tin: TIN) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
 
 
 def _look_back(
-    tin: TIN, own: NDArray[np.int64], across: NDArray[np.int32], corner: int
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    tin: TIN, own: Int64Array, across: Int32Array, corner: int
+) -> tuple[BoolArray, BoolArray]:
     """Look back over the edge opposite ``corner``: tell if it is met, and if flagged, there."""
     start = tin.triangles[own, _NEXT[corner]]
     end = tin.triangles[own, _AFTER_NEXT[corner]]

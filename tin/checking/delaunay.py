@@ -10,8 +10,7 @@ from .. import topology
 from ..predicates import Columns, blocks, columns, in_circle, is_last
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Int64Array
     from ..surface import TIN
     from .findings import Findings
 
@@ -49,9 +48,7 @@ def check_delaunay(tin: TIN, found: Findings, *, conforming: bool = False) -> No
     found.counts["ties_against_rule"] = sum(len(triangles) for triangles in against_rule)
 
 
-def _gather_quadrilaterals(
-    tin: TIN, block: slice, conforming: bool
-) -> tuple[NDArray[np.int64], ...]:
+def _gather_quadrilaterals(tin: TIN, block: slice, conforming: bool) -> tuple[Int64Array, ...]:
     """Return triangle, its corners from the one opposite an inner edge, and the far corner.
 
     Every edge comes once, and only if both triangles are counter-clockwise does its sign mean
@@ -72,11 +69,11 @@ def _gather_quadrilaterals(
 
 def _is_against_rule(
     xy: Columns,
-    a: NDArray[np.int64],
-    b: NDArray[np.int64],
-    c: NDArray[np.int64],
-    far: NDArray[np.int64],
-) -> NDArray[np.bool_]:
+    a: Int64Array,
+    b: Int64Array,
+    c: Int64Array,
+    far: Int64Array,
+) -> BoolArray:
     """Tell where the diagonal b-c of a cocircular quad ends at its lexicographically last point.
 
     The rule lifts that point above the others' plane, so the other diagonal is the lower one.

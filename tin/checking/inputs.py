@@ -26,8 +26,7 @@ from .chain_matching import UNSEEN_CUTS, Walk, distance, walk_along
 from .shape import find_boundary, has_sound_boundary
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array
     from ..constraints.constraint_set import LineSet
     from ..surface import TIN
     from .findings import Findings
@@ -39,7 +38,7 @@ _UNITS_OF_ROUNDING = 4  # one for a crossing or a bend; the rest for measuring t
 _OUTSIDE = ("outside the boundary", "in a hole", "trimmed")
 
 
-def check_rows(tin: TIN, rows: NDArray[np.float64], found: Findings) -> None:
+def check_rows(tin: TIN, rows: Float64Array, found: Findings) -> None:
     """Check that every input row is at its vertex, or within the distance of snapping.
 
     Those left out are named in the report, as level 1 tells; if they are said to be outside the
@@ -97,14 +96,14 @@ def check_given_lines(tin: TIN, given: LineSet, found: Findings) -> None:
     _check_ends(tin, given, walk, slack, found)
 
 
-def _measure_unit(tin: TIN, xy: NDArray[np.float64]) -> float:
+def _measure_unit(tin: TIN, xy: Float64Array) -> float:
     """Return by how much one cut may move a line."""
     largest = max(np.abs(tin.points[:, :2]).max(), np.abs(xy[:, :2]).max(initial=0.0))
     return float(tin.report.snap + _UNITS_OF_ROUNDING * np.spacing(largest))
 
 
 def _check_course(
-    xy: NDArray[np.float64], given: LineSet, walk: Walk, unit: float, found: Findings
+    xy: Float64Array, given: LineSet, walk: Walk, unit: float, found: Findings
 ) -> int:
     """Check that vertices between those given lie on the line, in order; count the most cuts."""
     if not len(walk.between):
@@ -157,7 +156,7 @@ def _check_ends(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findi
     )
 
 
-def _is_inside(tin: TIN, points: NDArray[np.float64], slack: float) -> NDArray[np.bool_]:
+def _is_inside(tin: TIN, points: Float64Array, slack: float) -> BoolArray:
     """Tell which places lie inside the surface, further than ``slack`` from its boundary."""
     low, high = tin.points[:, :2].min(axis=0), tin.points[:, :2].max(axis=0)
     candidates = np.flatnonzero(((points > low) & (points < high)).all(axis=1))
@@ -170,7 +169,7 @@ def _is_inside(tin: TIN, points: NDArray[np.float64], slack: float) -> NDArray[n
     return is_inside
 
 
-def _is_in_water(points: NDArray[np.float64], given: LineSet, slack: float) -> NDArray[np.bool_]:
+def _is_in_water(points: Float64Array, given: LineSet, slack: float) -> BoolArray:
     """Tell which places lie in water, or within ``slack`` of its shore."""
     shores = [
         given.xy[given.offsets[line] : given.offsets[line + 1]]
@@ -181,7 +180,7 @@ def _is_in_water(points: NDArray[np.float64], given: LineSet, slack: float) -> N
     return np.array(in_water, np.bool_)
 
 
-def _is_in_ring(point: NDArray[np.float64], ring: NDArray[np.float64], slack: float) -> bool:
+def _is_in_ring(point: Float64Array, ring: Float64Array, slack: float) -> bool:
     """Tell if a place lies in a closed ring, or nearly."""
     a, b = ring[:-1], ring[1:]
     if distance(point, a, b).min() <= slack:

@@ -11,8 +11,7 @@ from ..predicates import Columns, columns, is_last, orientation
 from .boundary_sweep import Boundary, find_fault
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int32Array
     from ..surface import TIN
     from .findings import Findings
 
@@ -49,7 +48,7 @@ def check_shape(tin: TIN, found: Findings) -> None:
 
 
 def _check_boundary(
-    tin: TIN, xy: Columns, rings: list[NDArray[np.int32]], found: Findings
+    tin: TIN, xy: Columns, rings: list[Int32Array], found: Findings
 ) -> tuple[bool, bool]:
     """Check that the boundary is convex where it is not constrained.
 
@@ -99,9 +98,7 @@ def _check_overlaps(tin: TIN, found: Findings) -> None:
         found.report("overlap", [fault.vertex], f"{what} (westernmost: near vertex {{first}}).")
 
 
-def _get_boundary_flags(
-    tin: TIN, start: NDArray[np.int32], end: NDArray[np.int32]
-) -> NDArray[np.bool_]:
+def _get_boundary_flags(tin: TIN, start: Int32Array, end: Int32Array) -> BoolArray:
     """Return whether the boundary edges from ``start`` to ``end`` are constrained."""
     triangle, corner = np.nonzero(tin.neighbors == topology.NO_NEIGHBOR)
     boundary_start, boundary_end = topology.ends(tin.triangles, triangle, corner)
@@ -109,11 +106,11 @@ def _get_boundary_flags(
     order = np.argsort(keys)
     wanted = start.astype(np.int64) * len(tin.points) + end
     slot = order[np.searchsorted(keys, wanted, sorter=order)]
-    flags: NDArray[np.bool_] = tin.constrained[triangle[slot], corner[slot]]
+    flags: BoolArray = tin.constrained[triangle[slot], corner[slot]]
     return flags
 
 
-def _check_euler(rings: list[NDArray[np.int32]], is_free: bool, found: Findings) -> None:
+def _check_euler(rings: list[Int32Array], is_free: bool, found: Findings) -> None:
     """Check V - E + F + rings, which is 2 for every piece of a surface in the plane.
 
     The outer face is not counted; a vertex where the boundary touches itself counts each time.
@@ -133,7 +130,7 @@ def _check_euler(rings: list[NDArray[np.int32]], is_free: bool, found: Findings)
         )
 
 
-def _check_areas(tin: TIN, rings: list[NDArray[np.int32]], found: Findings) -> None:
+def _check_areas(tin: TIN, rings: list[Int32Array], found: Findings) -> None:
     """Compare the areas of all triangles with what the boundary encloses, rounding bounded."""
     corners = [tin.triangles[:, k] for k in range(3)]
     inside, inside_error = _measure_doubled_areas(tin.points, *corners)
@@ -151,7 +148,7 @@ def _check_areas(tin: TIN, rings: list[NDArray[np.int32]], found: Findings) -> N
 
 
 def _measure_doubled_areas(
-    points: NDArray[np.float64], a: NDArray[np.int32], b: NDArray[np.int32], c: NDArray[np.int32]
+    points: Float64Array, a: Int32Array, b: Int32Array, c: Int32Array
 ) -> tuple[float, float]:
     """Return twice the signed area of triangles, and a bound for its error.
 

@@ -18,7 +18,9 @@ from ..validation.tables import as_table
 from .polylines import Polylines
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
+
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["Breakline", "BreaklineKind", "LineKind", "Lines", "Water"]
 
@@ -53,7 +55,7 @@ class Breakline:
     <Breakline: hard, 2 vertices, 'kerb'>
     """
 
-    coords: NDArray[np.float64]
+    coords: Float64Array
     kind: BreaklineKind = "hard"
     priority: int = 0
     name: str = ""
@@ -113,7 +115,7 @@ class Water:
     <Water: 3 corners at 7.5, 'pond'>
     """
 
-    ring: NDArray[np.float64]
+    ring: Float64Array
     z: float
     name: str = ""
 
@@ -131,7 +133,7 @@ class Water:
         return f"<Water: {len(self.ring)} corners at {self.z:g}{name}>"
 
 
-def _make_no_numbers() -> NDArray[np.int32]:
+def _make_no_numbers() -> Int32Array:
     return np.empty(0, np.int32)
 
 
@@ -164,16 +166,16 @@ class Lines(Frozen):
     <Lines: 1 hard, 0 soft, 0 boundary, 0 hole, 0 water; 3 vertices>
     """
 
-    vertices: NDArray[np.int32] = field(default_factory=_make_no_numbers)
-    offsets: NDArray[np.int32] = field(default_factory=lambda: np.zeros(1, np.int32))
+    vertices: Int32Array = field(default_factory=_make_no_numbers)
+    offsets: Int32Array = field(default_factory=lambda: np.zeros(1, np.int32))
     kinds: tuple[LineKind, ...] = ()
-    sources: NDArray[np.int32] = field(default_factory=_make_no_numbers)
+    sources: Int32Array = field(default_factory=_make_no_numbers)
     names: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.kinds)
 
-    def chains(self) -> Iterator[NDArray[np.int32]]:
+    def chains(self) -> Iterator[Int32Array]:
         """Walk the chains, as vertex numbers.
 
         Examples
@@ -184,7 +186,7 @@ class Lines(Frozen):
         """
         return iter(self._polylines)
 
-    def segments(self) -> NDArray[np.int32]:
+    def segments(self) -> Int32Array:
         """Return the edges along which the chains run, (s, 2) vertex pairs in order.
 
         Examples
@@ -195,7 +197,7 @@ class Lines(Frozen):
         """
         return self._polylines.segments()
 
-    def segment_chains(self) -> NDArray[np.int64]:
+    def segment_chains(self) -> Int64Array:
         """Return the chain of each of the segments.
 
         Examples
@@ -257,7 +259,7 @@ class Lines(Frozen):
             names=(*self.names, line.name),
         )
 
-    def renumber(self, number: NDArray[np.int32]) -> Lines:
+    def renumber(self, number: Int32Array) -> Lines:
         """Return the same lines with vertex ``v`` called ``number[v]``.
 
         Examples
@@ -281,7 +283,7 @@ def _as_name(name: Any) -> str:
     return str(name)
 
 
-def as_coords(coords: ArrayLike, what: str, *, least: int) -> NDArray[np.float64]:
+def as_coords(coords: ArrayLike, what: str, *, least: int) -> Float64Array:
     """Return a (k, 2) or (k, 3) float64 array of at least ``least`` finite rows, read-only.
 
     Raises
@@ -327,7 +329,7 @@ def _take_only_line(given: Any, subject: str) -> Any:
     return found.parts[0].rings[0]
 
 
-def _as_numbers(coords: Any, subject: str) -> NDArray[np.float64]:
+def _as_numbers(coords: Any, subject: str) -> Float64Array:
     try:
         values, is_masked = as_table(coords, subject, least=2)
     except PointsError as error:
@@ -342,7 +344,7 @@ def _as_numbers(coords: Any, subject: str) -> NDArray[np.float64]:
     return values.copy()
 
 
-def as_ring(ring: ArrayLike, what: str) -> NDArray[np.float64]:
+def as_ring(ring: ArrayLike, what: str) -> Float64Array:
     """Return the corners of a ring, the first not repeated at the end; as :func:`as_coords`.
 
     Of several elevations where it closes the lowest is taken, whichever way the ring runs.
@@ -363,18 +365,18 @@ def as_ring(ring: ArrayLike, what: str) -> NDArray[np.float64]:
     return coords
 
 
-def find_elevations_at_start(ring: ArrayLike, what: str) -> NDArray[np.float64]:
+def find_elevations_at_start(ring: ArrayLike, what: str) -> Float64Array:
     """Return the vertices where a ring closes, one for each elevation, ascending; none if flat."""
     coords = as_coords(ring, what, least=3)
     if coords.shape[1] == 2:
         return np.empty((0, 3))
-    found: NDArray[np.float64] = np.unique(coords[_is_start(coords)], axis=0)
+    found: Float64Array = np.unique(coords[_is_start(coords)], axis=0)
     return found
 
 
-def _is_start(ring: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _is_start(ring: Float64Array) -> BoolArray:
     """Tell which vertices are where a ring begins and ends: repeated ones next to the first."""
     is_there = (ring[:, :2] == ring[0, :2]).all(axis=1)
     ahead, behind = np.logical_and.accumulate(is_there), np.logical_and.accumulate(is_there[::-1])
-    is_start: NDArray[np.bool_] = ahead | behind[::-1]
+    is_start: BoolArray = ahead | behind[::-1]
     return is_start

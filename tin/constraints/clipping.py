@@ -12,7 +12,7 @@ from .. import _kernel, topology
 from ..topology import edge_keys, find_offsets
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
 
 __all__ = [
     "BOUNDARY",
@@ -31,13 +31,13 @@ __all__ = [
 class Surface(NamedTuple):
     """Triangles over vertices, as in a TIN."""
 
-    points: NDArray[np.float64]
-    triangles: NDArray[np.int32]
-    neighbors: NDArray[np.int32]
-    constrained: NDArray[np.bool_]
+    points: Float64Array
+    triangles: Int32Array
+    neighbors: Int32Array
+    constrained: BoolArray
 
 
-def in_rings(xy: NDArray[np.float64], rings: Sequence[NDArray[np.float64]]) -> NDArray[np.int8]:
+def in_rings(xy: Float64Array, rings: Sequence[Float64Array]) -> Int8Array:
     """Tell where places lie: +1 inside an odd number of rings, 0 on one, -1 outside."""
     offsets = find_offsets(map(len, rings)).astype(np.int32)
     corners = np.ascontiguousarray(np.concatenate([ring[:, :2] for ring in rings]))
@@ -60,17 +60,17 @@ HOLES = 2
 class RingSegments(NamedTuple):
     """Edges along rings, (k, 2) vertex pairs, and the group of each."""
 
-    pairs: NDArray[np.int32]
-    groups: NDArray[np.int64]
+    pairs: Int32Array
+    groups: Int64Array
 
 
 def is_inside(
     surface: Surface,
     segments: RingSegments,
-    boundary: Sequence[NDArray[np.float64]],
-    extent: Sequence[NDArray[np.float64]],
-    holes: Sequence[Sequence[NDArray[np.float64]]],
-) -> NDArray[np.bool_]:
+    boundary: Sequence[Float64Array],
+    extent: Sequence[Float64Array],
+    holes: Sequence[Sequence[Float64Array]],
+) -> BoolArray:
     """Tell which triangles lie inside the boundary, where there is data, and in no hole.
 
     Inside is what an odd number of rings of a group holds, so the islands of a hole stay.
@@ -102,17 +102,17 @@ def is_inside(
     bits = _spread_bits(surface, region, half, toggles, is_out, largest, point, side)
     keep = ~is_out & np.array([side.is_kept(own) for own in bits])
     _require_all_cut(bits, is_out, side)
-    chosen: NDArray[np.bool_] = keep[region]
+    chosen: BoolArray = keep[region]
     return chosen
 
 
 class _HalfEdges(NamedTuple):
     """Constrained half-edges along rings."""
 
-    triangle: NDArray[np.int64]
-    corner: NDArray[np.int64]
-    key: NDArray[np.int64]
-    is_behind_own_boundary: NDArray[np.bool_]
+    triangle: Int64Array
+    corner: Int64Array
+    key: Int64Array
+    is_behind_own_boundary: BoolArray
 
 
 def _gather_half_edges(surface: Surface, segments: RingSegments) -> _HalfEdges:
@@ -128,9 +128,7 @@ def _gather_half_edges(surface: Surface, segments: RingSegments) -> _HalfEdges:
     return _HalfEdges(triangle, corner, key, is_behind)
 
 
-def _find_regions(
-    surface: Surface, half: _HalfEdges
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+def _find_regions(surface: Surface, half: _HalfEdges) -> tuple[Int32Array, Int32Array]:
     barrier = np.zeros(surface.constrained.shape, np.bool_)
     barrier[half.triangle, half.corner] = True
     points = np.ascontiguousarray(surface.points)
@@ -151,15 +149,15 @@ class _Sides:
 
     def __init__(
         self,
-        boundary: Sequence[NDArray[np.float64]],
-        extent: Sequence[NDArray[np.float64]],
-        holes: Sequence[Sequence[NDArray[np.float64]]],
+        boundary: Sequence[Float64Array],
+        extent: Sequence[Float64Array],
+        holes: Sequence[Sequence[Float64Array]],
     ) -> None:
         self._groups = {BOUNDARY: boundary, EXTENT: extent, **dict(enumerate(holes, HOLES))}
         self._needed = sum(1 << group for group in (BOUNDARY, EXTENT) if self._groups[group])
         self.n_holes = len(holes)
 
-    def at(self, point: NDArray[np.float64]) -> int:
+    def at(self, point: Float64Array) -> int:
         bits = 0
         for group, rings in self._groups.items():
             if len(rings) and in_rings(point[None], rings)[0] > 0:
@@ -175,12 +173,12 @@ class _Sides:
 
 def _spread_bits(
     surface: Surface,
-    region: NDArray[np.int32],
+    region: Int32Array,
     half: _HalfEdges,
     toggles: dict[int, int],
-    is_out: NDArray[np.bool_],
-    largest: NDArray[np.int32],
-    point: NDArray[np.float64],
+    is_out: BoolArray,
+    largest: Int32Array,
+    point: Float64Array,
     side: _Sides,
 ) -> list[int]:
     """Return the bits of every region, from the largest one across the rings."""
@@ -201,7 +199,7 @@ def _spread_bits(
 
 
 def _find_regions_beside(
-    surface: Surface, region: NDArray[np.int32], half: _HalfEdges
+    surface: Surface, region: Int32Array, half: _HalfEdges
 ) -> dict[int, list[tuple[int, int]]]:
     """Return for each region those across a ring, with an edge between them."""
     across = surface.neighbors[half.triangle, half.corner]
@@ -216,14 +214,14 @@ def _find_regions_beside(
     return found
 
 
-def _sort_by_size(surface: Surface, largest: NDArray[np.int32]) -> list[int]:
+def _sort_by_size(surface: Surface, largest: Int32Array) -> list[int]:
     a, b, c = (surface.points[surface.triangles[largest, k], :2] for k in range(3))
     (x, y), (u, v) = (b - a).T, (c - a).T
     order: list[int] = np.argsort(-(x * v - y * u), kind="stable").tolist()
     return order
 
 
-def _require_all_cut(bits: list[int], is_out: NDArray[np.bool_], side: _Sides) -> None:
+def _require_all_cut(bits: list[int], is_out: BoolArray, side: _Sides) -> None:
     cut = 0
     for own, out in zip(bits, is_out.tolist(), strict=True):
         if not out and side.is_within(own):
@@ -236,15 +234,13 @@ def _require_all_cut(bits: list[int], is_out: NDArray[np.bool_], side: _Sides) -
             )
 
 
-def _find_middles(surface: Surface, triangles: NDArray[np.int32]) -> NDArray[np.float64]:
+def _find_middles(surface: Surface, triangles: Int32Array) -> Float64Array:
     a, b, c = (surface.points[surface.triangles[triangles, k], :2] for k in range(3))
-    center: NDArray[np.float64] = a + ((b - a) + (c - a)) / 3.0
+    center: Float64Array = a + ((b - a) + (c - a)) / 3.0
     return center
 
 
-def trim(
-    surface: Surface, keep: NDArray[np.bool_], max_edge: float, *, everywhere: bool
-) -> NDArray[np.bool_]:
+def trim(surface: Surface, keep: BoolArray, max_edge: float, *, everywhere: bool) -> BoolArray:
     """Drop triangles at edges longer than ``max_edge`` that are no lines.
 
     From the boundary only the triangles go that lie at a long outer edge, as long as there are
@@ -271,22 +267,22 @@ def trim(
     return keep
 
 
-def _find_outer_edges(surface: Surface, chosen: Any, keep: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _find_outer_edges(surface: Surface, chosen: Any, keep: BoolArray) -> BoolArray:
     """Tell which edges of some triangles have no kept triangle beyond them."""
     beside = surface.neighbors[chosen]
-    is_outer: NDArray[np.bool_] = (beside == topology.NO_NEIGHBOR) | ~keep[beside]
+    is_outer: BoolArray = (beside == topology.NO_NEIGHBOR) | ~keep[beside]
     return is_outer
 
 
-def _find_long_edges(surface: Surface, chosen: Any, max_edge: float) -> NDArray[np.bool_]:
+def _find_long_edges(surface: Surface, chosen: Any, max_edge: float) -> BoolArray:
     """Tell which edges of some triangles are longer, and no lines."""
     a, b, c = (surface.points[surface.triangles[chosen, k], :2] for k in range(3))
     sides = np.stack([np.hypot(*(c - b).T), np.hypot(*(a - c).T), np.hypot(*(b - a).T)], axis=1)
-    is_long: NDArray[np.bool_] = (sides > max_edge) & ~surface.constrained[chosen]
+    is_long: BoolArray = (sides > max_edge) & ~surface.constrained[chosen]
     return is_long
 
 
-def clip(surface: Surface, keep: NDArray[np.bool_]) -> tuple[Surface, NDArray[np.int32]]:
+def clip(surface: Surface, keep: BoolArray) -> tuple[Surface, Int32Array]:
     """Return the kept triangles with the vertices that they use, and the new number of each vertex.
 
     Vertices without a triangle have number -1. The new boundary is constrained::

@@ -20,7 +20,7 @@ References
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -33,8 +33,7 @@ from .pslg import build_mesh
 from .splitting import interpolate_linearly, is_before
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Float64Array, Int32Array
     from .polylines import Polylines
 
 __all__ = ["conform"]
@@ -46,12 +45,12 @@ _NEW_PER_VERTEX = 50  # the limit for many
 
 def conform(
     mesh: _kernel.Mesh,
-    points: NDArray[np.float64],
+    points: Float64Array,
     polylines: Polylines,
-    priorities: NDArray[Any],
+    priorities: AnyArray,
     *,
     threads: int,
-) -> tuple[_kernel.Mesh, NDArray[np.float64], Polylines]:
+) -> tuple[_kernel.Mesh, Float64Array, Polylines]:
     """Split segments that are not Delaunay.
 
     Parameters
@@ -90,7 +89,7 @@ def conform(
     raise _explain_hopeless(f"{_MOST_ROUNDS} rounds of splitting", points, bad)
 
 
-def _explain_hopeless(what: str, points: NDArray[np.float64], bad: NDArray[np.int32]) -> LinesError:
+def _explain_hopeless(what: str, points: Float64Array, bad: Int32Array) -> LinesError:
     x, y, _ = points[bad[0, 0]].tolist()
     run = inflect("still [runs|run] too close to others, or [meets|meet] them", len(bad))
     return LinesError(
@@ -99,7 +98,7 @@ def _explain_hopeless(what: str, points: NDArray[np.float64], bad: NDArray[np.in
     )
 
 
-def _find_segments_to_split(mesh: _kernel.Mesh, points: NDArray[np.float64]) -> NDArray[np.int32]:
+def _find_segments_to_split(mesh: _kernel.Mesh, points: Float64Array) -> Int32Array:
     """Return the segments that are not Delaunay, as pairs of ends, in order of their places."""
     ends = mesh.illegal_fixed_edges().reshape(-1, 2)
     start, end = points[ends[:, 0], :2], points[ends[:, 1], :2]
@@ -112,11 +111,11 @@ def _find_segments_to_split(mesh: _kernel.Mesh, points: NDArray[np.float64]) -> 
 
 def _split(
     mesh: _kernel.Mesh,
-    points: NDArray[np.float64],
+    points: Float64Array,
     polylines: Polylines,
-    bad: NDArray[np.int32],
+    bad: Int32Array,
     n_given: int,
-) -> tuple[NDArray[np.float64], Polylines, bool]:
+) -> tuple[Float64Array, Polylines, bool]:
     """Split segments in the mesh too; tell whether the lines are still noded.
 
     If not, a split point fell on a vertex or another segment, or something is in the way of the
@@ -135,9 +134,7 @@ def _split(
     return points, polylines, is_noded
 
 
-def _place_split_points(
-    points: NDArray[np.float64], segments: NDArray[np.int32], n_given: int
-) -> NDArray[np.float64]:
+def _place_split_points(points: Float64Array, segments: Int32Array, n_given: int) -> Float64Array:
     start, end = points[segments[:, 0]], points[segments[:, 1]]
     length = np.hypot(*(end - start)[:, :2].T)
     shell = np.exp2(np.round(np.log2(length / 2))) / length
@@ -151,15 +148,13 @@ def _place_split_points(
     return middle
 
 
-def _round_to_exact_range(xy: NDArray[np.float64]) -> NDArray[np.float64]:
+def _round_to_exact_range(xy: Float64Array) -> Float64Array:
     """Round to 0 what is too small for the predicates."""
     smallest, _ = _kernel.EXACT_RANGE
     return np.where(np.abs(xy) < smallest, 0.0, xy)
 
 
-def _require_between(
-    middle: NDArray[np.float64], start: NDArray[np.float64], end: NDArray[np.float64]
-) -> None:
+def _require_between(middle: Float64Array, start: Float64Array, end: Float64Array) -> None:
     stuck = (middle == start).all(axis=1) | (middle == end).all(axis=1)
     if stuck.any():
         x, y = middle[np.argmax(stuck)].tolist()
@@ -170,7 +165,7 @@ def _require_between(
 
 
 def _insert_middles(
-    polylines: Polylines, split: NDArray[np.int32], vertex: NDArray[np.int32], n: int
+    polylines: Polylines, split: Int32Array, vertex: Int32Array, n: int
 ) -> Polylines:
     """Put a vertex between the ends of some segments, wherever a line takes them."""
     keys = edge_keys(split, n)
@@ -183,11 +178,11 @@ def _insert_middles(
 
 def _node_again(
     mesh: _kernel.Mesh,
-    points: NDArray[np.float64],
+    points: Float64Array,
     polylines: Polylines,
-    priorities: NDArray[Any],
+    priorities: AnyArray,
     threads: int,
-) -> tuple[_kernel.Mesh, NDArray[np.float64], Polylines]:
+) -> tuple[_kernel.Mesh, Float64Array, Polylines]:
     """Node the lines exactly, and triangulate the vertices anew, numbered without gaps."""
     alive = mesh.alive()
     number_of = (np.cumsum(alive) - 1).astype(np.int32)

@@ -19,8 +19,9 @@ from .given_geometries import convert_geometries
 from .polygons import gather_rings_of_regions
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...policies import LineKind
 
 __all__ = [
@@ -56,9 +57,9 @@ class LineSet(NamedTuple):
         What the lines are.
     """
 
-    xy: NDArray[np.float64]
-    elevations: NDArray[np.float64]
-    offsets: NDArray[np.int64]
+    xy: Float64Array
+    elevations: Float64Array
+    offsets: Int64Array
     table: ConstraintTable
 
     @property
@@ -67,12 +68,12 @@ class LineSet(NamedTuple):
         return self.table.kinds
 
     @property
-    def sources(self) -> NDArray[np.int32]:
+    def sources(self) -> Int32Array:
         """The caller's number of each line."""
         return self.table.sources
 
     @property
-    def priorities(self) -> NDArray[np.float64]:
+    def priorities(self) -> Float64Array:
         """The priority of each line."""
         return self.table.priorities
 
@@ -82,12 +83,12 @@ class LineSet(NamedTuple):
         return self.table.names
 
     @property
-    def is_draped(self) -> NDArray[np.bool_]:
+    def is_draped(self) -> BoolArray:
         """Whether each line takes its elevations from the surface."""
         return np.isnan(self.elevations[self.offsets[:-1]])
 
     @property
-    def line_of(self) -> NDArray[np.int64]:
+    def line_of(self) -> Int64Array:
         """The line of each row."""
         return find_owners(self.offsets)
 
@@ -114,7 +115,7 @@ class LineSet(NamedTuple):
             ConstraintTable.join([part.table for part in sets]),
         )
 
-    def choose(self, is_chosen: NDArray[np.bool_]) -> LineSet:
+    def choose(self, is_chosen: BoolArray) -> LineSet:
         """Return some of the lines."""
         rows = is_chosen[self.line_of]
         return LineSet(
@@ -232,12 +233,12 @@ def gather_extent(extent: Sequence[ArrayLike], n_boundary: int) -> LineSet:
     return LineSet(*_stack(rings), find_offsets(map(len, rings)), table)
 
 
-def gather_rings(rings: Sequence[Any], what: str) -> list[NDArray[np.float64]]:
+def gather_rings(rings: Sequence[Any], what: str) -> list[Float64Array]:
     """Return rings, and those of polygons, as (k, 2) arrays, the first corner not repeated."""
     return [ring for region in gather_regions(rings, what) for ring in region]
 
 
-def gather_regions(regions: Sequence[Any], what: str) -> list[list[NDArray[np.float64]]]:
+def gather_regions(regions: Sequence[Any], what: str) -> list[list[Float64Array]]:
     """Return the rings of each region: one, or those of a polygon with islands."""
     return [
         [ring[:, :2] for ring in rings]
@@ -289,20 +290,20 @@ def _convert_each(lines: Sequence[Any], what: str) -> list[Any]:
 
 def _gather_rings_of_kind(
     regions: Sequence[Any], kind: LineKind
-) -> list[tuple[LineKind, NDArray[np.float64]]]:
+) -> list[tuple[LineKind, Float64Array]]:
     found = gather_rings_of_regions(as_sequence(regions, kind), kind)
     return [(kind, ring) for rings in found for ring in rings]
 
 
-def _make_level(pond: Water) -> NDArray[np.float64]:
+def _make_level(pond: Water) -> Float64Array:
     return np.column_stack([pond.ring, np.full(len(pond.ring), pond.z)])
 
 
-def _close(ring: NDArray[np.float64]) -> NDArray[np.float64]:
+def _close(ring: Float64Array) -> Float64Array:
     return np.concatenate([ring, ring[:1]])
 
 
-def _stack(coords: list[NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _stack(coords: list[Float64Array]) -> tuple[Float64Array, Float64Array]:
     if not coords:
         return np.empty((0, 2)), np.empty(0)
     xy = np.concatenate([line[:, :2] for line in coords])
@@ -313,7 +314,7 @@ def _stack(coords: list[NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDAr
     return np.ascontiguousarray(xy), elevations
 
 
-def _count_sources(kinds: Sequence[str]) -> NDArray[np.int32]:
+def _count_sources(kinds: Sequence[str]) -> Int32Array:
     counts: dict[str, int] = {}
     numbers = []
     for kind in kinds:

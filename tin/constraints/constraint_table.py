@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int32Array
     from ...policies import LineKind
 
 __all__ = ["ConstraintTable"]
@@ -29,13 +28,13 @@ class ConstraintTable(NamedTuple):
     """
 
     kinds: tuple[LineKind, ...]
-    sources: NDArray[np.int32]
-    priorities: NDArray[np.float64]
+    sources: Int32Array
+    priorities: Float64Array
     names: tuple[str, ...]
 
     @classmethod
     def of_kind(
-        cls, kind: LineKind, sources: NDArray[np.int32], priorities: NDArray[np.float64]
+        cls, kind: LineKind, sources: Int32Array, priorities: Float64Array
     ) -> ConstraintTable:
         """Return nameless lines that are all of one kind."""
         return cls((kind,) * len(sources), sources, priorities, ("",) * len(sources))
@@ -50,7 +49,7 @@ class ConstraintTable(NamedTuple):
             tuple(name for table in tables for name in table.names),
         )
 
-    def take(self, rows: NDArray[Any]) -> ConstraintTable:
+    def take(self, rows: AnyArray) -> ConstraintTable:
         """Return some rows, by their numbers."""
         numbers = rows.tolist()
         return ConstraintTable(
@@ -60,7 +59,7 @@ class ConstraintTable(NamedTuple):
             tuple(self.names[i] for i in numbers),
         )
 
-    def is_kind(self, *kinds: LineKind) -> NDArray[np.bool_]:
+    def is_kind(self, *kinds: LineKind) -> BoolArray:
         """Tell which lines are of one of some kinds."""
         return np.array([kind in kinds for kind in self.kinds], np.bool_)
 

@@ -15,7 +15,7 @@ from .noding import node
 from .polylines import Polylines
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["Draped", "drape"]
 
@@ -57,19 +57,17 @@ def _make_no_lines(lines: LineSet) -> LineSet:
     return lines.choose(np.zeros(len(lines.kinds), np.bool_))
 
 
-def _find_vertices(lines: LineSet) -> tuple[NDArray[np.float64], Polylines]:
+def _find_vertices(lines: LineSet) -> tuple[Float64Array, Polylines]:
     """Return the places of the lines' vertices, and the lines through these."""
     xy, vertex_of = np.unique(lines.xy, axis=0, return_inverse=True)
     return xy, Polylines.whole(vertex_of.reshape(-1).astype(np.int32), lines.offsets)
 
 
-def _cut_at_boundary(
-    surface: Surface, hull: NDArray[np.int32], lines: LineSet, *, threads: int
-) -> Draped:
+def _cut_at_boundary(surface: Surface, hull: Int32Array, lines: LineSet, *, threads: int) -> Draped:
     boundary = surface.points[np.append(hull, hull[0])]
     both = np.concatenate([lines.xy, boundary[:, :2]])
     xy, inverse = np.unique(both, axis=0, return_inverse=True)
-    vertex_of: NDArray[np.int32] = inverse.reshape(-1).astype(np.int32)
+    vertex_of: Int32Array = inverse.reshape(-1).astype(np.int32)
     noded = node(
         xy,
         Polylines.whole(vertex_of, np.append(lines.offsets, len(both))),
@@ -94,9 +92,7 @@ def _cut_at_boundary(
     )
 
 
-def _run_outside(
-    cut: Polylines, is_outside: NDArray[np.bool_], boundary_chain: NDArray[np.int32]
-) -> NDArray[np.bool_]:
+def _run_outside(cut: Polylines, is_outside: BoolArray, boundary_chain: Int32Array) -> BoolArray:
     """Tell which segments of noded lines lie outside a convex boundary.
 
     From one vertex on the boundary to the next a line stays on one side, which its given vertices
@@ -115,15 +111,15 @@ def _run_outside(
     begins = np.diff(cut.segment_lines(), prepend=-1) != 0
     run_of = np.cumsum(begins | is_on_boundary[segments[:, 0]]) - 1
     shows = (is_outside & ~is_on_boundary)[segments].any(axis=1)
-    found: NDArray[np.bool_] = np.isin(run_of, run_of[shows])
+    found: BoolArray = np.isin(run_of, run_of[shows])
     return found
 
 
 def _split_boundary(
-    points: NDArray[np.float64],
-    chain: NDArray[np.int32],
-    elevations: NDArray[np.float64],
-    own: NDArray[np.int32],
+    points: Float64Array,
+    chain: Int32Array,
+    elevations: Float64Array,
+    own: Int32Array,
 ) -> LineSet:
     """Return the edges of the boundary that have vertices between their ends, as lines.
 
@@ -145,9 +141,7 @@ def _split_boundary(
     return LineSet(points[chain[rows]], elevations[rows], offsets, table)
 
 
-def _find_hidden_edges(
-    xy: NDArray[np.float64], corner: NDArray[np.int64], is_split: NDArray[np.bool_]
-) -> NDArray[np.bool_]:
+def _find_hidden_edges(xy: Float64Array, corner: Int64Array, is_split: BoolArray) -> BoolArray:
     """Tell which edges of a closed boundary, corner to corner, a vertex on another one hides."""
     is_hidden = np.zeros(len(is_split), np.bool_)
     n = len(is_split)
@@ -162,17 +156,17 @@ def _find_hidden_edges(
     return is_hidden
 
 
-def _are_beyond(xy: NDArray[np.float64], edge: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _are_beyond(xy: Float64Array, edge: Float64Array) -> BoolArray:
     """Tell which places lie to the right of an edge from its first end to its second."""
     start, end = (np.ascontiguousarray(np.broadcast_to(point, xy.shape)) for point in edge)
-    beyond: NDArray[np.bool_] = _kernel.orientation(start, end, np.ascontiguousarray(xy)) < 0
+    beyond: BoolArray = _kernel.orientation(start, end, np.ascontiguousarray(xy)) < 0
     return beyond
 
 
 def _take_elevations(
     surface: Surface,
-    points: NDArray[np.float64],
-    elevations: NDArray[np.float64],
+    points: Float64Array,
+    elevations: Float64Array,
     polylines: Polylines,
     lines: LineSet,
 ) -> LineSet:
@@ -190,8 +184,8 @@ def _take_elevations(
 
 
 def _look_elevations_up(
-    xy: NDArray[np.float64], points: NDArray[np.float64], elevations: NDArray[np.float64]
-) -> NDArray[np.float64]:
+    xy: Float64Array, points: Float64Array, elevations: Float64Array
+) -> Float64Array:
     """Look up the elevations of places that have one already; NaN elsewhere."""
     known = np.flatnonzero(~np.isnan(elevations))
     found = np.full(len(xy), np.nan)
@@ -206,8 +200,8 @@ def _look_elevations_up(
 
 
 def _follow_surface(
-    surface: Surface, points: NDArray[np.float64], polylines: Polylines
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    surface: Surface, points: Float64Array, polylines: Polylines
+) -> tuple[Float64Array, Int64Array]:
     """Return the places along every polyline, with those where it crosses edges, and its number.
 
     ::

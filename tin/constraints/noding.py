@@ -22,7 +22,7 @@ References
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -33,7 +33,7 @@ from .polylines import Polylines
 from .splitting import Splitting, drop_repeats
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["Noded", "Touches", "accept_noded", "node", "node_again"]
 
@@ -49,9 +49,9 @@ class Touches(NamedTuple):
         The line's own elevation there; NaN if it has none.
     """
 
-    vertex: NDArray[np.int32]
-    line: NDArray[np.int32]
-    elevation: NDArray[np.float64]
+    vertex: Int32Array
+    line: Int32Array
+    elevation: Float64Array
 
 
 class Noded(NamedTuple):
@@ -70,14 +70,14 @@ class Noded(NamedTuple):
     touches : Touches
     """
 
-    new_points: NDArray[np.float64]
+    new_points: Float64Array
     polylines: Polylines
-    elevations: NDArray[np.float64]
+    elevations: Float64Array
     crossings: Crossings
     touches: Touches
 
 
-def accept_noded(polylines: Polylines, elevations: NDArray[np.float64]) -> Noded:
+def accept_noded(polylines: Polylines, elevations: Float64Array) -> Noded:
     """Return lines that meet nowhere, as :func:`node` would; repeated vertices are dropped."""
     none = np.empty(0, np.int32)
     return Noded(
@@ -89,10 +89,10 @@ def accept_noded(polylines: Polylines, elevations: NDArray[np.float64]) -> Noded
 
 
 def node(
-    xy: NDArray[np.float64],
+    xy: Float64Array,
     polylines: Polylines,
-    elevations: NDArray[np.float64],
-    priority: NDArray[Any],
+    elevations: Float64Array,
+    priority: AnyArray,
     *,
     snap: float = 0.0,
     crossing: str = "split",
@@ -157,8 +157,8 @@ def node(
 
 
 def node_again(
-    points: NDArray[np.float64], polylines: Polylines, priority: NDArray[Any], *, threads: int
-) -> tuple[NDArray[np.float64], Polylines]:
+    points: Float64Array, polylines: Polylines, priority: AnyArray, *, threads: int
+) -> tuple[Float64Array, Polylines]:
     """Node parts of lines that were bent by a rounding; a vertex keeps its elevation.
 
     Parameters
@@ -191,12 +191,12 @@ def node_again(
 class _Visits(NamedTuple):
     """Lines that come through vertices; twice along the same segments counts once."""
 
-    vertex: NDArray[np.int32]
-    line: NDArray[np.int32]
-    elevation: NDArray[np.float64]
+    vertex: Int32Array
+    line: Int32Array
+    elevation: Float64Array
 
 
-def _gather_visits(work: Splitting, at: NDArray[np.int64]) -> _Visits:
+def _gather_visits(work: Splitting, at: Int64Array) -> _Visits:
     """Gather what passes the positions ``at``, in order of vertex, line and position.
 
     A line may come through a vertex several times. Twice between the same neighbours, forwards or
@@ -222,7 +222,7 @@ def _gather_visits(work: Splitting, at: NDArray[np.int64]) -> _Visits:
     return _Visits(vertices[at], line[at], work.elevations[at])
 
 
-def _number_and_account(work: Splitting, priority: NDArray[Any]) -> Noded:
+def _number_and_account(work: Splitting, priority: AnyArray) -> Noded:
     """Return everything, the new points numbered by place."""
     n_given = work.n_given
     made = work.xy[n_given:]
@@ -246,7 +246,7 @@ def _number_and_account(work: Splitting, priority: NDArray[Any]) -> Noded:
 
 
 def _gather_crossings(
-    work: Splitting, is_crossing: NDArray[np.bool_], priority: NDArray[Any]
+    work: Splitting, is_crossing: BoolArray, priority: AnyArray
 ) -> tuple[Crossings, _Visits]:
     """Return the crossings, and whose elevation counts at each vertex, by vertex.
 
@@ -276,7 +276,7 @@ def _gather_crossings(
 
 
 def _explain_crossing(
-    work: Splitting, pairs: NDArray[np.int64], names: Sequence[str] | None
+    work: Splitting, pairs: Int64Array, names: Sequence[str] | None
 ) -> LinesError:
     """Name the first crossing: by lines, then by place."""
     points = work.find_crossing_points(pairs)

@@ -13,12 +13,12 @@ from .breaklines import as_ring, find_elevations_at_start
 from .given_geometries import list_regions
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array
 
 __all__ = ["gather_rings_of_regions", "starts_with_elevations"]
 
 
-def gather_rings_of_regions(regions: Sequence[Any], what: str) -> list[list[NDArray[np.float64]]]:
+def gather_rings_of_regions(regions: Sequence[Any], what: str) -> list[list[Float64Array]]:
     """Return the rings of regions, one list for each.
 
     Parameters
@@ -43,9 +43,7 @@ def gather_rings_of_regions(regions: Sequence[Any], what: str) -> list[list[NDAr
     return [[as_ring(*one) for one in rings] for rings in _label_rings(regions, what)]
 
 
-def starts_with_elevations(
-    regions: Sequence[Any], what: str
-) -> list[tuple[str, NDArray[np.float64]]]:
+def starts_with_elevations(regions: Sequence[Any], what: str) -> list[tuple[str, Float64Array]]:
     """Return the rings that close with several elevations: name, vertices with the lowest first."""
     rings = [one for rings in _label_rings(regions, what) for one in rings]
     starts = [(label, find_elevations_at_start(ring, label)) for ring, label in rings]

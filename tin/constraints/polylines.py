@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from ..topology import find_offsets, find_owners
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from numpy.typing import NDArray
+    from ...arrays import AnyArray, BoolArray, Int32Array, Int64Array
 
 __all__ = ["Polylines", "offsets_of", "owners_of"]
 
@@ -38,12 +38,12 @@ class Polylines:
         The line that each polyline is, or is a part of: its place in a table of constraints.
     """
 
-    vertices: NDArray[np.int32]
-    offsets: NDArray[np.int32]
-    lines: NDArray[np.int32]
+    vertices: Int32Array
+    offsets: Int32Array
+    lines: Int32Array
 
     @classmethod
-    def whole(cls, vertices: NDArray[np.int32], offsets: NDArray[Any]) -> Polylines:
+    def whole(cls, vertices: Int32Array, offsets: AnyArray) -> Polylines:
         """Return one polyline for each line."""
         lines = np.arange(len(offsets) - 1, dtype=np.int32)
         return cls(vertices, offsets.astype(np.int32), lines)
@@ -57,43 +57,43 @@ class Polylines:
     def __len__(self) -> int:
         return len(self.lines)
 
-    def __iter__(self) -> Iterator[NDArray[np.int32]]:
+    def __iter__(self) -> Iterator[Int32Array]:
         return (self.vertices[start:end] for start, end in pairwise(self.offsets.tolist()))
 
     # ---------------------------------------------------------------- questions
 
     @property
-    def lengths(self) -> NDArray[np.int32]:
+    def lengths(self) -> Int32Array:
         """Number of vertices of each polyline."""
         return np.diff(self.offsets)
 
     @property
-    def owners(self) -> NDArray[np.int64]:
+    def owners(self) -> Int64Array:
         """The polyline of each position."""
         return find_owners(self.offsets)
 
-    def starts(self) -> NDArray[np.int64]:
+    def starts(self) -> Int64Array:
         """Return the position from which each segment goes."""
         is_start = np.ones(len(self.vertices), np.bool_)
         is_start[self.offsets[1:] - 1] = False
         return np.flatnonzero(is_start)
 
-    def segments(self) -> NDArray[np.int32]:
+    def segments(self) -> Int32Array:
         """Return the ends of every segment, (s, 2) vertex pairs in order."""
         start = self.starts()
         return np.stack([self.vertices[start], self.vertices[start + 1]], axis=1)
 
-    def segment_owners(self) -> NDArray[np.int64]:
+    def segment_owners(self) -> Int64Array:
         """Return the polyline of each segment."""
         return np.repeat(np.arange(len(self)), np.maximum(self.lengths - 1, 0))
 
-    def segment_lines(self) -> NDArray[np.int32]:
+    def segment_lines(self) -> Int32Array:
         """Return the line of each segment."""
         return self.lines[self.segment_owners()]
 
     # ------------------------------------------------------------------ changes
 
-    def keep(self, is_kept: NDArray[np.bool_]) -> Polylines:
+    def keep(self, is_kept: BoolArray) -> Polylines:
         """Return what is left when only some segments are kept: parts of lines.
 
         ::
@@ -115,11 +115,11 @@ class Polylines:
             self.lines[self.owners[is_used]][begins],
         )
 
-    def renumber(self, number_of: NDArray[np.int32]) -> Polylines:
+    def renumber(self, number_of: Int32Array) -> Polylines:
         """Return the same polylines with vertex ``v`` called ``number_of[v]``."""
         return replace(self, vertices=number_of[self.vertices])
 
-    def insert(self, at: NDArray[np.int64], vertices: NDArray[np.int32]) -> Polylines:
+    def insert(self, at: Int64Array, vertices: Int32Array) -> Polylines:
         """Put vertices behind the positions ``at``, from which segments go, ascending."""
         added = np.searchsorted(at, self.offsets)
         return replace(
@@ -128,7 +128,7 @@ class Polylines:
             offsets=(self.offsets + added).astype(np.int32),
         )
 
-    def choose_positions(self, is_chosen: NDArray[np.bool_]) -> Polylines:
+    def choose_positions(self, is_chosen: BoolArray) -> Polylines:
         """Return the polylines through some of their positions only."""
         return replace(
             self,

@@ -18,8 +18,7 @@ from .breaklines import Lines
 from .clipping import BOUNDARY, OWN_BOUNDARY, RingSegments, Surface, clip, is_inside, trim
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from .constraint_table import ConstraintTable
     from .polylines import Polylines
 
@@ -43,9 +42,9 @@ class Clip:
     is_trimmed_everywhere : bool
     """
 
-    boundary: list[NDArray[np.float64]] = field(default_factory=list)
-    extent: list[NDArray[np.float64]] = field(default_factory=list)
-    holes: list[list[NDArray[np.float64]]] = field(default_factory=list)
+    boundary: list[Float64Array] = field(default_factory=list)
+    extent: list[Float64Array] = field(default_factory=list)
+    holes: list[list[Float64Array]] = field(default_factory=list)
     has_own_boundary: bool = False
     max_edge: float = np.inf
     is_trimmed_everywhere: bool = False
@@ -59,7 +58,7 @@ class Clip:
     def _has_rings(self) -> bool:
         return bool(self.boundary or self.extent or self.holes or self.has_own_boundary)
 
-    def keeps(self, surface: Surface, ring_segments: RingSegments) -> NDArray[np.bool_]:
+    def keeps(self, surface: Surface, ring_segments: RingSegments) -> BoolArray:
         """Tell which triangles are kept.
 
         Raises
@@ -78,7 +77,7 @@ class Clip:
         return keep
 
 
-def _require_triangles(keep: NDArray[np.bool_], sentence: str) -> None:
+def _require_triangles(keep: BoolArray, sentence: str) -> None:
     if not keep.any():
         raise LinesError(f"{sentence}: a TIN needs one at least.")
 
@@ -101,14 +100,14 @@ class Pslg:
         The vertex of each row of the caller's points, -1 for none.
     """
 
-    points: NDArray[np.float64]
+    points: Float64Array
     polylines: Polylines
     constraints: ConstraintTable
-    groups: NDArray[np.int64]
+    groups: Int64Array
     clip: Clip
-    vertex_of: NDArray[np.int32]
+    vertex_of: Int32Array
 
-    def surface(self, hull: Surface) -> tuple[Surface, NDArray[np.int32]]:
+    def surface(self, hull: Surface) -> tuple[Surface, Int32Array]:
         """Cut the triangulated hull; return the surface and the new number of each vertex."""
         if self.clip.is_none:
             return hull, np.arange(len(hull.points), dtype=np.int32)
@@ -120,7 +119,7 @@ class Pslg:
             return hull, np.arange(len(hull.points), dtype=np.int32)
         return clip(hull, keep)
 
-    def _find_ring_groups(self) -> NDArray[np.int64]:
+    def _find_ring_groups(self) -> Int64Array:
         """Return the group of each line, that of the boundary too; below all if it is no ring."""
         table = self.constraints
         groups = np.where(table.sources < 0, OWN_BOUNDARY, self.groups)
@@ -141,14 +140,14 @@ class Pslg:
         return bool(((within < 0) & (everywhere >= 0)).any())
 
 
-def build_mesh(points: NDArray[np.float64], polylines: Polylines, *, threads: int) -> _kernel.Mesh:
+def build_mesh(points: Float64Array, polylines: Polylines, *, threads: int) -> _kernel.Mesh:
     """Triangulate distinct points, and fix the segments of lines that are cut where they meet."""
     mesh = build_mesh_of_growth(points, _kernel.grow(points, threads=threads))
     force(mesh, polylines)
     return mesh
 
 
-def build_mesh_of_growth(points: NDArray[np.float64], growth: _kernel.Growth) -> _kernel.Mesh:
+def build_mesh_of_growth(points: Float64Array, growth: _kernel.Growth) -> _kernel.Mesh:
     """Return the triangulation of distinct points as a mesh, with no edge fixed."""
     return _kernel.Mesh(points, growth.triangles, growth.neighbors)
 
@@ -163,7 +162,7 @@ def force(mesh: _kernel.Mesh, polylines: Polylines) -> None:
 def find_lines_in(
     polylines: Polylines,
     constraints: ConstraintTable,
-    number_of: NDArray[np.int32],
+    number_of: Int32Array,
     surface: Surface,
     *,
     is_whole: bool,
@@ -178,7 +177,7 @@ def find_lines_in(
     return Lines(vertices=left.vertices, offsets=left.offsets, **told)
 
 
-def _are_edges(segments: NDArray[np.int32], surface: Surface) -> NDArray[np.bool_]:
+def _are_edges(segments: Int32Array, surface: Surface) -> BoolArray:
     n = len(surface.points)
     edges = edges_at(surface.triangles, surface.constrained)
     is_edge = np.asarray((segments >= 0).all(axis=1), np.bool_)

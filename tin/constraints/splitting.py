@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from .. import _kernel
 from .polylines import Polylines
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["Segments", "Splitting", "drop_repeats", "interpolate_linearly", "is_before"]
 
@@ -53,15 +53,15 @@ class Segments(NamedTuple):
         The first segment along each edge.
     """
 
-    start: NDArray[np.int64]
-    edge: NDArray[np.int64]
-    is_backward: NDArray[np.bool_]
-    keys: NDArray[np.int64]
-    ends: NDArray[np.int32]
-    first_segment: NDArray[np.int64]
+    start: Int64Array
+    edge: Int64Array
+    is_backward: BoolArray
+    keys: Int64Array
+    ends: Int32Array
+    first_segment: Int64Array
 
     @classmethod
-    def along(cls, polylines: Polylines, xy: NDArray[np.float64]) -> Segments:
+    def along(cls, polylines: Polylines, xy: Float64Array) -> Segments:
         """Take the polylines apart."""
         start = polylines.starts()
         a, b = (polylines.vertices[at].astype(np.int64) for at in (start, start + 1))
@@ -74,9 +74,7 @@ class Segments(NamedTuple):
         return cls(start, edge, ends[edge, 0] != a, keys, ends, first_segment)
 
 
-def drop_repeats(
-    polylines: Polylines, elevations: NDArray[np.float64]
-) -> tuple[Polylines, NDArray[np.float64]]:
+def drop_repeats(polylines: Polylines, elevations: Float64Array) -> tuple[Polylines, Float64Array]:
     """Count repeated vertices in a row once, by their lowest elevation.
 
     Where a polyline closes, too: snapping may have merged the first vertex with the next ones.
@@ -93,7 +91,7 @@ def drop_repeats(
     return polylines.choose_positions(moves), lowest
 
 
-def _find_closing_ends(polylines: Polylines, elevations: NDArray[np.float64]) -> NDArray[np.int64]:
+def _find_closing_ends(polylines: Polylines, elevations: Float64Array) -> Int64Array:
     """Return where polylines begin and end that close with one elevation, (2, c).
 
     Others keep both of their elevations: a ramp may end above its begin.
@@ -104,22 +102,22 @@ def _find_closing_ends(polylines: Polylines, elevations: NDArray[np.float64]) ->
     return ends[:, (a == b) & (z_a == z_b)]
 
 
-def _make_keys(first: NDArray[Any], second: NDArray[Any]) -> NDArray[np.int64]:
+def _make_keys(first: AnyArray, second: AnyArray) -> Int64Array:
     """Make one number of two below 2^31."""
-    key: NDArray[np.int64] = (first.astype(np.int64) << 32) | second
+    key: Int64Array = (first.astype(np.int64) << 32) | second
     return key
 
 
-def _split_keys(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _split_keys(keys: Int64Array) -> tuple[Int64Array, Int64Array]:
     return keys >> 32, keys & 0xFFFFFFFF
 
 
-def _is_in(keys: NDArray[np.int64], known: NDArray[np.int64]) -> NDArray[np.bool_]:
+def _is_in(keys: Int64Array, known: Int64Array) -> BoolArray:
     """Tell which of the keys are among the known ones; both ascend."""
     if len(known) == 0:
         return np.zeros(len(keys), np.bool_)
     at = np.minimum(np.searchsorted(known, keys), len(known) - 1)
-    found: NDArray[np.bool_] = known[at] == keys
+    found: BoolArray = known[at] == keys
     return found
 
 
@@ -141,9 +139,9 @@ class Splitting:
 
     def __init__(
         self,
-        xy: NDArray[np.float64],
+        xy: Float64Array,
         polylines: Polylines,
-        elevations: NDArray[np.float64],
+        elevations: Float64Array,
         snap: float,
         threads: int,
     ) -> None:
@@ -160,9 +158,7 @@ class Splitting:
         self._n_touched = 0  # the number of those vertices
         self._uncrossed = np.empty(0, np.int64)  # edges that do not cross one another
 
-    def split_everywhere(
-        self, refuse: Callable[[NDArray[np.int64]], LinesError] | None = None
-    ) -> None:
+    def split_everywhere(self, refuse: Callable[[Int64Array], LinesError] | None = None) -> None:
         """Split segments where they touch and cross until nothing does.
 
         Parameters
@@ -198,7 +194,7 @@ class Splitting:
                 return
         raise explain_endless()
 
-    def _find_touches(self) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+    def _find_touches(self) -> tuple[Int64Array, Int32Array]:
         """Ask new edges about all vertices, known ones about new vertices."""
         if self._n_touched == 0:
             return self._find_contacts()
@@ -217,7 +213,7 @@ class Splitting:
         edge, vertex = (np.concatenate(column) for column in zip(*found, strict=True))
         return edge, vertex
 
-    def _find_contacts(self) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+    def _find_contacts(self) -> tuple[Int64Array, Int32Array]:
         """Ask all edges about all, and note those that cross none."""
         ends = self.segments.ends
         crossings, touches = _kernel.contacts(self.xy, ends, self._snap, self._threads)
@@ -231,8 +227,8 @@ class Splitting:
         return touches[:, 0].astype(np.int64), touches[:, 1]
 
     def _keep_shortening(
-        self, edge: NDArray[np.int64], vertex: NDArray[np.int32]
-    ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+        self, edge: Int64Array, vertex: Int32Array
+    ) -> tuple[Int64Array, Int32Array]:
         """Keep all touches of an edge if that leaves shorter parts, else only the nearest.
 
         ::
@@ -255,7 +251,7 @@ class Splitting:
 
     # ---------------------------------------------------------------- crossings
 
-    def find_crossings(self) -> NDArray[np.int64]:
+    def find_crossings(self) -> Int64Array:
         """Return the pairs of distinct edges that cross, (c, 2)."""
         is_known = _is_in(self.segments.keys, self._uncrossed)
         if is_known.all():
@@ -266,10 +262,10 @@ class Splitting:
         )
         if len(pairs) == 0:
             self._uncrossed = self.segments.keys
-        crossing: NDArray[np.int64] = np.sort(order[pairs], axis=1)
+        crossing: Int64Array = np.sort(order[pairs], axis=1)
         return crossing
 
-    def split_at_crossings(self, pairs: NDArray[np.int64], *, at_ends: bool = False) -> None:
+    def split_at_crossings(self, pairs: Int64Array, *, at_ends: bool = False) -> None:
         """Split the edges of all pairs where they cross, or at an end that is near to it."""
         points = self.find_crossing_points(pairs)
         if at_ends:
@@ -285,9 +281,7 @@ class Splitting:
         self._split(split, at.astype(np.int32), bends=False)
         self._is_rounded = True
 
-    def _move_to_ends(
-        self, pairs: NDArray[np.int64], points: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def _move_to_ends(self, pairs: Int64Array, points: Float64Array) -> Float64Array:
         """Replace crossings a few roundings from ends of their edges by the nearest of these ends.
 
         Three lines can pass a crossing on for ever, each time by one rounding: where a bends onto
@@ -299,14 +293,14 @@ class Splitting:
         nearest = np.lexsort((ends[..., 1], ends[..., 0], far), axis=1)[:, 0]
         rows = np.arange(len(points))
         is_near = far[rows, nearest] <= _NEAR
-        moved: NDArray[np.float64] = np.where(is_near[:, None], ends[rows, nearest], points)
+        moved: Float64Array = np.where(is_near[:, None], ends[rows, nearest], points)
         return moved
 
-    def find_crossing_points(self, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
+    def find_crossing_points(self, pairs: Int64Array) -> Float64Array:
         """Return where the edges of each pair cross, (c, 2)."""
         return _kernel.intersections(self.xy, self.segments.ends, pairs.astype(np.int32))
 
-    def _find_or_make_vertices(self, points: NDArray[np.float64]) -> NDArray[np.int32]:
+    def _find_or_make_vertices(self, points: Float64Array) -> Int32Array:
         """Find or make the vertex at each place."""
         order = np.lexsort((points[:, 1], points[:, 0]))
         is_first = np.append(True, (np.diff(points[order], axis=0) != 0).any(axis=1))
@@ -324,8 +318,8 @@ class Splitting:
 
     def _split(
         self,
-        edge: NDArray[np.int64],
-        vertex: NDArray[np.int32],
+        edge: Int64Array,
+        vertex: Int32Array,
         *,
         bends: bool,
     ) -> None:
@@ -356,8 +350,8 @@ class Splitting:
         self.segments = Segments.along(self.polylines, self.xy)
 
     def _sort_along(
-        self, edge: NDArray[np.int64], vertex: NDArray[np.int32], *, bends: bool
-    ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+        self, edge: Int64Array, vertex: Int32Array, *, bends: bool
+    ) -> tuple[Int64Array, Int32Array]:
         """Sort by edge, then from its first end to the second.
 
         Rounding is monotone: exact places and rounded crossings are in order by x and by y. Where
@@ -371,14 +365,12 @@ class Splitting:
         return edge[order], vertex[order]
 
     def _get_ends_and_points(
-        self, edge: NDArray[np.int64], vertex: NDArray[np.int32]
-    ) -> tuple[NDArray[np.float64], ...]:
+        self, edge: Int64Array, vertex: Int32Array
+    ) -> tuple[Float64Array, ...]:
         first, second = self.segments.ends[edge].T
         return self.xy[first], self.xy[second], self.xy[vertex]
 
-    def interpolate_elevations(
-        self, segment: NDArray[np.int64], points: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def interpolate_elevations(self, segment: Int64Array, points: Float64Array) -> Float64Array:
         """Interpolate the elevations of segments at places on them; the same both ways."""
         start, backward = self.segments.start[segment], self.segments.is_backward[segment]
         first, second = self.segments.ends[self.segments.edge[segment]].T
@@ -400,34 +392,30 @@ def explain_endless() -> LinesError:
 
 
 def interpolate_linearly(
-    start: NDArray[np.float64], end: NDArray[np.float64], share: NDArray[np.float64]
-) -> NDArray[np.float64]:
+    start: Float64Array, end: Float64Array, share: Float64Array
+) -> Float64Array:
     """Return elevations between two, never beyond either; halved so that nothing overflows."""
     between = 2.0 * (start / 2 + share * (end / 2 - start / 2))
     return np.clip(between, np.minimum(start, end), np.maximum(start, end))
 
 
-def _project(
-    a: NDArray[np.float64], b: NDArray[np.float64], p: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    along: NDArray[np.float64] = ((p - a) * (b - a)).sum(axis=1)
+def _project(a: Float64Array, b: Float64Array, p: Float64Array) -> Float64Array:
+    along: Float64Array = ((p - a) * (b - a)).sum(axis=1)
     return along
 
 
-def _measure_cross(
-    a: NDArray[np.float64], b: NDArray[np.float64], p: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _measure_cross(a: Float64Array, b: Float64Array, p: Float64Array) -> Float64Array:
     u, v = b - a, p - a
-    area: NDArray[np.float64] = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+    area: Float64Array = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
     return area
 
 
-def _measure_square(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    square: NDArray[np.float64] = ((b - a) ** 2).sum(axis=1)
+def _measure_square(a: Float64Array, b: Float64Array) -> Float64Array:
+    square: Float64Array = ((b - a) ** 2).sum(axis=1)
     return square
 
 
-def is_before(p: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.bool_]:
+def is_before(p: Float64Array, q: Float64Array) -> BoolArray:
     """Tell which places come before others by x, then y."""
-    before: NDArray[np.bool_] = (p[:, 0] < q[:, 0]) | ((p[:, 0] == q[:, 0]) & (p[:, 1] < q[:, 1]))
+    before: BoolArray = (p[:, 0] < q[:, 0]) | ((p[:, 0] == q[:, 0]) & (p[:, 1] < q[:, 1]))
     return before

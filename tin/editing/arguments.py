@@ -16,7 +16,9 @@ from ..validation.tables import Table, as_table
 from ..validation.vertices import as_vertex_array
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
+
+    from ...arrays import Float64Array, Int64Array
 
 __all__ = [
     "as_array",
@@ -54,7 +56,7 @@ def as_array(given: Any) -> Any:
     return given if is_masked is not None else values
 
 
-def as_vertices(vertices: ArrayLike, count: int) -> NDArray[np.int64]:
+def as_vertices(vertices: ArrayLike, count: int) -> Int64Array:
     """Return vertex numbers below ``count``; none of an empty list.
 
     Raises
@@ -71,13 +73,13 @@ def as_vertices(vertices: ArrayLike, count: int) -> NDArray[np.int64]:
     return numbers
 
 
-def as_new_points(points: ArrayLike) -> NDArray[np.float64]:
+def as_new_points(points: ArrayLike) -> Float64Array:
     """Return points to insert; an empty list is none."""
     is_empty = isinstance(points, list | tuple) and not points
     return as_points(np.empty((0, 3)) if is_empty else points)
 
 
-def as_ends(a: int, b: int, count: int) -> NDArray[np.int64]:
+def as_ends(a: int, b: int, count: int) -> Int64Array:
     """Return the two ends of an edge.
 
     Raises
@@ -91,14 +93,14 @@ def as_ends(a: int, b: int, count: int) -> NDArray[np.int64]:
     return ends
 
 
-def require_distinct(vertices: NDArray[np.int64]) -> NDArray[np.int64]:
+def require_distinct(vertices: Int64Array) -> Int64Array:
     """Refuse vertices that are named twice; return them."""
     if len(vertices) > 1 and len(np.unique(vertices)) < len(vertices):
         raise PointsError("A vertex is named twice: it can be removed once.")
     return vertices
 
 
-def as_point(point: Any) -> NDArray[np.float64]:
+def as_point(point: Any) -> Float64Array:
     """Return a point given alone, or as a table of one row."""
     values, is_masked = as_table(point, "Points")
     if is_masked is not None:
@@ -108,7 +110,7 @@ def as_point(point: Any) -> NDArray[np.float64]:
         raise PointsError(
             f"There are {len(rows)} points: one, easting, northing, elevation, is needed."
         )
-    row: NDArray[np.float64] = rows[0]
+    row: Float64Array = rows[0]
     return row
 
 

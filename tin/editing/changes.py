@@ -19,8 +19,7 @@ from ..topology import find_offsets
 from ..types import Frozen
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int64Array
     from ..building.inputs import BuildInputs
 
 __all__ = [
@@ -65,10 +64,10 @@ class Change(NamedTuple):
         One after the other.
     """
 
-    removed: NDArray[np.int64] = NO_ROWS
-    moved: NDArray[np.int64] = NO_ROWS
-    points: NDArray[np.float64] = NO_XYZ
-    added: NDArray[np.float64] = NO_XYZ
+    removed: Int64Array = NO_ROWS
+    moved: Int64Array = NO_ROWS
+    points: Float64Array = NO_XYZ
+    added: Float64Array = NO_XYZ
     lines: tuple[LineChange, ...] = ()
 
 
@@ -87,7 +86,7 @@ class NumberedInputs(Frozen):
     """
 
     build_inputs: BuildInputs
-    rows: NDArray[np.int64]
+    rows: Int64Array
     n_rows: int
 
     @classmethod
@@ -142,10 +141,10 @@ def count_breaklines(lines: LineSet) -> int:
     return is_other.index(True) if any(is_other) else len(is_other)
 
 
-def has_own_elevations(lines: LineSet) -> NDArray[np.bool_]:
+def has_own_elevations(lines: LineSet) -> BoolArray:
     """Tell which vertices of lines have elevations to change: not draped ones, nor water's."""
     is_level = (lines.priorities == ABOVE_ALL)[lines.line_of]
-    has_own: NDArray[np.bool_] = ~np.isnan(lines.elevations) & ~is_level
+    has_own: BoolArray = ~np.isnan(lines.elevations) & ~is_level
     return has_own
 
 
@@ -178,8 +177,8 @@ class DropLines(NamedTuple):
 class PutVertices(NamedTuple):
     """Vertices of lines, by their rows in the set, at another place."""
 
-    rows: NDArray[np.int64]
-    point: NDArray[np.float64]
+    rows: Int64Array
+    point: Float64Array
 
     def apply(self, lines: LineSet) -> LineSet:
         """Return the changed lines."""
@@ -192,8 +191,8 @@ class PutVertices(NamedTuple):
 class SetElevations(NamedTuple):
     """Vertices of lines, by their rows in the set, at other elevations."""
 
-    rows: NDArray[np.int64]
-    elevations: NDArray[np.float64]
+    rows: Int64Array
+    elevations: Float64Array
 
     def apply(self, lines: LineSet) -> LineSet:
         """Return the changed lines."""
@@ -205,7 +204,7 @@ class SetElevations(NamedTuple):
 class DropVertices(NamedTuple):
     """Vertices of lines, by their rows in the set, that go; the lines run straight on."""
 
-    rows: NDArray[np.int64]
+    rows: Int64Array
 
     def apply(self, lines: LineSet) -> LineSet:
         """Return the changed lines; a closed one stays closed."""

@@ -17,9 +17,9 @@ from .arguments import as_array
 from .origin import Origin
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import Int32Array, Int64Array
     from ...policies import BreaklineKind, CrossingPolicy, DuplicatePolicy
     from ..building.inputs import BuildInputs
     from ..report import Edit
@@ -97,7 +97,7 @@ class Editable:
                 return self._inputs
             return self._open_session().inputs().build_inputs
 
-    def _list_rows(self) -> NDArray[np.int64] | None:
+    def _list_rows(self) -> Int64Array | None:
         """Return the numbers of the rows that inputs have after edits; None for all of them."""
         with self._lock:
             if self._inputs is None or (self._session is None and self._origin is None):
@@ -137,9 +137,7 @@ class Editable:
 
     # -------------------------------------------------------------------- edits
 
-    def insert(
-        self, points: ArrayLike, *, duplicates: DuplicatePolicy = "last"
-    ) -> NDArray[np.int32]:
+    def insert(self, points: ArrayLike, *, duplicates: DuplicatePolicy = "last") -> Int32Array:
         """Insert points, in place.
 
         Parameters
@@ -174,7 +172,7 @@ class Editable:
         >>> tin
         <TIN: 4 vertices, 2 triangles, z 5 to 8, crs unknown>
         """
-        made: NDArray[np.int32] = self._edit("insert", points=points, duplicates=duplicates)
+        made: Int32Array = self._edit("insert", points=points, duplicates=duplicates)
         return made
 
     def remove(self, vertices: ArrayLike) -> None:

@@ -25,8 +25,7 @@ from ..validation.threads import thread_count
 from .state import State
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int32Array
     from ...policies import LineKind
     from .changes import NumberedInputs
     from .version import Version
@@ -77,17 +76,17 @@ def gather_inputs_of_triangles(version: Version) -> BuildInputs:
     )
 
 
-def _list_named_chains(version: Version) -> list[tuple[LineKind, str, NDArray[np.int32]]]:
+def _list_named_chains(version: Version) -> list[tuple[LineKind, str, Int32Array]]:
     lines = version.lines
     return list(zip(lines.kinds, lines.names, lines.chains(), strict=True))
 
 
 def _make_line_set(
-    points: NDArray[np.float64],
-    chains: list[NDArray[np.int32]],
+    points: Float64Array,
+    chains: list[Int32Array],
     kinds: list[LineKind],
     names: list[str],
-    sources: NDArray[np.int32],
+    sources: Int32Array,
 ) -> LineSet:
     vertices = np.concatenate([*chains, np.empty(0, np.int32)])
     priorities = np.where(sources < 0, BELOW_ALL, 0.0)
@@ -99,7 +98,7 @@ def _make_line_set(
     )
 
 
-def _find_edges_of_no_line(version: Version) -> list[NDArray[np.int32]]:
+def _find_edges_of_no_line(version: Version) -> list[Int32Array]:
     """Return the flagged edges of no line; those of the boundary count if there are no lines."""
     surface, lines = version.triangulation, version.lines
     flagged = surface.constrained
@@ -145,7 +144,7 @@ def _explain_unfit() -> PointsError:
     )
 
 
-def _as_set(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
+def _as_set(triangles: Int32Array) -> Int32Array:
     first = np.argmin(triangles, axis=1)
     rolled = np.take_along_axis(triangles, (first[:, None] + np.arange(3)) % 3, axis=1)
     return rolled[np.lexsort(rolled.T[::-1])]

@@ -13,8 +13,7 @@ from ..constraints.breaklines import Breakline
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ..building.inputs import BuildInputs
     from .state import State
 
@@ -36,7 +35,7 @@ def require_inner(beside: Sequence[int]) -> None:
         raise PointsError("Only an edge between two triangles can be flipped.")
 
 
-def make_flipped_edge(points: NDArray[np.float64]) -> Breakline:
+def make_flipped_edge(points: Float64Array) -> Breakline:
     """Return the edge that comes in the place of another one.
 
     Parameters

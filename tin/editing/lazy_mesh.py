@@ -9,14 +9,12 @@ import numpy as np
 from .. import _kernel
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import BoolArray, Float64Array, Int32Array
 
 __all__ = ["LiveMesh"]
 
 
-_Arrays = tuple[
-    "NDArray[np.float64]", "NDArray[np.int32]", "NDArray[np.int32]", "NDArray[np.bool_]"
-]
+_Arrays = tuple["Float64Array", "Int32Array", "Int32Array", "BoolArray"]
 _NOTHING: _Arrays = (
     np.empty((0, 2)),
     np.empty((0, 3), np.int32),
@@ -41,11 +39,11 @@ class LiveMesh:
 
     def __init__(
         self,
-        points: NDArray[np.float64],
-        triangles: NDArray[np.int32],
-        neighbors: NDArray[np.int32],
-        fixed: NDArray[np.bool_],
-        alive: NDArray[np.bool_] | None = None,
+        points: Float64Array,
+        triangles: Int32Array,
+        neighbors: Int32Array,
+        fixed: BoolArray,
+        alive: BoolArray | None = None,
     ) -> None:
         self._given: _Arrays = (points, triangles, neighbors, fixed)
         self._alive = np.ones(len(points), np.bool_) if alive is None else alive
@@ -77,13 +75,11 @@ class LiveMesh:
         """Vertices that are there."""
         return self._count if self._mesh is None else self._mesh.count
 
-    def alive(self) -> NDArray[np.bool_]:
+    def alive(self) -> BoolArray:
         """Tell which slots hold a vertex."""
         return self._alive if self._mesh is None else self._mesh.alive()
 
-    def arrays(
-        self, threads: int
-    ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.bool_]]:
+    def arrays(self, threads: int) -> tuple[Int32Array, Int32Array, BoolArray]:
         """Return triangles, neighbours and fixed edges; vertices are numbered without gaps."""
         if self._mesh is not None:
             return self._mesh.arrays(threads)

@@ -26,8 +26,7 @@ from .state import State
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...policies import DuplicatePolicy
     from ..building.inputs import BuildInputs
     from .changes import NumberedInputs
@@ -119,7 +118,7 @@ class Editor:
         lines = self._n_base - self._n_rows
         return _Counts(rows, self._live.count - rows - lines, lines)
 
-    def slots(self, vertices: NDArray[np.int64]) -> NDArray[np.int32]:
+    def slots(self, vertices: Int64Array) -> Int32Array:
         """Return the slots of vertices, which must exist."""
         if self._n_rows < self._n_base:
             rows, inserted, lines = self._count()
@@ -134,7 +133,7 @@ class Editor:
         shift = np.searchsorted(gone - np.arange(len(gone)), vertices, side="right")
         return (vertices + shift).astype(np.int32)
 
-    def numbers(self, slots: NDArray[np.int32]) -> NDArray[np.int32]:
+    def numbers(self, slots: Int32Array) -> Int32Array:
         """Return the vertices that slots hold."""
         if len(slots) == 1:
             found = slots - np.int32(bisect_left(self._removed, int(slots[0])))
@@ -143,7 +142,7 @@ class Editor:
             found = slots - np.searchsorted(gone, slots).astype(np.int32)
         return self._reorder(found)
 
-    def _reorder(self, ranks: NDArray[np.int32]) -> NDArray[np.int32]:
+    def _reorder(self, ranks: Int32Array) -> Int32Array:
         """Return the numbers of vertices that are numbered by slot, without gaps."""
         if self._n_rows == self._n_base:
             return ranks
@@ -159,9 +158,7 @@ class Editor:
 
     # -------------------------------------------------------------------- edits
 
-    def insert(
-        self, xyz: NDArray[np.float64], policy: DuplicatePolicy
-    ) -> tuple[NDArray[np.int32], Change]:
+    def insert(self, xyz: Float64Array, policy: DuplicatePolicy) -> tuple[Int32Array, Change]:
         """Insert rows of points; return their slots.
 
         Raises
@@ -191,10 +188,10 @@ class Editor:
             raise
         return slots, self._enter(xyz, slots, is_new, elevations)
 
-    def _insert_into_mesh(self, xyz: NDArray[np.float64]) -> NDArray[np.int32]:
+    def _insert_into_mesh(self, xyz: Float64Array) -> Int32Array:
         return self._mesh.insert(np.ascontiguousarray(xyz[:, :2]))
 
-    def _require_in_order(self, slots: NDArray[np.int32], first: int) -> None:
+    def _require_in_order(self, slots: Int32Array, first: int) -> None:
         """Leave rows at one place to a build if it refuses them, or if not the first is kept."""
         is_late = slots > np.arange(first, first + len(slots))
         if is_late.any() or self._is_strict:
@@ -202,8 +199,8 @@ class Editor:
 
     def _merge_all_elevations(
         self,
-        xyz: NDArray[np.float64],
-        slots: NDArray[np.int32],
+        xyz: Float64Array,
+        slots: Int32Array,
         old: list[int],
         policy: DuplicatePolicy,
     ) -> dict[int, float]:
@@ -217,7 +214,7 @@ class Editor:
             elevations[slot] = merge_elevations(here, float(xyz[row, 2]), policy)
         return elevations
 
-    def _require_clear(self, slots: NDArray[np.int32]) -> None:
+    def _require_clear(self, slots: Int32Array) -> None:
         for slot in set(slots.tolist()):
             self._require_free(slot)
 
@@ -231,7 +228,7 @@ class Editor:
         if self._mesh.has_fixed_edge(slot) or not self._mesh.clearance(slot) > self._least:
             raise NotLocal
 
-    def _take_back(self, slots: NDArray[np.int32]) -> None:
+    def _take_back(self, slots: Int32Array) -> None:
         """Remove vertices that were inserted, also from fixed edges."""
         for slot in slots.tolist():
             ends = self._mesh.fixed_neighbors(slot)
@@ -241,16 +238,16 @@ class Editor:
             if len(ends):
                 self._mesh.force(np.ascontiguousarray(ends[None, :]))
 
-    def _keep_empty(self, xyz: NDArray[np.float64], first: int) -> None:
+    def _keep_empty(self, xyz: Float64Array, first: int) -> None:
         self._points.extend(xyz)
         self._own_rows.extend([-1] * len(xyz))
         self._removed.extend(range(first, first + len(xyz)))
 
     def _enter(
         self,
-        xyz: NDArray[np.float64],
-        slots: NDArray[np.int32],
-        is_new: NDArray[np.bool_],
+        xyz: Float64Array,
+        slots: Int32Array,
+        is_new: BoolArray,
         elevations: dict[int, float],
     ) -> Change:
         first = len(self._points)
@@ -277,7 +274,7 @@ class Editor:
         is_worth_it = count > _LARGE_BATCH and count * _LARGE_SHARE > self._live.count
         return is_worth_it and not self._removed and not self._has_lines
 
-    def _grow_with(self, xyz: NDArray[np.float64]) -> NDArray[np.int32]:
+    def _grow_with(self, xyz: Float64Array) -> Int32Array:
         """Triangulate the points that are there and those that come; return slots of the latter.
 
         A slot is made for every row, as if each had been inserted, and stays empty where a vertex
@@ -299,7 +296,7 @@ class Editor:
         )
         return slots[first:]
 
-    def remove(self, slots: NDArray[np.int32]) -> Change:
+    def remove(self, slots: Int32Array) -> Change:
         """Remove vertices and the rows there.
 
         Raises
@@ -327,7 +324,7 @@ class Editor:
             x, y = self._points.at(slot)[:2].tolist()
             self._mesh.put(slot, x, y)
 
-    def move(self, slot: int, point: NDArray[np.float64]) -> Change:
+    def move(self, slot: int, point: Float64Array) -> Change:
         """Move a vertex and the rows there.
 
         Raises
@@ -361,7 +358,7 @@ class Editor:
                 self._put_back([slot])
                 raise
 
-    def set_elevations(self, slots: NDArray[np.int32], elevations: list[float]) -> Change:
+    def set_elevations(self, slots: Int32Array, elevations: list[float]) -> Change:
         """Give vertices, and the rows there, other elevations."""
         if self._has_lines and any(map(self._mesh.has_fixed_edge, slots.tolist())):
             raise NotLocal
@@ -378,7 +375,7 @@ class Editor:
         self._points.put(slot, point)
         return self._move_rows(slot, point)
 
-    def _move_rows(self, slot: int, point: NDArray[np.float64]) -> Change:
+    def _move_rows(self, slot: int, point: Float64Array) -> Change:
         rows = np.array(self._find_rows_at(slot), np.int64)
         points = point[None] if len(rows) == 1 else np.tile(point, (len(rows), 1))
         return Change(moved=rows, points=points)
@@ -423,7 +420,7 @@ class Editor:
             report = report.with_lines(inputs().build_inputs.lines.labels())
         return State(surface, vertex_of_row, lines, report, None)
 
-    def _make_triangulation(self, alive: NDArray[np.bool_]) -> Triangulation:
+    def _make_triangulation(self, alive: BoolArray) -> Triangulation:
         triangles, neighbors, constrained = self._live.arrays(self._threads)
         points = self._points.values()[alive]
         rows, inserted, lines = self._count()
@@ -440,8 +437,8 @@ class _RowsByVertex(NamedTuple):
     """The rows of each vertex that has any; ``rows`` is None where row and vertex are the same."""
 
     n_vertices: int
-    rows: NDArray[np.int64] | None
-    offsets: NDArray[np.int64] | None
+    rows: Int64Array | None
+    offsets: Int64Array | None
 
     def at(self, vertex: int) -> list[int]:
         if self.rows is None or self.offsets is None:
@@ -450,7 +447,7 @@ class _RowsByVertex(NamedTuple):
         return found
 
 
-def _group_rows_by_vertex(vertex_of_row: NDArray[np.int32]) -> _RowsByVertex:
+def _group_rows_by_vertex(vertex_of_row: Int32Array) -> _RowsByVertex:
     count = int(vertex_of_row.max()) + 1 if len(vertex_of_row) else 0
     if count == len(vertex_of_row):
         return _RowsByVertex(count, None, None)
@@ -460,7 +457,7 @@ def _group_rows_by_vertex(vertex_of_row: NDArray[np.int32]) -> _RowsByVertex:
 
 
 def _gather_merges(
-    vertex_of_row: NDArray[np.int32], counts: _Counts, inputs: Callable[[], NumberedInputs]
+    vertex_of_row: Int32Array, counts: _Counts, inputs: Callable[[], NumberedInputs]
 ) -> Report | None:
     """Return the account of rows that share a vertex, as a build gives it; None for none."""
     rows = np.flatnonzero(vertex_of_row >= 0)

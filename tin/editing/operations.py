@@ -39,8 +39,9 @@ from .mesh_editor import Editor, explain_occupied, merge_elevations
 from .state import State
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
     from ...policies import BreaklineKind
     from ..constraints.breaklines import Lines
 
@@ -350,8 +351,8 @@ def _flip_line(state: State, a: int, b: int) -> LineChange:
 
 
 def _merge_new_elevations(
-    xyz: NDArray[np.float64], own: NDArray[np.float64], policy: DuplicatePolicy
-) -> NDArray[np.float64]:
+    xyz: Float64Array, own: Float64Array, policy: DuplicatePolicy
+) -> Float64Array:
     """Return the elevation that each new row has in the end, given those of vertices there."""
     z = xyz[:, 2].copy()
     _, place = np.unique(xyz[:, :2], axis=0, return_inverse=True)
@@ -369,7 +370,7 @@ def _merge_new_elevations(
 
 
 def _change_elevations(
-    state: State, inputs: NumberedInputs, vertices: NDArray[Any], elevations: NDArray[np.float64]
+    state: State, inputs: NumberedInputs, vertices: AnyArray, elevations: Float64Array
 ) -> Change:
     """Give the rows and the lines at vertices other elevations."""
     elevation_of = np.full(len(state.triangulation.points) + 1, np.nan)  # the last is of no vertex
@@ -384,17 +385,13 @@ def _change_elevations(
     return Change(moved=rows, points=points, lines=lines)
 
 
-def _has_own_elevation(
-    state: State, inputs: NumberedInputs, vertices: NDArray[np.int64]
-) -> NDArray[np.bool_]:
+def _has_own_elevation(state: State, inputs: NumberedInputs, vertices: Int64Array) -> BoolArray:
     """Tell which vertices stand for rows or for vertices of lines with elevations."""
     of_lines = state.line_vertices(inputs)[~np.isnan(inputs.build_inputs.lines.elevations)]
     return np.isin(vertices, np.append(state.vertex_of_row, of_lines))
 
 
-def _require_given(
-    vertices: NDArray[np.int64], rows: NDArray[np.int32], lines: NDArray[np.int32], what: str
-) -> None:
+def _require_given(vertices: Int64Array, rows: Int32Array, lines: Int32Array, what: str) -> None:
     made = vertices[~np.isin(vertices, np.append(rows, lines))]
     if len(made):
         raise LinesError(
@@ -403,7 +400,7 @@ def _require_given(
         )
 
 
-def _require_elevations(found: State, wanted: NDArray[np.float64]) -> None:
+def _require_elevations(found: State, wanted: Float64Array) -> None:
     """Refuse an elevation that a water body or a line of higher priority overrules."""
     there = found.vertices_at(wanted[:, :2])
     points = found.triangulation.points[there]

@@ -20,8 +20,7 @@ from .state import State, build_state
 from .version import Version
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray, Int32Array
     from ..building.inputs import BuildInputs
 
 __all__ = ["Session"]
@@ -153,7 +152,7 @@ class Session:
             report=report,
         )
 
-    def _of_given_rows(self, vertex_of_row: NDArray[np.int32]) -> NDArray[np.int32]:
+    def _of_given_rows(self, vertex_of_row: Int32Array) -> Int32Array:
         """Return the vertices of the rows that existing triangles stand for, and of later ones."""
         given = cast("Version", self._given).vertex_of
         none = np.int32(-1)
@@ -250,5 +249,5 @@ class Session:
         return build_state(inputs)
 
 
-def _is_same(one: NDArray[Any], other: NDArray[Any]) -> bool:
+def _is_same(one: AnyArray, other: AnyArray) -> bool:
     return one.shape == other.shape and one.tobytes() == other.tobytes()

@@ -11,8 +11,7 @@ from ..building.assembly import Built, assemble
 from ..triangulation import Triangulation
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int32Array
     from ..constraints.breaklines import Lines
     from ..report import Report
     from .changes import NumberedInputs
@@ -23,8 +22,8 @@ __all__ = ["LineVertices", "State", "build_state"]
 class LineVertices(NamedTuple):
     """Vertices of lines as they were merged with the rows, and the TIN's vertex of each or -1."""
 
-    xy: NDArray[np.float64]
-    vertices: NDArray[np.int32]
+    xy: Float64Array
+    vertices: Int32Array
 
 
 class State(NamedTuple):
@@ -43,17 +42,17 @@ class State(NamedTuple):
     """
 
     triangulation: Triangulation
-    vertex_of_row: NDArray[np.int32]
+    vertex_of_row: Int32Array
     lines: Lines
     report: Report
     snapped: LineVertices | None
 
-    def vertices_at(self, xy: NDArray[np.float64]) -> NDArray[np.int32]:
+    def vertices_at(self, xy: Float64Array) -> Int32Array:
         """Return the vertex at each place, -1 for none."""
         own = np.ascontiguousarray(self.triangulation.points[:, :2])
         return _kernel.vertices_at(own, np.ascontiguousarray(xy))
 
-    def line_vertices(self, inputs: NumberedInputs) -> NDArray[np.int32]:
+    def line_vertices(self, inputs: NumberedInputs) -> Int32Array:
         """Return the vertex of each given vertex of the lines, -1 for none."""
         given = inputs.build_inputs.lines.xy
         if not len(given) or inputs.build_inputs.options.snap == 0.0:

@@ -11,9 +11,7 @@ from ..interpolation.interpolator import Interpolator
 from ..types import Frozen
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
+    from ...arrays import Int32Array, Int64Array
     from ..constraints.breaklines import Lines
     from ..report import Report
     from ..triangulation import Triangulation
@@ -35,7 +33,7 @@ class Version(Frozen):
     """
 
     triangulation: Triangulation
-    vertex_of: NDArray[np.int32]
+    vertex_of: Int32Array
     lines: Lines
     report: Report
 
@@ -45,6 +43,6 @@ class Version(Frozen):
         return Interpolator(self.triangulation, self.lines)
 
     @cached_property
-    def first_rows(self) -> NDArray[np.int64]:
+    def first_rows(self) -> Int64Array:
         """The first row that each vertex stands for, -1 for none."""
         return find_first_rows(self.vertex_of, len(self.triangulation.points))

@@ -9,15 +9,14 @@ import numpy as np
 from .. import topology
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray
     from ..constraints.breaklines import Lines
     from ..triangulation import Triangulation
 
 __all__ = ["find_barriers"]
 
 
-def find_barriers(surface: Triangulation, lines: Lines) -> NDArray[np.bool_]:
+def find_barriers(surface: Triangulation, lines: Lines) -> BoolArray:
     """Tell which edges are breaks of slope.
 
     Parameters

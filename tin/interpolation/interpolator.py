@@ -12,8 +12,7 @@ from ..validation.threads import thread_count
 from .barriers import find_barriers
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array
     from ...policies import InterpolationMethod
     from ..constraints.breaklines import Lines
     from ..triangulation import Triangulation
@@ -46,12 +45,12 @@ class Interpolator:
 
     def interpolate(
         self,
-        xy: NDArray[np.float64],
+        xy: Float64Array,
         method: InterpolationMethod,
         *,
         extrapolate: bool,
         threads: int | None,
-    ) -> NDArray[np.float64]:
+    ) -> Float64Array:
         """Return the elevation at each place of a (k, 2) array, NaN outside or, if wished, nearest.
 
         Parameters
@@ -72,8 +71,8 @@ class Interpolator:
         return elevations
 
     def _interpolate_inside(
-        self, xy: NDArray[np.float64], method: InterpolationMethod, threads: int
-    ) -> NDArray[np.float64]:
+        self, xy: Float64Array, method: InterpolationMethod, threads: int
+    ) -> Float64Array:
         if method == "linear":
             return self._surface.locator.interpolate(xy, threads)
         if method == "nearest":
@@ -85,9 +84,7 @@ class Interpolator:
             return self._patches.interpolate(xy, threads)
         return self._neighbors.interpolate(xy, _WEIGHTS[method], threads)
 
-    def _extrapolate_outside(
-        self, xy: NDArray[np.float64], method: InterpolationMethod
-    ) -> NDArray[np.float64]:
+    def _extrapolate_outside(self, xy: Float64Array, method: InterpolationMethod) -> Float64Array:
         if method == "nearest":
             return self._take_nearest(xy, 1)
         edges, shares = self._boundary.find(xy)
@@ -99,15 +96,15 @@ class Interpolator:
         end = self._elevations[corners[first + (edges + 2) % 3]]
         return _interpolate_between(start, end, shares)
 
-    def _take_nearest(self, xy: NDArray[np.float64], threads: int) -> NDArray[np.float64]:
+    def _take_nearest(self, xy: Float64Array, threads: int) -> Float64Array:
         return self._elevations[self._surface.nearest.find(xy, threads=threads)]
 
     @property
-    def _elevations(self) -> NDArray[np.float64]:
+    def _elevations(self) -> Float64Array:
         return self._surface.points[:, 2]
 
     @cached_property
-    def barriers(self) -> NDArray[np.bool_]:
+    def barriers(self) -> BoolArray:
         """Edges that are breaks of slope, (m, 3) array."""
         return find_barriers(self._surface, self._lines)
 
@@ -126,11 +123,11 @@ class Interpolator:
 
 
 def _interpolate_between(
-    start: NDArray[np.float64], end: NDArray[np.float64], share: NDArray[np.float64]
-) -> NDArray[np.float64]:
+    start: Float64Array, end: Float64Array, share: Float64Array
+) -> Float64Array:
     """Interpolate from the nearer end, so that both ends are met exactly."""
     half_rise = 0.5 * end - 0.5 * start
     early = start + 2.0 * (share * half_rise)
     late = end - 2.0 * ((1.0 - share) * half_rise)
-    between: NDArray[np.float64] = np.where(share > 0.5, late, early)
+    between: Float64Array = np.where(share > 0.5, late, early)
     return between

@@ -27,9 +27,8 @@ from .unmended import find_unmended
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from ..._progress import Tell
+    from ...arrays import Float64Array, Int32Array, Int64Array
     from ..constraints.pslg import Pslg
     from ..report import Report
 
@@ -203,16 +202,16 @@ class _Splits(NamedTuple):
         The same, by pairs of ends, the smaller one first.
     """
 
-    ends: NDArray[np.int32]
-    middle: NDArray[np.int32]
+    ends: Int32Array
+    middle: Int32Array
     middle_of: dict[tuple[int, int], int]
 
     @classmethod
-    def of(cls, triples: NDArray[np.int32]) -> _Splits:
+    def of(cls, triples: Int32Array) -> _Splits:
         table = {_make_key(a, b): middle for a, b, middle in triples.tolist()}
         return cls(triples[:, :2], triples[:, 2], table)
 
-    def segments_of(self, vertices: NDArray[np.int64]) -> set[tuple[int, int]]:
+    def segments_of(self, vertices: Int64Array) -> set[tuple[int, int]]:
         """Return the segments, as they were before any split, that vertices were put on."""
         segment_of: dict[int, tuple[int, int]] = {}
         for (a, b), middle in zip(self.ends.tolist(), self.middle.tolist(), strict=True):
@@ -239,7 +238,7 @@ def _make_key(a: int, b: int) -> tuple[int, int]:
     return (a, b) if a < b else (b, a)
 
 
-def _lift(tin: TIN, xy: NDArray[np.float64], splits: _Splits) -> NDArray[np.float64]:
+def _lift(tin: TIN, xy: Float64Array, splits: _Splits) -> Float64Array:
     """Return the new points with elevations: on segments from their ends, else from the surface."""
     n = len(tin.points)
     is_on_segment = np.zeros(len(xy), np.bool_)
@@ -253,18 +252,18 @@ def _lift(tin: TIN, xy: NDArray[np.float64], splits: _Splits) -> NDArray[np.floa
     ):
         z[middle] = z[a] + part * (z[b] - z[a])
     points[:, 2] = z
-    lifted: NDArray[np.float64] = points[n:]
+    lifted: Float64Array = points[n:]
     return lifted
 
 
-def _measure_shares(points: NDArray[np.float64], splits: _Splits) -> NDArray[np.float64]:
+def _measure_shares(points: Float64Array, splits: _Splits) -> Float64Array:
     start, end = points[splits.ends[:, 0], :2], points[splits.ends[:, 1], :2]
     whole, part = end - start, points[splits.middle, :2] - start
-    shares: NDArray[np.float64] = (whole * part).sum(axis=1) / (whole * whole).sum(axis=1)
+    shares: Float64Array = (whole * part).sum(axis=1) / (whole * whole).sum(axis=1)
     return shares
 
 
-def _interpolate(tin: TIN, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+def _interpolate(tin: TIN, xy: Float64Array) -> Float64Array:
     """Return elevations; beside the boundary by a rounding that of the nearest edge there."""
     z = tin.interpolate(xy)
     for row in np.flatnonzero(np.isnan(z)).tolist():
@@ -272,7 +271,7 @@ def _interpolate(tin: TIN, xy: NDArray[np.float64]) -> NDArray[np.float64]:
     return z
 
 
-def _interpolate_on_boundary(tin: TIN, point: NDArray[np.float64]) -> float:
+def _interpolate_on_boundary(tin: TIN, point: Float64Array) -> float:
     start, end = (tin.points[ends] for ends in _find_boundary_ends(tin))
     whole = end[:, :2] - start[:, :2]
     share = ((point - start[:, :2]) * whole).sum(axis=1) / (whole * whole).sum(axis=1)
@@ -280,7 +279,7 @@ def _interpolate_on_boundary(tin: TIN, point: NDArray[np.float64]) -> float:
     return float(foot[np.hypot(*(foot[:, :2] - point).T).argmin(), 2])
 
 
-def _find_boundary_ends(tin: TIN) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _find_boundary_ends(tin: TIN) -> tuple[Int64Array, Int64Array]:
     triangle, corner = np.nonzero(tin.neighbors == topology.NO_NEIGHBOR)
     return topology.ends(tin.triangles, triangle, corner)
 
@@ -310,15 +309,13 @@ class _Found(NamedTuple):
     n_triangles : int
     """
 
-    xy: NDArray[np.float64]
+    xy: Float64Array
     splits: _Splits
-    left: NDArray[np.int32]
+    left: Int32Array
     n_triangles: int
 
 
-def _find_points(
-    tin: TIN, goal: _Goal, kept_whole: NDArray[np.int32], progress: Tell | None
-) -> _Found:
+def _find_points(tin: TIN, goal: _Goal, kept_whole: Int32Array, progress: Tell | None) -> _Found:
     fixed = tin.constrained | (tin.neighbors == topology.NO_NEIGHBOR)
     xy, splits, left, n_triangles, is_too_many = _kernel.refine(
         tin.points, tin.triangles, tin.neighbors, fixed, kept_whole, *goal, progress
@@ -374,8 +371,8 @@ def _force(mesh: _kernel.Mesh, pslg: Pslg, splits: _Splits) -> set[tuple[int, in
 
 
 def _add_kept_whole(
-    tin: TIN, kept_whole: NDArray[np.int32], in_the_way: set[tuple[int, int]] | None
-) -> NDArray[np.int32]:
+    tin: TIN, kept_whole: Int32Array, in_the_way: set[tuple[int, int]] | None
+) -> Int32Array:
     """Add the segments in the way; or the whole boundary, if no further ones are known."""
     news = (in_the_way or set()) - set(map(tuple, kept_whole.tolist()))
     if news:
@@ -384,7 +381,7 @@ def _add_kept_whole(
 
 
 def _make_refined(
-    tin: TIN, pslg: Pslg, surface: Surface, number_of: NDArray[np.int32], found: _Found
+    tin: TIN, pslg: Pslg, surface: Surface, number_of: Int32Array, found: _Found
 ) -> TIN:
     return TIN(
         **surface._asdict(),

@@ -11,8 +11,7 @@ from ...crs import scale_elevations
 from ..validation.options import as_flag, require_tin
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array
     from ..surface import TIN
 
 __all__ = ["Quality", "measure_smallest_angles", "quality"]
@@ -53,12 +52,12 @@ class Quality:
     (array([[5., 4., 3.]]), array([2.5]))
     """
 
-    min_angle: NDArray[np.float64]
-    max_angle: NDArray[np.float64]
-    aspect_ratio: NDArray[np.float64]
-    edge_lengths: NDArray[np.float64]
-    circumradius: NDArray[np.float64]
-    radius_edge: NDArray[np.float64]
+    min_angle: Float64Array
+    max_angle: Float64Array
+    aspect_ratio: Float64Array
+    edge_lengths: Float64Array
+    circumradius: Float64Array
+    radius_edge: Float64Array
     space: bool
 
     def __post_init__(self) -> None:
@@ -108,7 +107,7 @@ class Quality:
         """
         return {name: values.tolist() for name, values in self._gather_columns().items()}
 
-    def _gather_columns(self) -> dict[str, NDArray[np.float64]]:
+    def _gather_columns(self) -> dict[str, Float64Array]:
         return {
             "min_angle": self.min_angle,
             "max_angle": self.max_angle,
@@ -193,7 +192,7 @@ def quality(tin: TIN, *, space: bool = False) -> Quality:
     )
 
 
-def _gather_corners(tin: TIN, *, in_space: bool) -> NDArray[np.float64]:
+def _gather_corners(tin: TIN, *, in_space: bool) -> Float64Array:
     """Return the corners of all triangles, (3, 2 or 3, m): each coordinate lies by itself."""
     scales = [1.0, 1.0, scale_elevations(tin.crs, tin.elevation_unit)] if in_space else [1.0, 1.0]
     columns = [np.ascontiguousarray(tin.points[:, k] * scale) for k, scale in enumerate(scales)]
@@ -201,24 +200,24 @@ def _gather_corners(tin: TIN, *, in_space: bool) -> NDArray[np.float64]:
     return np.array([[column[corner] for column in columns] for corner in numbers])
 
 
-def measure_smallest_angles(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+def measure_smallest_angles(corners: Float64Array) -> Float64Array:
     """Return the smallest angle of each triangle, degrees, from (m, 3, 2) corners."""
     edges = _subtract_corners(np.ascontiguousarray(corners.transpose(1, 2, 0)))
     doubled = _measure_doubled_areas(edges, _measure_lengths(edges))
-    angles: NDArray[np.float64] = _measure_angles(edges, doubled).min(axis=0)
+    angles: Float64Array = _measure_angles(edges, doubled).min(axis=0)
     return angles
 
 
-def _subtract_corners(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+def _subtract_corners(corners: Float64Array) -> Float64Array:
     """Return the edge opposite of each corner, (3, 2 or 3, m)."""
     return np.array([corners[(k + 2) % 3] - corners[(k + 1) % 3] for k in range(3)])
 
 
-def _measure_lengths(edges: NDArray[np.float64]) -> NDArray[np.float64]:
+def _measure_lengths(edges: Float64Array) -> Float64Array:
     return np.sqrt(_sum_products(edges, edges))
 
 
-def _sum_products(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+def _sum_products(first: Float64Array, second: Float64Array) -> Float64Array:
     """Return the dot products of (..., 2 or 3, m) vectors."""
     products = first[..., 0, :] * second[..., 0, :]
     for k in range(1, first.shape[-2]):
@@ -226,29 +225,25 @@ def _sum_products(first: NDArray[np.float64], second: NDArray[np.float64]) -> ND
     return products
 
 
-def _measure_doubled_areas(
-    edges: NDArray[np.float64], lengths: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _measure_doubled_areas(edges: Float64Array, lengths: Float64Array) -> Float64Array:
     """Return twice the area, from the two shorter edges: their product rounds least."""
     longest = np.argmax(lengths, axis=0)
     u, w = (
         np.choose((longest + step) % 3, list(edges)) for step in (1, 2)
     )  # of each triangle, (2 or 3, m)
-    flat: NDArray[np.float64] = u[0] * w[1] - u[1] * w[0]
+    flat: Float64Array = u[0] * w[1] - u[1] * w[0]
     if len(u) == 2:
         return np.asarray(np.maximum(flat, 0.0), np.float64)
     north, east = u[2] * w[0] - u[0] * w[2], u[1] * w[2] - u[2] * w[1]
     return np.asarray(np.sqrt(east**2 + north**2 + flat**2), np.float64)
 
 
-def _measure_angles(
-    edges: NDArray[np.float64], doubled: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _measure_angles(edges: Float64Array, doubled: Float64Array) -> Float64Array:
     """Return the angle at each corner, degrees, (3, m): the turn from one edge there to another."""
     dots = np.array([-_sum_products(edges[k - 2], edges[k - 1]) for k in range(3)])
     return np.asarray(np.degrees(np.arctan2(doubled, dots)), np.float64)
 
 
-def _find_quantiles(values: NDArray[np.float64]) -> dict[str, float]:
+def _find_quantiles(values: Float64Array) -> dict[str, float]:
     found = np.quantile(values, list(_QUANTILES.values()), method="inverted_cdf")
     return dict(zip(_QUANTILES, found.tolist(), strict=True))

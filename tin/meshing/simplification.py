@@ -26,9 +26,10 @@ from .surface_pslg import gather_pslg, list_rings
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
     from ..._progress import Tell
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..constraints.breaklines import Lines
 
 __all__ = [
@@ -103,12 +104,12 @@ class Errors(NamedTuple):
     largest, rms : float
     """
 
-    far: NDArray[np.int64]
+    far: Int64Array
     largest: float
     rms: float
 
 
-def find_rounding(z: NDArray[np.float64]) -> float:
+def find_rounding(z: Float64Array) -> float:
     """Return by how much elevations may differ because of their rounding."""
     return float(np.abs(z).max()) * 2.0**-_ROUNDING_BITS
 
@@ -149,9 +150,9 @@ def simplify_tin(
 def insert_until_near(
     goal: Goal,
     rounding: float,
-    rows: NDArray[np.int64],
+    rows: Int64Array,
     *,
-    build: Callable[[NDArray[np.int64]], Any],
+    build: Callable[[Int64Array], Any],
     measure: Callable[[Any, float], Errors],
     progress: Tell,
 ) -> tuple[Any, Errors]:
@@ -172,7 +173,7 @@ def insert_until_near(
 # ------------------------------------------------------------------ what must be left
 
 
-def _find_required(tin: TIN, keep: ArrayLike) -> NDArray[np.bool_]:
+def _find_required(tin: TIN, keep: ArrayLike) -> BoolArray:
     """Tell which vertices stay: those of lines, corners of the boundary, and those given."""
     is_required = np.zeros(len(tin.points), np.bool_)
     is_required[as_vertex_array(keep, len(tin.points)).ravel()] = True
@@ -187,14 +188,14 @@ def _find_required(tin: TIN, keep: ArrayLike) -> NDArray[np.bool_]:
     return is_required
 
 
-def are_straight(ring: NDArray[np.float64]) -> NDArray[np.bool_]:
+def are_straight(ring: Float64Array) -> BoolArray:
     """Tell which corners of a ring lie on the line between the two beside them."""
     xy = np.ascontiguousarray(ring[:, :2])
     before, after = np.roll(xy, 1, axis=0), np.roll(xy, -1, axis=0)
     return np.asarray(_kernel.orientation(before, xy, after) == 0)
 
 
-def _find_rows(tin: TIN, skeleton: _Part, goal: Goal) -> tuple[NDArray[np.int64], int]:
+def _find_rows(tin: TIN, skeleton: _Part, goal: Goal) -> tuple[Int64Array, int]:
     """Return the vertices that the core leaves, and how many it removed again."""
     surface = skeleton.surface
     is_used = np.zeros(len(tin.points), np.bool_)
@@ -225,7 +226,7 @@ def _find_rows(tin: TIN, skeleton: _Part, goal: Goal) -> tuple[NDArray[np.int64]
 class _Part:
     """The surface of a TIN built of some of its vertices, with its lines and its boundary."""
 
-    def __init__(self, tin: TIN, rows: NDArray[np.int64], threads: int) -> None:
+    def __init__(self, tin: TIN, rows: Int64Array, threads: int) -> None:
         self.tin, self.rows, self.threads = tin, rows, threads
         self._number_of = np.full(len(tin.points) + 1, -1, np.int32)  # and of no vertex
         self._number_of[rows] = np.arange(len(rows), dtype=np.int32)
@@ -243,7 +244,7 @@ class _Part:
         followed = self._follow(ring[:-1])
         return [*followed, followed[0]]
 
-    def _build(self, points: NDArray[np.float64]) -> tuple[Surface, NDArray[np.int32]]:
+    def _build(self, points: Float64Array) -> tuple[Surface, Int32Array]:
         growth = _kernel.grow(points, threads=self.threads)
         mesh = build_mesh_of_growth(points, growth)
         passed, blocked = mesh.force(self._pslg.polylines.segments())
@@ -292,7 +293,7 @@ class _Part:
             pslg.polylines, pslg.constraints, self._order, self.surface, is_whole=False
         )
 
-    def _find_constrained(self) -> NDArray[np.bool_]:
+    def _find_constrained(self) -> BoolArray:
         """Return the flags of edges; those of the boundary as they were."""
         tin, surface = self.tin, self.surface
         is_flagged = np.zeros(len(tin.points), np.bool_)
@@ -304,7 +305,7 @@ class _Part:
         constrained[edge] = is_flagged[self.rows[start]] & is_flagged[self.rows[end]]
         return constrained
 
-    def _report(self, found: Simplification, vertex_of: NDArray[np.int32]) -> Any:
+    def _report(self, found: Simplification, vertex_of: Int32Array) -> Any:
         report = self.tin.report
         surface = self.surface
         counts = (len(surface.points), len(surface.triangles))

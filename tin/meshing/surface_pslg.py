@@ -15,8 +15,7 @@ from ..constraints.pslg import Clip, Pslg
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int64Array
     from ...policies import LineKind
     from ..surface import TIN
 
@@ -30,7 +29,7 @@ def list_rings(tin: TIN) -> list[list[int]]:
 
 def gather_pslg(
     tin: TIN,
-    points: NDArray[np.float64],
+    points: Float64Array,
     follow: Callable[[list[int]], list[int]],
     rings: list[list[int]],
     *,
@@ -86,7 +85,7 @@ def _gather_constraints(tin: TIN, n_nameless: int, n_named: int, n_rings: int) -
     )
 
 
-def _make_nameless(kind: LineKind, sources: NDArray[np.int64]) -> ConstraintTable:
+def _make_nameless(kind: LineKind, sources: Int64Array) -> ConstraintTable:
     return ConstraintTable.of_kind(kind, sources.astype(np.int32), np.zeros(len(sources)))
 
 

@@ -10,14 +10,12 @@ from ..report import Unmended
 from .shape_quality import measure_smallest_angles
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array, Int32Array
 
 __all__ = ["find_unmended"]
 
 
-def find_unmended(
-    points: NDArray[np.float64], triangles: NDArray[np.int32], left: NDArray[np.int32]
-) -> Unmended:
+def find_unmended(points: Float64Array, triangles: Int32Array, left: Int32Array) -> Unmended:
     """Find the triangles that the core left, whatever the order of their corners.
 
     Parameters

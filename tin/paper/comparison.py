@@ -23,8 +23,9 @@ from .faults import find_overlapping, find_violating, measure_minimum_angles
 from .growth import Network, improved, original
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..surface import TIN
 
 __all__ = ["ANGLE_BINS", "MOST_POINTS", "Comparison", "Outcome", "compare"]
@@ -93,22 +94,22 @@ class Outcome:
     """
 
     name: str
-    triangles: NDArray[np.int32]
-    unextended: NDArray[np.int32]
+    triangles: Int32Array
+    unextended: Int32Array
     is_stopped: bool
     seconds: float
     memory: int
     candidates: int
     candidates_without_removal: int | None
     tests: int
-    violating: NDArray[np.bool_]
-    overlapping: NDArray[np.bool_]
+    violating: BoolArray
+    overlapping: BoolArray
     overlap: float
     gap: float
-    angles: NDArray[np.float64]
+    angles: Float64Array
 
     @property
-    def angle_counts(self) -> NDArray[np.int64]:
+    def angle_counts(self) -> Int64Array:
         """Triangles in each class of minimum angles, (6,) array; see ``ANGLE_BINS``."""
         # An equilateral triangle's angles may be rounded to a little more than 60 degrees.
         return np.histogram(np.minimum(self.angles, ANGLE_BINS[-1]), ANGLE_BINS)[0]
@@ -171,8 +172,8 @@ class Comparison:
     (3, 'original')
     """
 
-    points: NDArray[np.float64]
-    hull: NDArray[np.int32]
+    points: Float64Array
+    hull: Int32Array
     area: float
     outcomes: tuple[Outcome, ...]
 
@@ -259,9 +260,7 @@ def compare(points: Survey | ArrayLike, *, limit: int = MOST_POINTS) -> Comparis
     )
 
 
-def _evaluate(
-    name: str, grow: Callable[..., Network], rows: NDArray[np.float64], tin: TIN
-) -> Outcome:
+def _evaluate(name: str, grow: Callable[..., Network], rows: Float64Array, tin: TIN) -> Outcome:
     run = partial(grow, rows, most_triangles=_MOST_TRIANGLES * len(tin.points))
     network, seconds = _time(run)
     return Outcome(
@@ -278,7 +277,7 @@ def _evaluate(
     )
 
 
-def _evaluate_exact(rows: NDArray[np.float64], tin: TIN) -> Outcome:
+def _evaluate_exact(rows: Float64Array, tin: TIN) -> Outcome:
     build = partial(triangulate, rows, threads=1)
     handed_over = (tin.points, tin.triangles, tin.neighbors, tin.constrained, tin.vertex_of)
     # The kernel compares every point that it looks at with the best circle so far.
@@ -297,7 +296,7 @@ def _evaluate_exact(rows: NDArray[np.float64], tin: TIN) -> Outcome:
     )
 
 
-def _find_faults(triangles: NDArray[np.int32], tin: TIN) -> dict[str, Any]:
+def _find_faults(triangles: Int32Array, tin: TIN) -> dict[str, Any]:
     areas = cover(tin.points, triangles, tin.hull)
     return {
         "violating": find_violating(tin.points, triangles),

@@ -16,7 +16,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array, Int32Array, Int64Array
 
 __all__ = ["Cover", "cover"]
 
@@ -31,9 +31,7 @@ class Cover(NamedTuple):
     gap: float
 
 
-def cover(
-    points: NDArray[np.float64], triangles: NDArray[np.int32], hull: NDArray[np.int32]
-) -> Cover:
+def cover(points: Float64Array, triangles: Int32Array, hull: Int32Array) -> Cover:
     """Measure overlaps and gaps of triangles in a hull.
 
     Parameters
@@ -66,8 +64,8 @@ def cover(
 
 
 def _find_left_over(
-    n: int, triangles: NDArray[np.int32], hull: NDArray[np.int32]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    n: int, triangles: Int32Array, hull: Int32Array
+) -> tuple[Int64Array, Int64Array]:
     """Return edges, smaller vertex first, and how often more they run forwards than backwards."""
     start = np.concatenate([triangles.ravel(), np.roll(hull, -1)]).astype(np.int64)
     end = np.concatenate([triangles[:, [1, 2, 0]].ravel(), hull]).astype(np.int64)
@@ -79,16 +77,14 @@ def _find_left_over(
     return np.stack([keys // n, keys % n], axis=1), runs
 
 
-def _sort_ends(
-    xy: NDArray[np.float64], edges: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _sort_ends(xy: Float64Array, edges: Int64Array) -> tuple[Float64Array, Float64Array]:
     """Return the southern and the northern end of every edge."""
     first, second = xy[edges[:, 0]], xy[edges[:, 1]]
     is_northward = (first[:, 1] < second[:, 1])[:, None]
     return np.where(is_northward, first, second), np.where(is_northward, second, first)
 
 
-def _walk_strips(y: NDArray[np.float64]) -> Iterator[tuple[float, float]]:
+def _walk_strips(y: Float64Array) -> Iterator[tuple[float, float]]:
     """Yield middle and height of strips that no edge begins or ends in."""
     if len(y) == 0:
         return
@@ -100,9 +96,9 @@ def _walk_strips(y: NDArray[np.float64]) -> Iterator[tuple[float, float]]:
 
 
 def _measure_widths(
-    south: NDArray[np.float64],
-    north: NDArray[np.float64],
-    step: NDArray[np.int64],
+    south: Float64Array,
+    north: Float64Array,
+    step: Int64Array,
     y: float,
 ) -> Cover:
     """Return the lengths, along a line from west to east, of surplus and of lack."""

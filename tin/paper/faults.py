@@ -9,8 +9,7 @@ import numpy as np
 from ..predicates import columns, in_circle, orientation
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..predicates import Columns
 
 __all__ = ["find_overlapping", "find_violating", "measure_minimum_angles"]
@@ -20,7 +19,7 @@ _BLOCK = 256  # triangles at a time
 _CHUNK = 32  # neighbours of each looked at before asking whether an overlap is found
 
 
-def find_violating(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> NDArray[np.bool_]:
+def find_violating(points: Float64Array, triangles: Int32Array) -> BoolArray:
     """Tell which triangles have a point strictly inside their circle; exactly.
 
     Parameters
@@ -49,9 +48,7 @@ def find_violating(points: NDArray[np.float64], triangles: NDArray[np.int32]) ->
     return found
 
 
-def find_overlapping(
-    points: NDArray[np.float64], triangles: NDArray[np.int32]
-) -> NDArray[np.bool_]:
+def find_overlapping(points: Float64Array, triangles: Int32Array) -> BoolArray:
     """Tell which triangles share area with another one, exactly: as :func:`find_violating`."""
     xy = columns(points)
     found = np.zeros(len(triangles), np.bool_)
@@ -64,7 +61,7 @@ def find_overlapping(
     return found
 
 
-def _match_boxes(corners: NDArray[np.float64], block: NDArray[np.int64]) -> NDArray[np.bool_]:
+def _match_boxes(corners: Float64Array, block: Int64Array) -> BoolArray:
     """Tell for each triangle of a block which triangles have a bounding box that meets its own."""
     low, high = corners.min(axis=1), corners.max(axis=1)
     meet = np.ones((len(block), len(corners)), np.bool_)
@@ -76,10 +73,10 @@ def _match_boxes(corners: NDArray[np.float64], block: NDArray[np.int64]) -> NDAr
 
 def _mark(
     xy: Columns,
-    triangles: NDArray[np.int32],
-    block: NDArray[np.int64],
-    near: NDArray[np.bool_],
-    found: NDArray[np.bool_],
+    triangles: Int32Array,
+    block: Int64Array,
+    near: BoolArray,
+    found: BoolArray,
 ) -> None:
     """Mark triangles of a block, and some of those that they overlap, if they overlap any."""
     rank = np.cumsum(near, axis=1, dtype=np.int32)
@@ -95,9 +92,7 @@ def _mark(
         seen, ahead = ahead, 2 * ahead
 
 
-def _is_apart(
-    xy: Columns, first: NDArray[np.int32], second: NDArray[np.int32]
-) -> NDArray[np.bool_]:
+def _is_apart(xy: Columns, first: Int32Array, second: Int32Array) -> BoolArray:
     """Tell where an edge of the first triangle has the whole second one on its outer side."""
     apart = np.zeros(len(first), np.bool_)
     for k in range(3):
@@ -107,9 +102,7 @@ def _is_apart(
     return apart
 
 
-def measure_minimum_angles(
-    points: NDArray[np.float64], triangles: NDArray[np.int32]
-) -> NDArray[np.float64]:
+def measure_minimum_angles(points: Float64Array, triangles: Int32Array) -> Float64Array:
     """Return the smallest angle of every triangle, (m,) array in degrees."""
     corners = points[triangles, :2]
     angles = []

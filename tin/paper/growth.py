@@ -57,8 +57,9 @@ from .rules import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import Float64Array, Int32Array
     from ..predicates import Columns
 
 __all__ = ["Distance", "EmptyCircle", "Network", "improved", "original"]
@@ -94,9 +95,9 @@ class Network:
         Comparisons of a point with a circle: the one on the edge, or that of the best so far.
     """
 
-    points: NDArray[np.float64]
-    triangles: NDArray[np.int32]
-    unextended: NDArray[np.int32]
+    points: Float64Array
+    triangles: Int32Array
+    unextended: Int32Array
     is_stopped: bool
     searches: int
     candidates: int
@@ -208,7 +209,7 @@ def improved(
     return _grow(as_points(points), rule, removal=removal, most=most_triangles)
 
 
-def _grow(rows: NDArray[np.float64], rule: Rule, *, removal: bool, most: int | None) -> Network:
+def _grow(rows: Float64Array, rule: Rule, *, removal: bool, most: int | None) -> Network:
     require_count("most_triangles", most, or_none=True)
     points = _drop_repeats(rows)
     lists = Lists(columns(points), removal=as_flag("removal", removal))
@@ -246,7 +247,7 @@ def _extend(lists: Lists, rule: Rule, p1: int, p2: int) -> None:
         lists.enter((p2, p1, point))
 
 
-def _drop_repeats(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+def _drop_repeats(rows: Float64Array) -> Float64Array:
     """Return the first row at every place, in the order given."""
     _, first = np.unique(rows[:, :2], axis=0, return_index=True)
     return rows[np.sort(first)]
@@ -269,7 +270,7 @@ def _find_first_triangle(xy: Columns, n_rows: int) -> Triangle:
     )
 
 
-def _find_unextended(lists: Lists) -> NDArray[np.int32]:
+def _find_unextended(lists: Lists) -> Int32Array:
     """Return the edges used once that are not on the hull."""
     everywhere = np.arange(len(lists.xy[0]))
     inner: list[Edge] = [

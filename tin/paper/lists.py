@@ -9,8 +9,7 @@ import numpy as np
 from ..predicates import orientation
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Int8Array, Int64Array
     from ..predicates import Columns
 
 __all__ = ["Edge", "Lists", "Triangle", "sides"]
@@ -44,7 +43,7 @@ class Lists:
     def __init__(self, xy: Columns, *, removal: bool) -> None:
         self.xy = xy
         self.removal = removal
-        self.searched: NDArray[np.int64] = np.arange(len(xy[0]), dtype=np.int64)
+        self.searched: Int64Array = np.arange(len(xy[0]), dtype=np.int64)
         self.triangles: list[Triangle] = []
         self.searches = self.candidates = self.tests = 0
         self._count: dict[Edge, int] = {}
@@ -63,7 +62,7 @@ class Lists:
         """Second step: tell whether the edge between two points is used twice already."""
         return self.count(p, q) == _MOST_USES
 
-    def qualified(self, p1: int, p2: int) -> NDArray[np.int64]:
+    def qualified(self, p1: int, p2: int) -> Int64Array:
         """Third step: the points that may become a triangle with the edge p1-p2 of a triangle.
 
         Left out are 1) points collinear with the edge, 2) points on the side of the triangle's
@@ -72,7 +71,7 @@ class Lists:
         others = self.searched[(self.searched != p1) & (self.searched != p2)]
         self.searches += 1
         self.candidates += len(others)
-        across: NDArray[np.int64] = others[sides(self.xy, p1, p2, others) < 0]
+        across: Int64Array = others[sides(self.xy, p1, p2, others) < 0]
         closed = list(self._used_twice[p1] | self._used_twice[p2])
         return across[~np.isin(across, closed)] if closed else across
 
@@ -98,6 +97,6 @@ class Lists:
                 self._used_once[v].add(w)
 
 
-def sides(xy: Columns, p1: int, p2: int, points: NDArray[np.int64]) -> NDArray[np.int8]:
+def sides(xy: Columns, p1: int, p2: int, points: Int64Array) -> Int8Array:
     """Tell the side of p1-p2 that points lie on: +1 left, -1 right, 0 collinear; exactly."""
     return orientation(xy, np.full(len(points), p1), np.full(len(points), p2), points)

@@ -11,7 +11,7 @@ import numpy as np
 from ..predicates import Columns, in_circle
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array, Int8Array, Int64Array
 
 __all__ = [
     "Choice",
@@ -30,11 +30,11 @@ class Choice(NamedTuple):
     tests: int
 
 
-Rule = Callable[[Columns, int, int, "NDArray[np.int64]"], Choice]
+Rule = Callable[[Columns, int, int, "Int64Array"], Choice]
 """Chooses the third point of an edge among the points qualified, all strictly left of it."""
 
 
-def widest_angle(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) -> Choice:
+def widest_angle(xy: Columns, p1: int, p2: int, qualified: Int64Array) -> Choice:
     """Choose the point that sees p1-p2 under the largest angle; of equals the first in the list.
 
     Parameters
@@ -53,9 +53,7 @@ def widest_angle(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) ->
     return Choice(int(widest[0]) if len(widest) else None, max(len(qualified) - 1, 0))
 
 
-def widest_angle_then_closest(
-    xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]
-) -> Choice:
+def widest_angle_then_closest(xy: Columns, p1: int, p2: int, qualified: Int64Array) -> Choice:
     """Choose as :func:`widest_angle`; of equals the closest to p1-p2, of these the first.
 
     Points of one angle lie on one arc from p1 to p2. From either end up to its middle the distance
@@ -68,7 +66,7 @@ def widest_angle_then_closest(
     return Choice(min(widest, key=lambda p: _measure_doubled_area(xy, p1, p2, p)), tests)
 
 
-def _find_widest(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) -> NDArray[np.int64]:
+def _find_widest(xy: Columns, p1: int, p2: int, qualified: Int64Array) -> Int64Array:
     """Return the points that see p1-p2 under the largest angle, in the order of the list."""
     if len(qualified) == 0:
         return qualified
@@ -79,7 +77,7 @@ def _find_widest(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) ->
         side = _compare_with_circle(xy, p1, p2, int(qualified[best]), np.delete(qualified, best))
         side = np.insert(side, best, 0)
         rivals = np.flatnonzero(side > 0)
-    widest: NDArray[np.int64] = qualified[side == 0]
+    widest: Int64Array = qualified[side == 0]
     return widest
 
 
@@ -91,7 +89,7 @@ def _measure_doubled_area(xy: Columns, *corners: int) -> Fraction:
     return abs((bx - ax) * (cy - ay) - (by - ay) * (cx - ax))
 
 
-def closest_in_circle(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]) -> Choice:
+def closest_in_circle(xy: Columns, p1: int, p2: int, qualified: Int64Array) -> Choice:
     """Choose the point closest to p1-p2 in the circle whose diameter it is, or on it.
 
     The perpendicular from a point of that circle meets the edge itself, so the distances to the
@@ -109,7 +107,7 @@ def closest_in_circle(xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64
 
 
 def closest_in_circle_or_widest_angle(
-    xy: Columns, p1: int, p2: int, qualified: NDArray[np.int64]
+    xy: Columns, p1: int, p2: int, qualified: Int64Array
 ) -> Choice:
     """Choose as :func:`closest_in_circle`; if the circle is empty as :func:`widest_angle`."""
     in_circle = closest_in_circle(xy, p1, p2, qualified)
@@ -119,26 +117,22 @@ def closest_in_circle_or_widest_angle(
     return Choice(anywhere.point, in_circle.tests + anywhere.tests)
 
 
-def _measure_cotangents(
-    xy: Columns, p1: int, p2: int, points: NDArray[np.int64]
-) -> NDArray[np.float64]:
+def _measure_cotangents(xy: Columns, p1: int, p2: int, points: Int64Array) -> Float64Array:
     """Cotangents of the angles under which points see p1-p2; a point nearly on it sees most."""
     (ax, ay), (bx, by) = _measure_offsets(xy, p1, points), _measure_offsets(xy, p2, points)
     cross = np.abs(ax * by - ay * bx)
     dot = ax * bx + ay * by
     flat = np.copysign(np.inf, dot)
-    cotangent: NDArray[np.float64] = np.divide(dot, cross, out=flat, where=cross > 0)
+    cotangent: Float64Array = np.divide(dot, cross, out=flat, where=cross > 0)
     return cotangent
 
 
-def _measure_offsets(xy: Columns, origin: int, points: NDArray[np.int64]) -> Columns:
+def _measure_offsets(xy: Columns, origin: int, points: Int64Array) -> Columns:
     x, y = xy
     return x[points] - x[origin], y[points] - y[origin]
 
 
-def _compare_with_circle(
-    xy: Columns, p1: int, p2: int, p: int, points: NDArray[np.int64]
-) -> NDArray[np.int8]:
+def _compare_with_circle(xy: Columns, p1: int, p2: int, p: int, points: Int64Array) -> Int8Array:
     """Tell whether points see p1-p2 under a wider angle than P (+1), the same (0), a narrower."""
     size = len(points)
     return in_circle(xy, np.full(size, p1), np.full(size, p2), np.full(size, p), points)

@@ -18,7 +18,7 @@ from .. import _kernel, topology
 from ..validation.threads import thread_count
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array, Int8Array, Int32Array, Int64Array
 
 __all__ = ["NearestVertex"]
 
@@ -39,7 +39,7 @@ class NearestVertex:
         Of several at one place the first is found. At least three places, not collinear.
     """
 
-    def __init__(self, points: NDArray[np.float64]) -> None:
+    def __init__(self, points: Float64Array) -> None:
         growth = _kernel.grow(points, threads=thread_count(None, len(points)))
         kept = np.arange(len(points), dtype=np.int32)
         if growth.kept_row is not None:
@@ -56,7 +56,7 @@ class NearestVertex:
             topology.edges_at(growth.triangles, growth.neighbors == topology.NO_NEIGHBOR)
         )
 
-    def find(self, xy: NDArray[np.float64], *, threads: int = 1) -> NDArray[np.int32]:
+    def find(self, xy: Float64Array, *, threads: int = 1) -> Int32Array:
         """Return the nearest vertex of each place, the smallest number of several; -1 for NaN."""
         found = np.full(len(xy), -1, np.int32)
         nearest = _kernel.nearest_vertices(self._locator, xy, threads)
@@ -67,11 +67,11 @@ class NearestVertex:
             found[outside] = self._number[self._find_outside(np.ascontiguousarray(xy[outside]))]
         return found
 
-    def _find_outside(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+    def _find_outside(self, xy: Float64Array) -> Int64Array:
         """Return the nearest vertex of places outside the hull."""
         return self._choose_smallest_of_tied(xy, self._descend(xy, self._find_near_hull(xy)))
 
-    def _find_near_hull(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+    def _find_near_hull(self, xy: Float64Array) -> Int64Array:
         """Return a vertex of the hull near each place outside: by one of the two coordinates."""
         hull = self._xy[self._hull]
         candidates = []
@@ -85,7 +85,7 @@ class NearestVertex:
         best = np.argmin(self._measure_squares(xy[:, None], tried), axis=1)
         return np.asarray(tried[np.arange(len(xy)), best], np.int64)
 
-    def _descend(self, xy: NDArray[np.float64], at: NDArray[np.int64]) -> NDArray[np.int64]:
+    def _descend(self, xy: Float64Array, at: Int64Array) -> Int64Array:
         """Go from vertex to nearer vertex until none of the neighbours is nearer."""
         at = at.copy()
         active = np.arange(len(xy))
@@ -94,9 +94,7 @@ class NearestVertex:
             active = np.concatenate(moved)
         return at
 
-    def _step(
-        self, xy: NDArray[np.float64], at: NDArray[np.int64], rows: NDArray[np.int64]
-    ) -> NDArray[np.int64]:
+    def _step(self, xy: Float64Array, at: Int64Array, rows: Int64Array) -> Int64Array:
         """Move some places' vertices to a nearer neighbour; return those that have moved."""
         item, owner = topology.gather(self._offsets, at[rows])
         neighbor, of = self._neighbors[item], rows[owner]
@@ -116,9 +114,7 @@ class NearestVertex:
         at[rows[is_nearer]] = best[is_nearer]
         return rows[is_nearer]
 
-    def _choose_smallest_of_tied(
-        self, xy: NDArray[np.float64], nearest: NDArray[np.int64]
-    ) -> NDArray[np.int64]:
+    def _choose_smallest_of_tied(self, xy: Float64Array, nearest: Int64Array) -> Int64Array:
         """Return the smallest of the vertices that are as near; they are joined by edges.
 
         Places are taken once each: all the vertices tied at places of the plane are no more than
@@ -135,7 +131,7 @@ class NearestVertex:
         smallest[rows] = self._spread_ties(xy[tied], nearest[tied])[which]
         return smallest
 
-    def _spread_ties(self, xy: NDArray[np.float64], begin: NDArray[np.int64]) -> NDArray[np.int64]:
+    def _spread_ties(self, xy: Float64Array, begin: Int64Array) -> Int64Array:
         """Return the smallest vertex that is reached from one through vertices as near."""
         smallest = begin.copy()
         count = len(self._xy)
@@ -151,11 +147,11 @@ class NearestVertex:
 
     def _find_tied(
         self,
-        xy: NDArray[np.float64],
-        nearest: NDArray[np.int64],
-        rows: NDArray[np.int64],
-        at: NDArray[np.int64],
-    ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        xy: Float64Array,
+        nearest: Int64Array,
+        rows: Int64Array,
+        at: Int64Array,
+    ) -> tuple[Int64Array, Int64Array]:
         """Return the neighbours of vertices that are as near to a place as its nearest vertex."""
         found = []
         for part in self._cut_into_portions(at, np.arange(len(rows))):
@@ -170,28 +166,22 @@ class NearestVertex:
             found.append((of[near], neighbor[near]))
         return _join(found)
 
-    def _cut_into_portions(
-        self, at: NDArray[np.int64], rows: NDArray[np.int64]
-    ) -> list[NDArray[np.int64]]:
+    def _cut_into_portions(self, at: Int64Array, rows: Int64Array) -> list[Int64Array]:
         """Cut rows into portions whose vertices have not too many neighbours together."""
         degrees = np.diff(self._offsets)[at[rows]]
         portion = np.cumsum(degrees) // _MOST_PAIRS
         return np.split(rows, np.flatnonzero(np.diff(portion)) + 1)
 
-    def _measure_squares(
-        self, xy: NDArray[np.float64], vertex: NDArray[np.int64] | NDArray[np.int32]
-    ) -> NDArray[np.float64]:
+    def _measure_squares(self, xy: Float64Array, vertex: Int64Array | Int32Array) -> Float64Array:
         east, north = np.moveaxis(self._xy[vertex] - xy, -1, 0)
         return np.asarray(east * east + north * north, np.float64)
 
-    def _compare(
-        self, xy: NDArray[np.float64], one: NDArray[np.int64], other: NDArray[np.int64]
-    ) -> NDArray[np.int8]:
+    def _compare(self, xy: Float64Array, one: Int64Array, other: Int64Array) -> Int8Array:
         return _kernel.compare_distances(np.ascontiguousarray(xy), self._xy[one], self._xy[other])
 
 
 def _join(
-    pairs: list[tuple[NDArray[np.int64], NDArray[np.int64]]],
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    pairs: list[tuple[Int64Array, Int64Array]],
+) -> tuple[Int64Array, Int64Array]:
     first, second = zip(*pairs, strict=True)
     return np.concatenate(first), np.concatenate(second)

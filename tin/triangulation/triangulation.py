@@ -13,7 +13,7 @@ from ..types import Bounds, Frozen, seal
 from .nearest import NearestVertex
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["Triangulation"]
 
@@ -34,10 +34,10 @@ class Triangulation(Frozen):
         Whether that edge is a breakline, boundary or hole.
     """
 
-    points: NDArray[np.float64]
-    triangles: NDArray[np.int32]
-    neighbors: NDArray[np.int32]
-    constrained: NDArray[np.bool_]
+    points: Float64Array
+    triangles: Int32Array
+    neighbors: Int32Array
+    constrained: BoolArray
 
     @cached_property
     def bounds(self) -> Bounds:
@@ -45,12 +45,12 @@ class Triangulation(Frozen):
         return Bounds.of(self.points)
 
     @cached_property
-    def edges(self) -> NDArray[np.int32]:
+    def edges(self) -> Int32Array:
         """Every edge once, (k, 2) vertex pairs."""
         return seal(topology.edges(self.triangles, self.neighbors))
 
     @cached_property
-    def rings(self) -> tuple[NDArray[np.int32], ...]:
+    def rings(self) -> tuple[Int32Array, ...]:
         """Boundary rings as vertex numbers, the surface on the left; the outer one first."""
         rings = topology.boundary_rings(self.triangles, self.neighbors)
         west = [self.points[ring, 0].min() for ring in rings]
@@ -66,7 +66,7 @@ class Triangulation(Frozen):
         return bool((_kernel.orientation(a, b, c) >= 0).all())
 
     @cached_property
-    def hull(self) -> NDArray[np.int32]:
+    def hull(self) -> Int32Array:
         """Vertices on the convex hull, counter-clockwise, those within its edges too."""
         if self.fills_hull:
             return self.rings[0]
@@ -78,17 +78,17 @@ class Triangulation(Frozen):
         return seal(rows[ring])
 
     @cached_property
-    def triangle_areas(self) -> NDArray[np.float64]:
+    def triangle_areas(self) -> Float64Array:
         """Area of each triangle in the plane, (m,) array, CRS units squared."""
         (ux, vx), (uy, vy) = self._edge_components(2)
         return seal(0.5 * (ux * vy - uy * vx))
 
-    def surface_areas(self, elevation_scale: float = 1.0) -> NDArray[np.float64]:
+    def surface_areas(self, elevation_scale: float = 1.0) -> Float64Array:
         """Measure each triangle in space, (m,) array; elevations times a factor."""
         (ux, vx), (uy, vy), (uz, vz) = self._edge_components(3)
         uz, vz = uz * elevation_scale, vz * elevation_scale
         east, north, up = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        areas: NDArray[np.float64] = 0.5 * np.sqrt(east * east + north * north + up * up)
+        areas: Float64Array = 0.5 * np.sqrt(east * east + north * north + up * up)
         return seal(areas)
 
     @cached_property
@@ -96,7 +96,7 @@ class Triangulation(Frozen):
         """The index of point location; any number of threads may ask it at a time."""
         return _kernel.Locator(self.points, self.triangles, self.neighbors)
 
-    def normals(self, elevation_scale: float = 1.0) -> NDArray[np.float64]:
+    def normals(self, elevation_scale: float = 1.0) -> Float64Array:
         """Return an upward normal of each triangle, (m, 3) array; elevations times a factor.
 
         Their lengths are in proportion to the triangles' areas in space. Coordinates are scaled
@@ -107,14 +107,14 @@ class Triangulation(Frozen):
         first[:, :2] /= run
         second[:, :2] /= run
         rise = max(float(np.abs([first[:, 2], second[:, 2]]).max()), np.finfo(float).tiny)
-        upward: NDArray[np.float64] = np.cross(first / [1, 1, rise], second / [1, 1, rise])
+        upward: Float64Array = np.cross(first / [1, 1, rise], second / [1, 1, rise])
         with np.errstate(over="ignore"):  # infinitely steep: the normal is level
             steepness = np.float64(rise) * elevation_scale / run
         upward[:, :2] *= min(steepness, 1.0)
         upward[:, 2] = np.maximum(upward[:, 2], 0.0) / max(steepness, 1.0)
         return upward
 
-    def vertex_normals(self, elevation_scale: float = 1.0) -> NDArray[np.float64]:
+    def vertex_normals(self, elevation_scale: float = 1.0) -> Float64Array:
         """Sum the normals of the triangles at each vertex, (n, 3) array."""
         corners = self.triangles.ravel()
         upward = np.repeat(self.normals(elevation_scale), 3, axis=0)
@@ -127,12 +127,12 @@ class Triangulation(Frozen):
         edges = topology.sort_half_edges(self.triangles, len(self.points))
         return topology.HalfEdges(seal(edges.keys), seal(edges.triangles), seal(edges.offsets))
 
-    def turn_about(self, vertex: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    def turn_about(self, vertex: int) -> tuple[Int32Array, Int32Array]:
         """Return the triangles around a vertex and its neighbours, counter-clockwise."""
         around, neighbors = topology.turn_about(self.triangles, self.half_edges, vertex)
         return seal(around), seal(neighbors)
 
-    def find_edges(self, a: NDArray[np.int64], b: NDArray[np.int64]) -> NDArray[np.int32]:
+    def find_edges(self, a: Int64Array, b: Int64Array) -> Int32Array:
         """Return the triangles left and right of the edges from a to b, (..., 2) array."""
         sides = [topology.find_triangles(self.half_edges, *ends) for ends in ((a, b), (b, a))]
         return seal(np.stack(sides, axis=-1))
@@ -142,13 +142,13 @@ class Triangulation(Frozen):
         """The index of nearest vertices; any number of threads may ask it at a time."""
         return NearestVertex(self.points)
 
-    def _edge_components(self, axes: int) -> list[tuple[NDArray[np.float64], ...]]:
+    def _edge_components(self, axes: int) -> list[tuple[Float64Array, ...]]:
         """Return for each axis that of both edges from the first corner, contiguous in memory."""
         first, second, third = (corner.astype(np.intp) for corner in self.triangles.T)
         columns = [np.ascontiguousarray(axis) for axis in self.points.T[:axes]]
         return [(axis[second] - axis[first], axis[third] - axis[first]) for axis in columns]
 
-    def _edge_vectors(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _edge_vectors(self) -> tuple[Float64Array, Float64Array]:
         origin = self.points[self.triangles[:, 0]]
         return (
             self.points[self.triangles[:, 1]] - origin,

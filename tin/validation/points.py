@@ -13,7 +13,7 @@ from .tables import Table, as_table
 from .threads import thread_count
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import Float64Array
 
 __all__ = [
     "as_elevations",
@@ -45,7 +45,7 @@ def require_three(count: int) -> None:
         )
 
 
-def as_points(points: Any, *, threads: int | None = 1) -> NDArray[np.float64]:
+def as_points(points: Any, *, threads: int | None = 1) -> Float64Array:
     """Return a fresh (n, 3) float64 array of finite coordinates in the exact range.
 
     -0.0 becomes 0.0, so that equal coordinates are equal bytes.
@@ -90,7 +90,7 @@ def clean_points(table: Table, *, threads: int | None = 1) -> Table:
     return Table(clean, is_masked)
 
 
-def as_xy(xy: Any) -> NDArray[np.float64]:
+def as_xy(xy: Any) -> Float64Array:
     """Return a (k, 2) float64 array; NaN is allowed and lies nowhere, and so is what is masked.
 
     Raises
@@ -113,7 +113,7 @@ def as_xy(xy: Any) -> NDArray[np.float64]:
     return queries
 
 
-def as_places(xy: Any) -> tuple[NDArray[np.float64], bool]:
+def as_places(xy: Any) -> tuple[Float64Array, bool]:
     """Return one place, or several, as :func:`as_xy` does, and whether it is one."""
     shape = getattr(xy, "shape", None)
     if shape is None:
@@ -123,7 +123,7 @@ def as_places(xy: Any) -> tuple[NDArray[np.float64], bool]:
     return as_xy([xy] if is_one else xy), is_one
 
 
-def as_pairs(x: Any, y: Any) -> tuple[NDArray[np.float64], tuple[int, ...]]:
+def as_pairs(x: Any, y: Any) -> tuple[Float64Array, tuple[int, ...]]:
     """Return places of eastings and northings that are given apart, (k, 2), and their shape.
 
     Raises
@@ -144,7 +144,7 @@ def as_pairs(x: Any, y: Any) -> tuple[NDArray[np.float64], tuple[int, ...]]:
     return as_xy(np.stack([across.ravel(), up.ravel()], axis=1)), across.shape
 
 
-def as_elevations(values: Any) -> NDArray[np.float64]:
+def as_elevations(values: Any) -> Float64Array:
     """Return one elevation or several as a float64 array of finite numbers.
 
     Raises
@@ -162,7 +162,7 @@ def as_elevations(values: Any) -> NDArray[np.float64]:
     return elevations
 
 
-def _require_finite(xyz: NDArray[np.float64]) -> None:
+def _require_finite(xyz: Float64Array) -> None:
     rows = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
     if len(rows):
         row = int(rows[0])
@@ -176,7 +176,7 @@ def _require_finite(xyz: NDArray[np.float64]) -> None:
         )
 
 
-def require_exact_range(xy: NDArray[np.float64], what: str) -> None:
+def require_exact_range(xy: Float64Array, what: str) -> None:
     """Refuse coordinates for which the predicates are not exact; NaN passes.
 
     Raises

@@ -17,7 +17,7 @@ from ...errors import PointsError
 from .geometries import find_geometries, find_shapely
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
 
 __all__ = ["Table", "as_table", "is_masked_array"]
 
@@ -48,8 +48,8 @@ class Table(NamedTuple):
         Rows with a masked value; None if there are none.
     """
 
-    values: NDArray[np.float64]
-    is_masked: NDArray[np.bool_] | None = None
+    values: Float64Array
+    is_masked: BoolArray | None = None
 
 
 def as_table(given: Any, what: str, *, least: int = 3, most: int = 3) -> Table:
@@ -127,7 +127,7 @@ def _read_unnamed(given: Any, what: str) -> Table:
     return Table(values, is_masked if is_masked.any() else None)
 
 
-def _as_numbers(values: Any, what: str) -> NDArray[np.float64]:
+def _as_numbers(values: Any, what: str) -> Float64Array:
     try:
         array = np.asarray(values)
         if array.dtype.kind not in "biufO" or (array.dtype.kind == "O" and _has_text(array)):
@@ -140,7 +140,7 @@ def _as_numbers(values: Any, what: str) -> NDArray[np.float64]:
         ) from None
 
 
-def _has_text(array: NDArray[Any]) -> bool:
+def _has_text(array: AnyArray) -> bool:
     return any(isinstance(value, str | bytes) for value in array.flat)
 
 
@@ -223,8 +223,8 @@ def _fill_missing(column: Any) -> Any:
 class _Places(NamedTuple):
     """Coordinates of points, (n, 3) with NaN for no elevation, and the row each is of."""
 
-    coordinates: NDArray[np.float64]
-    rows: NDArray[np.int64]
+    coordinates: Float64Array
+    rows: Int64Array
 
 
 def _read_points(given: Any, what: str) -> _Places | None:
@@ -244,7 +244,7 @@ def _read_points(given: Any, what: str) -> _Places | None:
     return _read_coordinates(shapely, geometries)
 
 
-def _read_coordinates(shapely: Any, geometries: NDArray[Any]) -> _Places:
+def _read_coordinates(shapely: Any, geometries: AnyArray) -> _Places:
     found = shapely.get_coordinates(geometries, include_z=True, return_index=True)
     return _Places(np.asarray(found[0], np.float64), np.asarray(found[1], np.int64))
 
@@ -275,7 +275,7 @@ def _is_row_of_objects(given: Any) -> bool:
 
 def _add_elevations(
     places: _Places, given: Any, names: Sequence[Any], what: str, most: int
-) -> NDArray[np.float64]:
+) -> Float64Array:
     """Return the columns asked for, elevations from a column if the geometries have none."""
     geometry = places.coordinates
     if most == 2:

@@ -10,12 +10,14 @@ from ...errors import PointsError
 from .. import _kernel
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
+
+    from ...arrays import BoolArray, Float64Array, Int32Array
 
 __all__ = ["as_flags", "as_triangles", "turn_counter_clockwise"]
 
 
-def as_triangles(triangles: ArrayLike, n_vertices: int) -> NDArray[np.int32]:
+def as_triangles(triangles: ArrayLike, n_vertices: int) -> Int32Array:
     """Return an (m, 3) int32 array of vertex numbers, m >= 1.
 
     Raises
@@ -44,7 +46,7 @@ def as_triangles(triangles: ArrayLike, n_vertices: int) -> NDArray[np.int32]:
     return np.ascontiguousarray(given, np.int32)
 
 
-def as_flags(constrained: ArrayLike | None, n_triangles: int) -> NDArray[np.bool_]:
+def as_flags(constrained: ArrayLike | None, n_triangles: int) -> BoolArray:
     """Return an (m, 3) bool array of flags, all False by default.
 
     Raises
@@ -67,8 +69,8 @@ def as_flags(constrained: ArrayLike | None, n_triangles: int) -> NDArray[np.bool
 
 
 def turn_counter_clockwise(
-    points: NDArray[np.float64], triangles: NDArray[np.int32], flags: NDArray[np.bool_]
-) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
+    points: Float64Array, triangles: Int32Array, flags: BoolArray
+) -> tuple[Int32Array, BoolArray]:
     """Return triangles seen from above, each with the flags of its edges.
 
     Raises

@@ -12,7 +12,7 @@ from .options import is_whole_number
 from .tables import is_masked_array
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ...arrays import Int64Array
 
 __all__ = ["as_vertex", "as_vertex_array", "as_vertex_pairs"]
 
@@ -34,7 +34,7 @@ def as_vertex(vertex: Any, n_vertices: int) -> int:
     return int(vertex)
 
 
-def as_vertex_array(vertices: Any, n_vertices: int) -> NDArray[np.int64]:
+def as_vertex_array(vertices: Any, n_vertices: int) -> Int64Array:
     """Return vertex numbers as an array of the shape given; an empty list is no vertices.
 
     Raises
@@ -58,7 +58,7 @@ def as_vertex_array(vertices: Any, n_vertices: int) -> NDArray[np.int64]:
     return numbers.astype(np.int64)
 
 
-def as_vertex_pairs(a: Any, b: Any, n_vertices: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def as_vertex_pairs(a: Any, b: Any, n_vertices: int) -> tuple[Int64Array, Int64Array]:
     """Return the vertex numbers of pairs, of one shape.
 
     Raises

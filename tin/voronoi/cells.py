@@ -21,8 +21,7 @@ from ..topology import NO_NEIGHBOR, find_offsets
 from .exact_corners import ExactPlane
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
     from .._kernel import Growth
     from ..types import Bounds
 
@@ -34,14 +33,14 @@ _OUTSIDE = -1
 class Rings(NamedTuple):
     """Rings one after the other, ring i between ``offsets[i]`` and ``offsets[i + 1]``."""
 
-    coords: NDArray[np.float64]
-    offsets: NDArray[np.int64]
+    coords: Float64Array
+    offsets: Int64Array
 
 
 class _HalfEdges(NamedTuple):
-    start: NDArray[np.int64]
-    left: NDArray[np.int64]
-    twin: NDArray[np.int64]
+    start: Int64Array
+    left: Int64Array
+    twin: Int64Array
 
 
 class _Centres(NamedTuple):
@@ -50,11 +49,11 @@ class _Centres(NamedTuple):
     To the bit equal for triangles of one circle.
     """
 
-    points: NDArray[np.float64]
-    where: NDArray[np.int8]
+    points: Float64Array
+    where: Int8Array
 
 
-def cells_in_box(xy: NDArray[np.float64], growth: Growth, box: Bounds) -> Rings:
+def cells_in_box(xy: Float64Array, growth: Growth, box: Bounds) -> Rings:
     """Return the Voronoi cell of each place within a box that holds them all.
 
     1. Turn about every vertex: its half-edges in order, by walking from twin to twin.
@@ -97,7 +96,7 @@ def cells_in_box(xy: NDArray[np.float64], growth: Growth, box: Bounds) -> Rings:
     return _keep_with_area(_drop_repeats(coords, np.repeat(np.arange(len(xy)), counts), len(xy)))
 
 
-def measure_signed_areas(rings: Rings) -> NDArray[np.float64]:
+def measure_signed_areas(rings: Rings) -> Float64Array:
     """Return the area of each ring, positive counter-clockwise, 0 for an empty one."""
     count = np.diff(rings.offsets)
     ring = np.repeat(np.arange(len(count)), count)
@@ -110,7 +109,7 @@ def measure_signed_areas(rings: Rings) -> NDArray[np.float64]:
 # ---------------------------------------------------------------- around a vertex
 
 
-def _gather_half_edges(triangles: NDArray[np.int32], neighbors: NDArray[np.int32]) -> _HalfEdges:
+def _gather_half_edges(triangles: Int32Array, neighbors: Int32Array) -> _HalfEdges:
     across = neighbors.ravel()
     n_inner = across.size
     start, end = topology.directed_edges(triangles)
@@ -128,9 +127,7 @@ def _gather_half_edges(triangles: NDArray[np.int32], neighbors: NDArray[np.int32
     )
 
 
-def _sort_around_vertices(
-    edges: _HalfEdges, n_vertices: int, n_triangles: int
-) -> NDArray[np.int64]:
+def _sort_around_vertices(edges: _HalfEdges, n_vertices: int, n_triangles: int) -> Int64Array:
     """Return the half-edges by start, and counter-clockwise around it; on the hull from the hull.
 
     How far each is from the last one is counted by doubling: as many rounds as the logarithm of
@@ -170,12 +167,12 @@ _ROUNDING = 16 * np.finfo(np.float64).eps
 
 
 def _find_centres_and_cut_cells(
-    xy: NDArray[np.float64],
-    triangles: NDArray[np.int32],
+    xy: Float64Array,
+    triangles: Int32Array,
     edges: _HalfEdges,
     box: Bounds,
     plane: ExactPlane,
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+) -> tuple[Float64Array, BoolArray]:
     """Return the circumcentres of all triangles, and which vertices' cells the box may cut.
 
     Corners of cells that are cut are exact; so must be those that other cells share with them.
@@ -198,9 +195,9 @@ def _find_centres_and_cut_cells(
 
 def _set_exactly(
     centres: _Centres,
-    first: NDArray[np.int64],
-    which: NDArray[np.bool_],
-    triangles: NDArray[np.int32],
+    first: Int64Array,
+    which: BoolArray,
+    triangles: Int32Array,
     plane: ExactPlane,
 ) -> None:
     """Compute some circumcentres exactly, and where they lie; ``which`` holds whole circles."""
@@ -213,7 +210,7 @@ def _set_exactly(
     centres.where[which] = centres.where[first[which]]
 
 
-def _find_circles(xy: NDArray[np.float64], triangles: NDArray[np.int32], box: Bounds) -> _Centres:
+def _find_circles(xy: Float64Array, triangles: Int32Array, box: Bounds) -> _Centres:
     """Return circumcentres, and what is sure of where they lie; doubtful if not known well.
 
     They are computed from the corner between the two shorter sides, where the rounding of the area
@@ -245,9 +242,7 @@ def _find_circles(xy: NDArray[np.float64], triangles: NDArray[np.int32], box: Bo
     return _Centres(np.stack([x, y], axis=1), where)
 
 
-def _group_circles(
-    xy: NDArray[np.float64], triangles: NDArray[np.int32], edges: _HalfEdges
-) -> NDArray[np.int64]:
+def _group_circles(xy: Float64Array, triangles: Int32Array, edges: _HalfEdges) -> Int64Array:
     """Return for each triangle the first one of those on the same circle, exactly."""
     inner = np.arange(triangles.size)
     once = inner[edges.twin[: triangles.size] > inner]
@@ -259,9 +254,7 @@ def _group_circles(
     return _find_first_of_group(once[tied] // 3, twin[tied] // 3, len(triangles))
 
 
-def _find_first_of_group(
-    one: NDArray[np.int64], other: NDArray[np.int64], count: int
-) -> NDArray[np.int64]:
+def _find_first_of_group(one: Int64Array, other: Int64Array, count: int) -> Int64Array:
     """Join pairs to groups, and return for each member the smallest of its group."""
     first = np.arange(count)
     while True:
@@ -279,15 +272,15 @@ def _find_first_of_group(
 class _CutCells(NamedTuple):
     """Corners of cells one after the other, and how many each has."""
 
-    coords: NDArray[np.float64]
+    coords: Float64Array
     counts: list[int]
 
 
 def _cut_cells(
     plane: ExactPlane,
     edges: _HalfEdges,
-    order: NDArray[np.int64],
-    is_cut: NDArray[np.bool_],
+    order: Int64Array,
+    is_cut: BoolArray,
 ) -> _CutCells:
     """Return the cells that the box may cut, in the order of their vertices."""
     mine = order[is_cut[edges.start[order]]]
@@ -324,7 +317,7 @@ def _add_corner(ring: list[tuple[float, float]], corner: tuple[float, float]) ->
         ring.append(corner)
 
 
-def _drop_repeats(coords: NDArray[np.float64], cell: NDArray[np.int64], n_cells: int) -> Rings:
+def _drop_repeats(coords: Float64Array, cell: Int64Array, n_cells: int) -> Rings:
     """Drop corners that equal the one after them."""
     differs = (coords != coords[_find_following(_find_cell_offsets(cell, n_cells))]).any(axis=1)
     return Rings(coords[differs], _find_cell_offsets(cell[differs], n_cells))
@@ -337,11 +330,11 @@ def _keep_with_area(rings: Rings) -> Rings:
     return Rings(rings.coords[np.repeat(left > 0, counts)], find_offsets(left))
 
 
-def _find_cell_offsets(cell: NDArray[np.int64], n_cells: int) -> NDArray[np.int64]:
+def _find_cell_offsets(cell: Int64Array, n_cells: int) -> Int64Array:
     return find_offsets(np.bincount(cell, minlength=n_cells))
 
 
-def _find_following(offsets: NDArray[np.int64]) -> NDArray[np.int64]:
+def _find_following(offsets: Int64Array) -> Int64Array:
     """Return for each corner the number of the next one in its ring."""
     following = np.arange(1, offsets[-1] + 1)
     is_full = np.diff(offsets) > 0

@@ -20,8 +20,9 @@ from ..validation.threads import thread_count
 from .cells import Rings, cells_in_box, measure_signed_areas
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ...arrays import AnyArray, Float64Array, Int64Array, ObjectArray
     from ...crs import CRS
 
 __all__ = ["Voronoi", "divide_plane"]
@@ -61,10 +62,10 @@ class Voronoi:
     array([2., 2., 2., 2., 8.])
     """
 
-    coords: NDArray[np.float64]
-    offsets: NDArray[np.int64]
-    part_offsets: NDArray[np.int64]
-    boundary: NDArray[np.float64]
+    coords: Float64Array
+    offsets: Int64Array
+    part_offsets: Int64Array
+    boundary: Float64Array
     crs: CRS | None = None
 
     def __post_init__(self) -> None:
@@ -75,15 +76,15 @@ class Voronoi:
         return len(self.offsets) - 1
 
     @cached_property
-    def areas(self) -> NDArray[np.float64]:
+    def areas(self) -> Float64Array:
         """Area of each cell, (n,) float64 array, CRS units squared; 0 outside the boundary."""
         parts = measure_signed_areas(Rings(self.coords, self.part_offsets))
-        areas: NDArray[np.float64] = np.zeros(len(self))
+        areas: Float64Array = np.zeros(len(self))
         np.add.at(areas, self.cell_of_part, parts)
         areas.flags.writeable = False
         return areas
 
-    def to_shapely(self) -> NDArray[np.object_]:
+    def to_shapely(self) -> ObjectArray:
         """Return the cells as shapely geometries.
 
         Returns
@@ -115,7 +116,7 @@ class Voronoi:
         return cells
 
     @cached_property
-    def cell_of_part(self) -> NDArray[np.int64]:
+    def cell_of_part(self) -> Int64Array:
         """The cell that each part belongs to, (p,) int64 array."""
         filled = np.flatnonzero(np.diff(self.offsets))
         return filled[np.searchsorted(self.offsets[filled + 1], self.part_offsets[1:])]
@@ -129,7 +130,7 @@ class Voronoi:
 
 
 def divide_plane(
-    points: NDArray[np.float64],
+    points: Float64Array,
     *,
     boundary: Bounds | ArrayLike | None = None,
     pad: float | None = None,
@@ -149,7 +150,7 @@ def divide_plane(
     return _clip(cells, ring)
 
 
-def _make_diagram(cells: Rings, boundary: NDArray[np.float64]) -> Voronoi:
+def _make_diagram(cells: Rings, boundary: Float64Array) -> Voronoi:
     """Return a diagram whose cells are all of one part, or empty."""
     filled = np.append(True, np.diff(cells.offsets) > 0)
     return Voronoi(
@@ -160,7 +161,7 @@ def _make_diagram(cells: Rings, boundary: NDArray[np.float64]) -> Voronoi:
     )
 
 
-def _grow_cells(points: NDArray[np.float64], box: Bounds) -> Rings:
+def _grow_cells(points: Float64Array, box: Bounds) -> Rings:
     """Return a cell for each vertex; of several at one place the first has it."""
     growth = _kernel.grow(points, threads=thread_count(None, len(points)))
     xy = np.ascontiguousarray(points[:, :2])
@@ -193,7 +194,7 @@ def _join(one: Bounds, other: Bounds) -> Bounds:
     )
 
 
-def _list_corners(box: Bounds) -> NDArray[np.float64]:
+def _list_corners(box: Bounds) -> Float64Array:
     """Return the corners of a box, counter-clockwise."""
     return np.array(
         [
@@ -205,7 +206,7 @@ def _list_corners(box: Bounds) -> NDArray[np.float64]:
     )
 
 
-def _as_boundary(boundary: Bounds | ArrayLike) -> NDArray[np.float64]:
+def _as_boundary(boundary: Bounds | ArrayLike) -> Float64Array:
     """Return the ring of a boundary, counter-clockwise."""
     shapely = _optional.load("shapely")
     given = _list_corners(boundary) if isinstance(boundary, Bounds) else boundary
@@ -219,7 +220,7 @@ def _as_boundary(boundary: Bounds | ArrayLike) -> NDArray[np.float64]:
     return ring if region.exterior.is_ccw else ring[::-1].copy()
 
 
-def _clip(cells: Rings, ring: NDArray[np.float64]) -> Voronoi:
+def _clip(cells: Rings, ring: Float64Array) -> Voronoi:
     """Return the parts of cells inside a ring; cells that it does not cut stay as they are."""
     shapely = _optional.load("shapely")
     region = shapely.Polygon(ring)
@@ -241,7 +242,7 @@ def _clip(cells: Rings, ring: NDArray[np.float64]) -> Voronoi:
     )
 
 
-def _find_near(cells: Rings, box: Bounds) -> NDArray[np.int64]:
+def _find_near(cells: Rings, box: Bounds) -> Int64Array:
     """Return the cells whose bounds meet a box."""
     filled = np.flatnonzero(np.diff(cells.offsets))
     if len(filled) == 0:
@@ -252,14 +253,14 @@ def _find_near(cells: Rings, box: Bounds) -> NDArray[np.int64]:
     return filled[meets.all(axis=1)]
 
 
-def _keep_only(rings: Rings, which: NDArray[np.int64]) -> Rings:
+def _keep_only(rings: Rings, which: Int64Array) -> Rings:
     """Return some of the rings; the others are empty."""
     counts = np.diff(rings.offsets)
     taken = np.bincount(which, minlength=len(counts)) * counts
     return Rings(rings.coords[np.repeat(taken > 0, counts)], find_offsets(taken))
 
 
-def _find_parts_inside(region: Any, shapes: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int64]]:
+def _find_parts_inside(region: Any, shapes: AnyArray) -> tuple[AnyArray, Int64Array]:
     """Return the polygons in which shapes meet a region, and the shape that each is a part of."""
     shapely = _optional.load("shapely")
     # Corners rounded to coordinates can make a cell of rounding width cross itself.
@@ -271,16 +272,16 @@ def _find_parts_inside(region: Any, shapes: NDArray[Any]) -> tuple[NDArray[Any],
     return parts[has_area], of[deeper][has_area]
 
 
-def _make_polygons(rings: Rings) -> NDArray[Any]:
+def _make_polygons(rings: Rings) -> AnyArray:
     """Return the rings that are not empty as shapely polygons."""
     shapely = _optional.load("shapely")
     counts = np.diff(rings.offsets)
     ring = np.repeat(np.arange(np.count_nonzero(counts)), counts[counts > 0])
-    polygons: NDArray[Any] = shapely.polygons(shapely.linearrings(rings.coords, indices=ring))
+    polygons: AnyArray = shapely.polygons(shapely.linearrings(rings.coords, indices=ring))
     return polygons
 
 
-def _get_rings(polygons: NDArray[Any]) -> Rings:
+def _get_rings(polygons: AnyArray) -> Rings:
     """Return the outer rings of polygons, counter-clockwise, the first corner not repeated."""
     shapely = _optional.load("shapely")
     coords, ring = shapely.get_coordinates(polygons, return_index=True)

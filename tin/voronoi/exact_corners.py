@@ -15,8 +15,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from numpy.typing import NDArray
-
+    from ...arrays import Float64Array, Int32Array
     from ..types import Bounds
 
 __all__ = ["ExactPlane", "HalfPlane"]
@@ -56,7 +55,7 @@ class ExactPlane:
         Holds them all.
     """
 
-    def __init__(self, xy: NDArray[np.float64], box: Bounds) -> None:
+    def __init__(self, xy: Float64Array, box: Bounds) -> None:
         self._mantissas, self._exponents = np.frexp(xy)
         walls = np.array([[box.xmin, box.ymin], [box.xmax, box.ymax]])
         mantissas, exponents = np.frexp(walls)
@@ -76,9 +75,7 @@ class ExactPlane:
             self._points[vertex] = known
         return known
 
-    def _scale_to_whole(
-        self, mantissas: NDArray[np.float64], exponents: NDArray[np.int32]
-    ) -> Point:
+    def _scale_to_whole(self, mantissas: Float64Array, exponents: Int32Array) -> Point:
         x, y = (
             int(mantissa * 2**_MANTISSA_BITS) << (exponent - self._lowest if mantissa else 0)
             for mantissa, exponent in zip(mantissas.tolist(), exponents.tolist(), strict=True)

@@ -13,8 +13,7 @@ from ....tin.topology import directed_edges, edge_keys
 from .names import CONSTRAINED
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ....arrays import Float64Array, Int64Array
     from ....terrain.results import Features
     from ....tin import TIN, Survey
     from .entities import EntityWriter
@@ -43,12 +42,12 @@ def add_tin(writer: EntityWriter, tin: TIN, factor: float) -> None:
         writer.add_line("CONSTRAINED_EDGES", points[edge], (CONSTRAINED, "", ""))
 
 
-def _find_other_edges(tin: TIN) -> NDArray[np.int64]:
+def _find_other_edges(tin: TIN) -> Int64Array:
     """Return the constrained edges that belong to no line, (k, 2) vertices."""
     pairs = np.stack(directed_edges(tin.triangles), axis=-1)[tin.constrained]
     keys, first = np.unique(edge_keys(pairs, len(tin.points)), return_index=True)
     known = edge_keys(tin.lines.segments(), len(tin.points))
-    others: NDArray[np.int64] = pairs[np.sort(first[~np.isin(keys, known)])]
+    others: Int64Array = pairs[np.sort(first[~np.isin(keys, known)])]
     return others
 
 
@@ -117,7 +116,7 @@ def _iterate_parts(features: Features) -> Any:
         yield owner, features.coordinates[start:end]
 
 
-def _scale(rows: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
+def _scale(rows: Float64Array, factor: float) -> Float64Array:
     return rows if factor == 1.0 or rows.shape[1] == 2 else rows * [1.0, 1.0, factor]
 
 
@@ -125,7 +124,7 @@ def _scale(rows: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
 
 
 def _add_points(
-    writer: EntityWriter, points: NDArray[np.float64], attributes: Any, *, labels: bool
+    writer: EntityWriter, points: Float64Array, attributes: Any, *, labels: bool
 ) -> None:
     if len(points) == 0:
         return
@@ -150,7 +149,7 @@ def _find_texts(attributes: Any, name: str, count: int) -> list[str]:
     return ["" if one is None or one != one else str(one) for one in values]
 
 
-def _choose_height(points: NDArray[np.float64]) -> float:
+def _choose_height(points: Float64Array) -> float:
     """Return a height of text that leaves neighbours room, with two digits."""
     width, depth = np.ptp(points[:, :2], axis=0).tolist()
     distance = max(width, depth) / max(len(points), 1) ** 0.5 if max(width, depth) > 0 else 5.0

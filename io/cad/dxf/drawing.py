@@ -20,7 +20,7 @@ from .units import UNIT_OF_CODE
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from ....arrays import AnyArray, Float64Array
 
 __all__ = ["Drawing", "read_drawing"]
 
@@ -43,10 +43,10 @@ class Drawing(NamedTuple):
 
     path: Path
     value: dict[str, Any]
-    arrays: dict[str, NDArray[Any]]
+    arrays: dict[str, AnyArray]
 
     @property
-    def lines(self) -> list[NDArray[np.float64]]:
+    def lines(self) -> list[Float64Array]:
         """Lines as rows, (k, 2) where an elevation of 0 stands for none."""
         ends = np.cumsum(self.arrays["lengths"]).tolist()
         starts = [0, *ends[:-1]] if ends else []

@@ -7,14 +7,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from .names import APPLICATION
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
+    from ....arrays import Float64Array
 
 __all__ = ["EntityWriter"]
 
@@ -57,7 +55,7 @@ class EntityWriter:
 
     # ------------------------------------------------------------------ entities
 
-    def add_faces(self, layer: str, corners: NDArray[np.float64]) -> None:
+    def add_faces(self, layer: str, corners: Float64Array) -> None:
         """Add triangles, (m, 3, 3), the last corner repeated as the format asks for."""
         rows = corners[:, [0, 1, 2, 2]].reshape(-1, 12).tolist()
         coordinates = "".join(f"{axis}{k}\n%r\n" for k in range(4) for axis in (1, 2, 3))
@@ -71,15 +69,13 @@ class EntityWriter:
         self.parts += [template % (first + k, *row) for k, row in enumerate(rows)]
         self.next_handle += len(rows)
 
-    def add_points(
-        self, layer: str, points: NDArray[np.float64], told: Sequence[Sequence[str]]
-    ) -> None:
+    def add_points(self, layer: str, points: Float64Array, told: Sequence[Sequence[str]]) -> None:
         """Add points with texts of their extended data."""
         for row, texts in zip(points.tolist(), told, strict=True):
             head = self._begin("POINT", layer, "AcDbPoint")
             self.parts.append(f"{head}{_format_place(row)}{format_told(texts)}")
 
-    def add_line(self, layer: str, rows: NDArray[np.float64], told: Sequence[str] = ()) -> None:
+    def add_line(self, layer: str, rows: Float64Array, told: Sequence[str] = ()) -> None:
         """Add a polyline: in space, or in the plane if it has no elevations or just one."""
         is_closed = len(rows) > 3 and bool((rows[0] == rows[-1]).all())
         if is_closed:
@@ -90,14 +86,14 @@ class EntityWriter:
         else:
             self._add_space_line(layer, rows, is_closed=is_closed, told=told)
 
-    def add_contour(self, layer: str, rows: NDArray[np.float64]) -> None:
+    def add_contour(self, layer: str, rows: Float64Array) -> None:
         """Add a line of one elevation as a polyline in the plane."""
         is_closed = len(rows) > 3 and bool((rows[0] == rows[-1]).all())
         plane = rows[:-1, :2] if is_closed else rows[:, :2]
         self._add_plane_line(layer, plane, float(rows[0, 2]), is_closed=is_closed, told=())
 
     def _add_space_line(
-        self, layer: str, rows: NDArray[np.float64], *, is_closed: bool, told: Sequence[str]
+        self, layer: str, rows: Float64Array, *, is_closed: bool, told: Sequence[str]
     ) -> None:
         handle = f"{self.next_handle:X}"
         head = self._begin("POLYLINE", layer, "AcDb3dPolyline")
@@ -115,7 +111,7 @@ class EntityWriter:
     def _add_plane_line(
         self,
         layer: str,
-        rows: NDArray[np.float64],
+        rows: Float64Array,
         elevation: float,
         *,
         is_closed: bool,
@@ -134,7 +130,7 @@ class EntityWriter:
     def _add_old_plane_line(
         self,
         layer: str,
-        rows: NDArray[np.float64],
+        rows: Float64Array,
         elevation: float,
         *,
         is_closed: bool,
@@ -150,7 +146,7 @@ class EntityWriter:
         self.parts.append(self._begin("SEQEND", layer))
 
     def add_texts(
-        self, layer: str, points: NDArray[np.float64], texts: Sequence[str], height: float
+        self, layer: str, points: Float64Array, texts: Sequence[str], height: float
     ) -> None:
         """Add a text at each point; none where it is empty."""
         for row, text in zip(points.tolist(), texts, strict=True):

@@ -15,7 +15,7 @@ from ..surfaces import Mesh
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from ....arrays import BoolArray, Float64Array, Int64Array
 
 __all__ = ["make_mesh"]
 
@@ -23,7 +23,7 @@ _NO_AREA = 1e-12
 """Share of the squared length of a triangle that is no area, but the rounding of its corners."""
 
 
-def make_mesh(faces: NDArray[np.float64], path: Path) -> Mesh:
+def make_mesh(faces: Float64Array, path: Path) -> Mesh:
     """Return points in the order in which faces name them, and triangles.
 
     Parameters
@@ -62,18 +62,18 @@ def make_mesh(faces: NDArray[np.float64], path: Path) -> Mesh:
     return Mesh(points, triangles, None, notes)
 
 
-def _find_lines(corners: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _find_lines(corners: Float64Array) -> BoolArray:
     """Return which triangles are lines in space; those that are vertical only are none."""
     u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     area = np.linalg.norm(np.cross(u, v), axis=1)
     longest = np.maximum((u * u).sum(axis=1), (v * v).sum(axis=1))
-    is_line: NDArray[np.bool_] = area <= _NO_AREA * longest
+    is_line: BoolArray = area <= _NO_AREA * longest
     return is_line
 
 
 def _join_corners(
-    faces: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    faces: Float64Array,
+) -> tuple[Float64Array, Int64Array]:
     """Return each place once, in the order of first use, and the corners by number."""
     rows = faces.reshape(-1, 3) + 0.0
     order = np.lexsort(rows.T[::-1])
@@ -85,7 +85,7 @@ def _join_corners(
     return rows[firsts], corners.reshape(faces.shape[:2])
 
 
-def _describe_quads(corners: NDArray[np.float64]) -> str:
+def _describe_quads(corners: Float64Array) -> str:
     """Tell how many quadrilaterals were cut, and of how many the cut shapes the surface."""
     a, b, c, d = (corners[:, k] for k in range(4))
     normal = np.cross(b - a, c - a)

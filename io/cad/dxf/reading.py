@@ -26,8 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import AnyArray, Float64Array
     from ....crs import CrsLike, UnitLike
     from ....tin import TIN
 
@@ -222,11 +221,11 @@ def _read_survey(
 
 
 def _add_lines(
-    survey: Survey, lines: Sequence[NDArray[np.float64]], told: Sequence[Sequence[str]]
+    survey: Survey, lines: Sequence[Float64Array], told: Sequence[Sequence[str]]
 ) -> Survey:
     """Add breaklines, and of drawings that were written here rings and water by their kinds."""
     found: dict[str, list[Any]] = {kind: [] for kind in ("boundary", "hole", "erase", "water", "")}
-    polygons: dict[tuple[str, str], list[NDArray[np.float64]]] = {}
+    polygons: dict[tuple[str, str], list[Float64Array]] = {}
     for rows, (kind, name, number, priority) in zip(lines, told, strict=True):
         if kind == "water" and rows.shape[1] == 3:
             found[kind].append(Water(as_ring(rows, "water"), float(rows[0, 2]), name=name))
@@ -247,7 +246,7 @@ def _add_lines(
     )
 
 
-def _make_breakline(rows: NDArray[np.float64], told: str, name: str, priority: str) -> Breakline:
+def _make_breakline(rows: Float64Array, told: str, name: str, priority: str) -> Breakline:
     kind: BreaklineKind = "soft" if told == "soft" else "hard"
     rank = int(priority) if _PRIORITY.fullmatch(priority) else 0
     return Breakline(rows, kind=kind, name=name, priority=rank)
@@ -255,11 +254,11 @@ def _make_breakline(rows: NDArray[np.float64], told: str, name: str, priority: s
 
 def _gather_points(
     drawing: Drawing,
-) -> tuple[NDArray[np.float64], dict[str, NDArray[Any]], list[str]]:
+) -> tuple[Float64Array, dict[str, AnyArray], list[str]]:
     """Return points, those of texts that are numbers last, their columns, and notes."""
     points, value = drawing.arrays["points"], drawing.value
     layers = [value["layers"][k] for k in drawing.arrays["point_layers"].tolist()]
-    attributes: dict[str, NDArray[Any]] = {}
+    attributes: dict[str, AnyArray] = {}
     places = drawing.arrays["text_places"]
     is_number = np.array([_NUMBER.fullmatch(one.strip()) is not None for one in value["texts"]])
     notes = []

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ....arrays import Float64Array, Int64Array
 
 __all__ = ["Content", "Line", "Points", "Surface"]
 
@@ -34,7 +34,7 @@ class Line:
     element: str
     attributes: dict[str, str]
     line: int
-    coordinates: list[NDArray[np.float64]] = field(default_factory=list)
+    coordinates: list[Float64Array] = field(default_factory=list)
     properties: dict[str, str] = field(default_factory=dict)
 
 
@@ -74,10 +74,10 @@ class Surface:
     number: int
     line: int
     kind: str = ""
-    ids: list[NDArray[np.int64]] = field(default_factory=list)
-    points: list[NDArray[np.float64]] = field(default_factory=list)
+    ids: list[Int64Array] = field(default_factory=list)
+    points: list[Float64Array] = field(default_factory=list)
     references: dict[int, str] = field(default_factory=dict)
-    faces: list[NDArray[np.int64]] = field(default_factory=list)
+    faces: list[Int64Array] = field(default_factory=list)
     sides: array[int] = field(default_factory=lambda: array("B"))
     n_hidden: int = 0
     n_visible: int = 0
@@ -126,7 +126,7 @@ class Points:
         return len(self.names)
 
     @property
-    def rows(self) -> NDArray[np.float64]:
+    def rows(self) -> Float64Array:
         """Northing, easting, elevation of each."""
         return np.array(self.coordinates, np.float64).reshape(-1, 3)
 

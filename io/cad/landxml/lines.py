@@ -15,8 +15,7 @@ from .properties import FEATURE, KIND, LINE, PRIORITY, SOURCE
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
+    from ....arrays import Float64Array
     from ....terrain.results import Features
     from ....tin import TIN, Survey
 
@@ -31,7 +30,7 @@ def quote(text: str) -> str:
     return quoteattr(plain.encode("utf-8", "replace").decode("utf-8"))
 
 
-def write_source_of_tin(file: IO[str], tin: TIN, points: NDArray[np.float64]) -> None:
+def write_source_of_tin(file: IO[str], tin: TIN, points: Float64Array) -> None:
     """Write the lines of a TIN, with the elevations of its vertices.
 
     A feature of each tells which line it is, so that a reader that knows it restores their order.
@@ -89,7 +88,7 @@ def write_features(file: IO[str], features: Features, surface: str, factor: floa
     file.write("</Surface>\n</Surfaces>\n")
 
 
-def _iterate_parts(features: Features) -> Iterator[tuple[int, NDArray[np.float64]]]:
+def _iterate_parts(features: Features) -> Iterator[tuple[int, Float64Array]]:
     """Yield each line with the feature that it belongs to."""
     offsets = features.offsets[0].tolist()
     owners = (
@@ -101,7 +100,7 @@ def _iterate_parts(features: Features) -> Iterator[tuple[int, NDArray[np.float64
         yield owner, features.coordinates[start:end]
 
 
-def _scale(rows: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
+def _scale(rows: Float64Array, factor: float) -> Float64Array:
     return rows if factor == 1.0 or rows.shape[1] == 2 else rows * [1.0, 1.0, factor]
 
 
@@ -128,7 +127,7 @@ def _write_source(
     file.write("</SourceData>\n")
 
 
-def _format_breakline(rows: NDArray[np.float64], name: str, extra: dict[str, str]) -> str:
+def _format_breakline(rows: Float64Array, name: str, extra: dict[str, str]) -> str:
     brk = "nondestructive" if rows.shape[1] == 2 else "standard"
     named = f" name={quote(name)}" if name else ""
     return (
@@ -137,7 +136,7 @@ def _format_breakline(rows: NDArray[np.float64], name: str, extra: dict[str, str
     )
 
 
-def _format_boundary(rows: NDArray[np.float64], kind: str, name: str, extra: dict[str, str]) -> str:
+def _format_boundary(rows: Float64Array, kind: str, name: str, extra: dict[str, str]) -> str:
     if (rows[0, :2] != rows[-1, :2]).any():
         rows = np.concatenate([rows, rows[:1]])
     named = f" name={quote(name)}" if name else ""
@@ -147,11 +146,11 @@ def _format_boundary(rows: NDArray[np.float64], kind: str, name: str, extra: dic
     )
 
 
-def _format_contour(rows: NDArray[np.float64]) -> str:
+def _format_contour(rows: Float64Array) -> str:
     return f'<Contour elev="{float(rows[0, 2])!r}">\n{_format_list(rows[:, :2])}</Contour>\n'
 
 
-def _format_list(rows: NDArray[np.float64]) -> str:
+def _format_list(rows: Float64Array) -> str:
     ordered = rows[:, [1, 0, *range(2, rows.shape[1])]].ravel().tolist()
     tag = f"PntList{rows.shape[1]}D"
     return f"<{tag}>{' '.join(map(repr, ordered))}</{tag}>\n"

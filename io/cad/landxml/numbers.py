@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from ....arrays import AnyArray, Float64Array
 
 __all__ = ["LARGEST_ID", "fault", "parse_list", "parse_rows", "parse_words"]
 
@@ -42,7 +42,7 @@ def parse_rows(
     kind: type[np.generic],
     what: str,
     path: Path,
-) -> NDArray[Any]:
+) -> AnyArray:
     """Return the numbers of elements, a row each.
 
     Parameters
@@ -76,7 +76,7 @@ def parse_rows(
     raise fault(path, lines[0], f"{what} cannot be read as {_NAMES[letter]}")
 
 
-def parse_list(text: str, line: int, *, width: int, what: str, path: Path) -> NDArray[np.float64]:
+def parse_list(text: str, line: int, *, width: int, what: str, path: Path) -> Float64Array:
     """Return the points of a list as rows.
 
     Raises
@@ -115,7 +115,7 @@ def fault(path: Path, line: int, what: str) -> ReadError:
     return ReadError(f"'{path}', line {line}: {what}.", path=path, lines=[line])
 
 
-def _parse_plain(text: str, kind: type[np.generic]) -> NDArray[Any] | None:
+def _parse_plain(text: str, kind: type[np.generic]) -> AnyArray | None:
     if not text.strip():
         return np.empty(0, kind)
     with warnings.catch_warnings():
@@ -126,7 +126,7 @@ def _parse_plain(text: str, kind: type[np.generic]) -> NDArray[Any] | None:
             return None
 
 
-def _is_in_range(found: NDArray[Any]) -> bool:
+def _is_in_range(found: AnyArray) -> bool:
     """Whether whole numbers are none that NumPy has clamped."""
     return found.dtype.kind == "f" or not len(found) or int(np.abs(found).max()) <= LARGEST_ID
 

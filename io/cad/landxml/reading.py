@@ -21,8 +21,7 @@ from .units import find_stated
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import Float64Array
     from ....crs import CrsLike, UnitLike
     from ....tin import TIN, Survey
 
@@ -228,7 +227,7 @@ def _choose_measures(
     return choose_measures(stated, declared, path, sample=sample).tell(*notes, first=True)
 
 
-def _take_sample(found: Content, chosen: Surface | None) -> NDArray[np.float64]:
+def _take_sample(found: Content, chosen: Surface | None) -> Float64Array:
     """Return easting and northing of some points, spread over all."""
     if chosen is None:
         rows = found.points.rows

@@ -23,8 +23,7 @@ from .surface import NO_ELEVATIONS, describe_point_files, name_line, resolve_ref
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import AnyArray, Float64Array, Int64Array
     from ..reference import Declared, Measures
     from .content import Content, Line, Points, Surface
 
@@ -67,7 +66,7 @@ def make_survey_of_points(
     )
 
 
-def _describe_states(points: Points, kept: NDArray[np.int64]) -> list[str]:
+def _describe_states(points: Points, kept: Int64Array) -> list[str]:
     """Tell of points that are no longer there, or not yet: a design stands among the ground."""
     found = Counter(points.states[row] for row in kept.tolist())
     told = [f"{n:,} {state}" for state, n in found.items() if state not in ("", "existing")]
@@ -79,7 +78,7 @@ def _describe_states(points: Points, kept: NDArray[np.int64]) -> list[str]:
     ]
 
 
-def _select_points(points: Points) -> tuple[NDArray[np.int64], dict[str, int]]:
+def _select_points(points: Points) -> tuple[Int64Array, dict[str, int]]:
     """Return the rows of points for a surface, and how many others there are."""
     is_kept = np.asarray(np.isfinite(points.rows).all(axis=1))
     counts = {"references to other points": len(points.references)}
@@ -90,7 +89,7 @@ def _select_points(points: Points) -> tuple[NDArray[np.int64], dict[str, int]]:
     return np.flatnonzero(is_kept), {what: n for what, n in counts.items() if n}
 
 
-def _gather_attributes(points: Points, kept: NDArray[np.int64]) -> dict[str, NDArray[Any]]:
+def _gather_attributes(points: Points, kept: Int64Array) -> dict[str, AnyArray]:
     """Return the columns that are there; a code is a description where there is no other."""
     columns = {
         "number": points.names,
@@ -120,7 +119,7 @@ def make_survey_of_source(
     own = [part for one in surface.lines if one.element == "DataPoints" for part in one.coordinates]
     notes = _describe_parts_left_out(surface)
     points = [_turn(part, path, one="DataPoints") for part in own]
-    attributes: dict[str, NDArray[Any]] = {}
+    attributes: dict[str, AnyArray] = {}
     if not points and not any(one.element == "Contour" for one in surface.lines):
         kept, _ = _select_points(found.points)
         points = [found.points.rows[kept][:, [1, 0, 2]]]
@@ -144,13 +143,13 @@ def make_survey_of_source(
         raise ReadError(f"'{path}': {error}", path=path) from error
 
 
-def _turn(part: NDArray[np.float64], path: Path, *, one: str) -> NDArray[np.float64]:
+def _turn(part: Float64Array, path: Path, *, one: str) -> Float64Array:
     if part.shape[1] != 3:
         raise ReadError(f"'{path}': {one} have no elevations.", path=path)
     return part[:, [1, 0, 2]]
 
 
-def _iterate_lines(surface: Surface, path: Path) -> list[tuple[Line, NDArray[np.float64]]]:
+def _iterate_lines(surface: Surface, path: Path) -> list[tuple[Line, Float64Array]]:
     """Return the lines as easting, northing, and elevation where it counts."""
     found = []
     for line in surface.lines:
@@ -166,7 +165,7 @@ def _iterate_lines(surface: Surface, path: Path) -> list[tuple[Line, NDArray[np.
     return found
 
 
-def _raise_contour(line: Line, rows: NDArray[np.float64], path: Path) -> NDArray[np.float64]:
+def _raise_contour(line: Line, rows: Float64Array, path: Path) -> Float64Array:
     try:
         elevation = float(line.attributes.get("elev", "nan"))
     except ValueError:
@@ -179,7 +178,7 @@ def _raise_contour(line: Line, rows: NDArray[np.float64], path: Path) -> NDArray
 
 def _resolve_chains(
     found: Content, surface: Surface, path: Path
-) -> list[tuple[Line, NDArray[np.float64]]]:
+) -> list[tuple[Line, Float64Array]]:
     """Return the lines that are given by the names of survey points."""
     from .content import Line
 
@@ -195,7 +194,7 @@ def _resolve_chains(
 def _add_lines(survey: Survey, lines: list[Line], placing: Placing, first: int) -> Survey:
     breaklines: list[Any] = []
     water: list[Water] = []
-    rings: dict[str, list[NDArray[np.float64]]] = {"outer": [], "void": [], "island": []}
+    rings: dict[str, list[Float64Array]] = {"outer": [], "void": [], "island": []}
     for line, rows in zip(lines, placing.rows[first:], strict=True):
         name = name_line(line)
         own = line.properties.get(KIND, "")
@@ -224,7 +223,7 @@ def _add_lines(survey: Survey, lines: list[Line], placing: Placing, first: int) 
     )
 
 
-def _make_breakline(line: Line, rows: NDArray[np.float64], name: str) -> Breakline:
+def _make_breakline(line: Line, rows: Float64Array, name: str) -> Breakline:
     kind: BreaklineKind = "hard"
     if line.element == "Contour" or line.properties.get(KIND) == "soft":
         kind = "soft"
@@ -233,9 +232,7 @@ def _make_breakline(line: Line, rows: NDArray[np.float64], name: str) -> Breakli
     return Breakline(rows, kind=kind, priority=number, name=name)
 
 
-def _join_islands(
-    voids: list[NDArray[np.float64]], islands: list[NDArray[np.float64]]
-) -> tuple[list[Any], int]:
+def _join_islands(voids: list[Float64Array], islands: list[Float64Array]) -> tuple[list[Any], int]:
     """Return each void with the islands in it, and the number of islands in none."""
     if not islands:
         return list(voids), 0

@@ -15,8 +15,7 @@ from .properties import KIND, LINE, SOURCE
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import BoolArray, Float64Array, Int64Array
     from ..reference import Measures
     from .content import Content, Line, Surface
 
@@ -68,7 +67,7 @@ def make_mesh(found: Content, surface: Surface, path: Path) -> Mesh:
     return Mesh(points, triangles, _find_flags(surface), notes)
 
 
-def _gather_points(surface: Surface) -> NDArray[np.float64]:
+def _gather_points(surface: Surface) -> Float64Array:
     return np.concatenate(surface.points) if surface.points else np.empty((0, 3))
 
 
@@ -79,12 +78,12 @@ def describe_point_files(surface: Surface) -> str:
 
 
 def _find_points(
-    ids: NDArray[np.int64],
-    points: NDArray[np.float64],
-    faces: NDArray[np.int64],
+    ids: Int64Array,
+    points: Float64Array,
+    faces: Int64Array,
     surface: Surface,
     path: Path,
-) -> NDArray[np.int64]:
+) -> Int64Array:
     """Return the row of each point that a face names."""
     order = np.argsort(ids, kind="stable")
     ordered = ids[order]
@@ -99,13 +98,11 @@ def _find_points(
             f"{faces[row, corner]}, and there is no point with this id.",
             path=path,
         )
-    triangles: NDArray[np.int64] = order[at]
+    triangles: Int64Array = order[at]
     return triangles
 
 
-def _require_unique(
-    ids: NDArray[np.int64], points: NDArray[np.float64], surface: Surface, path: Path
-) -> None:
+def _require_unique(ids: Int64Array, points: Float64Array, surface: Surface, path: Path) -> None:
     twice = ids[1:] == ids[:-1]
     if not twice.any():
         return
@@ -118,7 +115,7 @@ def _require_unique(
         )
 
 
-def _find_flags(surface: Surface) -> NDArray[np.bool_] | None:
+def _find_flags(surface: Surface) -> BoolArray | None:
     sides = np.frombuffer(surface.sides, np.uint8)
     if not sides.any():
         return None
@@ -129,8 +126,8 @@ def _find_flags(surface: Surface) -> NDArray[np.bool_] | None:
 
 
 def resolve_references(
-    points: NDArray[np.float64], references: dict[int, str], found: Content, path: Path
-) -> NDArray[np.float64]:
+    points: Float64Array, references: dict[int, str], found: Content, path: Path
+) -> Float64Array:
     """Return points with those that refer to survey points by name.
 
     Raises
@@ -175,7 +172,7 @@ def _find_number(line: Line, name: str, default: int | None) -> int | None:
     return int(text) if text.isascii() and text.isdecimal() and len(text) < 10 else default
 
 
-def _close(line: Line, part: NDArray[np.float64]) -> NDArray[np.float64]:
+def _close(line: Line, part: Float64Array) -> Float64Array:
     """Return the ring of a boundary with its first point at the end too."""
     is_open = line.element == "Boundary" and (part[0, :2] != part[-1, :2]).any()
     return np.concatenate([part, part[:1]]) if is_open else part

@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import Float64Array
     from .content import Content
 
 __all__ = ["find_stated", "name_unit"]
@@ -52,7 +51,7 @@ def name_unit(unit: Unit) -> tuple[str, str] | None:
 
 
 def find_stated(
-    content: Content, path: Path, *, sample: NDArray[np.float64], is_crs_declared: bool
+    content: Content, path: Path, *, sample: Float64Array, is_crs_declared: bool
 ) -> tuple[Stated, list[str]]:
     """Return what the file says of units and CRS, and notes of what it says in other words.
 
@@ -107,7 +106,7 @@ def _find_unit(text: str) -> Unit | None:
 
 
 def _find_crs(
-    content: Content, path: Path, sample: NDArray[np.float64], *, is_crs_declared: bool
+    content: Content, path: Path, sample: Float64Array, *, is_crs_declared: bool
 ) -> tuple[CRS | None, list[str]]:
     system = content.system
     code, wkt = system.get("epsgCode", "").strip(), system.get("ogcWktCode", "").strip()
@@ -152,7 +151,7 @@ def _find_named(system: dict[str, str]) -> CRS | None:
 
 
 def _choose_crs(
-    by_code: CRS, by_wkt: CRS, path: Path, sample: NDArray[np.float64], *, is_crs_declared: bool
+    by_code: CRS, by_wkt: CRS, path: Path, sample: Float64Array, *, is_crs_declared: bool
 ) -> CRS:
     """Return the CRS of which code and WKT speak, the fuller one; refuse two different ones."""
     if by_wkt.horizontal.is_same(by_code.horizontal):
@@ -166,7 +165,7 @@ def _choose_crs(
     )
 
 
-def _lie_together(one: CRS, other: CRS, sample: NDArray[np.float64]) -> bool:
+def _lie_together(one: CRS, other: CRS, sample: Float64Array) -> bool:
     """Whether some points have about the same longitude and latitude in both."""
     if one.horizontal_unit != other.horizontal_unit:
         return False
@@ -179,7 +178,7 @@ def _lie_together(one: CRS, other: CRS, sample: NDArray[np.float64]) -> bool:
     return bool(np.allclose(first, second, rtol=0, atol=_DEGREES))
 
 
-def _iterate_degrees(crs: CRS, sample: NDArray[np.float64]) -> Iterator[tuple[float, float]]:
+def _iterate_degrees(crs: CRS, sample: Float64Array) -> Iterator[tuple[float, float]]:
     from pyproj import Transformer
 
     system = crs.to_pyproj()

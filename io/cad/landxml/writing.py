@@ -25,8 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import Float64Array
     from ....crs import Unit, UnitLike
 
 __all__ = ["write"]
@@ -127,7 +126,7 @@ def _write_content(
         write_features(file, obj, surface, factor)
 
 
-def _scale(points: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
+def _scale(points: Float64Array, factor: float) -> Float64Array:
     return points if factor == 1.0 else points * [1.0, 1.0, factor]
 
 
@@ -138,7 +137,7 @@ def _require_lines(obj: TIN | Survey | Features, path: Path) -> None:
         _require_elevations(obj)
 
 
-def _require_elevations(features: Features) -> NDArray[np.float64]:
+def _require_elevations(features: Features) -> Float64Array:
     if not features.has_elevations or not np.isfinite(features.coordinates).all():
         raise FormatError("LandXML needs elevations, and some of these points have none.")
     return features.coordinates
@@ -191,7 +190,7 @@ def _choose_wkt(crs: CRS) -> str:
 def _write_definition(
     file: IO[str],
     tin: TIN,
-    points: NDArray[np.float64],
+    points: Float64Array,
     progress: Callable[[float], None] | None,
 ) -> None:
     total = len(points) + len(tin.triangles)
@@ -234,7 +233,7 @@ def _report(progress: Callable[[float], None] | None, done: float) -> None:
 # ------------------------------------------------------------------ points
 
 
-def _write_points(file: IO[str], points: NDArray[np.float64], attributes: Any) -> None:
+def _write_points(file: IO[str], points: Float64Array, attributes: Any) -> None:
     if len(points) == 0:
         return
     names, columns = _choose_names(attributes, len(points)), _choose_columns(attributes)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ....arrays import Float64Array, Int64Array
 
 __all__ = ["DecimalGrid", "choose_digits"]
 
@@ -36,17 +36,17 @@ class DecimalGrid:
         """Distance of two neighbours."""
         return float(f"1e-{self.digits}")
 
-    def count(self, values: NDArray[np.float64]) -> NDArray[np.int64]:
+    def count(self, values: Float64Array) -> Int64Array:
         """Return the nearest place of each value."""
         return np.asarray(np.rint((values - self.origin) * 10.0**self.digits), np.int64)
 
-    def restore(self, counts: NDArray[np.int64]) -> NDArray[np.float64]:
+    def restore(self, counts: Int64Array) -> Float64Array:
         """Return the decimals, each rounded once to the nearest float64."""
         whole = counts.astype(np.float64) + self.origin * 10.0**self.digits
         return np.asarray(whole / 10.0**self.digits)
 
 
-def choose_digits(values: NDArray[np.float64]) -> int:
+def choose_digits(values: Float64Array) -> int:
     """Return the fewest decimals that hold every value; else those at which float64 ends.
 
     Examples

@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import Float64Array, Int64Array
     from ....crs import CrsLike, UnitLike
     from ....tin import TIN
 
@@ -37,8 +36,8 @@ _LARGEST_EXACT = 2**53
 class _Relief(NamedTuple):
     """Polygons of a terrain: the vertices of each, one after the other."""
 
-    corners: NDArray[np.int64]
-    offsets: NDArray[np.int64]
+    corners: Int64Array
+    offsets: Int64Array
     attributes: dict[str, Any]
 
 
@@ -154,7 +153,7 @@ def _collect(name: str, relief: dict[str, Any], notes: list[str], path: Path) ->
     return _Relief(corners, np.concatenate([[0], np.cumsum(lengths)]), attributes)
 
 
-def _flatten(boundaries: Any, name: str, path: Path) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _flatten(boundaries: Any, name: str, path: Path) -> tuple[Int64Array, Int64Array]:
     """Return the corners of all polygons, and how many each has."""
     try:
         rings = [ring for (ring,) in boundaries]
@@ -171,7 +170,7 @@ def _flatten(boundaries: Any, name: str, path: Path) -> tuple[NDArray[np.int64],
     return np.array(flat, np.int64), lengths
 
 
-def _restore_vertices(city: dict[str, Any], path: Path) -> NDArray[np.float64]:
+def _restore_vertices(city: dict[str, Any], path: Path) -> Float64Array:
     """Return the coordinates of all vertices."""
     try:
         vertices = np.array(city["vertices"], np.float64).reshape(-1, 3)
@@ -195,7 +194,7 @@ def _restore_vertices(city: dict[str, Any], path: Path) -> NDArray[np.float64]:
         return np.column_stack([_scale(vertices[:, k], scale[k], translate[k]) for k in range(3)])
 
 
-def _scale(values: NDArray[np.float64], scale: float, translate: float) -> NDArray[np.float64]:
+def _scale(values: Float64Array, scale: float, translate: float) -> Float64Array:
     """Return coordinates; exact decimals where the scale is one step of decimals."""
     digits = int(np.clip(-np.rint(np.log10(scale)), 0, 15)) if 0 < scale <= 1 else -1
     whole = translate == np.floor(translate) and np.isfinite(translate)
@@ -207,9 +206,7 @@ def _scale(values: NDArray[np.float64], scale: float, translate: float) -> NDArr
     return DecimalGrid(digits, int(translate)).restore(values.astype(np.int64))
 
 
-def _merge_vertices(
-    points: NDArray[np.float64], triangles: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _merge_vertices(points: Float64Array, triangles: Int64Array) -> tuple[Float64Array, Int64Array]:
     """Return the vertices that triangles have, each place once, in the order of the file."""
     used = np.unique(triangles)
     _, first, number = np.unique(points[used], axis=0, return_index=True, return_inverse=True)

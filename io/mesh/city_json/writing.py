@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import Float64Array, Int64Array
     from ....tin import TIN
 
 __all__ = ["write"]
@@ -87,7 +86,7 @@ def write(
         file.write("]}\n")
 
 
-def _choose_grid(values: NDArray[np.float64], precision: float | None) -> DecimalGrid:
+def _choose_grid(values: Float64Array, precision: float | None) -> DecimalGrid:
     digits = choose_digits(values) if precision is None else _count_digits(precision)
     return DecimalGrid(digits, int(np.floor(values.min())))
 
@@ -100,8 +99,8 @@ def _count_digits(precision: float) -> int:
 
 
 def _require_areas(
-    counts: NDArray[np.int64],
-    triangles: NDArray[np.int64],
+    counts: Int64Array,
+    triangles: Int64Array,
     grids: list[DecimalGrid],
     path: Path,
 ) -> None:
@@ -119,7 +118,7 @@ def _require_areas(
         )
 
 
-def _format_head(tin: TIN, grids: list[DecimalGrid], counts: NDArray[np.int64]) -> str:
+def _format_head(tin: TIN, grids: list[DecimalGrid], counts: Int64Array) -> str:
     low = [grid.restore(column.min()) for grid, column in zip(grids, counts.T, strict=True)]
     high = [grid.restore(column.max()) for grid, column in zip(grids, counts.T, strict=True)]
     metadata: dict[str, Any] = {"geographicalExtent": [float(value) for value in (*low, *high)]}
@@ -165,7 +164,7 @@ def _describe_attributes(tin: TIN) -> dict[str, str]:
     return attributes
 
 
-def _iterate_rows(rows: NDArray[np.int64], row: str) -> Iterator[tuple[int, str]]:
+def _iterate_rows(rows: Int64Array, row: str) -> Iterator[tuple[int, str]]:
     """Yield rows of a JSON array, with the commas between them."""
     for start in range(0, len(rows), _BATCH):
         part = rows[start : start + _BATCH]

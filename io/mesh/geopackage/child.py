@@ -17,7 +17,7 @@ from .geometries import POINT
 from .schema import RECORD
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ....arrays import AnyArray, Float64Array
 
 __all__ = ["read_tables"]
 
@@ -90,7 +90,7 @@ def _read(file: sqlite3.Connection, size: int, shown: str) -> Answer:
     )
 
 
-def _read_points(file: sqlite3.Connection, shown: str) -> NDArray[np.float64]:
+def _read_points(file: sqlite3.Connection, shown: str) -> Float64Array:
     blobs = []
     found = file.execute("SELECT vertex, geom FROM vertices ORDER BY vertex")
     for count, (number, blob) in enumerate(found):
@@ -105,7 +105,7 @@ def _read_points(file: sqlite3.Connection, shown: str) -> NDArray[np.float64]:
     return np.ascontiguousarray(rows["xyz"])
 
 
-def _read_triangles(file: sqlite3.Connection, size: int, shown: str) -> NDArray[Any]:
+def _read_triangles(file: sqlite3.Connection, size: int, shown: str) -> AnyArray:
     rows = file.execute("SELECT a, b, c, constrained FROM triangles ORDER BY fid")
     found = (((a, b, c), flags) for a, b, c, flags in islice(rows, size))
     try:
@@ -119,7 +119,7 @@ def _read_triangles(file: sqlite3.Connection, size: int, shown: str) -> NDArray[
 
 def _read_record(
     file: sqlite3.Connection, shown: str
-) -> tuple[dict[str, str], dict[str, NDArray[Any]]]:
+) -> tuple[dict[str, str], dict[str, AnyArray]]:
     texts, arrays = {}, {}
     for name, kind, shape, data in file.execute(f"SELECT name, type, shape, data FROM {RECORD}"):
         if kind == "json" and name in ("digests", "document") and isinstance(data, bytes):

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from hashlib import blake2b
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from numpy.typing import NDArray
+    from ....arrays import AnyArray
 
 __all__ = ["digest_arrays", "digest_lines"]
 
 
-def digest_arrays(*arrays: NDArray[Any], text: str = "") -> str:
+def digest_arrays(*arrays: AnyArray, text: str = "") -> str:
     """Return a digest of arrays, their types and shapes, and a text."""
     found = blake2b(text.encode(), digest_size=16)
     for array in arrays:

@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
+    from ....arrays import AnyArray, Float64Array
 
 __all__ = ["POINT", "make_chain_blobs", "make_point_blobs", "make_triangle_blobs"]
 
@@ -27,14 +27,14 @@ _TRIANGLE = np.dtype(
 _POINT_Z, _LINE_Z, _POLYGON_Z = 1001, 1002, 1003
 
 
-def make_point_blobs(points: NDArray[np.float64], srs: int) -> Iterator[memoryview]:
+def make_point_blobs(points: Float64Array, srs: int) -> Iterator[memoryview]:
     """Yield a point for each row of an (n, 3) array."""
     rows = _begin(np.zeros(len(points), POINT), _WITHOUT, srs, _POINT_Z)
     rows["xyz"] = points
     return _cut(rows)
 
 
-def make_triangle_blobs(corners: NDArray[np.float64], srs: int) -> Iterator[memoryview]:
+def make_triangle_blobs(corners: Float64Array, srs: int) -> Iterator[memoryview]:
     """Yield a closed ring of four vertices for each of the (m, 3, 3) corners."""
     rows = _begin(np.zeros(len(corners), _TRIANGLE), _WITH_ENVELOPE, srs, _POLYGON_Z)
     rows["rings"], rows["count"] = 1, 4
@@ -46,7 +46,7 @@ def make_triangle_blobs(corners: NDArray[np.float64], srs: int) -> Iterator[memo
     return _cut(rows)
 
 
-def make_chain_blobs(chains: list[NDArray[np.float64]], srs: int, *, as_rings: bool) -> list[bytes]:
+def make_chain_blobs(chains: list[Float64Array], srs: int, *, as_rings: bool) -> list[bytes]:
     """Return a line, or a polygon of one ring, for each (k, 3) array of vertices."""
     rings = [("rings", "<u4")] if as_rings else []
     kind = _POLYGON_Z if as_rings else _LINE_Z
@@ -63,12 +63,12 @@ def make_chain_blobs(chains: list[NDArray[np.float64]], srs: int, *, as_rings: b
     return blobs
 
 
-def _begin(rows: NDArray[Any], flags: int, srs: int, kind: int) -> NDArray[Any]:
+def _begin(rows: AnyArray, flags: int, srs: int, kind: int) -> AnyArray:
     rows["magic"], rows["flags"], rows["srs"] = b"GP", flags, srs
     rows["order"], rows["kind"] = 1, kind
     return rows
 
 
-def _cut(rows: NDArray[Any]) -> Iterator[memoryview]:
+def _cut(rows: AnyArray) -> Iterator[memoryview]:
     content, size = memoryview(rows.tobytes()), rows.dtype.itemsize
     return (content[start : start + size] for start in range(0, len(content), size))

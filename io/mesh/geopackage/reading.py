@@ -19,8 +19,7 @@ from .records import Record, unpack_tin
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import AnyArray, BoolArray, Float64Array, Int32Array
     from ....crs import CrsLike, UnitLike
     from ...isolated import Answer
     from ..common import Reference
@@ -92,9 +91,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
         raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
 
 
-def _take_mesh(
-    answer: Answer, path: Path
-) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.bool_]]:
+def _take_mesh(answer: Answer, path: Path) -> tuple[Float64Array, Int32Array, BoolArray]:
     points, triangles, flags = (answer.arrays[name] for name in ("points", "triangles", "flags"))
     wrong = ((triangles < 0) | (triangles >= len(points))).any(axis=1) | (flags < 0) | (flags > 7)
     if wrong.any() or not len(triangles):
@@ -108,7 +105,7 @@ def _take_mesh(
     return points, triangles.astype(np.int32), constrained
 
 
-def _take_arrays(answer: Answer) -> dict[str, NDArray[Any]]:
+def _take_arrays(answer: Answer) -> dict[str, AnyArray]:
     found = {name[1:]: array for name, array in answer.arrays.items() if name[0] == " "}
     return dict(sorted(found.items(), key=lambda item: int(item[0]) if item[0].isdecimal() else -1))
 

@@ -33,8 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import Float64Array
     from ....tin import TIN
 
 __all__ = ["write"]
@@ -210,7 +209,7 @@ def _write_triangles(
         progress(0.2 + 0.8 * (start + len(corners)) / len(tin.triangles))
 
 
-def _measure(tin: TIN) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _measure(tin: TIN) -> tuple[Float64Array, Float64Array]:
     """Return slope and aspect of the triangles, degrees; NaN, which SQLite takes for NULL."""
     try:
         return slope(tin), aspect(tin)

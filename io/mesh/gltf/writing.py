@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import AnyArray, Float32Array, Float64Array, Int64Array, UInt16Array
     from ....tin import TIN
     from ..texture import Texture
 
@@ -51,10 +50,10 @@ _GENERATOR = "tinsmith"
 class _Mesh(NamedTuple):
     """What the file holds, in its own axes."""
 
-    positions: NDArray[np.float32]
-    normals: NDArray[np.float32]
-    triangles: NDArray[Any]
-    colors: NDArray[np.uint16] | None
+    positions: Float32Array
+    normals: Float32Array
+    triangles: AnyArray
+    colors: UInt16Array | None
     texture: Texture | None
 
 
@@ -125,7 +124,7 @@ def write(
         progress(1.0)
 
 
-def _choose_scale(tin: TIN) -> NDArray[np.float64]:
+def _choose_scale(tin: TIN) -> Float64Array:
     """Return the factors from eastings, northings and elevations to metres."""
     if tin.crs is None:
         along, up = 1.0, tin.elevation_unit and tin.elevation_unit.metres
@@ -135,15 +134,15 @@ def _choose_scale(tin: TIN) -> NDArray[np.float64]:
     return np.array([along, along, along if unit is None else unit.metres or along])
 
 
-def _turn_up(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+def _turn_up(vectors: Float64Array) -> Float64Array:
     """Turn easting, northing, elevation to the axes of glTF: X, Y up, Z towards the viewer."""
     return np.column_stack([vectors[:, 0], vectors[:, 2], -vectors[:, 1]]) + 0.0
 
 
 def _make_mesh(
     tin: TIN,
-    origin: NDArray[np.float64],
-    scale: NDArray[np.float64],
+    origin: Float64Array,
+    scale: Float64Array,
     texture: Texture | None,
     path: Path,
 ) -> _Mesh:
@@ -164,9 +163,7 @@ def _make_mesh(
     )
 
 
-def _require_areas(
-    positions: NDArray[np.float32], triangles: NDArray[np.int64], path: Path
-) -> None:
+def _require_areas(positions: Float32Array, triangles: Int64Array, path: Path) -> None:
     """Refuse what float32 cannot hold."""
     if not np.isfinite(positions).all():
         raise WriteError(f"Cannot write '{path}': the TIN is too large for float32.", path=path)
@@ -180,9 +177,7 @@ def _require_areas(
         )
 
 
-def _compute_normals(
-    places: NDArray[np.float64], triangles: NDArray[np.int64]
-) -> NDArray[np.float64]:
+def _compute_normals(places: Float64Array, triangles: Int64Array) -> Float64Array:
     """Return the unit normal of each vertex, the mean of its triangles by their areas."""
     a, b, c = (places[triangles[:, k]] for k in range(3))
     faces = np.cross(b - a, c - a)
@@ -192,7 +187,7 @@ def _compute_normals(
     return np.asarray(sums / np.linalg.norm(sums, axis=1, keepdims=True))
 
 
-def _choose_colors(elevations: NDArray[np.float64]) -> NDArray[np.uint16]:
+def _choose_colors(elevations: Float64Array) -> UInt16Array:
     """Return hypsometric tints as glTF has colours, in linear light."""
     low, extent = elevations.min(), np.ptp(elevations)
     share = (elevations - low) / (extent if extent > 0 else 1.0)
@@ -204,7 +199,7 @@ def _choose_colors(elevations: NDArray[np.float64]) -> NDArray[np.uint16]:
 
 
 def _describe(
-    tin: TIN, origin: NDArray[np.float64], scale: NDArray[np.float64], exaggeration: float
+    tin: TIN, origin: Float64Array, scale: Float64Array, exaggeration: float
 ) -> dict[str, Any]:
     """Return what leads from the file back to the coordinates."""
     extras: dict[str, Any] = {
@@ -237,7 +232,7 @@ class _Buffer:
         return len(self.views) - 1
 
     def add_array(
-        self, array: NDArray[Any], *, target: int, has_bounds: bool = False, **more: Any
+        self, array: AnyArray, *, target: int, has_bounds: bool = False, **more: Any
     ) -> int:
         """Append an array of one row for each element; return the number of its accessor."""
         rows = array if array.ndim == 2 else array[:, None]

@@ -17,8 +17,7 @@ from ....errors import ReadError
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import AnyArray, Float64Array, Int64Array
     from .header import Element, Header
 
 _LINE_END = 3
@@ -36,15 +35,15 @@ class Ragged(NamedTuple):
     offsets : (rows + 1,) int64 array
     """
 
-    items: NDArray[Any]
-    offsets: NDArray[np.int64]
+    items: AnyArray
+    offsets: Int64Array
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Table:
     """One element's values by property name."""
 
-    columns: dict[str, NDArray[Any]]
+    columns: dict[str, AnyArray]
     lists: dict[str, Ragged]
 
 
@@ -73,7 +72,7 @@ class _Body:
         self.path = path
         self.cursor = 0
         self.byte_order = header.byte_order
-        self.cells: NDArray[Any] = (
+        self.cells: AnyArray = (
             np.frombuffer(content, np.uint8)[header.size :]
             if self.byte_order
             else _parse_text_body(content[header.size :], path)
@@ -87,15 +86,15 @@ class _Body:
         """Return the cells that one value takes."""
         return self.find_dtype(type_name).itemsize // self.cells.itemsize
 
-    def pick(self, starts: NDArray[np.int64], type_name: str) -> NDArray[Any]:
+    def pick(self, starts: Int64Array, type_name: str) -> AnyArray:
         """Return the values that begin at these cells."""
         cells = self.cells[starts[:, None] + np.arange(self.measure_width(type_name))]
-        values: NDArray[Any] = cells.view(self.find_dtype(type_name)).reshape(len(starts))
+        values: AnyArray = cells.view(self.find_dtype(type_name)).reshape(len(starts))
         return values
 
     def view_block(
         self, start: int, stride: int, shape: tuple[int, int], type_name: str
-    ) -> NDArray[Any]:
+    ) -> AnyArray:
         """View ``shape[1]`` neighbouring values in each of ``shape[0]`` rows ``stride`` apart."""
         dtype, cell = self.find_dtype(type_name), self.cells.itemsize
         strides = (stride * cell, dtype.itemsize)
@@ -196,7 +195,7 @@ class _Body:
                 starts = starts + lengths * self.measure_width(prop.type)
         return table
 
-    def _walk_uneven_rows(self, element: Element) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def _walk_uneven_rows(self, element: Element) -> tuple[Int64Array, Int64Array]:
         """Walk the rows one by one: their start cells, and per list property the lengths."""
         n_lists = sum(prop.count_type is not None for prop in element.properties)
         starts = np.empty(element.count, np.int64)
@@ -206,9 +205,7 @@ class _Body:
             sizes[row], self.cursor = self._list_lengths(element, self.cursor)
         return starts, sizes.T
 
-    def _gather(
-        self, starts: NDArray[np.int64], lengths: NDArray[np.int64], type_name: str
-    ) -> Ragged:
+    def _gather(self, starts: Int64Array, lengths: Int64Array, type_name: str) -> Ragged:
         offsets = np.zeros(len(lengths) + 1, np.int64)
         np.cumsum(lengths, out=offsets[1:])
         within = np.arange(offsets[-1]) - np.repeat(offsets[:-1], lengths)
@@ -225,7 +222,7 @@ def _measure_shortest_row(element: Element, body: _Body) -> int:
     return sum(body.measure_width(prop.count_type or prop.type) for prop in element.properties)
 
 
-def _parse_text_body(text: bytes, path: Path) -> NDArray[np.float64]:
+def _parse_text_body(text: bytes, path: Path) -> Float64Array:
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)
         try:

@@ -34,8 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ....crs import CrsLike, UnitLike
     from ....tin.constraints.breaklines import Lines
 
@@ -118,7 +117,7 @@ def _require_edges_of_tin(tin: TIN, lines: Lines, path: Path) -> None:
         )
 
 
-def _stack_coordinates(vertices: Table) -> NDArray[np.float64]:
+def _stack_coordinates(vertices: Table) -> Float64Array:
     columns = [vertices.columns[name] for name in _COORDINATES]
     with np.errstate(invalid="ignore"):  # what is not finite is refused
         return np.stack(columns, axis=1).astype(np.float64)
@@ -129,7 +128,7 @@ def _find_face_list(table: Table | None) -> Ragged | None:
     return next((lists[name] for name in _FACE_LISTS if name in lists), None)
 
 
-def _require_whole_numbers(items: NDArray[Any], path: Path) -> NDArray[np.int64]:
+def _require_whole_numbers(items: AnyArray, path: Path) -> Int64Array:
     if items.dtype.kind == "f" and not (np.abs(items) < 2.0**53).all():
         raise ReadError(f"'{path}': a face names a vertex that is no number.", path=path)
     whole = items.astype(np.int64)
@@ -138,16 +137,16 @@ def _require_whole_numbers(items: NDArray[Any], path: Path) -> NDArray[np.int64]
     return whole
 
 
-def _find_edge_flags(faces: Table, n_triangles: int) -> NDArray[np.bool_] | None:
+def _find_edge_flags(faces: Table, n_triangles: int) -> BoolArray | None:
     """Return the edge flags if the file has them and every face is a triangle."""
     columns = [faces.columns[name] for name in _FLAGS if name in faces.columns]
     if len(columns) < len(_FLAGS) or len(columns[0]) != n_triangles:
         return None
-    flags: NDArray[np.bool_] = np.stack(columns, axis=1) != 0
+    flags: BoolArray = np.stack(columns, axis=1) != 0
     return flags
 
 
-def _find_vertex_attributes(vertices: Table) -> dict[str, NDArray[Any]]:
+def _find_vertex_attributes(vertices: Table) -> dict[str, AnyArray]:
     return {
         name: np.array(column, column.dtype.newbyteorder("="))
         for name, column in vertices.columns.items()
@@ -180,9 +179,7 @@ def write(
                 progress(number / len(body))
 
 
-def _format_header(
-    surface: TIN | Survey, comments: list[str], body: dict[str, NDArray[Any]]
-) -> bytes:
+def _format_header(surface: TIN | Survey, comments: list[str], body: dict[str, AnyArray]) -> bytes:
     lines = ["ply", "format binary_little_endian 1.0"]
     if surface.crs is not None:
         lines.append(f"comment crs: {common.format_crs(surface.crs)}")
@@ -205,7 +202,7 @@ def _name_type(dtype: np.dtype[Any]) -> str:
     return _TYPE_NAMES.get(dtype.str[1:], "double")
 
 
-def _pack_vertices(points: NDArray[np.float64], attributes: Any) -> NDArray[Any]:
+def _pack_vertices(points: Float64Array, attributes: Any) -> AnyArray:
     columns = _select_number_columns(attributes)
     fields = [(name, "<f8") for name in _COORDINATES]
     fields += [(name, column.dtype.newbyteorder("<").str) for name, column in columns.items()]
@@ -217,9 +214,9 @@ def _pack_vertices(points: NDArray[np.float64], attributes: Any) -> NDArray[Any]
     return rows
 
 
-def _select_number_columns(attributes: Any) -> dict[str, NDArray[Any]]:
+def _select_number_columns(attributes: Any) -> dict[str, AnyArray]:
     """Return the attributes that PLY can hold, under names of one word that are still free."""
-    columns: dict[str, NDArray[Any]] = {}
+    columns: dict[str, AnyArray] = {}
     for given, values in attributes.items():
         column = np.asarray(values)
         name = "_".join(str(given).split())
@@ -235,7 +232,7 @@ def _select_number_columns(attributes: Any) -> dict[str, NDArray[Any]]:
     return columns
 
 
-def _pack_faces(tin: TIN, edges: NDArray[Any]) -> NDArray[Any]:
+def _pack_faces(tin: TIN, edges: AnyArray) -> AnyArray:
     """Return the rows of the faces, with flags only where the edges do not tell them."""
     is_told = (flag_edges(tin.triangles, edges, len(tin.points)) == tin.constrained).all()
     flags = () if is_told else _FLAGS

@@ -25,8 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import Any
 
-    from numpy.typing import NDArray
-
+    from ....arrays import AnyArray, BoolArray, Int32Array, Int64Array
     from ....tin import TIN
     from .body import Table
 
@@ -57,7 +56,7 @@ class LineComment(NamedTuple):
     name: str
 
 
-def take_edges(tin: TIN) -> NDArray[np.int32]:
+def take_edges(tin: TIN) -> Int32Array:
     """Return the edges of all lines in order, then the constrained ones of no line, (k, 2)."""
     segments = tin.lines.segments()
     flagged = topology.edges_at(tin.triangles, tin.constrained)
@@ -68,7 +67,7 @@ def take_edges(tin: TIN) -> NDArray[np.int32]:
     return np.concatenate([segments, others]).astype(np.int32)
 
 
-def flag_edges(triangles: NDArray[Any], edges: NDArray[Any], n_vertices: int) -> NDArray[np.bool_]:
+def flag_edges(triangles: AnyArray, edges: AnyArray, n_vertices: int) -> BoolArray:
     """Return which edges of triangles, each opposite a corner, are among some, (m, 3) flags."""
     if len(edges) == 0:
         return np.zeros((len(triangles), 3), np.bool_)
@@ -105,7 +104,7 @@ def parse_line_comment(text: str) -> LineComment | None:
     return LineComment(kind, source, n_edges, name)
 
 
-def require_edges(table: Table, path: Path, n_vertices: int) -> NDArray[np.int64]:
+def require_edges(table: Table, path: Path, n_vertices: int) -> Int64Array:
     """Return the edges of a file of ours as (k, 2) vertex numbers."""
     columns = [table.columns.get(name) for name in ENDS]
     if columns[0] is None or columns[1] is None:
@@ -118,7 +117,7 @@ def require_edges(table: Table, path: Path, n_vertices: int) -> NDArray[np.int64
     return ends.astype(np.int64)
 
 
-def read_lines(told: Sequence[LineComment], edges: NDArray[np.int64], path: Path) -> Lines:
+def read_lines(told: Sequence[LineComment], edges: Int64Array, path: Path) -> Lines:
     """Return the lines that the header tells of, as chains of vertices.
 
     Raises

@@ -14,7 +14,7 @@ import numpy as np
 from ....tin.topology import edge_keys
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ....arrays import Float64Array, Int64Array
 
 __all__ = ["GridMesh", "cut_along_grid"]
 
@@ -31,9 +31,9 @@ class GridMesh(NamedTuple):
         Counter-clockwise.
     """
 
-    steps: NDArray[np.int64]
-    heights: NDArray[np.float64]
-    triangles: NDArray[np.int64]
+    steps: Int64Array
+    heights: Float64Array
+    triangles: Int64Array
 
 
 def cut_along_grid(mesh: GridMesh, spacing: int) -> GridMesh:
@@ -56,9 +56,9 @@ def cut_along_grid(mesh: GridMesh, spacing: int) -> GridMesh:
 class _Cuts(NamedTuple):
     """Points in which lines cut edges: those of an edge follow one another."""
 
-    keys: NDArray[np.int64]
-    first_line: NDArray[np.int64]
-    first_point: NDArray[np.int64]
+    keys: Int64Array
+    first_line: Int64Array
+    first_point: Int64Array
 
 
 def _cut(mesh: GridMesh, axis: int, spacing: int) -> GridMesh:
@@ -85,8 +85,8 @@ def _cut(mesh: GridMesh, axis: int, spacing: int) -> GridMesh:
 
 
 def _cut_edges(
-    mesh: GridMesh, triangles: NDArray[np.int64], axis: int, spacing: int
-) -> tuple[_Cuts, NDArray[np.int64], NDArray[np.float64]]:
+    mesh: GridMesh, triangles: Int64Array, axis: int, spacing: int
+) -> tuple[_Cuts, Int64Array, Float64Array]:
     """Return the points in which lines cut the edges of triangles, each edge once."""
     pairs = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]],
                                     triangles[:, [2, 0]]]), axis=1)  # fmt: skip
@@ -112,13 +112,13 @@ def _cut_edges(
 
 
 def _clip(
-    triangles: NDArray[np.int64],
-    along: NDArray[np.int64],
-    low: NDArray[np.int64],
+    triangles: Int64Array,
+    along: Int64Array,
+    low: Int64Array,
     spacing: int,
     cuts: _Cuts,
     n_vertices: int,
-) -> NDArray[np.int64]:
+) -> Int64Array:
     """Return the ring of vertices that each triangle has in its strip, (k, 6), -1 for none."""
     slots = []
     for corner in range(3):
@@ -141,15 +141,15 @@ def _clip(
 
 
 def _find_end(
-    near: NDArray[np.int64],
-    far: NDArray[np.int64],
-    edge: NDArray[np.int64],
-    along: NDArray[np.int64],
-    low: NDArray[np.int64],
+    near: Int64Array,
+    far: Int64Array,
+    edge: Int64Array,
+    along: Int64Array,
+    low: Int64Array,
     spacing: int,
     cuts: _Cuts,
     n_vertices: int,
-) -> NDArray[np.int64]:
+) -> Int64Array:
     """Return the vertex at which edges end in their strips, towards ``near``; -1 outside."""
     at, other = along[near], along[far]
     line = np.where(at < low, low, low + spacing)
@@ -160,7 +160,7 @@ def _find_end(
     return np.where(absent, -1, found)
 
 
-def _cut_rings_into_fans(rings: NDArray[np.int64]) -> NDArray[np.int64]:
+def _cut_rings_into_fans(rings: Int64Array) -> Int64Array:
     held = rings >= 0
     order = np.argsort(~held, axis=1, kind="stable")
     packed = np.take_along_axis(rings, order, axis=1)
@@ -178,7 +178,7 @@ def _merge(mesh: GridMesh) -> GridMesh:
     return GridMesh(steps, mesh.heights[first], triangles[_measure(steps, triangles) > 0])
 
 
-def _measure(steps: NDArray[np.int64], triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+def _measure(steps: Int64Array, triangles: Int64Array) -> Int64Array:
     """Return twice the area of each triangle."""
     a, b, c = (steps[triangles[:, k]] for k in range(3))
     u, v = b - a, c - a
@@ -207,8 +207,8 @@ def _match(mesh: GridMesh, axis: int, spacing: int) -> GridMesh:
 
 
 def _find_split_edge(
-    mesh: GridMesh, rank: NDArray[np.int64], axis: int
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    mesh: GridMesh, rank: Int64Array, axis: int
+) -> tuple[Int64Array, Int64Array, Int64Array]:
     """Return triangles, the corner at which an edge of each begins, and a vertex within that."""
     a, b = mesh.triangles, np.roll(mesh.triangles, -1, axis=1)
     same = (rank[a] >= 0) & (rank[b] >= 0) & (mesh.steps[a, axis] == mesh.steps[b, axis])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ....arrays import Float64Array
 
 __all__ = ["Sphere", "bound_by_sphere", "find_horizon_point", "to_cartesian"]
 
@@ -21,11 +21,11 @@ _FARTHEST = 1000.0
 class Sphere(NamedTuple):
     """A sphere in space, metres."""
 
-    center: NDArray[np.float64]
+    center: Float64Array
     radius: float
 
 
-def to_cartesian(places: NDArray[np.float64]) -> NDArray[np.float64]:
+def to_cartesian(places: Float64Array) -> Float64Array:
     """Return X, Y, Z (metres from the centre of the Earth) of longitude, latitude, height.
 
     Parameters
@@ -41,15 +41,13 @@ def to_cartesian(places: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.column_stack([across * np.cos(longitude), across * np.sin(longitude), up])
 
 
-def bound_by_sphere(points: NDArray[np.float64]) -> Sphere:
+def bound_by_sphere(points: Float64Array) -> Sphere:
     """Return a sphere about points: about the middle of their bounds."""
     center = (points.min(axis=0) + points.max(axis=0)) / 2
     return Sphere(center, float(np.linalg.norm(points - center, axis=1).max()))
 
 
-def find_horizon_point(
-    points: NDArray[np.float64], center: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def find_horizon_point(points: Float64Array, center: Float64Array) -> Float64Array:
     """Return the point that is below the horizon only where all points are.
 
     Parameters

@@ -16,8 +16,7 @@ from .tile import BrokenTileError, TileName, decode_tile
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import Int64Array
     from ....crs import CrsLike, UnitLike
     from ....tin import TIN
 
@@ -108,9 +107,7 @@ def _describe_fault(path: Path, content: bytes, why: str) -> str:
     return f"'{path}' is no sound quantized-mesh tile: {why}."
 
 
-def _merge(
-    steps: NDArray[np.int64], triangles: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _merge(steps: Int64Array, triangles: Int64Array) -> tuple[Int64Array, Int64Array]:
     """Make vertices at one place one, where they have one height too."""
     kept, first, number = np.unique(steps, axis=0, return_index=True, return_inverse=True)
     rank = np.empty(len(kept), np.int64)
@@ -118,7 +115,7 @@ def _merge(
     return steps[np.sort(first)], rank[number.ravel()][triangles]
 
 
-def _measure(steps: NDArray[np.int64], triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+def _measure(steps: Int64Array, triangles: Int64Array) -> Int64Array:
     a, b, c = (steps[triangles[:, k], :2] for k in range(3))
     u, v = b - a, c - a
     return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])

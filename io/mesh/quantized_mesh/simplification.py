@@ -16,12 +16,12 @@ from ....tin import TIN, Breakline, Survey, triangulate
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from numpy.typing import NDArray
+    from ....arrays import BoolArray, Int64Array
 
 __all__ = ["simplify"]
 
 
-def simplify(surface: TIN, tolerances: Sequence[float]) -> Iterator[NDArray[np.int64]]:
+def simplify(surface: TIN, tolerances: Sequence[float]) -> Iterator[Int64Array]:
     """Yield triangles of ever more vertices of a surface.
 
     Parameters
@@ -51,7 +51,7 @@ def simplify(surface: TIN, tolerances: Sequence[float]) -> Iterator[NDArray[np.i
         yield triangles
 
 
-def _connect(surface: TIN, rows: NDArray[np.int64], lines: list[Breakline]) -> NDArray[np.int64]:
+def _connect(surface: TIN, rows: Int64Array, lines: list[Breakline]) -> Int64Array:
     """Triangulate some vertices within the boundary."""
     built = triangulate(Survey(points=surface.points[rows], breaklines=lines), duplicates="first")
     row_of = np.full(len(built.points), -1, np.int64)
@@ -63,8 +63,8 @@ def _connect(surface: TIN, rows: NDArray[np.int64], lines: list[Breakline]) -> N
 
 
 def _find_worst(
-    surface: TIN, triangles: NDArray[np.int64], left: NDArray[np.bool_], tolerance: float
-) -> NDArray[np.int64]:
+    surface: TIN, triangles: Int64Array, left: BoolArray, tolerance: float
+) -> Int64Array:
     """Return the vertex of each triangle that lies farthest from it, beyond the tolerance."""
     rows = np.flatnonzero(left)
     if len(rows) == 0:

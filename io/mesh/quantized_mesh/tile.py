@@ -20,7 +20,7 @@ import numpy as np
 from .globe import bound_by_sphere, find_horizon_point, to_cartesian
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ....arrays import Float64Array, Int64Array
 
 __all__ = ["STEPS", "BrokenTileError", "Tile", "TileName", "decode_tile", "encode_tile"]
 
@@ -78,13 +78,13 @@ class Tile:
         Unit vectors in the axes of the globe.
     """
 
-    steps: NDArray[np.int64]
-    triangles: NDArray[np.int64]
+    steps: Int64Array
+    triangles: Int64Array
     lowest: float
     highest: float
-    normals: NDArray[np.float64] | None = None
+    normals: Float64Array | None = None
 
-    def place(self, name: TileName) -> NDArray[np.float64]:
+    def place(self, name: TileName) -> Float64Array:
         """Return longitude, latitude (degrees) and height (metres) of the vertices."""
         west, south, _, _ = name.bounds
         share = self.steps / STEPS
@@ -125,12 +125,12 @@ def encode_tile(tile: Tile, name: TileName) -> bytes:
     return b"".join(parts)
 
 
-def _order_by_first_use(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+def _order_by_first_use(triangles: Int64Array) -> Int64Array:
     used, first = np.unique(triangles, return_index=True)
     return np.asarray(used[np.argsort(first)])
 
 
-def _pack_header(places: NDArray[np.float64], tile: Tile, name: TileName) -> bytes:
+def _pack_header(places: Float64Array, tile: Tile, name: TileName) -> bytes:
     west, south, east, north = name.bounds
     middle = (float(places[:, 2].min()) + float(places[:, 2].max())) / 2
     center = to_cartesian(np.array([[(west + east) / 2, (south + north) / 2, middle]]))[0]
@@ -140,20 +140,20 @@ def _pack_header(places: NDArray[np.float64], tile: Tile, name: TileName) -> byt
     return _HEADER.pack(*center, tile.lowest, tile.highest, *sphere.center, sphere.radius, *horizon)
 
 
-def _encode_steps(values: NDArray[np.int64]) -> bytes:
+def _encode_steps(values: Int64Array) -> bytes:
     """Return differences, small ones near 0 whatever their sign (zig-zag)."""
     change = np.diff(values, prepend=0)
     return ((change << 1) ^ (change >> 63)).astype("<u2").tobytes()
 
 
-def _encode_indices(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+def _encode_indices(triangles: Int64Array) -> Int64Array:
     """Return, for each index, how far it lies below the next one that is new (high-water mark)."""
     flat = triangles.ravel()
     seen = np.maximum.accumulate(np.concatenate([[-1], flat[:-1]])) + 1
     return np.asarray(seen - flat)
 
 
-def _find_edges(steps: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+def _find_edges(steps: Int64Array) -> list[Int64Array]:
     """Return the vertices on the west, south, east and north edge, along it."""
     edges = []
     for axis, value in ((0, 0), (1, 0), (0, STEPS), (1, STEPS)):
@@ -162,7 +162,7 @@ def _find_edges(steps: NDArray[np.int64]) -> list[NDArray[np.int64]]:
     return edges
 
 
-def _encode_normals(normals: NDArray[np.float64]) -> bytes:
+def _encode_normals(normals: Float64Array) -> bytes:
     """Return two bytes a vector: its place on an octahedron.
 
     Meyer et al., "On floating-point normal vectors" (2010).
@@ -221,7 +221,7 @@ class _Reader:
             raise BrokenTileError(f"it promises {count} {what}, and ends before them")
         return count
 
-    def read(self, dtype: str, count: int) -> NDArray[np.int64]:
+    def read(self, dtype: str, count: int) -> Int64Array:
         size = count * int(dtype[2])
         if self.at + size > len(self.content):
             raise BrokenTileError("it ends too early")
@@ -230,11 +230,11 @@ class _Reader:
         return values.astype(np.int64)
 
 
-def _decode_steps(values: NDArray[np.int64]) -> NDArray[np.int64]:
+def _decode_steps(values: Int64Array) -> Int64Array:
     return np.cumsum((values >> 1) ^ -(values & 1))
 
 
-def _decode_indices(codes: NDArray[np.int64]) -> NDArray[np.int64]:
+def _decode_indices(codes: Int64Array) -> Int64Array:
     """Return indices from how far each lies below the next new one, which a 0 is itself."""
     seen = np.cumsum(codes == 0) - (codes == 0)
     return np.asarray(seen - codes)

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from ....arrays import Float64Array, Int64Array
 
 __all__ = ["write"]
 
@@ -209,7 +209,7 @@ def _list_parents(placed: TIN, level: int) -> list[TileName]:
 # ----------------------------------------------------------------------- levels and tiles
 
 
-def _iterate_meshes(placed: TIN, first: int, finest: int) -> Iterator[NDArray[np.int64]]:
+def _iterate_meshes(placed: TIN, first: int, finest: int) -> Iterator[Int64Array]:
     """Yield the triangles of each level, the TIN's own for the last."""
     tolerances = [_SHARE_OF_ERROR * _COARSEST_ERROR / 2**level for level in range(first, finest)]
     yield from simplify(placed, tolerances)
@@ -217,7 +217,7 @@ def _iterate_meshes(placed: TIN, first: int, finest: int) -> Iterator[NDArray[np
 
 
 def _cut_into_tiles(
-    placed: TIN, triangles: NDArray[np.int64], level: int, path: Path
+    placed: TIN, triangles: Int64Array, level: int, path: Path
 ) -> Iterator[tuple[TileName, Tile]]:
     """Yield the tiles of a level."""
     scale = STEPS * 2**level / 180.0
@@ -241,7 +241,7 @@ def _cut_into_tiles(
         yield TileName(level, x, y), _gather_tile(mesh, normals, rows, (x, y), step)
 
 
-def _compute_normals(mesh: GridMesh, scale: float) -> NDArray[np.float64]:
+def _compute_normals(mesh: GridMesh, scale: float) -> Float64Array:
     """Return unit normals of all vertices in the axes of the globe, the same in every tile."""
     plane = mesh.steps / scale - _CORNER
     points = to_cartesian(np.column_stack([plane, mesh.heights]))
@@ -255,7 +255,7 @@ def _compute_normals(mesh: GridMesh, scale: float) -> NDArray[np.float64]:
     return np.asarray(np.divide(sums, lengths, out=np.zeros_like(sums), where=lengths > 0))
 
 
-def _choose_height_step(mesh: GridMesh, groups: list[NDArray[np.int64]]) -> float:
+def _choose_height_step(mesh: GridMesh, groups: list[Int64Array]) -> float:
     """Return the step of heights of a level: a power of two with which every tile gets by."""
     heights = mesh.heights[mesh.triangles]
     low = np.array([heights[rows].min() for rows in groups])
@@ -269,8 +269,8 @@ def _choose_height_step(mesh: GridMesh, groups: list[NDArray[np.int64]]) -> floa
 
 def _gather_tile(
     mesh: GridMesh,
-    normals: NDArray[np.float64],
-    rows: NDArray[np.int64],
+    normals: Float64Array,
+    rows: Int64Array,
     place: tuple[int, int],
     step: float,
 ) -> Tile:

@@ -15,8 +15,7 @@ from ...reprojection.transformation import reproject
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import Float64Array, ObjectArray
     from ....crs import Unit
 
 __all__ = [
@@ -38,7 +37,7 @@ class Located(Protocol):
     """Points with what they are measured in: a TIN, a survey, coordinates of features."""
 
     @property
-    def points(self) -> NDArray[np.float64]:
+    def points(self) -> Float64Array:
         """Coordinates, (n, 3)."""
 
     @property
@@ -62,7 +61,7 @@ class Places(NamedTuple):
         Further members of the file, which tell the unit of elevations.
     """
 
-    xyz: NDArray[np.float64]
+    xyz: Float64Array
     crs_member: str | None = None
     members: tuple[tuple[str, str], ...] = ()
 
@@ -131,7 +130,7 @@ def keep_in_crs(surface: Located) -> Places:
     )
 
 
-def format_positions(xyz: NDArray[np.float64]) -> NDArray[np.object_]:
+def format_positions(xyz: Float64Array) -> ObjectArray:
     """Return each position as JSON text, in the fewest digits that give the same double back.
 
     Parameters
@@ -148,7 +147,7 @@ def format_positions(xyz: NDArray[np.float64]) -> NDArray[np.object_]:
     return written
 
 
-def require_one_piece(longitudes: NDArray[np.float64], path: Path) -> None:
+def require_one_piece(longitudes: Float64Array, path: Path) -> None:
     """Refuse features that reach from one end of the longitudes to the other.
 
     Parameters
@@ -171,7 +170,7 @@ def require_one_piece(longitudes: NDArray[np.float64], path: Path) -> None:
         )
 
 
-def _require_on_earth(moved: NDArray[np.float64], points: NDArray[np.float64], crs: CRS) -> None:
+def _require_on_earth(moved: Float64Array, points: Float64Array, crs: CRS) -> None:
     outside = (np.abs(moved[:, :2]) > (180.0, 90.0)).any(axis=1)
     if outside.any():
         row = int(np.argmax(outside))

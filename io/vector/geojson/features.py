@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import Float64Array, Int64Array, ObjectArray
     from ....crs import CRS, Unit
     from ....terrain.results import Features
     from .coordinates import Places
@@ -33,7 +32,7 @@ _HALF_TURN = 180.0
 class _Located(NamedTuple):
     """Coordinates with what they are measured in, as :func:`project_to_wgs84` takes them."""
 
-    points: NDArray[np.float64]
+    points: Float64Array
     crs: CRS | None
     elevation_unit: Unit | None
 
@@ -153,7 +152,7 @@ def _format_feature(properties: str, geometry: str) -> str:
 # ------------------------------------------------------------------------- geometries
 
 
-def _format_positions(features: Features, places: Places) -> NDArray[np.object_]:
+def _format_positions(features: Features, places: Places) -> ObjectArray:
     """Return each position, with two numbers where its elevation is not known."""
     if not features.has_elevations:
         return format_positions(places.xyz[:, :2])
@@ -175,7 +174,7 @@ def _format_geometries(features: Features, places: Places) -> list[str]:
     return [f'{{"type":"{kind}","coordinates":{piece}}}' for piece in pieces]
 
 
-def _turned(features: Features, xyz: NDArray[np.float64]) -> NDArray[np.int64]:
+def _turned(features: Features, xyz: Float64Array) -> Int64Array:
     """Return the order of points in which exterior rings run counter-clockwise, holes clockwise.
 
     A map may be mirrored (westings), or a ring turn by rounding.
@@ -193,17 +192,17 @@ def _turned(features: Features, xyz: NDArray[np.float64]) -> NDArray[np.int64]:
     return order
 
 
-def _measure_rings(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> NDArray[np.float64]:
+def _measure_rings(xy: Float64Array, offsets: Int64Array) -> Float64Array:
     """Return twice the signed area of each closed ring, positive counter-clockwise."""
     near = xy - np.repeat(xy[offsets[:-1]], np.diff(offsets), axis=0)
     steps = np.zeros(len(xy))
     steps[:-1] = near[:-1, 0] * near[1:, 1] - near[1:, 0] * near[:-1, 1]
     steps[offsets[1:] - 1] = 0.0  # from the end of one ring to the start of the next
-    sums: NDArray[np.float64] = np.add.reduceat(steps, offsets[:-1])
+    sums: Float64Array = np.add.reduceat(steps, offsets[:-1])
     return sums
 
 
-def _require_one_side(xyz: NDArray[np.float64], features: Features, path: Path) -> None:
+def _require_one_side(xyz: Float64Array, features: Features, path: Path) -> None:
     """Refuse a line or ring that jumps from one end of the longitudes to the other."""
     if not features.offsets or len(xyz) == 0:
         return

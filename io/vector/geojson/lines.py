@@ -13,8 +13,7 @@ from ....terrain.drawing.linework import EDGE_KINDS, find_line_edges
 from ....tin.topology import edge_keys, edges_at
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ....arrays import BoolArray, Int8Array, Int32Array, ObjectArray
     from ....tin import TIN
 
 __all__ = [
@@ -31,7 +30,7 @@ _LINE = (
 )
 
 
-def format_edge_properties(tin: TIN, flags: NDArray[np.bool_]) -> NDArray[np.object_]:
+def format_edge_properties(tin: TIN, flags: BoolArray) -> ObjectArray:
     """Return the properties of each edge, as JSON, opposite each corner: (m, 3) array.
 
     Parameters
@@ -43,11 +42,11 @@ def format_edge_properties(tin: TIN, flags: NDArray[np.bool_]) -> NDArray[np.obj
     kinds = find_edge_kinds(tin, flags)
     texts = ['"constrained":false,"kind":null', '"constrained":true,"kind":null']
     texts += [f'"constrained":true,"kind":"{kind}"' for kind in EDGE_KINDS]
-    words: NDArray[np.object_] = np.array(texts, object)[np.where(kinds >= 0, kinds + 2, flags)]
+    words: ObjectArray = np.array(texts, object)[np.where(kinds >= 0, kinds + 2, flags)]
     return words
 
 
-def find_edge_kinds(tin: TIN, flags: NDArray[np.bool_]) -> NDArray[np.int8]:
+def find_edge_kinds(tin: TIN, flags: BoolArray) -> Int8Array:
     """Return the kind of each edge, an index into ``EDGE_KINDS``; -1 where none is known: (m, 3).
 
     Parameters
@@ -62,7 +61,7 @@ def find_edge_kinds(tin: TIN, flags: NDArray[np.bool_]) -> NDArray[np.int8]:
     return kinds
 
 
-def _look_kinds_up(tin: TIN, pairs: NDArray[np.int32]) -> NDArray[np.int8]:
+def _look_kinds_up(tin: TIN, pairs: Int32Array) -> Int8Array:
     """Return the kind of each edge, an index into ``EDGE_KINDS``; -1 where no line is known."""
     known = find_line_edges(tin, guess=False)
     keys = edge_keys(known.pairs, len(tin.points))
@@ -88,12 +87,12 @@ def require_lines(tin: TIN) -> None:
         )
 
 
-def list_line_vertices(tin: TIN) -> list[NDArray[np.int32]]:
+def list_line_vertices(tin: TIN) -> list[Int32Array]:
     """Return the chains of a TIN; where none are known, its constrained edges one by one."""
     return list(tin.lines.chains()) if len(tin.lines) else list(find_line_edges(tin).pairs)
 
 
-def format_lines(tin: TIN, positions: NDArray[np.object_]) -> Iterator[str]:
+def format_lines(tin: TIN, positions: ObjectArray) -> Iterator[str]:
     """Give a feature for each line, given the positions of the vertices as JSON."""
     lines = tin.lines
     for number, vertices in enumerate(list_line_vertices(tin)):

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ....arrays import AnyArray
 
 __all__ = ["json_texts", "properties_template"]
 
 
-def json_texts(values: NDArray[Any]) -> list[str]:
+def json_texts(values: AnyArray) -> list[str]:
     """Return each value of a column as JSON; ``null`` for what is missing or not finite.
 
     Examples

@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ....arrays import BoolArray, Float64Array, Int32Array
     from ....tin import TIN
 
 __all__ = ["Kind", "gather_edge_flags", "group_rings", "write"]
@@ -149,7 +148,7 @@ def _require_kind(surface: TIN | Survey, kind: str | None) -> str:
     return kind
 
 
-def _require_finite_points(points: NDArray[np.float64], path: Path) -> None:
+def _require_finite_points(points: Float64Array, path: Path) -> None:
     wrong = ~np.isfinite(points).all(axis=1)
     if wrong.any():
         row, count = int(np.argmax(wrong)), int(wrong.sum())
@@ -161,7 +160,7 @@ def _require_finite_points(points: NDArray[np.float64], path: Path) -> None:
         )
 
 
-def _format_head(places: Places, used: NDArray[np.float64]) -> str:
+def _format_head(places: Places, used: Float64Array) -> str:
     lines = ['"type":"FeatureCollection"']
     if places.crs_member is not None:
         lines.append(f'"crs":{places.crs_member}')
@@ -172,7 +171,7 @@ def _format_head(places: Places, used: NDArray[np.float64]) -> str:
     return "{" + ",\n".join(lines) + ',\n"features":['
 
 
-def _find_used_vertices(tin: TIN, kind: str) -> NDArray[np.bool_]:
+def _find_used_vertices(tin: TIN, kind: str) -> BoolArray:
     used = np.zeros(len(tin.points), np.bool_)
     used[np.concatenate(list_line_vertices(tin)) if kind == "lines" else tin.triangles] = True
     return used
@@ -191,9 +190,9 @@ def _iterate_slices(count: int) -> Iterator[tuple[int, slice]]:
 class _Measures(NamedTuple):
     """Slope and aspect (degrees, NaN for none) and area (square metres) of each triangle."""
 
-    slope: NDArray[np.float64]
-    aspect: NDArray[np.float64]
-    area: NDArray[np.float64]
+    slope: Float64Array
+    aspect: Float64Array
+    area: Float64Array
 
 
 def _measure_triangles(tin: TIN) -> _Measures:
@@ -226,9 +225,7 @@ def _format_triangles(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
         yield done, ",\n".join(map(_TRIANGLE.__mod__, rows)).replace(":nan", ":null")
 
 
-def _turn_counter_clockwise(
-    triangles: NDArray[np.int32], xyz: NDArray[np.float64]
-) -> NDArray[np.int32]:
+def _turn_counter_clockwise(triangles: Int32Array, xyz: Float64Array) -> Int32Array:
     """Turn the triangles that the written coordinates show clockwise."""
     a, b, c = (xyz[triangles[:, k], :2] for k in range(3))
     ab, ac = b - a, c - a
@@ -256,7 +253,7 @@ def _format_edges(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
         written += len(starts)
 
 
-def gather_edge_flags(tin: TIN) -> NDArray[np.bool_]:
+def gather_edge_flags(tin: TIN) -> BoolArray:
     """Return the flags of the edges, each edge flagged if either of its triangles says so."""
     flags = tin.constrained.copy()
     triangle, corner = np.nonzero(tin.constrained & (tin.neighbors >= 0))
@@ -284,7 +281,7 @@ def _format_hull(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
     yield len(tin.triangles), ",\n".join(features)
 
 
-def group_rings(tin: TIN) -> list[list[NDArray[np.int32]]]:
+def group_rings(tin: TIN) -> list[list[Int32Array]]:
     """Group the boundary rings: an outer ring followed by its holes."""
     Polygon = _optional.load("shapely").Polygon
     outer = [ring for ring in tin.rings if _measure_signed_area(tin.points[ring]) > 0]
@@ -299,15 +296,13 @@ def group_rings(tin: TIN) -> list[list[NDArray[np.int32]]]:
     return groups[::-1]
 
 
-def _measure_signed_area(ring: NDArray[np.float64]) -> float:
+def _measure_signed_area(ring: Float64Array) -> float:
     """Area in the plane, positive counter-clockwise."""
     x, y = (ring[:, :2] - ring[0, :2]).T
     return float(np.dot(x, np.roll(y, -1)) - np.dot(np.roll(x, -1), y)) / 2
 
 
-def _close_ring(
-    ring: NDArray[np.int32], xyz: NDArray[np.float64], counter_clockwise: bool
-) -> NDArray[np.int32]:
+def _close_ring(ring: Int32Array, xyz: Float64Array, counter_clockwise: bool) -> Int32Array:
     closed = np.append(ring, ring[0])
     return closed if (_measure_signed_area(xyz[ring]) > 0) == counter_clockwise else closed[::-1]
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ..arrays import AnyArray
     from ..terrain import Raster
     from .request import Request
 
@@ -41,7 +40,7 @@ def count_cells(raster: Raster) -> str:
     return f"{rows * columns:,} cells"
 
 
-def find_cells(raster: Raster, places: NDArray[Any]) -> list[int]:
+def find_cells(raster: Raster, places: AnyArray) -> list[int]:
     """Return the cells whose centres are at places, row by row, -1 where there is none."""
     from ..terrain.results.gridded import locate_centers
 

@@ -12,8 +12,7 @@ from ...preview.tints import interpolate_tints
 from .frame import SIZE
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ....arrays import Float64Array, UInt8Array
     from ....crs import CRS
 
 __all__ = ["Canvas", "draw_cells"]
@@ -33,13 +32,13 @@ _FEW_POINTS = 5_000
 class Canvas:
     """A picture with a place on the map."""
 
-    pixels: NDArray[np.uint8]
+    pixels: UInt8Array
     west: float
     north: float
-    scale: NDArray[np.float64]
+    scale: Float64Array
 
     @classmethod
-    def around(cls, xy: NDArray[np.float64], crs: CRS | None) -> Canvas:
+    def around(cls, xy: Float64Array, crs: CRS | None) -> Canvas:
         """Return a clear canvas that holds some places, as square on the ground as they are.
 
         Parameters
@@ -60,13 +59,13 @@ class Canvas:
         scale = np.array([wide / pixel, 1.0 / pixel])
         return cls(np.zeros((height, width, 4), np.uint8), float(low[0]), float(high[1]), scale)
 
-    def _place(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _place(self, xy: Float64Array) -> Float64Array:
         """Return columns and rows of places."""
         height, width = self.pixels.shape[:2]
         shift = np.column_stack([xy[:, 0] - self.west, self.north - xy[:, 1]])
         return np.clip(np.nan_to_num(shift * self.scale) + _MARGIN, 0, (width - 1, height - 1))
 
-    def draw_points(self, xy: NDArray[np.float64], values: NDArray[np.float64] | None) -> None:
+    def draw_points(self, xy: Float64Array, values: Float64Array | None) -> None:
         """Draw places as dots, tinted from the lowest value to the highest, which is on top."""
         colors = np.tile(np.array(_LINE, np.uint8), (len(xy), 1))
         if values is not None and len(values):
@@ -82,7 +81,7 @@ class Canvas:
                 self.pixels[(*at, 3)] = 255
 
     def draw_segments(
-        self, start: NDArray[np.float64], stop: NDArray[np.float64], color: tuple[int, ...] = _LINE
+        self, start: Float64Array, stop: Float64Array, color: tuple[int, ...] = _LINE
     ) -> None:
         """Draw straight segments, a pixel wide."""
         a, b = self._place(start), self._place(stop)
@@ -96,7 +95,7 @@ class Canvas:
         self.pixels[rows, columns] = (*color, 255)
 
 
-def draw_cells(values: NDArray[np.float64]) -> NDArray[np.uint8]:
+def draw_cells(values: Float64Array) -> UInt8Array:
     """Draw the cells of a band, row 0 north, from the darkest tint to the lightest; NaN is clear.
 
     Parameters
@@ -112,7 +111,7 @@ def draw_cells(values: NDArray[np.float64]) -> NDArray[np.uint8]:
     return picture.repeat(times, axis=0).repeat(times, axis=1)
 
 
-def _find_tints(values: NDArray[np.float64]) -> NDArray[np.uint8]:
+def _find_tints(values: Float64Array) -> UInt8Array:
     """Return the hypsometric tint of each value."""
     ramp = interpolate_tints()
     values = np.nan_to_num(values)

@@ -14,8 +14,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from numpy.typing import NDArray
-
+    from ....arrays import Float64Array, UInt8Array
     from ....crs import CRS, Unit
 
 __all__ = [
@@ -50,7 +49,7 @@ def write_card(
     title: str,
     rows: Iterable[tuple[str, str]],
     *,
-    picture: NDArray[np.uint8] | None = None,
+    picture: UInt8Array | None = None,
     alt: str = "",
     below: str = "",
 ) -> str:
@@ -106,7 +105,7 @@ def _write_words(words: str) -> str:
     return escape(words if len(words) <= _LONGEST else f"{words[:_LONGEST]}...")
 
 
-def _write_image(picture: NDArray[np.uint8], alt: str) -> str:
+def _write_image(picture: UInt8Array, alt: str) -> str:
     height, width, _ = picture.shape
     data = encode_png(picture)
     if len(data) > _MOST_BYTES:
@@ -141,14 +140,14 @@ def name_units(crs: CRS | None, elevation_unit: Unit | None) -> str:
     return across if across == up else f"{across}, elevations {up}"
 
 
-def describe_bounds(points: NDArray[np.float64]) -> list[tuple[str, str]]:
+def describe_bounds(points: Float64Array) -> list[tuple[str, str]]:
     """Return rows with the range of each coordinate; none of coordinates that are not known."""
     names = ("Easting", "Northing", "Elevation")
     known = {name: values[~np.isnan(values)] for name, values in zip(names, points.T, strict=False)}
     return [(name, write_range(values)) for name, values in known.items() if len(values)]
 
 
-def write_range(values: NDArray[np.float64]) -> str:
+def write_range(values: Float64Array) -> str:
     """Write the least and the greatest of some numbers."""
     low, high = float(values.min()), float(values.max())
     return f"{_write_number(low, high - low)} to {_write_number(high, high - low)}"
@@ -165,7 +164,7 @@ def _write_number(value: float, span: float) -> str:
 # ------------------------------------------------------------------------------------- PNG
 
 
-def encode_png(picture: NDArray[np.uint8]) -> bytes:
+def encode_png(picture: UInt8Array) -> bytes:
     """Return a PNG of an (height, width, 4) picture: each byte as its step from the pixel before.
 
     Parameters

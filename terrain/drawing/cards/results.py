@@ -25,8 +25,7 @@ from .survey import list_notes
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
+    from ....arrays import AnyArray, Float64Array, UInt8Array
     from ...results import Features, Raster, Table
     from ...results.columns import Units
 
@@ -68,7 +67,7 @@ def _with_unit(name: str, units: Units) -> str:
     return f"{name} ({unit})" if unit else name
 
 
-def _draw_features(features: Features) -> NDArray[np.uint8]:
+def _draw_features(features: Features) -> UInt8Array:
     xy = features.coordinates[:, :2]
     canvas = Canvas.around(xy, features.crs)
     if features.kind == "points":
@@ -97,7 +96,7 @@ def make_raster_card(raster: Raster) -> str:
     return write_card(title, rows, picture=picture, alt=f"Picture of {name}, north up")
 
 
-def _sample(band: NDArray[Any], nodata: float) -> NDArray[np.float64]:
+def _sample(band: AnyArray, nodata: float) -> Float64Array:
     """Return every n-th row and column, so that they fit a card; NaN where there is nothing."""
     step = max(1, -(-band.shape[0] // SIZE[1]), -(-band.shape[1] // SIZE[0]))
     values = np.asarray(band[::step, ::step], np.float64)

@@ -13,8 +13,7 @@ from .frame import describe_bounds, name_crs, name_units, write_card
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from numpy.typing import NDArray
-
+    from ....arrays import Float64Array, UInt8Array
     from ....tin import Report, Survey
 
 __all__ = ["list_notes", "make_report_card", "make_survey_card"]
@@ -57,7 +56,7 @@ def _describe_survey(survey: Survey) -> Iterator[tuple[str, str]]:
     yield from list_notes(survey.notes)
 
 
-def _draw(survey: Survey) -> NDArray[np.uint8]:
+def _draw(survey: Survey) -> UInt8Array:
     given = [getattr(line, "coords", line) for line in survey.breaklines]
     given += [getattr(water, "ring", water) for water in survey.water]
     lines = [line for line in map(_take_plane, given) if line is not None]
@@ -68,7 +67,7 @@ def _draw(survey: Survey) -> NDArray[np.uint8]:
     return canvas.pixels
 
 
-def _take_plane(line: object) -> NDArray[np.float64] | None:
+def _take_plane(line: object) -> Float64Array | None:
     """Return eastings and northings of a line; None of what is no plain array of places."""
     try:
         table = np.array(line, np.float64)

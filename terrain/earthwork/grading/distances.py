@@ -9,7 +9,7 @@ import numpy as np
 from ....tin import TIN, triangulate
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ....arrays import Float64Array
 
 __all__ = ["measure_distances"]
 
@@ -69,7 +69,7 @@ def _list_rings(polygon: Any) -> list[Any]:
     return list(shapely.get_rings(shapely.orient_polygons(polygon)))
 
 
-def _measure(pad: Any, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+def _measure(pad: Any, xy: Float64Array) -> Float64Array:
     import shapely
 
     return np.column_stack([xy, shapely.distance(pad, shapely.points(xy))])

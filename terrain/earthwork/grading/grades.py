@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from ...._progress import Progress
 from ....crs import scale_elevations
 from ....errors import LinesError, OptionError, PointsError
@@ -21,8 +19,9 @@ from .slopes import find_slope
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from ....arrays import Float64Array
     from ....tin import TIN
 
 __all__ = ["grade"]
@@ -148,7 +147,7 @@ def _read_pad(pad: Any, elevation: Any) -> tuple[Any, float]:
     return shapely.orient_polygons(polygon), float(elevation)
 
 
-def _find_level(ring: NDArray[np.float64]) -> float:
+def _find_level(ring: Float64Array) -> float:
     if ring.shape[1] < 3:
         raise OptionError("elevation", None, "a number, where the pad's ring has no elevations")
     low, high = float(ring[:, 2].min()), float(ring[:, 2].max())

@@ -11,8 +11,7 @@ from ....tin.constraints.clipping import in_rings
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import NDArray
-
+    from ....arrays import AnyArray, Float64Array
     from ....tin import TIN
 
 __all__ = ["arrange_rings", "build_area", "fills_hull", "find_area"]
@@ -26,7 +25,7 @@ def find_area(tin: TIN) -> Any:
     return build_area(tin.points, tin.boundary)
 
 
-def build_area(points: NDArray[np.float64], rings: Sequence[NDArray[Any]]) -> Any:
+def build_area(points: Float64Array, rings: Sequence[AnyArray]) -> Any:
     """Return the area within rings of vertices, which may touch themselves and one another."""
     import shapely
 
@@ -71,5 +70,5 @@ def arrange_rings(
     return {"boundary": rings[0], "holes": [rings[1]] if rings[1] else []}
 
 
-def _lift(ring: Any, elevations: Mapping[tuple[float, float], float]) -> NDArray[np.float64]:
+def _lift(ring: Any, elevations: Mapping[tuple[float, float], float]) -> Float64Array:
     return np.array([[x, y, elevations[x, y]] for x, y in ring.coords])

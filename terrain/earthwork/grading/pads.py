@@ -10,8 +10,7 @@ from ....tin import Breakline, triangulate
 from .seams import measure_tolerance
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ....arrays import Float64Array
     from ....tin import TIN
     from .slopes import Slope
 
@@ -41,9 +40,7 @@ def build_patch(tin: TIN, pad: Any, level: float, slopes: list[Slope]) -> TIN:
     )
 
 
-def _insert(
-    pad: Any, level: float, rims: list[NDArray[np.float64]], tolerance: float
-) -> NDArray[np.float64]:
+def _insert(pad: Any, level: float, rims: list[Float64Array], tolerance: float) -> Float64Array:
     """Return the pad's edge with the ends of daylight lines, which are moved onto it."""
     import shapely
 
@@ -65,8 +62,8 @@ def _insert(
 
 
 def _trace_outline(
-    edge: NDArray[np.float64], rims: list[NDArray[np.float64]], slopes: list[Slope]
-) -> list[NDArray[np.float64]]:
+    edge: Float64Array, rims: list[Float64Array], slopes: list[Slope]
+) -> list[Float64Array]:
     """Return the rings around pad and slopes."""
     import shapely
 
@@ -87,8 +84,8 @@ def _trace_outline(
 
 
 def _lift(
-    ring: NDArray[np.float64], known: dict[tuple[float, float], float], slopes: list[Slope]
-) -> NDArray[np.float64]:
+    ring: Float64Array, known: dict[tuple[float, float], float], slopes: list[Slope]
+) -> Float64Array:
     """Return a ring with elevations: where lines cross but for rounding, those of the slope."""
     z = [known.get((x, y), np.nan) for x, y in ring.tolist()]
     for slope in slopes:
@@ -99,9 +96,7 @@ def _lift(
     return np.column_stack([ring, z])
 
 
-def _snap(
-    line: NDArray[np.float64], places: NDArray[np.float64], tolerance: float
-) -> NDArray[np.float64]:
+def _snap(line: Float64Array, places: Float64Array, tolerance: float) -> Float64Array:
     """Move the ends of a line onto places that are there."""
     line = line.copy()
     for end in (0, -1):

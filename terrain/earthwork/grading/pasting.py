@@ -22,9 +22,8 @@ from .seams import Seam, find_sides, measure_tolerance
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from numpy.typing import NDArray
-
     from ...._progress import Tell
+    from ....arrays import AnyArray, BoolArray, Float64Array
     from ....tin import TIN
     from ...georeference import Agreement
 
@@ -153,7 +152,7 @@ def join_surfaces(
     return made.replace(report=replace(made.report, notes=notes))
 
 
-def _join_attributes(base: TIN, patch: TIN, is_kept: NDArray[np.bool_]) -> dict[str, NDArray[Any]]:
+def _join_attributes(base: TIN, patch: TIN, is_kept: BoolArray) -> dict[str, AnyArray]:
     """Return the columns of the vertices of the base that stay, and behind them of the patch."""
     kept = {name: column[is_kept] for name, column in base.attributes.items()}
     return join_columns([kept, patch.attributes], [int(is_kept.sum()), len(patch.points)])
@@ -191,7 +190,7 @@ def _join_rings(area: Any, cut: _Base, seam: Seam) -> dict[str, Any]:
     return arrange_rings(joined, {(x, y): z for path in paths for x, y, z in path.tolist()})
 
 
-def _split(ring: NDArray[np.float64]) -> NDArray[np.float64]:
+def _split(ring: Float64Array) -> Float64Array:
     """Return the segments of a ring, (k, 2, 3)."""
     return np.stack([ring[:-1], ring[1:]], axis=1)
 
@@ -226,16 +225,14 @@ def _describe_gap(base: TIN, area: Any, agreed: Agreement, cut: Seam) -> list[st
 class _Base:
     """What stays of the base: vertices, lines, and edges that the seam cuts."""
 
-    def __init__(
-        self, base: TIN, points: NDArray[np.float64], seam: Seam, progress: Tell | None
-    ) -> None:
+    def __init__(self, base: TIN, points: Float64Array, seam: Seam, progress: Tell | None) -> None:
         self._tin, self._points, self._seam = base, points, seam
         xy = np.ascontiguousarray(points[:, :2])
         self.is_kept = in_rings(xy, [ring[:, :2] for ring in seam.rings]) < 0
         self.is_kept[seam.find_near(xy)] = False
         self._pieces = self._cut_edges(progress)
 
-    def _cut_edges(self, progress: Tell | None) -> dict[int, list[NDArray[np.float64]]]:
+    def _cut_edges(self, progress: Tell | None) -> dict[int, list[Float64Array]]:
         """Return what is left of the edges at the seam, by key."""
         edges = self._tin.edges
         ends = self._points[edges]
@@ -247,7 +244,7 @@ class _Base:
         keys = edge_keys(edges[at_seam], len(self._points)).tolist()
         return dict(zip(keys, pieces, strict=True))
 
-    def _find_parts(self, a: int, b: int) -> list[NDArray[np.float64]]:
+    def _find_parts(self, a: int, b: int) -> list[Float64Array]:
         """Return the parts of an edge that stay, in the direction from a to b."""
         key = int(edge_keys(np.array([[a, b]]), len(self._points))[0])
         if key not in self._pieces:
@@ -269,9 +266,9 @@ class _Base:
             for run in self._find_runs(chain.tolist()):
                 yield Breakline(np.array(run), kind=shape, name=name)
 
-    def _find_runs(self, chain: list[int]) -> list[list[NDArray[np.float64]]]:
+    def _find_runs(self, chain: list[int]) -> list[list[Float64Array]]:
         """Return what stays of a chain, joined where one part begins at the end of another."""
-        runs: list[list[NDArray[np.float64]]] = []
+        runs: list[list[Float64Array]] = []
         for a, b in pairwise(chain):
             for start, end in self._find_parts(a, b):
                 if runs and (runs[-1][-1][:2] == start[:2]).all():
@@ -285,7 +282,7 @@ class _Base:
         rows = self._points[np.concatenate(self._tin.boundary)]
         return arrange_rings(area, {(x, y): z for x, y, z in rows.tolist()})
 
-    def list_boundary(self) -> Iterator[NDArray[np.float64]]:
+    def list_boundary(self) -> Iterator[Float64Array]:
         """Yield the parts of the boundary that the patch does not cover, (2, 3) each."""
         for ring in self._tin.boundary:
             for a, b in pairwise([*ring.tolist(), int(ring[0])]):

@@ -14,9 +14,8 @@ from .outlines import build_area
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
     from ...._progress import Tell
+    from ....arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ....tin import TIN
 
 __all__ = ["Seam", "find_sides", "measure_tolerance"]
@@ -27,13 +26,13 @@ _BATCH = 256
 """Segments that are cut between two words of how far it is."""
 
 
-def measure_tolerance(*points: NDArray[np.float64]) -> float:
+def measure_tolerance(*points: Float64Array) -> float:
     """Return the distance within which places are one."""
     largest = max(float(np.abs(one[:, :2]).max()) for one in points)
     return _ROUNDINGS * float(np.spacing(largest))
 
 
-def find_sides(triangles: NDArray[np.int32], n_vertices: int) -> NDArray[np.int64]:
+def find_sides(triangles: Int32Array, n_vertices: int) -> Int64Array:
     """Return the keys of the edges opposite each corner, (m, 3)."""
     corners = triangles[:, [1, 2, 2, 0, 0, 1]].reshape(-1, 2)
     return edge_keys(corners, n_vertices).reshape(-1, 3)
@@ -58,7 +57,7 @@ class Seam:
         Area that the roundings of the boundary can take away or add.
     """
 
-    def __init__(self, patch: TIN, points: NDArray[np.float64], tolerance: float) -> None:
+    def __init__(self, patch: TIN, points: Float64Array, tolerance: float) -> None:
         import shapely
 
         self._patch, self._points, self._tolerance = patch, points, tolerance
@@ -70,7 +69,7 @@ class Seam:
         self.area = build_area(points, patch.boundary)
         shapely.prepare(self.area)
         self.rounding = tolerance * float(self.area.length)
-        self._cuts: dict[int, list[tuple[float, NDArray[np.float64]]]] = {}
+        self._cuts: dict[int, list[tuple[float, Float64Array]]] = {}
 
     def touches(self, area: Any) -> bool:
         """Tell whether it meets the outline of an area but for rounding."""
@@ -79,17 +78,15 @@ class Seam:
         lines = shapely.multilinestrings([shapely.linestrings(ring[:, :2]) for ring in self.rings])
         return bool(shapely.dwithin(shapely.boundary(area), lines, self._tolerance))
 
-    def lie_near(self, area: Any, places: NDArray[np.float64]) -> NDArray[np.bool_]:
+    def lie_near(self, area: Any, places: Float64Array) -> BoolArray:
         """Tell which places are in an area but for rounding."""
         import shapely
 
         shapely.prepare(area)
-        is_near: NDArray[np.bool_] = shapely.dwithin(
-            area, shapely.points(places[:, :2]), self._tolerance
-        )
+        is_near: BoolArray = shapely.dwithin(area, shapely.points(places[:, :2]), self._tolerance)
         return is_near
 
-    def find_near(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
+    def find_near(self, xy: Float64Array) -> Int64Array:
         """Return which places lie on the seam but for rounding."""
         import shapely
 
@@ -97,7 +94,7 @@ class Seam:
         found = self._tree.query(places, predicate="dwithin", distance=self._tolerance)
         return np.unique(found[0])
 
-    def find_crossing(self, ends: NDArray[np.float64]) -> NDArray[np.int64]:
+    def find_crossing(self, ends: Float64Array) -> Int64Array:
         """Return which segments, (k, 2, 2), cross or touch the seam."""
         import shapely
 
@@ -108,8 +105,8 @@ class Seam:
         return np.unique(near[self._tree.query(segments, predicate="intersects")[0]])
 
     def cut(
-        self, ends: NDArray[np.float64], is_kept: NDArray[np.bool_], progress: Tell | None = None
-    ) -> list[list[NDArray[np.float64]]]:
+        self, ends: Float64Array, is_kept: BoolArray, progress: Tell | None = None
+    ) -> list[list[Float64Array]]:
         """Return the parts of segments, (k, 2, 3), outside; their new ends are on the seam."""
         import shapely
 
@@ -127,12 +124,12 @@ class Seam:
                 done(len(found) / len(ends))
         return found
 
-    def _is_off(self, part: NDArray[np.float64]) -> bool:
+    def _is_off(self, part: Float64Array) -> bool:
         """Whether a part is longer than rounding, and does not run along the seam."""
         is_long = float(np.hypot(*(part[1] - part[0]))) > self._tolerance
         return is_long and not len(self.find_near(part.mean(axis=0)[None]))
 
-    def _place(self, xy: NDArray[np.float64], fixed: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _place(self, xy: Float64Array, fixed: Float64Array) -> Float64Array:
         """Return the vertex that stays at a place, or else the place on the seam."""
         for vertex in fixed:
             if (vertex[:2] == xy).all():

@@ -14,7 +14,7 @@ from .distances import measure_distances
 from .seams import measure_tolerance
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ....arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["Slope", "find_slope"]
 
@@ -38,10 +38,10 @@ class Slope(NamedTuple):
     """
 
     surface: TIN
-    is_made: NDArray[np.bool_]
-    elevations: NDArray[np.float64]
+    is_made: BoolArray
+    elevations: Float64Array
 
-    def find_rim(self, pad: Any, tolerance: float) -> list[NDArray[np.float64]]:
+    def find_rim(self, pad: Any, tolerance: float) -> list[Float64Array]:
         """Return the daylight lines, (k, 3) each."""
         start, end = _find_outline(self.surface, self.is_made)
         xy = self.surface.points[:, :2]
@@ -54,11 +54,11 @@ class Slope(NamedTuple):
         triangle = int(self.surface.locate([[place.x, place.y]])[0])
         return triangle >= 0 and bool(self.is_made[triangle])
 
-    def interpolate(self, place: NDArray[np.float64]) -> float:
+    def interpolate(self, place: Float64Array) -> float:
         """Return the elevation of the slope nearest to a place."""
         return float(self.elevations[self.surface.closest_vertex(place[None])[0]])
 
-    def find_breaks(self) -> list[NDArray[np.float64]]:
+    def find_breaks(self) -> list[Float64Array]:
         """Return the lines along which the slope breaks, (k, 3) each."""
         import shapely
 
@@ -139,7 +139,7 @@ def _take_near(tin: TIN, skirt: TIN) -> TIN:
     return TIN.from_triangles(tin.points[used], corners.reshape(-1, 3))
 
 
-def _find_made(found: TIN, pad: Any, sign: float, tolerance: float) -> NDArray[np.bool_]:
+def _find_made(found: TIN, pad: Any, sign: float, tolerance: float) -> BoolArray:
     """Tell which triangles of a difference are cut (or filled) and hang together with the pad."""
     mesh = found.triangulation
     classes = classify(mesh)
@@ -151,12 +151,10 @@ def _find_made(found: TIN, pad: Any, sign: float, tolerance: float) -> NDArray[n
     return np.isin(part, part[at_pad])
 
 
-def _measure_elevations(
-    found: TIN, distances: TIN, level: float, rate: float
-) -> NDArray[np.float64]:
+def _measure_elevations(found: TIN, distances: TIN, level: float, rate: float) -> Float64Array:
     """Return the elevations of a slope at the vertices of its difference to the ground."""
     xy = found.points[:, :2]
-    away: NDArray[np.float64] = distances.interpolate(xy)
+    away: Float64Array = distances.interpolate(xy)
     lost = np.isnan(away)  # by rounding, at an edge
     if lost.any():
         away[lost] = distances.interpolate(xy[lost], method="linear", extrapolate="nearest")
@@ -164,8 +162,8 @@ def _measure_elevations(
 
 
 def _find_outline(
-    surface: TIN, chosen: NDArray[np.bool_], *, only_outer: bool = False
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    surface: TIN, chosen: BoolArray, *, only_outer: bool = False
+) -> tuple[Int64Array, Int64Array]:
     """Return the edges around some triangles; only those where the surface ends."""
     mesh = surface.triangulation
     is_outer = mesh.neighbors < 0
@@ -174,19 +172,17 @@ def _find_outline(
     return topology.ends(mesh.triangles, triangle, corner)
 
 
-def _lie_on(area: Any, xy: NDArray[np.float64], tolerance: float) -> NDArray[np.bool_]:
+def _lie_on(area: Any, xy: Float64Array, tolerance: float) -> BoolArray:
     """Tell which places are on the outline of an area."""
     import shapely
 
     outline = shapely.boundary(area)
     shapely.prepare(outline)
-    is_near: NDArray[np.bool_] = shapely.dwithin(outline, shapely.points(xy), tolerance)
+    is_near: BoolArray = shapely.dwithin(outline, shapely.points(xy), tolerance)
     return is_near
 
 
-def _measure_gradients(
-    points: NDArray[np.float64], triangles: NDArray[np.int32]
-) -> NDArray[np.float64]:
+def _measure_gradients(points: Float64Array, triangles: Int32Array) -> Float64Array:
     a, b, c = (points[triangles[:, k]] for k in range(3))
     east, north, up = np.cross(b - a, c - a).T
     with np.errstate(divide="ignore", invalid="ignore"):

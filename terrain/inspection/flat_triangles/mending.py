@@ -16,10 +16,8 @@ from .skeleton import find_shares, trace_skeleton
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-    from typing import Any
 
-    from numpy.typing import NDArray
-
+    from ....arrays import AnyArray, Float64Array
     from ....tin import TIN
     from .regions import Regions
     from .skeleton import Skeleton
@@ -108,7 +106,7 @@ def mend_flats(tin: TIN, *, progress: Callable[[float], None] | None = None) -> 
     return annotated
 
 
-def _lift(regions: Regions, skeleton: Skeleton) -> NDArray[np.float64]:
+def _lift(regions: Regions, skeleton: Skeleton) -> Float64Array:
     """Return the points of the skeletons that lie strictly between two elevations."""
     shares = find_shares(skeleton)
     of_node = skeleton.regions
@@ -122,7 +120,7 @@ def _lift(regions: Regions, skeleton: Skeleton) -> NDArray[np.float64]:
     is_between = (shares > 0.0) & (shares < 1.0) & (z != low)
     is_between &= z != low + regions.rises[of_node]
     is_between &= skeleton.radii > NARROWEST * skeleton.widths
-    found: NDArray[np.float64] = np.column_stack([skeleton.xy, z])[is_between]
+    found: Float64Array = np.column_stack([skeleton.xy, z])[is_between]
     return found
 
 
@@ -140,9 +138,7 @@ def _annotate(mended: TIN, regions: Regions, count: int) -> TIN:
     return mended.replace(row_attributes=columns, report=report)
 
 
-def _mark_added(
-    columns: Mapping[str, NDArray[Any]], n_rows: int, count: int
-) -> dict[str, NDArray[Any]]:
+def _mark_added(columns: Mapping[str, AnyArray], n_rows: int, count: int) -> dict[str, AnyArray]:
     """Return columns with one that tells which rows were added, now and earlier."""
     name = ORIGIN
     while name in columns and not np.isin(columns[name], [_GIVEN, _ADDED]).all():

@@ -10,8 +10,7 @@ from ....tin.topology import NO_NEIGHBOR, edges_at
 from ...relief.dissolving import number_components
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ....arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ....tin import TIN
 
 __all__ = ["CAPS", "KINDS", "NARROWEST", "Border", "Regions", "find_regions"]
@@ -45,13 +44,13 @@ class Border(NamedTuple):
         Its distance from the line through the edge, in CRS units.
     """
 
-    triangles: NDArray[np.int64]
-    corners: NDArray[np.int64]
-    regions: NDArray[np.int64]
-    is_contour: NDArray[np.bool_]
-    is_exit: NDArray[np.bool_]
-    rises: NDArray[np.float64]
-    runs: NDArray[np.float64]
+    triangles: Int64Array
+    corners: Int64Array
+    regions: Int64Array
+    is_contour: BoolArray
+    is_exit: BoolArray
+    rises: Float64Array
+    runs: Float64Array
 
     def take(self, part: slice) -> Border:
         """Return some of the edges."""
@@ -86,12 +85,12 @@ class Regions(NamedTuple):
     border : Border
     """
 
-    region_of: NDArray[np.int64]
+    region_of: Int64Array
     size: int
-    kinds: NDArray[np.int64]
-    elevations: NDArray[np.float64]
-    rises: NDArray[np.float64]
-    slopes: NDArray[np.float64]
+    kinds: Int64Array
+    elevations: Float64Array
+    rises: Float64Array
+    slopes: Float64Array
     border: Border
 
 
@@ -122,15 +121,15 @@ def find_regions(tin: TIN) -> Regions:
     return Regions(region_of, count, kinds, elevations, rises, slopes, border)
 
 
-def _find_levels(tin: TIN) -> NDArray[np.float64]:
+def _find_levels(tin: TIN) -> Float64Array:
     """Return the elevations of contours: of constrained edges that are level."""
     z = tin.points[edges_at(tin.triangles, tin.constrained), 2]
     return np.unique(z[z[:, 0] == z[:, 1], 0])
 
 
 def _limit_rises(
-    rises: NDArray[np.float64], elevations: NDArray[np.float64], levels: NDArray[np.float64]
-) -> NDArray[np.float64]:
+    rises: Float64Array, elevations: Float64Array, levels: Float64Array
+) -> Float64Array:
     """Limit the rises of caps to the next level, where there is none to the least distance of two.
 
     The ground outside a cap may lead across several levels at once, where contours are missing.
@@ -143,7 +142,7 @@ def _limit_rises(
     return np.sign(rises) * np.minimum(np.abs(rises), gaps)
 
 
-def _find_flat(tin: TIN) -> NDArray[np.bool_]:
+def _find_flat(tin: TIN) -> BoolArray:
     z = tin.points[tin.triangles, 2]
     is_flat = (z[:, 0] == z[:, 1]) & (z[:, 0] == z[:, 2])
     is_shore = np.zeros(len(tin.points), np.bool_)
@@ -153,7 +152,7 @@ def _find_flat(tin: TIN) -> NDArray[np.bool_]:
     return np.asarray(is_flat & ~is_shore[tin.triangles].all(axis=1))
 
 
-def _number_regions(tin: TIN, is_flat: NDArray[np.bool_]) -> tuple[NDArray[np.int64], int]:
+def _number_regions(tin: TIN, is_flat: BoolArray) -> tuple[Int64Array, int]:
     """Return the region of each triangle, -1 for none, and how many there are."""
     is_joined = (tin.neighbors != NO_NEIGHBOR) & ~tin.constrained
     is_joined &= is_flat[:, None] & is_flat[tin.neighbors]
@@ -164,7 +163,7 @@ def _number_regions(tin: TIN, is_flat: NDArray[np.bool_]) -> tuple[NDArray[np.in
     return region_of, len(found)
 
 
-def _find_border(tin: TIN, region_of: NDArray[np.int64]) -> Border:
+def _find_border(tin: TIN, region_of: Int64Array) -> Border:
     """Return the border edges, region by region."""
     beyond = np.where(tin.neighbors == NO_NEIGHBOR, -1, region_of[tin.neighbors])
     is_border = (region_of[:, None] >= 0) & ((beyond < 0) | tin.constrained)
@@ -185,12 +184,10 @@ def _find_border(tin: TIN, region_of: NDArray[np.int64]) -> Border:
     return Border(triangles, corners, region_of[triangles], is_line, is_exit, rise, run)
 
 
-def _find_apexes(
-    tin: TIN, triangles: NDArray[np.int64], across: NDArray[np.int32]
-) -> NDArray[np.int64]:
+def _find_apexes(tin: TIN, triangles: Int64Array, across: Int32Array) -> Int64Array:
     """Return the corner of each triangle beyond an edge that is not on the edge."""
     back = tin.neighbors[across] == triangles[:, None]
-    apexes: NDArray[np.int64] = tin.triangles[across, back.argmax(axis=1)].astype(np.int64)
+    apexes: Int64Array = tin.triangles[across, back.argmax(axis=1)].astype(np.int64)
     return apexes
 
 

@@ -10,8 +10,7 @@ import numpy as np
 from .regions import CAPS
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ....arrays import BoolArray, Float64Array, Int64Array
     from ....tin import TIN
     from .regions import Regions
 
@@ -39,12 +38,12 @@ class Skeleton(NamedTuple):
         Points in the same triangles, and how far they are.
     """
 
-    xy: NDArray[np.float64]
-    regions: NDArray[np.int64]
-    radii: NDArray[np.float64]
-    widths: NDArray[np.float64]
-    exits: NDArray[np.float64]
-    tips: NDArray[np.float64]
+    xy: Float64Array
+    regions: Int64Array
+    radii: Float64Array
+    widths: Float64Array
+    exits: Float64Array
+    tips: Float64Array
     arcs: list[list[tuple[int, float]]]
 
 
@@ -78,8 +77,8 @@ def trace_skeleton(tin: TIN, regions: Regions) -> Skeleton:
 
 
 def _list_edges(
-    tin: TIN, regions: Regions, is_clear: NDArray[np.bool_]
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]:
+    tin: TIN, regions: Regions, is_clear: BoolArray
+) -> tuple[Int64Array, Int64Array, BoolArray]:
     """Return the inner edges of regions, each once, and their exits: triangle, corner, which."""
     region_of = regions.region_of
     inner = (region_of[:, None] >= 0) & ~tin.constrained
@@ -98,9 +97,9 @@ def _list_edges(
 
 def _gather_nodes(
     tin: TIN,
-    triangles: NDArray[np.int64],
-    corners: NDArray[np.int64],
-    is_exit: NDArray[np.bool_],
+    triangles: Int64Array,
+    corners: Int64Array,
+    is_exit: BoolArray,
 ) -> dict[int, list[tuple[int, int]]]:
     """Return the points at each flat triangle, each with the vertex opposite."""
     nodes_of: dict[int, list[tuple[int, int]]] = {}
@@ -119,8 +118,8 @@ def _gather_nodes(
 
 
 def _measure_exits(
-    tin: TIN, triangles: NDArray[np.int64], corners: NDArray[np.int64], xy: NDArray[np.float64]
-) -> NDArray[np.float64]:
+    tin: TIN, triangles: Int64Array, corners: Int64Array, xy: Float64Array
+) -> Float64Array:
     across = tin.neighbors[triangles, corners]
     back = tin.neighbors[across] == triangles[:, None]
     apex = tin.points[tin.triangles[across, back.argmax(axis=1)], :2]
@@ -128,8 +127,8 @@ def _measure_exits(
 
 
 def _link(
-    tin: TIN, xy: NDArray[np.float64], nodes_of: dict[int, list[tuple[int, int]]]
-) -> tuple[NDArray[np.float64], list[list[tuple[int, float]]]]:
+    tin: TIN, xy: Float64Array, nodes_of: dict[int, list[tuple[int, int]]]
+) -> tuple[Float64Array, list[list[tuple[int, float]]]]:
     tips = np.zeros(len(xy))
     arcs: list[list[tuple[int, float]]] = [[] for _ in range(len(xy))]
     for nodes in nodes_of.values():
@@ -146,8 +145,8 @@ def _link(
 
 
 def _add_lonely(
-    tin: TIN, regions: Regions, xy: NDArray[np.float64], of_node: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], NDArray[np.int64], int]:
+    tin: TIN, regions: Regions, xy: Float64Array, of_node: Int64Array
+) -> tuple[Float64Array, Int64Array, int]:
     """Add the middle of each cap that is a single triangle, with no edge across it."""
     has_node = np.zeros(regions.size, np.bool_)
     has_node[of_node] = True
@@ -162,8 +161,8 @@ def _add_lonely(
 
 
 def _measure_radii(
-    tin: TIN, regions: Regions, xy: NDArray[np.float64], of_node: NDArray[np.int64]
-) -> NDArray[np.float64]:
+    tin: TIN, regions: Regions, xy: Float64Array, of_node: Int64Array
+) -> Float64Array:
     """Return the distance of each point from the lines, and the hull, around its own region."""
     import shapely
 
@@ -193,7 +192,7 @@ def _measure_radii(
 # ------------------------------------------------------------- shares along a skeleton
 
 
-def find_shares(skeleton: Skeleton) -> NDArray[np.float64]:
+def find_shares(skeleton: Skeleton) -> Float64Array:
     """Return how far each point lies from its region's line, 0, to the next contour, 1.
 
     1. Every point hangs by the shortest way on the exit that is nearest along the skeleton: the
@@ -218,7 +217,7 @@ def find_shares(skeleton: Skeleton) -> NDArray[np.float64]:
 
 def _hang(
     skeleton: Skeleton,
-) -> tuple[NDArray[np.float64], dict[int, tuple[int, float]], list[int]]:
+) -> tuple[Float64Array, dict[int, tuple[int, float]], list[int]]:
     """Return the distance from the next contour, the way there, and the points from there on.
 
     The shortest ways of Dijkstra, "A note on two problems in connexion with graphs" (1959).
@@ -244,10 +243,10 @@ def _hang(
 
 def _measure_tails(
     skeleton: Skeleton,
-    distance: NDArray[np.float64],
+    distance: Float64Array,
     parent: dict[int, tuple[int, float]],
     order: list[int],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Float64Array, Float64Array]:
     """Return the length of the longest branch at each point, and the share at its end."""
     tail = skeleton.tips.copy()
     low = np.zeros(len(tail))

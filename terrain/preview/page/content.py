@@ -19,8 +19,7 @@ from .packing import pack_counts, pack_rows, pack_triangles, sort_in_morton_orde
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import NDArray
-
+    from ....arrays import Float64Array, Int32Array, Int64Array, UInt8Array
     from ....policies import Tint
     from ....tin import TIN, Survey
     from ...georeference.units import Ground
@@ -56,7 +55,7 @@ _FILL = ((0.96, 0.0, 250.0), (0.70, 0.10, 250.0), (0.45, 0.13, 255.0))
 class Labels(NamedTuple):
     """Places of survey points, (k, 3), and what is written at them."""
 
-    points: NDArray[np.float64]
+    points: Float64Array
     texts: tuple[str, ...]
 
 
@@ -85,16 +84,16 @@ class Start(NamedTuple):
 class _Steps(NamedTuple):
     """Coordinates as whole numbers: from an origin, in steps across and up; how far they span."""
 
-    origin: NDArray[np.float64]
-    scale: NDArray[np.float64]
+    origin: Float64Array
+    scale: Float64Array
     across: float
     up: float
     spans: tuple[float, ...]
 
-    def round(self, points: NDArray[np.float64]) -> NDArray[np.int64]:
+    def round(self, points: Float64Array) -> Int64Array:
         """Return the (n, 3) whole steps of places."""
         size = np.array([self.across, self.across, self.up]) / self.scale
-        rounded: NDArray[np.int64] = np.rint((points - self.origin) / size).astype(np.int64)
+        rounded: Int64Array = np.rint((points - self.origin) / size).astype(np.int64)
         return rounded
 
 
@@ -104,7 +103,7 @@ def describe_page(
     *,
     title: str,
     start: Start,
-    changes: Mapping[str, NDArray[np.float64]],
+    changes: Mapping[str, Float64Array],
     labels: Labels | None,
     notes: Sequence[str],
     ortho: Ortho | None = None,
@@ -159,7 +158,7 @@ def describe_page(
     }
 
 
-def find_labels(points: NDArray[np.float64], survey: Survey) -> Labels | None:
+def find_labels(points: Float64Array, survey: Survey) -> Labels | None:
     """Return the points of a survey with their numbers, or their elevations if they have none.
 
     Parameters
@@ -234,7 +233,7 @@ def _describe_ortho(ortho: Ortho, steps: _Steps) -> dict[str, Any]:
 
 
 def _describe_surface(
-    name: str, tin: TIN, steps: _Steps, change: NDArray[np.float64] | None
+    name: str, tin: TIN, steps: _Steps, change: Float64Array | None
 ) -> dict[str, Any]:
     rows = steps.round(tin.points)
     order = sort_in_morton_order(rows[:, :2])
@@ -252,7 +251,7 @@ def _describe_surface(
     }
 
 
-def _describe_lines(tin: TIN, rows: NDArray[np.int64]) -> list[dict[str, Any]]:
+def _describe_lines(tin: TIN, rows: Int64Array) -> list[dict[str, Any]]:
     found = find_line_edges(tin)
     layers = []
     for rank, kind in enumerate(EDGE_KINDS):
@@ -269,7 +268,7 @@ def _describe_lines(tin: TIN, rows: NDArray[np.int64]) -> list[dict[str, Any]]:
     return layers
 
 
-def _join_pairs(pairs: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _join_pairs(pairs: Int32Array) -> tuple[Int64Array, Int64Array]:
     """Return polylines of edges that follow one another: vertices, and the count of each line."""
     begins = np.append(True, pairs[1:, 0] != pairs[:-1, 1])
     starts = np.flatnonzero(begins)
@@ -293,5 +292,5 @@ def _make_ramps() -> dict[str, list[str]]:
     }
 
 
-def _name_colors(colors: NDArray[np.uint8]) -> list[str]:
+def _name_colors(colors: UInt8Array) -> list[str]:
     return [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in colors.tolist()]

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from ....arrays import Int64Array, UInt64Array
 
 __all__ = ["pack_counts", "pack_rows", "pack_triangles", "sort_in_morton_order"]
 
@@ -27,7 +27,7 @@ _LEVEL = 6
 _BITS = 16
 
 
-def pack_rows(rows: NDArray[np.int64]) -> dict[str, Any]:
+def pack_rows(rows: Int64Array) -> dict[str, Any]:
     """Pack a (k, c) array, each row as its difference from the row before.
 
     Parameters
@@ -38,12 +38,12 @@ def pack_rows(rows: NDArray[np.int64]) -> dict[str, Any]:
     return _pack(np.diff(rows, axis=0, prepend=np.zeros_like(rows[:1])))
 
 
-def pack_counts(counts: NDArray[np.int64]) -> dict[str, Any]:
+def pack_counts(counts: Int64Array) -> dict[str, Any]:
     """Pack a (k,) array, each number by itself."""
     return _pack(counts[:, None])
 
 
-def pack_triangles(triangles: NDArray[np.int64]) -> dict[str, Any]:
+def pack_triangles(triangles: Int64Array) -> dict[str, Any]:
     """Pack (m, 3) triangles: their least corners ascend, and the others are told from these."""
     turned = _turn_to_least(triangles)
     ordered = turned[np.lexsort((turned[:, 2], turned[:, 1], turned[:, 0]))]
@@ -52,24 +52,24 @@ def pack_triangles(triangles: NDArray[np.int64]) -> dict[str, Any]:
     return _pack(differences)
 
 
-def sort_in_morton_order(xy: NDArray[np.int64]) -> NDArray[np.int64]:
+def sort_in_morton_order(xy: Int64Array) -> Int64Array:
     """Return the order of (n, 2) places along the Z-shaped curve of Morton."""
     low = xy.min(axis=0)
     span = max(int((xy.max(axis=0) - low).max()), 1)
     cells = ((xy - low) * ((1 << _BITS) - 1) // span).astype(np.uint64)
-    order: NDArray[np.int64] = np.argsort(
+    order: Int64Array = np.argsort(
         _spread_bits(cells[:, 0]) | (_spread_bits(cells[:, 1]) << np.uint64(1)), kind="stable"
     )
     return order
 
 
-def _turn_to_least(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+def _turn_to_least(triangles: Int64Array) -> Int64Array:
     """Return the triangles with their least corner first, turned the same way round."""
     first = triangles.argmin(axis=1)
     return np.take_along_axis(triangles, (first[:, None] + np.arange(3)) % 3, axis=1)
 
 
-def _spread_bits(values: NDArray[np.uint64]) -> NDArray[np.uint64]:
+def _spread_bits(values: UInt64Array) -> UInt64Array:
     """Put a zero before each of the lower 16 bits."""
     spread = values
     for shift, mask in ((8, 0x00FF00FF), (4, 0x0F0F0F0F), (2, 0x33333333), (1, 0x55555555)):
@@ -77,7 +77,7 @@ def _spread_bits(values: NDArray[np.uint64]) -> NDArray[np.uint64]:
     return spread
 
 
-def _pack(differences: NDArray[np.int64]) -> dict[str, Any]:
+def _pack(differences: Int64Array) -> dict[str, Any]:
     rows, columns = differences.shape
     flat = differences.ravel()
     zigzag = ((flat << 1) ^ (flat >> 63)).astype(np.uint32)

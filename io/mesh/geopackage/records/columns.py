@@ -12,7 +12,7 @@ from .requirements import require
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping
 
-    from numpy.typing import NDArray
+    from .....arrays import AnyArray
 
 __all__ = ["describe_layer_columns", "pack_columns", "unpack_columns"]
 
@@ -24,12 +24,12 @@ _PLAIN = (bool, int, float, str, type(None))
 _LARGEST = 2**63
 
 
-def pack_columns(columns: Mapping[str, NDArray[Any]], pack: Callable[[Any], Any]) -> list[Any]:
+def pack_columns(columns: Mapping[str, AnyArray], pack: Callable[[Any], Any]) -> list[Any]:
     """Return for each column its name, type and values; what is no plain value becomes text."""
     return [[name, *_pack_column(values, pack)] for name, values in columns.items()]
 
 
-def _pack_column(values: NDArray[Any], pack: Callable[[Any], Any]) -> list[Any]:
+def _pack_column(values: AnyArray, pack: Callable[[Any], Any]) -> list[Any]:
     kind = values.dtype.newbyteorder("<").str
     if kind[1] in "OUSVc" or not _TYPE.fullmatch(kind):
         plain = [one if isinstance(one, _PLAIN) else str(one) for one in values.tolist()]
@@ -41,9 +41,7 @@ def _pack_column(values: NDArray[Any], pack: Callable[[Any], Any]) -> list[Any]:
     return [kind, pack(values.view(wider) if values.itemsize == 8 else values.astype(wider))]
 
 
-def unpack_columns(
-    trees: Any, unpack: Callable[[Any], Any], n_rows: int
-) -> dict[str, NDArray[Any]]:
+def unpack_columns(trees: Any, unpack: Callable[[Any], Any], n_rows: int) -> dict[str, AnyArray]:
     """Return the columns of trees that :func:`pack_columns` made.
 
     Raises
@@ -54,7 +52,7 @@ def unpack_columns(
     return {name: _unpack_column(kind, unpack(tree), n_rows) for name, kind, tree in trees}
 
 
-def _unpack_column(kind: Any, values: Any, n_rows: int) -> NDArray[Any]:
+def _unpack_column(kind: Any, values: Any, n_rows: int) -> AnyArray:
     require(isinstance(kind, str) and _TYPE.fullmatch(kind) is not None, "type of a column")
     require(isinstance(values, np.ndarray | list) and len(values) <= n_rows, "a column")
     if isinstance(values, list):
@@ -65,12 +63,12 @@ def _unpack_column(kind: Any, values: Any, n_rows: int) -> NDArray[Any]:
     require(values.ndim == 1 and kind[1] not in "OU", "a column")
     dtype = np.dtype(kind)
     is_same_size = dtype.itemsize == values.itemsize
-    whole: NDArray[Any] = values.view(dtype) if is_same_size else values.astype(dtype)
+    whole: AnyArray = values.view(dtype) if is_same_size else values.astype(dtype)
     return whole
 
 
 def describe_layer_columns(
-    columns: Mapping[str, NDArray[Any]], taken: Collection[str]
+    columns: Mapping[str, AnyArray], taken: Collection[str]
 ) -> list[tuple[str, Iterable[Any]]]:
     """Return for each column its declaration in SQL, and its values as SQLite holds them.
 

@@ -18,8 +18,7 @@ from .....tin.report import Crossings, Edit, Overruled, Report, Simplification, 
 from .columns import pack_columns
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from .....arrays import AnyArray, Float64Array
     from .....tin.editing.version import Version
     from .....tin.surface import TIN
 
@@ -48,7 +47,7 @@ class Record(NamedTuple):
     """
 
     document: dict[str, Any]
-    arrays: dict[str, NDArray[Any]]
+    arrays: dict[str, AnyArray]
 
 
 def pack_tin(tin: TIN) -> Record:
@@ -95,7 +94,7 @@ def _pack_inputs(inputs: BuildInputs, version: Version, packer: _Packer) -> dict
     }
 
 
-def take_rows(version: Version, count: int) -> NDArray[np.float64]:
+def take_rows(version: Version, count: int) -> Float64Array:
     """Return the vertices of the first rows; for rows without a vertex, any."""
     return np.ascontiguousarray(version.triangulation.points[version.vertex_of[:count]])
 
@@ -104,7 +103,7 @@ class _Packer:
     """Makes trees of plain values, and gathers arrays."""
 
     def __init__(self) -> None:
-        self.arrays: dict[str, NDArray[Any]] = {}
+        self.arrays: dict[str, AnyArray] = {}
 
     def pack(self, value: Any) -> Any:
         """Return a value as a tree."""

@@ -30,8 +30,7 @@ from .requirements import (
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from numpy.typing import NDArray
-
+    from .....arrays import AnyArray, BoolArray, Float64Array, Int32Array
     from .....tin.building.inputs import BuildInputs
     from .packing import Record
 
@@ -43,9 +42,9 @@ _DEEPEST = 16
 
 def unpack_tin(
     record: Record,
-    points: NDArray[np.float64],
-    triangles: NDArray[np.int32],
-    constrained: NDArray[np.bool_],
+    points: Float64Array,
+    triangles: Int32Array,
+    constrained: BoolArray,
 ) -> TIN:
     """Return the TIN of a record and of its points, triangles and flags.
 
@@ -62,7 +61,7 @@ def unpack_tin(
         raise PointsError(f"The record does not fit the TIN ({error}).") from error
 
 
-def _unpack_tin(record: Record, *mesh: NDArray[Any]) -> TIN:
+def _unpack_tin(record: Record, *mesh: AnyArray) -> TIN:
     document, unpack = record.document, _Unpacker(record.arrays).unpack
     version = _unpack_version(document, mesh, unpack)
     inputs, given = None, None
@@ -132,7 +131,7 @@ def _unpack_inputs(document: Mapping[str, Any], version: Version, unpack: Any) -
 class _Unpacker:
     """Makes values of trees."""
 
-    def __init__(self, arrays: Mapping[str, NDArray[Any]]) -> None:
+    def __init__(self, arrays: Mapping[str, AnyArray]) -> None:
         self._arrays = arrays
 
     def unpack(self, tree: Any, depth: int = 0) -> Any:

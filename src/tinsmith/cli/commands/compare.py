@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray
     from ...tin import Comparison, Outcome
     from ..options import Reading
     from ..output.console import Console, Row
@@ -69,7 +68,7 @@ def compare(
     console.answer(_summarise_comparison(file, result, output), record)
 
 
-def _sample_points(points: NDArray[Any], count: int | None) -> NDArray[Any]:
+def _sample_points(points: AnyArray, count: int | None) -> AnyArray:
     """Return some of the points, in their order; all of them if no number is given."""
     import numpy as np
 

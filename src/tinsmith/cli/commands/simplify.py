@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from ...arrays import AnyArray
     from ...terrain import Raster
     from ...tin import TIN
     from ..output.console import Row
@@ -107,15 +106,15 @@ def _count(given: TIN | Raster) -> tuple[str, str]:
     return counted(len(given.points), "point"), mesh_counts(given)
 
 
-def _find_vertices(tin: TIN, places: NDArray[Any]) -> list[int]:
+def _find_vertices(tin: TIN, places: AnyArray) -> list[int]:
     """Return the vertices at places, -1 where there is none."""
     vertex_at = {place: row for row, place in enumerate(map(tuple, tin.points[:, :2].tolist()))}
     return [vertex_at.get(place, -1) for place in map(tuple, places.tolist())]
 
 
 def _find_kept(
-    surface: Any, find: Callable[[Any, NDArray[Any]], list[int]], path: Path, request: Request
-) -> NDArray[Any]:
+    surface: Any, find: Callable[[Any, AnyArray], list[int]], path: Path, request: Request
+) -> AnyArray:
     """Return the vertices or cells at the points of a file."""
     import numpy as np
 

@@ -9,8 +9,7 @@ import numpy as np
 from ..._sentences import counted
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from ...arrays import Int64Array
     from ...terrain import Table
     from .console import Row
 
@@ -76,7 +75,7 @@ class Suspects(NamedTuple):
     """
 
     table: Table
-    dropped: NDArray[np.int64] | None
+    dropped: Int64Array | None
 
 
 def tell_suspects(found: Suspects) -> list[Row]:
