@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._atomic import as_path
 from .._plug_ins import describe_failure
 from .._progress import Progress
-from .._sentences import counted
-from ..errors import FormatError, LossWarning, TinsmithError, WriteError
+from ..errors import FormatError, TinsmithError, WriteError
 from ..terrain.results import Features, Raster, Table
 from ..tin import TIN, Survey
 from .registry import find_writer, require_options, takes_progress
+from .registry.losses import tell_lost_lines
 
 if TYPE_CHECKING:
     import os
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["find_kind", "write"]
 
-_PLURALS = {"boundary": "boundaries", "water body": "water bodies"}
 _KINDS = {"TIN": TIN, "Survey": Survey, "Features": Features, "Raster": Raster, "Table": Table}
 
 
@@ -66,8 +64,9 @@ def write(
     Warns
     -----
     LossWarning
-        If the format cannot hold all that there is, such as the lines of a survey or the whole
-        names of columns; with ``kind="points"`` lines are left out without a word.
+        If the format cannot hold all that there is, such as the lines of a survey, attributes of
+        its points or the whole names of columns; with ``kind="points"`` lines are left out without
+        a word.
 
     Examples
     --------
@@ -90,7 +89,7 @@ def write(
     with done.passing_on():
         _call_writer(chosen, writer, obj, file, options)
     if isinstance(obj, Survey) and options.get("kind") != "points":
-        _tell_lost_lines(obj, chosen, file)
+        tell_lost_lines(obj, chosen, file)
     done.end()
     return file
 
@@ -108,27 +107,6 @@ def _call_writer(
             f"{chosen.distribution}, fails ({describe_failure(error)}).",
             path=file,
         ) from error
-
-
-def _tell_lost_lines(survey: Survey, chosen: Format, file: Path) -> None:
-    """Warn of lines of a survey that the format does not hold."""
-    counts = {
-        "breakline": len(survey.breaklines),
-        "boundary": len(survey.boundary),
-        "hole": len(survey.holes),
-        "erased area": len(survey.erase),
-        "water body": len(survey.water),
-    }
-    all_lost = "survey lines" in chosen.loses
-    names = counts if all_lost else ("erased area",) if "erased areas" in chosen.loses else ()
-    lost = [counted(counts[name], name, _PLURALS.get(name, "")) for name in names if counts[name]]
-    if lost:
-        warnings.warn(
-            f"'{file}' does not hold the lines of the survey ({', '.join(lost)}): the format "
-            f"{chosen.name} has no place for them.",
-            LossWarning,
-            stacklevel=3,
-        )
 
 
 def find_kind(obj: object, path: Path) -> str:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import csv
-import re
-import warnings
 from itertools import chain
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -14,10 +12,11 @@ from ..._atomic import replacing
 from ..._progress import Progress
 from ..._sentences import counted
 from ...crs import CRS, Unit
-from ...errors import LossWarning, OptionError, ReadError, WriteError
+from ...errors import OptionError, ReadError, WriteError
 from ...terrain.georeference.area_of_use import AreaOfUse
 from ...terrain.inspection.nodata import parse_nodata
 from ...tin import TIN, Survey
+from ..registry.losses import keep_on_one_line
 from ..reprojection.placement import place, settle_unit
 from ..reprojection.transformation import is_geographic
 from .columns import find_unit_word
@@ -59,7 +58,6 @@ __all__ = ["read", "write"]
 _WGS84 = "EPSG:4326"
 _CHUNK_ROWS = 100_000
 _SUFFIX_DELIMITERS = {".tsv": "\t", ".xyz": " ", ".pts": " "}
-_BREAKS = re.compile("[\r\n\x00]+")
 _BARE_SUFFIXES = frozenset({".xyz", ".pts"})
 
 
@@ -351,31 +349,12 @@ def write(
     names = (
         [] if (is_bare if header is None else not header) else [_name_written_columns(table, obj)]
     )
-    values = _keep_on_one_line(table, path)
+    values = list(keep_on_one_line(table, path).values())
     with replacing(path, binary=False) as file:
         writer = csv.writer(
             file, delimiter=separator, lineterminator="\n", quoting=_choose_quoting(values[0])
         )
         writer.writerows(chain(names, _iterate_rows(values, progress)))
-
-
-def _keep_on_one_line(table: Mapping[str, AnyArray], path: Path) -> list[AnyArray]:
-    """Return the columns, with blanks in the place of line breaks, which readers stop at."""
-    kept, broken = [], []
-    for name, values in table.items():
-        texts = values.tolist() if values.dtype.kind in "OU" else []
-        if any(isinstance(text, str) and _BREAKS.search(text) for text in texts):
-            plain = [_BREAKS.sub(" ", one) if isinstance(one, str) else one for one in texts]
-            values = np.array(plain, object)
-            broken.append(name)
-        kept.append(values)
-    if broken:
-        warnings.warn(
-            f"'{path}': line breaks within the texts of {', '.join(broken)} became blanks.",
-            LossWarning,
-            stacklevel=4,
-        )
-    return kept
 
 
 def _choose_quoting(first: AnyArray) -> Literal[0, 2]:

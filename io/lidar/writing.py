@@ -14,6 +14,7 @@ from ..._progress import Progress
 from ...errors import LossWarning, OptionError, WriteError
 from ...tin import TIN, Survey
 from ..mesh.common import require_writable
+from ..registry.losses import tell_lost_attributes
 from ..reprojection.crs_kept import require_kept
 
 if TYPE_CHECKING:
@@ -223,13 +224,7 @@ def _choose_columns(attributes: Mapping[str, AnyArray], path: Path) -> dict[str,
             columns[name] = _require_range(name, values, path)
         else:
             texts.append(name)
-    if texts:
-        warnings.warn(
-            f"'{path}' does not hold the attributes {', '.join(texts)}: LAS has numbers, "
-            "with names of 32 bytes.",
-            LossWarning,
-            stacklevel=4,
-        )
+    tell_lost_attributes(texts, path, "LAS has numbers, with names of 32 bytes")
     return columns
 
 

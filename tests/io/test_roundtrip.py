@@ -117,10 +117,13 @@ def test_a_survey_comes_back_from_ply_with_its_numbers(tmp_path):
             "checked": np.array([True, False, True, True, False]),
             "code": np.array(["GR", "GR", "EP", "EP", "BLD"]),
             "x": np.arange(5.0),
+            "point_class": np.arange(5),
+            "id": np.arange(5) + 2**53,
         },
         crs="EPSG:32616",
     )
-    ply.write(survey, tmp_path / "a.ply")
+    with pytest.warns(ts.LossWarning, match="attributes code, x, point_class, id: PLY"):
+        ply.write(survey, tmp_path / "a.ply")
     again = ply.read(tmp_path / "a.ply")
     assert isinstance(again, ts.Survey)
     assert again.points.tobytes() == survey.points.tobytes()

@@ -6,19 +6,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ....tin import Breakline
+from ....terrain.results import Features
+from ....tin import TIN, Breakline, Survey
 from ....tin.constraints.constraint_set import as_sequence
 from ....tin.constraints.polygons import gather_rings_of_regions
 from ....tin.topology import directed_edges, edge_keys
+from ...registry.losses import select_attributes
 from .names import CONSTRAINED
 
 if TYPE_CHECKING:
-    from ....arrays import Float64Array, Int64Array
-    from ....terrain.results import Features
-    from ....tin import TIN, Survey
+    from pathlib import Path
+
+    from ....arrays import AnyArray, Float64Array, Int64Array
     from .entities import EntityWriter
 
-__all__ = ["add_features", "add_survey", "add_tin"]
+__all__ = ["add_features", "add_survey", "add_tin", "select_texts"]
 
 _LAYER_OF_KIND = {
     "hard": "BREAKLINES",
@@ -51,9 +53,25 @@ def _find_other_edges(tin: TIN) -> Int64Array:
     return others
 
 
-def add_survey(writer: EntityWriter, survey: Survey, factor: float, *, labels: bool) -> None:
-    """Add points with their labels, and lines."""
-    _add_points(writer, _scale(survey.points, factor), survey.attributes, labels=labels)
+def select_texts(obj: TIN | Survey | Features, path: Path) -> dict[str, AnyArray]:
+    """Return the texts of points that a drawing holds, and tell of other attributes."""
+    if isinstance(obj, TIN) or (isinstance(obj, Features) and obj.kind != "points"):
+        return {}
+    attributes = obj.attributes if isinstance(obj, Survey) else obj.columns
+    reason = "a drawing has the number and the description of a point"
+    return select_attributes(attributes, ("number", "description"), path, reason)
+
+
+def add_survey(
+    writer: EntityWriter,
+    survey: Survey,
+    texts: dict[str, AnyArray],
+    factor: float,
+    *,
+    labels: bool,
+) -> None:
+    """Add points with their texts and labels, and lines."""
+    _add_points(writer, _scale(survey.points, factor), texts, labels=labels)
     for line in survey.breaklines:
         one = line if isinstance(line, Breakline) else Breakline(line)
         rows = _scale(one.coords, factor)
@@ -75,14 +93,21 @@ def add_survey(writer: EntityWriter, survey: Survey, factor: float, *, labels: b
         writer.add_line("WATER", _scale(closed, factor), ("water", one_water.name))
 
 
-def add_features(writer: EntityWriter, features: Features, factor: float, *, labels: bool) -> None:
+def add_features(
+    writer: EntityWriter,
+    features: Features,
+    texts: dict[str, AnyArray],
+    factor: float,
+    *,
+    labels: bool,
+) -> None:
     """Add points, lines or the rings of polygons; contours on layers of their own."""
     if features.kind == "points":
         rows = features.coordinates
         if not features.has_elevations:
             rows = np.column_stack([rows, np.zeros(len(rows))])
         points = _scale(np.nan_to_num(rows, nan=0.0), factor)
-        _add_points(writer, points, features.columns, labels=labels)
+        _add_points(writer, points, texts, labels=labels)
         return
     names = _choose_layers(features)
     for owner, rows in _iterate_parts(features):
@@ -124,12 +149,12 @@ def _scale(rows: Float64Array, factor: float) -> Float64Array:
 
 
 def _add_points(
-    writer: EntityWriter, points: Float64Array, attributes: Any, *, labels: bool
+    writer: EntityWriter, points: Float64Array, texts: dict[str, AnyArray], *, labels: bool
 ) -> None:
     if len(points) == 0:
         return
     numbers, descriptions = (
-        _find_texts(attributes, name, len(points)) for name in ("number", "description")
+        _find_texts(texts, name, len(points)) for name in ("number", "description")
     )
     writer.add_points("POINTS", points, list(zip(numbers, descriptions, strict=True)))
     if not labels:
@@ -137,15 +162,15 @@ def _add_points(
     height = _choose_height(points)
     elevations = [f"{z:.2f}" for z in points[:, 2].tolist()]
     columns = (("NUMBERS", numbers), ("ELEVATIONS", elevations), ("DESCRIPTIONS", descriptions))
-    for k, (name, texts) in enumerate(columns):
+    for k, (name, shown) in enumerate(columns):
         beside = np.array([height * 0.5, height * (0.5 - 1.5 * k), 0.0])
-        writer.add_texts(f"POINT_{name}", points + beside, texts, height)
+        writer.add_texts(f"POINT_{name}", points + beside, shown, height)
 
 
-def _find_texts(attributes: Any, name: str, count: int) -> list[str]:
-    if name not in attributes:
+def _find_texts(texts: dict[str, AnyArray], name: str, count: int) -> list[str]:
+    if name not in texts:
         return [""] * count
-    values = np.asarray(attributes[name]).tolist()
+    values = texts[name].tolist()
     return ["" if one is None or one != one else str(one) for one in values]
 
 

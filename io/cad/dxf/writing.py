@@ -19,8 +19,9 @@ from ....errors import FormatError, LossWarning, OptionError, choice
 from ....policies import DrawingVersion
 from ....terrain.results import Features
 from ....tin import TIN, Survey
+from ...registry.losses import tell_unknown_elevations
 from ..lengths import choose_length_unit
-from .content import add_features, add_survey, add_tin
+from .content import add_features, add_survey, add_tin, select_texts
 from .entities import EntityWriter
 from .names import APPLICATION, CRS_PROPERTY, ELEVATION_PROPERTY, LAYERS, UNKNOWN
 from .units import find_code
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
+    from ....arrays import AnyArray
     from ....crs import Unit, UnitLike
 
 __all__ = ["write"]
@@ -72,7 +74,8 @@ def write(
     Warns
     -----
     LossWarning
-        If elevations are converted, as a drawing has one unit for all lengths, or none are known.
+        If elevations are converted, as a drawing has one unit for all lengths, or none are known;
+        if attributes are left out, or line breaks in texts.
     """
     if not isinstance(obj, TIN | Survey | Features):
         raise FormatError(f"Cannot write '{path}': a {type(obj).__name__} is no surface or survey.")
@@ -92,7 +95,8 @@ def write(
     with _fix_dates():
         document = _make_document(ezdxf, obj, version, along)
         head, tail, encoding, writer = _split(document, version)
-    _add_content(writer, obj, factor, labels=labels)
+    _add_content(writer, obj, select_texts(obj, path), factor, labels=labels)
+    tell_unknown_elevations(obj, path)
     with replacing(path) as file:
         file.write(_encode(_count_handles(head, writer), encoding))
         for start in range(0, len(writer.parts), _CHUNK):
@@ -109,14 +113,19 @@ def _encode(text: str, encoding: str) -> bytes:
 
 
 def _add_content(
-    writer: EntityWriter, obj: TIN | Survey | Features, factor: float, *, labels: bool
+    writer: EntityWriter,
+    obj: TIN | Survey | Features,
+    texts: dict[str, AnyArray],
+    factor: float,
+    *,
+    labels: bool,
 ) -> None:
     if isinstance(obj, TIN):
         add_tin(writer, obj, factor)
     elif isinstance(obj, Survey):
-        add_survey(writer, obj, factor, labels=labels)
+        add_survey(writer, obj, texts, factor, labels=labels)
     else:
-        add_features(writer, obj, factor, labels=labels)
+        add_features(writer, obj, texts, factor, labels=labels)
 
 
 # ------------------------------------------------------------------ the file around it

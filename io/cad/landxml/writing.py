@@ -7,15 +7,17 @@ that the unit of elevations is not known, stands in elements ``Feature``, as the
 
 from __future__ import annotations
 
-from typing import IO, TYPE_CHECKING, Any
+import warnings
+from typing import IO, TYPE_CHECKING
 
 import numpy as np
 
 from ...._atomic import replacing
 from ....crs import CRS
-from ....errors import FormatError, OptionError
+from ....errors import FormatError, LossWarning, OptionError
 from ....terrain.results import Features
 from ....tin import TIN, Survey
+from ...registry.losses import select_attributes, tell_unknown_elevations
 from ..lengths import choose_length_unit
 from .lines import quote, write_features, write_source_of_survey, write_source_of_tin
 from .properties import ELEVATION_UNIT, FEATURE, UNKNOWN
@@ -44,6 +46,9 @@ _OTHER_UNITS = {
     "Imperial": 'areaUnit="squareFoot" linearUnit="{}" volumeUnit="cubicYard" '
     'temperatureUnit="fahrenheit" pressureUnit="inHG" diameterUnit="inch"',
 }
+_TEXTS = {"desc": "description", "code": "code"}
+"""Attributes of an element of a point, and what of a survey they hold."""
+
 _ANGLES = 'angularUnit="decimal degrees" directionUnit="decimal degrees"'
 _SIDES = ((2, 1), (0, 2), (1, 4))
 """Corners, and the bit of the side opposite."""
@@ -83,8 +88,8 @@ def write(
     Warns
     -----
     LossWarning
-        If elevations are converted, as LandXML has one unit for all lengths, or columns are left
-        out.
+        If elevations are converted, as LandXML has one unit for all lengths, or attributes are
+        left out, or line breaks in texts.
     """
     if not isinstance(obj, TIN | Survey | Features):
         raise FormatError(f"Cannot write '{path}': a {type(obj).__name__} is no surface or survey.")
@@ -94,20 +99,23 @@ def write(
     along, factor = choose_length_unit(
         obj, unit, path, is_known=lambda one: name_unit(one) is not None, format_name="LandXML"
     )
+    texts = _select_texts(obj, path)
     with replacing(path, binary=False) as file:
         file.write(_ROOT)
         _write_reference(file, obj, along)
         file.write('<Application name="tinsmith"/>\n')
-        _write_content(file, obj, surface.strip(), factor, progress)
+        _write_content(file, obj, surface.strip(), texts, factor, progress)
         file.write("</LandXML>\n")
     if progress is not None:
         progress(1.0)
+    tell_unknown_elevations(obj, path)
 
 
 def _write_content(
     file: IO[str],
     obj: TIN | Survey | Features,
     surface: str,
+    texts: dict[str, list[str]],
     factor: float,
     progress: Callable[[float], None] | None,
 ) -> None:
@@ -118,10 +126,10 @@ def _write_content(
         _write_definition(file, obj, points, progress)
         file.write("</Surface>\n</Surfaces>\n")
     elif isinstance(obj, Survey):
-        _write_points(file, _scale(obj.points, factor), obj.attributes)
+        _write_points(file, _scale(obj.points, factor), texts)
         write_source_of_survey(file, obj, surface, factor)
     elif obj.kind == "points":
-        _write_points(file, _scale(_require_elevations(obj), factor), obj.columns)
+        _write_points(file, _scale(_require_elevations(obj), factor), texts)
     else:
         write_features(file, obj, surface, factor)
 
@@ -233,10 +241,11 @@ def _report(progress: Callable[[float], None] | None, done: float) -> None:
 # ------------------------------------------------------------------ points
 
 
-def _write_points(file: IO[str], points: Float64Array, attributes: Any) -> None:
+def _write_points(file: IO[str], points: Float64Array, texts: dict[str, list[str]]) -> None:
     if len(points) == 0:
         return
-    names, columns = _choose_names(attributes, len(points)), _choose_columns(attributes)
+    names = texts.get("number") or [str(number) for number in range(1, len(points) + 1)]
+    columns = {key: texts[name] for key, name in _TEXTS.items() if name in texts}
     file.write("<CgPoints>\n")
     for start in range(0, len(points), _BATCH):
         rows = points[start : start + _BATCH, [1, 0, 2]].tolist()
@@ -254,22 +263,28 @@ def _write_points(file: IO[str], points: Float64Array, attributes: Any) -> None:
     file.write("</CgPoints>\n")
 
 
-def _choose_names(attributes: Any, count: int) -> list[str]:
-    """Return the points' numbers if they differ, as the schema asks for, else 1, 2, 3 ..."""
-    if "number" in attributes:
-        names = [_as_text(one) for one in np.asarray(attributes["number"]).tolist()]
-        if len(set(names)) == count and all(names):
-            return names
-    return [str(number) for number in range(1, count + 1)]
-
-
-def _choose_columns(attributes: Any) -> dict[str, list[str]]:
-    found = {"desc": "description", "code": "code"}
-    return {
-        key: [_as_text(one) for one in np.asarray(attributes[name]).tolist()]
-        for key, name in found.items()
-        if name in attributes
-    }
+def _select_texts(obj: TIN | Survey | Features, path: Path) -> dict[str, list[str]]:
+    """Return the texts of points that LandXML holds; numbers only if they all differ."""
+    if isinstance(obj, TIN) or (isinstance(obj, Features) and obj.kind != "points"):
+        return {}
+    attributes = obj.attributes if isinstance(obj, Survey) else obj.columns
+    held = select_attributes(
+        attributes,
+        ("number", *_TEXTS.values()),
+        path,
+        "LandXML has the number, the description and the code of a point",
+    )
+    texts = {name: [_as_text(one) for one in values.tolist()] for name, values in held.items()}
+    numbers = texts.get("number", [])
+    if not all(numbers) or len(set(numbers)) < len(numbers):
+        warnings.warn(
+            f"'{path}': points are numbered 1, 2, 3 ... anew, as numbers are missing or stand "
+            "twice, which LandXML does not allow.",
+            LossWarning,
+            stacklevel=4,
+        )
+        del texts["number"]
+    return texts
 
 
 def _as_text(value: object) -> str:

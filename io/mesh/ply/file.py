@@ -18,6 +18,7 @@ import numpy as np
 from ...._atomic import replacing
 from ....errors import ReadError
 from ....tin import TIN, Survey
+from ...registry.losses import tell_lost_attributes
 from .. import common
 from .body import Ragged, Table, read_tables
 from .header import parse_header
@@ -45,6 +46,7 @@ _LIST = ("count", "corners")
 """Length and items of the list of a face's vertices, as they lie in a row."""
 
 _COORDINATES = ("x", "y", "z")
+_LARGEST_INTEGER = 2**53
 _FACE_LISTS = ("vertex_indices", "vertex_index")
 _TYPE_NAMES = {
     "i1": "char",
@@ -163,7 +165,10 @@ def write(
     double); PLY has no text. Parameters and errors are those of every writer, see :class:`.Format`.
     """
     surface = common.require_writable(surface, path)
-    body = {"vertex": _pack_vertices(surface.points, surface.attributes)}
+    columns, lost = _select_number_columns(surface.attributes)
+    if isinstance(surface, Survey):
+        tell_lost_attributes(lost, path, "PLY has doubles, and names of one ASCII word")
+    body = {"vertex": _pack_vertices(surface.points, columns)}
     comments: list[str] = []
     if isinstance(surface, TIN):
         edges = take_edges(surface)
@@ -202,8 +207,7 @@ def _name_type(dtype: np.dtype[Any]) -> str:
     return _TYPE_NAMES.get(dtype.str[1:], "double")
 
 
-def _pack_vertices(points: Float64Array, attributes: Any) -> AnyArray:
-    columns = _select_number_columns(attributes)
+def _pack_vertices(points: Float64Array, columns: dict[str, AnyArray]) -> AnyArray:
     fields = [(name, "<f8") for name in _COORDINATES]
     fields += [(name, column.dtype.newbyteorder("<").str) for name, column in columns.items()]
     rows = np.empty(len(points), fields)
@@ -214,22 +218,28 @@ def _pack_vertices(points: Float64Array, attributes: Any) -> AnyArray:
     return rows
 
 
-def _select_number_columns(attributes: Any) -> dict[str, AnyArray]:
-    """Return the attributes that PLY can hold, under names of one word that are still free."""
+def _select_number_columns(attributes: Any) -> tuple[dict[str, AnyArray], list[str]]:
+    """Return the attributes that PLY can hold, under names of one word, and names of the others."""
     columns: dict[str, AnyArray] = {}
+    lost = []
     for given, values in attributes.items():
         column = np.asarray(values)
         name = "_".join(str(given).split())
-        if (
-            column.dtype.kind not in "biuf"
-            or not name.isascii()
-            or name in (*_COORDINATES, *columns)
-        ):
+        is_free = name.isascii() and name not in (*_COORDINATES, *columns)
+        if column.dtype.kind not in "biuf" or not is_free or not _fits_double(column):
+            lost.append(str(given))
             continue
         if column.dtype.kind == "b":
             column = column.astype(np.uint8)
         columns[name] = column if column.dtype.str[1:] in _TYPE_NAMES else column.astype(np.float64)
-    return columns
+    return columns, lost
+
+
+def _fits_double(column: AnyArray) -> bool:
+    """Whether doubles hold all numbers, as they do whole numbers of up to 53 bits."""
+    return column.dtype.kind not in "iu" or bool(
+        ((column >= -_LARGEST_INTEGER) & (column <= _LARGEST_INTEGER)).all()
+    )
 
 
 def _pack_faces(tin: TIN, edges: AnyArray) -> AnyArray:

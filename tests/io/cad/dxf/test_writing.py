@@ -129,7 +129,10 @@ def test_polygons_and_points_of_features(tmp_path):
     (line,) = document.modelspace()
     assert line.is_closed
     assert [tuple(one.dxf.location) for one in line.vertices] == [(0, 0, 1), (4, 0, 2), (0, 3, 3)]
-    with pytest.warns(ts.LossWarning, match="no units"):
+    with (
+        pytest.warns(ts.LossWarning, match="no units"),
+        pytest.warns(ts.LossWarning, match="1 point of unknown elevation got the elevation 0"),
+    ):
         document = audit(ts.write(points, tmp_path / "b.dxf", labels=False))
     assert [tuple(one.dxf.location) for one in document.modelspace()] == [(1, 2, 3), (4, 5, 0)]
 

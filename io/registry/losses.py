@@ -1,0 +1,107 @@
+"""What a format does not hold of what is written to it, told in a sentence each."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..._sentences import counted
+from ...errors import LossWarning
+from ...terrain.results import Features
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from pathlib import Path
+
+    from ...arrays import AnyArray
+    from ...tin import Survey
+    from .format import Format
+
+__all__ = [
+    "keep_on_one_line",
+    "select_attributes",
+    "tell_lost_attributes",
+    "tell_lost_lines",
+    "tell_unknown_elevations",
+]
+
+_BREAKS = re.compile("[\r\n\x00]+")
+_PLURALS = {"boundary": "boundaries", "water body": "water bodies"}
+
+
+def tell_lost_attributes(names: Iterable[str], path: Path, reason: str) -> None:
+    """Warn of attributes of points that a file does not hold, and why, if there are any."""
+    lost = ", ".join(names)
+    if lost:
+        warnings.warn(
+            f"'{path}' does not hold the attributes {lost}: {reason}.", LossWarning, stacklevel=4
+        )
+
+
+def select_attributes(
+    attributes: Mapping[str, Any], names: tuple[str, ...], path: Path, reason: str
+) -> dict[str, AnyArray]:
+    """Return the attributes of points that a format holds, on one line each; tell of the others."""
+    tell_lost_attributes((name for name in attributes if name not in names), path, reason)
+    held = {name: attributes[name] for name in names if name in attributes}
+    return keep_on_one_line(held, path)
+
+
+def keep_on_one_line(columns: Mapping[str, Any], path: Path) -> dict[str, AnyArray]:
+    """Return columns with blanks in the place of line breaks within texts, and tell of them."""
+    kept: dict[str, AnyArray] = {}
+    broken = []
+    for name, given in columns.items():
+        values = np.asarray(given)
+        texts = values.tolist() if values.dtype.kind in "OU" else []
+        if any(isinstance(text, str) and _BREAKS.search(text) for text in texts):
+            plain = [_BREAKS.sub(" ", one) if isinstance(one, str) else one for one in texts]
+            values = np.array(plain, object)
+            broken.append(name)
+        kept[name] = values
+    if broken:
+        warnings.warn(
+            f"'{path}': line breaks within the texts of {', '.join(broken)} became blanks.",
+            LossWarning,
+            stacklevel=4,
+        )
+    return kept
+
+
+def tell_lost_lines(survey: Survey, chosen: Format, file: Path) -> None:
+    """Warn of lines of a survey that the format does not hold."""
+    counts = {
+        "breakline": len(survey.breaklines),
+        "boundary": len(survey.boundary),
+        "hole": len(survey.holes),
+        "erased area": len(survey.erase),
+        "water body": len(survey.water),
+    }
+    all_lost = "survey lines" in chosen.loses
+    names = counts if all_lost else ("erased area",) if "erased areas" in chosen.loses else ()
+    lost = [counted(counts[name], name, _PLURALS.get(name, "")) for name in names if counts[name]]
+    if lost:
+        warnings.warn(
+            f"'{file}' does not hold the lines of the survey ({', '.join(lost)}): the format "
+            f"{chosen.name} has no place for them.",
+            LossWarning,
+            stacklevel=3,
+        )
+
+
+def tell_unknown_elevations(obj: object, path: Path) -> None:
+    """Warn of features with vertices of unknown elevation, where a file has all or none of them."""
+    if not isinstance(obj, Features) or not obj.has_elevations:
+        return
+    count = int(np.isnan(obj.coordinates[:, 2]).sum())
+    if count:
+        what = (
+            f"{counted(count, 'point')} of unknown elevation got the elevation 0"
+            if obj.kind == "points"
+            else f"lines with {counted(count, 'vertex', 'vertices')} of unknown elevation lost "
+            "all their elevations"
+        )
+        warnings.warn(f"'{path}': {what}.", LossWarning, stacklevel=4)
