@@ -29,6 +29,7 @@ _NAMES = {
 }
 _ROLE_OF = {name: role for role, names in _NAMES.items() for name in names}
 _SHOWN = 8
+_LARGEST_INTEGER = 2**53
 _POINTS = (0, 4)
 """What shapely numbers points and multipoints."""
 
@@ -132,12 +133,27 @@ def _as_numbers(values: Any, what: str) -> Float64Array:
         array = np.asarray(values)
         if array.dtype.kind not in "biufO" or (array.dtype.kind == "O" and _has_text(array)):
             raise TypeError
-        return np.asarray(array, np.float64)
+        numbers = np.asarray(array, np.float64)
     except Exception:
         raise PointsError(
             f"{what} are no table of real numbers: rows of equal length are needed, "
             "without text, complex numbers or dates."
         ) from None
+    _require_held(array, what)
+    return numbers
+
+
+def _require_held(array: AnyArray, what: str) -> None:
+    """Refuse whole numbers that doubles may not hold."""
+    if array.dtype.kind not in "iu" or array.dtype.itemsize < 8:
+        return
+    is_large = (array > _LARGEST_INTEGER) | (array < -_LARGEST_INTEGER)
+    if is_large.any():
+        first = array[is_large][0]
+        raise PointsError(
+            f"{what} have the whole number {first}: doubles, in which coordinates are, hold those "
+            f"up to 2**53 = {_LARGEST_INTEGER}."
+        )
 
 
 def _has_text(array: AnyArray) -> bool:
@@ -212,6 +228,8 @@ def _fill_missing(column: Any) -> Any:
     if not hasattr(column, "isna"):
         return column
     try:
+        if column.dtype.kind in "iu" and not column.isna().any():
+            return column.to_numpy(dtype=column.dtype.kind + "8")
         return column.to_numpy(dtype=np.float64, na_value=np.nan)
     except Exception:
         return np.asarray(column)

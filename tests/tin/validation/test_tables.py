@@ -202,3 +202,18 @@ def test_geometries_and_a_column_of_elevations():
 def test_masked_table_without_rows():
     with pytest.raises(ts.PointsError, match="0 points cannot make a TIN"):
         ts.triangulate(np.ma.array(np.zeros((0, 3))))
+
+
+@pytest.mark.parametrize("number", [2**53 + 1, -(2**53) - 1, 2**63 - 1, 2**64 - 1, -(2**63)])
+@pytest.mark.parametrize("make", [np.array, pd.DataFrame])
+def test_whole_numbers_that_doubles_may_not_hold_are_refused(number, make):
+    dtype = np.int64 if number < 2**63 else np.uint64
+    rows = np.array([[0, 0, 5], [4, 0, 6], [0, number, 7]], dtype)
+    rows = make(rows) if make is np.array else make(rows, columns=["x", "y", "z"])
+    with pytest.raises(ts.PointsError, match=rf"whole number {number}: doubles.* up to 2\*\*53"):
+        ts.triangulate(rows)
+
+
+def test_the_largest_whole_numbers_are_kept():
+    tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 2**53, 7]])
+    assert tin.points[:, 1].max() == 2**53
