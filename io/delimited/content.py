@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._sentences import counted, inflect
+from ..._sentences import counted, inflect, shown
 from ...errors import ReadError
 from .columns import Columns, find_columns_by_word
 
@@ -62,6 +62,8 @@ class Column:
         Whether numbers have leading zeros.
     text_share, distinct_share : float
         Of the cells, those that are no numbers and not empty; of the values, those that differ.
+    text : str
+        The first cell of a column of text.
     """
 
     values: Float64Array
@@ -70,6 +72,7 @@ class Column:
     is_padded: bool = False
     text_share: float = 0.0
     distinct_share: float = 1.0
+    text: str = ""
 
     @property
     def counts_rows(self) -> bool:
@@ -160,10 +163,7 @@ def _propose_layouts(columns: Sequence[Column]) -> list[_Candidate]:
     """Return the customary layouts that columns of numbers and text could have."""
     is_text = [column.is_text for column in columns]
     if len(columns) < 3 or len(columns) - sum(is_text) < 3:
-        does = inflect(f"{counted(len(columns), 'column')} [does|do]", len(columns))
-        raise ReadError(
-            f"its {does} not hold three of numbers: easting, northing and elevation are needed."
-        )
+        raise ReadError(_describe_too_few_numbers(columns))
     found: list[_Candidate] = []
     if len(columns) > 3 and not any(is_text[1:4]) and _may_number(columns[0]):
         found += _propose_both_orders(columns, 1)
@@ -175,6 +175,15 @@ def _propose_layouts(columns: Sequence[Column]) -> list[_Candidate]:
             "option columns what they are, for example columns='PNEZD'."
         )
     return found
+
+
+def _describe_too_few_numbers(columns: Sequence[Column]) -> str:
+    does = inflect(f"{counted(len(columns), 'column')} [does|do]", len(columns))
+    sentence = f"its {does} not hold three of numbers: easting, northing and elevation are needed"
+    texts = (
+        f"column {i} has {shown(one.text)}" for i, one in enumerate(columns, start=1) if one.text
+    )
+    return "; ".join([sentence, *texts]) + "."
 
 
 def _may_number(column: Column) -> bool:

@@ -338,7 +338,9 @@ def describe_columns(cells: Cells, layout: Layout) -> list[Column]:
 def _describe_column(column: AnyArray, i: int, layout: Layout, *, has_groups: bool) -> Column:
     if i in layout.mostly_text:
         distinct = len(set(column.tolist())) / len(column)
-        return Column(np.full(len(column), np.nan), is_text=True, distinct_share=distinct)
+        text = next((cell for cell in column.tolist() if isinstance(cell, str) and cell), "")
+        nothing = np.full(len(column), np.nan)
+        return Column(nothing, is_text=True, distinct_share=distinct, text=text)
     numbers = _parse_numbers(column, layout, has_groups=has_groups)
     values = numbers.values
     is_there = ~np.isnan(values)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import tinsmith as ts
 from tinsmith.crs import CRS
 from tinsmith.io import ReadError
 from tinsmith.io.delimited.content import (
@@ -246,3 +247,10 @@ def test_decimal_commas_at_commas_are_refused(rows, delimiter, is_refused):
         return
     with pytest.raises(ReadError, match="its commas may be delimiters or decimal marks"):
         require_no_split_decimals(body, delimiter)
+
+
+def test_text_where_numbers_are_needed_is_shown(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("500000,4000000,322.4 m\n500010,4000000,323.4 m\n500010,4000020,324.1 m\n")
+    with pytest.raises(ReadError, match=r"elevation are needed; column 3 has '322.4 m'\.$"):
+        ts.read(path)
