@@ -13,13 +13,14 @@ from .._sentences import counted
 from ..errors import FormatError, LossWarning, TinsmithError, WriteError
 from ..terrain.results import Features, Raster, Table
 from ..tin import TIN, Survey
-from .registry import find_writer, require_options, takes_progress
+from .registry.format import require_options, takes_progress
+from .registry.lookup import find_writer
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Callable
 
-    from .registry import Format
+    from .registry.format import Format
 
 __all__ = ["find_kind", "write"]
 

@@ -374,7 +374,7 @@ def _describe_option_not_taken(name: str) -> click.UsageError:
 def _require_format(flag: str, name: str | None) -> None:
     """Refuse a name that no format has: that is wrong usage, whatever the data."""
     from ..errors import FormatError
-    from ..io.registry import find_format
+    from ..io.registry.lookup import find_format
 
     try:
         if name is not None:
@@ -385,7 +385,7 @@ def _require_format(flag: str, name: str | None) -> None:
 
 def _choose_output_formats(path: Path, name: str | None, kinds: Sequence[str]) -> dict[str, Format]:
     from ..errors import FormatError
-    from ..io.registry import find_writers, known_formats, list_claims
+    from ..io.registry.lookup import find_writers, known_formats, list_claims
 
     _require_format("--output-format", name)
     if name is None and path == STANDARD:
