@@ -71,19 +71,12 @@ class Fault(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cells:
-    """The rows of a table that have the right number of cells, and those that have not.
-
-    Attributes
-    ----------
-    columns : tuple of (n,) arrays
-        As :func:`.parsing.parse_column` returns them.
-    rows : (n,) int64 array
-        Line number (from 0) of each row.
-    faults : tuple of Fault
-    """
+    """The rows of a table that have the right number of cells, and those that have not."""
 
     columns: tuple[AnyArray, ...]
+    """Each (n,), as :func:`.parsing.parse_column` returns them."""
     rows: Int64Array
+    """(n,), line number (from 0) of each row."""
     faults: tuple[Fault, ...] = ()
 
 

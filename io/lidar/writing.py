@@ -64,18 +64,13 @@ _EXTRA_TYPES = frozenset(("u1", "u2", "u4", "u8", "i1", "i2", "i4", "i8", "f4", 
 
 
 class _Scaling(NamedTuple):
-    """How coordinates become whole numbers.
-
-    Attributes
-    ----------
-    scales, offsets : (3,) float64 arrays
-    error : (3,) float64 array
-        By how much the coordinates that are read differ most.
-    """
+    """How coordinates become whole numbers."""
 
     scales: Float64Array
     offsets: Float64Array
+    """Both (3,)."""
     error: Float64Array
+    """(3,), by how much the coordinates that are read differ most."""
 
 
 def write(

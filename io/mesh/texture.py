@@ -38,20 +38,14 @@ _BEYOND = "its edge is drawn out to them"
 
 @dataclass(frozen=True, eq=False)
 class Texture:
-    """A picture with its places.
-
-    Attributes
-    ----------
-    content : bytes
-        A PNG or JPEG file.
-    kind : {"png", "jpeg"}
-    places : (n, 2) float64 array
-        Of each vertex: from left to right and from top to bottom, 0 to 1 within the picture.
-    """
+    """A picture with its places."""
 
     content: bytes
+    """A PNG or JPEG file."""
     kind: str
+    """Either "png" or "jpeg"."""
     places: Float64Array
+    """(n, 2), of each vertex from left to right and from top to bottom, 0 to 1 in the picture."""
 
     @property
     def suffix(self) -> str:

@@ -30,22 +30,15 @@ class DegreesError(ReadError):
 
 
 class Placed(NamedTuple):
-    """Points in the CRS wanted.
-
-    Attributes
-    ----------
-    points : (n, 3) float64 array
-    crs : CRS or None
-    elevation_unit : Unit or None
-        None if it is not known.
-    notes : tuple of str
-        What was done to the elevations, and whether points lie where the CRS does not apply.
-    """
+    """Points in the CRS wanted."""
 
     points: Float64Array
+    """(n, 3)."""
     crs: CRS | None
     elevation_unit: Unit | None
+    """None if it is not known."""
     notes: tuple[str, ...]
+    """What was done to the elevations, and whether points lie where the CRS does not apply."""
 
 
 def place(

@@ -20,20 +20,14 @@ __all__ = ["GridMesh", "cut_along_grid"]
 
 
 class GridMesh(NamedTuple):
-    """A mesh on a grid.
-
-    Attributes
-    ----------
-    steps : (n, 2) int64 array
-        Eastings and northings.
-    heights : (n,) float64 array
-    triangles : (m, 3) int64 array
-        Counter-clockwise.
-    """
+    """A mesh on a grid."""
 
     steps: Int64Array
+    """(n, 2), eastings and northings."""
     heights: Float64Array
+    """(n,)."""
     triangles: Int64Array
+    """(m, 3), counter-clockwise."""
 
 
 def cut_along_grid(mesh: GridMesh, spacing: int) -> GridMesh:
