@@ -130,27 +130,11 @@ def find_layout(
     decimal: str | None = None,
     comment: str | None = None,
 ) -> Layout:
-    """Find how to read a table.
+    """Find how to read a table; what the caller does not know of it is found by looking.
 
-    Parameters
-    ----------
-    lines : TextLines
-    path : Path
-        For sentences.
-    columns : str, sequence of str, or mapping of str to str or int, optional
-        See :func:`find_columns_by_word`.
-    delimiter, decimal, comment : str, optional
-        As the caller knows them; found by looking otherwise.
+    A ReadError is raised if no table is there, or its columns cannot be told, a FormatError if an
+    option has a value that it cannot have.
 
-    Raises
-    ------
-    ReadError
-        If no table is there, or its columns cannot be told.
-    FormatError
-        If an option has a value that it cannot have.
-
-    Notes
-    -----
     Some hundred lines are looked at: the first ones, and others spread over the file.
 
     1. Lines that are blank or start with a comment prefix are set aside.

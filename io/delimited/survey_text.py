@@ -80,14 +80,11 @@ def read(
 ) -> Survey:
     """Read survey points.
 
+    Longitude and latitude (WGS 84) are reprojected to ``crs``. An ``encoding`` that is not given is
+    UTF-8 or UTF-16, else Windows-1252.
+
     Parameters
     ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        CRS of the coordinates. Where the file has longitude and latitude (WGS 84), or
-        ``source_crs`` is another, points are reprojected to it.
-    z_unit : Unit or str, optional
-        Unit of the elevations, if the header does not give it.
     columns : str, sequence of str, or mapping of str to str or int, optional
         What the columns are; default by header, else by content. Letters in their order
         (``"PNEZD"``: P point number, N northing, E easting, Z elevation, D description, X
@@ -99,18 +96,9 @@ def read(
     decimal : {".", ","}, optional
     comment : str, optional
         What comment lines start with; default by looking (``# // ; ! %``), "" for none.
-    encoding : str, optional
-        Default by looking: UTF-8, UTF-16, else Windows-1252.
-    source_crs : CRS, str, int or pyproj.CRS, optional
-        CRS in which the file's coordinates are, if not ``crs``.
-    nodata : float or sequence of float, optional
-        Elevations that stand for "no data": their points are left out.
     skip_bad : bool, optional
         Whether rows with too few or too many cells, or a coordinate that is no number, are left
         out, instead of the file being refused.
-    progress : callable, optional
-        Called with the fraction done, ascending, by columns and blocks of rows. What it raises ends
-        the call.
 
     Returns
     -------
@@ -314,8 +302,6 @@ def write(
 
     Parameters
     ----------
-    obj : TIN or Survey
-    path : Path
     columns : {"PNEZD", "PENZD", "ENZ", "NEZ", ...}, optional
         Letters as in :func:`read`. Default PNEZD for a survey with numbers and descriptions;
         otherwise easting, northing, elevation and all attributes (``.xyz`` and ``.pts``: the
@@ -324,8 +310,6 @@ def write(
         One letter; default by suffix: ``.tsv`` tab, ``.xyz`` and ``.pts`` space, else comma.
     header : bool, optional
         Whether names stand in the first line; default not for ``.xyz`` and ``.pts``.
-    progress : callable, optional
-        Called with the fraction done.
 
     Raises
     ------

@@ -84,14 +84,10 @@ def write(
 
     Parameters
     ----------
-    surface : Survey or TIN
-    path : Path
     scale : float, optional
         Distance of neighbouring coordinates, in CRS units. Default on each axis the coarsest power
         of ten that gives every coordinate back, else the finest from a millionth on that holds the
         extent of the points in 32 bits.
-    progress : callable, optional
-        Called with the fraction done.
 
     Raises
     ------

@@ -44,7 +44,7 @@ _VERTEX_NUMBER = re.compile(r"([-+]?)([0-9]+)(?:/|$)")
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
-    """Read the vertices and faces of an OBJ file; called as :class:`.Format` says.
+    """Read the vertices and faces of an OBJ file.
 
     CRS and unit default to those in the comments ``# crs: ...`` and ``# elevation unit: ...``.
     Polygons are cut into triangles; texture, normals, colours, groups and materials are skipped. A
@@ -172,8 +172,6 @@ def write(
     progress: Callable[[float], None] | None = None,
 ) -> None:
     """Write a TIN as OBJ; :func:`read` gives the same vertices and triangles back.
-
-    Parameters and errors are those of every writer, see :class:`.Format`; and:
 
     Parameters
     ----------

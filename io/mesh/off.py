@@ -38,7 +38,7 @@ class _Counts(NamedTuple):
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
-    """Read the vertices and faces of an OFF file in text; called as :class:`.Format` says.
+    """Read the vertices and faces of an OFF file in text.
 
     CRS and unit default to those in the comments ``# crs: ...`` and ``# elevation unit: ...``.
     Polygons are cut into triangles; normals, colours and texture (NOFF, COFF, STOFF) are skipped. A
@@ -131,10 +131,7 @@ def _parse_faces(rows: TextRows) -> tuple[Int64Array, Int64Array]:
 
 
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
-    """Write a TIN as OFF; :func:`read` gives the same vertices and triangles back.
-
-    Parameters and errors are those of every writer, see :class:`.Format`.
-    """
+    """Write a TIN as OFF; :func:`read` gives the same vertices and triangles back."""
     tin = common.require_tin(surface, path, format_name="OFF")
     with replacing(path, binary=False) as file:
         file.write("OFF\n")

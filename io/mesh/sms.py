@@ -43,11 +43,11 @@ _EDGES = ("E2L", "E3L")
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
     """Read a 2DM mesh: nodes in any order with gaps, elements, node strings.
 
-    Called as :class:`.Format` says; the file tells neither CRS nor unit. Quadrilaterals (E4Q, and
-    those within E8Q and E9Q) are cut along a diagonal, which the report tells; elements with
-    midside nodes (E6T, E8Q, E9Q) are cut at these. Node strings along edges become lines: of the
-    boundary if they lie on it, else hard breaklines. Elements that are lines and materials are left
-    out and told. A file without faces gives a survey.
+    The file tells neither CRS nor unit. Quadrilaterals (E4Q, and those within E8Q and E9Q) are cut
+    along a diagonal, which the report tells; elements with midside nodes (E6T, E8Q, E9Q) are cut at
+    these. Node strings along edges become lines: of the boundary if they lie on it, else hard
+    breaklines. Elements that are lines and materials are left out and told. A file without faces
+    gives a survey.
 
     Raises
     ------
@@ -175,8 +175,7 @@ def _describe_losses(cards: dict[str, TextRows], n_quadrilaterals: int) -> list[
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Write a TIN as 2DM, numbers ascending from 1; :func:`read` gives the same TIN back.
 
-    Lines of the TIN become node strings, as do chains of its other constrained edges. Parameters
-    and errors are those of every writer, see :class:`.Format`.
+    Lines of the TIN become node strings, as do chains of its other constrained edges.
     """
     tin = common.require_tin(surface, path, format_name="2DM")
     with replacing(path, binary=False) as file:

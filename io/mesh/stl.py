@@ -57,8 +57,8 @@ _RECORD = re.compile(r"origin (\S+) (\S+) (\S+)(?: crs (\S+))?(?: z (\S+))?")
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN:
     """Read a binary STL file; corners at the same place become one vertex.
 
-    Called as :class:`.Format` says. CRS and unit default to those recorded in the header, whose
-    origin is added back, if there is one; a text STL is refused.
+    CRS and unit default to those recorded in the header, whose origin is added back, if there is
+    one; a text STL is refused.
     """
     content = read_content(path)
     facets = _find_facets(content, path)
@@ -136,8 +136,6 @@ def write(
     progress: Callable[[float], None] | None = None,
 ) -> None:
     """Write a TIN as binary STL, relative to an origin that the header records.
-
-    Parameters and errors are those of every writer, see :class:`.Format`; and:
 
     Parameters
     ----------

@@ -69,8 +69,7 @@ def read(
 
     CRS and unit default to those of the grid-mapping variable and of the variable of elevations.
     Polygons are cut into triangles, which the report tells; other variables, and fields that change
-    in time, are left out. A mesh without faces gives a survey. Parameters and errors are those of
-    every reader, see :class:`.Format`; and:
+    in time, are left out. A mesh without faces gives a survey.
 
     Parameters
     ----------
@@ -201,10 +200,7 @@ def _find_opposite(triangles: Int32Array, edges: Int64Array) -> NDArray[np.intp]
 
 
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
-    """Write a TIN as UGRID 1.0 in netCDF 4.
-
-    Parameters and errors are those of every writer, see :class:`.Format`.
-    """
+    """Write a TIN as UGRID 1.0 in netCDF 4."""
     tin = require_tin(surface, path, format_name="UGRID")
     netcdf = _optional.load("netCDF4", "Writing UGRID files")
     with replacing_path(path) as beside:

@@ -34,8 +34,6 @@ def write(
 ) -> None:
     """Write one band of a raster as an Esri ASCII grid, and its CRS beside it, as ``.prj``.
 
-    Parameters and errors are those of every writer, see :class:`.Format`; and:
-
     Parameters
     ----------
     band : str, optional

@@ -123,15 +123,11 @@ def read(
 ) -> Survey:
     """Read a raster as points, one at the centre of every cell that has an elevation.
 
+    The points are transformed to ``crs``, nothing is resampled. ``z_unit`` may also be that of the
+    band or that of the vertical axis of its CRS, if they differ.
+
     Parameters
     ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        CRS wanted. The points are transformed to it, nothing is resampled. It declares the CRS
-        of a raster that has none.
-    z_unit : Unit or str, optional
-        Unit of the elevations, if neither the band nor the vertical axis of its CRS gives one; or
-        the one of the two that is right, if they differ.
     band : int, optional
         Band to read, from 1; default the first.
     window : (4,) sequence of int, or Bounds, optional
@@ -142,13 +138,9 @@ def read(
     most_cells : int, optional
         Read so many cells at most: every n-th row and column of a larger raster, with the smallest
         n for which they are no more, which ``notes`` tell. Not with ``stride``.
-    nodata : float or sequence of float, optional
-        Elevations that stand for no data, besides the one that the raster declares.
     fill : bool
         Let the surface span the voids. Otherwise it ends at the cells around them, along the
         rings of ``Survey.extent``.
-    progress : callable, optional
-        Called with the fraction done, ascending, strip by strip. What it raises ends the call.
 
     Returns
     -------
@@ -234,10 +226,6 @@ def read_georeference(
     path: Path,
 ) -> tuple[tuple[float, ...], tuple[int, int], str | None]:
     """Return where the cells of a raster lie, read in a child from its header.
-
-    Parameters
-    ----------
-    path : Path
 
     Returns
     -------

@@ -49,8 +49,6 @@ def write(
 ) -> None:
     """Write a raster as a tiled GeoTIFF, compressed without loss.
 
-    Parameters and errors are those of every writer, see :class:`.Format`; and:
-
     Parameters
     ----------
     overviews : {"average", "nearest", "none"}, optional

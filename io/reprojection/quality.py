@@ -26,11 +26,6 @@ class Quality(NamedTuple):
 def judge(source: CRS, target: CRS, transformer: Any) -> Quality:
     """Say how good the operation is that a transformer has just used.
 
-    Parameters
-    ----------
-    source, target : CRS
-    transformer : pyproj.Transformer
-
     Notes
     -----
     PROJ chooses among the operations whose grids are there, by place and accuracy. It calls one

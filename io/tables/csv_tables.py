@@ -31,9 +31,8 @@ def write(
 ) -> None:
     """Write a table, or points with their columns: cells parted by commas, in a ``.tsv`` by tabs.
 
-    Parameters and errors are those of every writer, see :class:`.Format`; features that are lines
-    or polygons, and a column of points with the name of a coordinate, are refused with a
-    FormatError.
+    Features that are lines or polygons, and a column of points with the name of a coordinate, are
+    refused with a FormatError.
 
     Notes
     -----

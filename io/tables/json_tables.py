@@ -23,8 +23,6 @@ _CHUNK_ROWS = 50_000
 def write(table: Table, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Write a table as an object with ``name``, ``notes``, ``units`` and ``rows``.
 
-    Parameters and errors are those of every writer, see :class:`.Format`.
-
     Notes
     -----
     Each row is an object of the columns. ``units`` has the symbol of each column that has a unit,

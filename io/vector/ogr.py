@@ -41,15 +41,14 @@ def write_layer(
     geometry_type: str | None = None,
     **options: str,
 ) -> None:
-    """Write features as one layer.
+    """Write features as one layer, called as the product, else as the file that is ``shown``.
 
     Parameters
     ----------
-    features : Features
     path : Path
         A new file.
     shown : Path
-        What it is called in sentences; the layer is called as the product, else as this file.
+        What it is called in sentences.
     driver : str
         Name of GDAL's driver.
     names : sequence of str, optional

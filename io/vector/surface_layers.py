@@ -40,8 +40,6 @@ def write_flatgeobuf(surface: Writable, path: Path, *, kind: FeatureKind | None 
 
     Parameters
     ----------
-    surface : TIN, Survey or Features
-    path : Path
     kind : {"triangles", "points", "edges", "lines", "hull"}, optional
         Of a TIN; default triangles.
     """

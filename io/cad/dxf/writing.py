@@ -49,7 +49,6 @@ def write(
 
     Triangles become 3DFACEs on the layer TIN, lines 3D polylines on BREAKLINES, BOUNDARY and so on,
     contours plane polylines with an elevation on CONTOURS and INDEX_CONTOURS, points POINTs.
-    Parameters and errors are those of every writer, see :class:`.Format`; and:
 
     Parameters
     ----------

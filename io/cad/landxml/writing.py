@@ -60,8 +60,7 @@ def write(
     """Write a TIN, the points and lines of a survey, or contours and other lines.
 
     Of a survey points become CgPoints and lines the source data of a surface; of features points
-    become CgPoints, lines of one elevation contours, other lines breaklines. Parameters and errors
-    are those of every writer, see :class:`.Format`; and:
+    become CgPoints, lines of one elevation contours, other lines breaklines.
 
     Parameters
     ----------

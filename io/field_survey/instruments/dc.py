@@ -46,17 +46,7 @@ def read(
     encoding: str | None = None,
     source_crs: CrsLike | None = None,
 ) -> Survey:
-    """Read points of a Trimble DC file.
-
-    Parameters
-    ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-    z_unit : Unit or str, optional
-        Which feet the file is in, if it is in feet.
-    encoding : str, optional
-    source_crs : CRS, str, int or pyproj.CRS, optional
-        CRS in which the file's coordinates are, if not ``crs``.
+    """Read points of a Trimble DC file; ``z_unit`` says which feet it is in, if it is in feet.
 
     Returns
     -------

@@ -82,8 +82,6 @@ def read(
 ) -> Survey:
     """Read points of a Leica GSI file.
 
-    Parameters and errors are those of :func:`.dc.read`; and:
-
     Parameters
     ----------
     code_blocks : {"before", "after"}, optional

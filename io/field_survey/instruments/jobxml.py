@@ -49,9 +49,8 @@ def read(
 ) -> Survey:
     """Read points of a Trimble JobXML file.
 
-    Parameters and errors are those of :func:`.dc.read`. The file names its coordinate system in
-    words of its own: ``crs`` is that of the grid coordinates, whose metres are converted to its
-    unit; of units only the metre is taken.
+    The file names its coordinate system in words of its own: ``crs`` is that of the grid
+    coordinates, whose metres are converted to its unit; of units only the metre is taken.
 
     Returns
     -------

@@ -70,8 +70,6 @@ def read(
 ) -> Survey:
     """Read points of an SDR file.
 
-    Parameters and errors are those of :func:`.dc.read`; and:
-
     Parameters
     ----------
     refraction : float, optional

@@ -42,8 +42,6 @@ def write(
 ) -> None:
     """Write a TIN as CityJSON 2.0.
 
-    Parameters and errors are those of every writer, see :class:`.Format`; and:
-
     Parameters
     ----------
     precision : float, optional

@@ -48,8 +48,6 @@ _PAGE = 1 << 15
 def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
     """Write all that a TIN is as a GeoPackage; :func:`read` gives it back, bit for bit.
 
-    Parameters are those of every writer, see :class:`.Format`.
-
     Raises
     ------
     WriteError

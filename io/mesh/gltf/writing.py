@@ -68,8 +68,6 @@ def write(
 ) -> None:
     """Write a TIN as GLB.
 
-    Parameters and errors are those of every writer, see :class:`.Format`; and:
-
     Parameters
     ----------
     drape : path-like, optional

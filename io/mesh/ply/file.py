@@ -57,7 +57,7 @@ _TYPE_NAMES = {
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
-    """Read a PLY file, text or binary of either byte order; called as :class:`.Format` says.
+    """Read a PLY file, text or binary of either byte order.
 
     CRS and unit default to those named in the header. Polygons are cut into triangles, and further
     vertex properties become attributes; other properties and elements are skipped. A file without
@@ -160,7 +160,7 @@ def write(
     """Write a TIN, or the points of a survey, as binary PLY; :func:`read` gives it back.
 
     Of the attributes of points those that are numbers are written (whole numbers beyond 32 bits as
-    double); PLY has no text. Parameters and errors are those of every writer, see :class:`.Format`.
+    double); PLY has no text.
     """
     surface = common.require_writable(surface, path)
     body = {"vertex": _pack_vertices(surface.points, surface.attributes)}

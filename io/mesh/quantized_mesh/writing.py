@@ -69,8 +69,7 @@ def write(
 ) -> None:
     """Write a TIN as a folder of quantized-mesh 1.0 tiles with normals and ``layer.json``.
 
-    A folder that holds such tiles is replaced, another one must be empty. Parameters and errors are
-    those of every writer, see :class:`.Format`; and:
+    A folder that holds such tiles is replaced, another one must be empty.
 
     Parameters
     ----------

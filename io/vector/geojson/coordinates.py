@@ -63,10 +63,6 @@ class Places(NamedTuple):
 def project_to_wgs84(surface: Located) -> Places:
     """Move points to WGS 84 longitude, latitude and elevation in metres, rounded.
 
-    Parameters
-    ----------
-    surface : TIN, Survey, or another holder of points
-
     Raises
     ------
     CrsError

@@ -44,27 +44,8 @@ def write_features(
     projected: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> None:
-    """Write features as GeoJSON.
+    """Write features as GeoJSON; options and errors are those of :func:`.writing.write`.
 
-    Parameters
-    ----------
-    features : Features
-        The CRS must be known, unless ``projected``.
-    path : Path
-    projected : bool
-        Leave the coordinates in the CRS, and name it as the specification of 2008 does.
-    progress : callable, optional
-        Called with the fraction done.
-
-    Raises
-    ------
-    CrsError
-        If the CRS is not known, or puts points outside the Earth.
-    WriteError
-        If the file cannot be written, or a feature crosses the antimeridian.
-
-    Notes
-    -----
     As a surface's GeoJSON: longitude and latitude with 9 decimals, elevations in metres with 6. A
     position whose elevation is not known has two numbers. Columns stay in their own units, which
     the member ``units`` names (``"unknown"`` if they are not known); exterior rings run

@@ -54,11 +54,10 @@ def write(
 ) -> None:
     """Write a surface, the points of a survey, or features as GeoJSON.
 
+    The CRS must be known, unless ``projected``.
+
     Parameters
     ----------
-    surface : TIN, Survey or Features
-        Its CRS must be known, unless ``projected``.
-    path : Path
     kind : {"triangles", "points", "edges", "lines", "hull"}, optional
         One Polygon a triangle with the properties ``id``, ``slope`` and ``aspect`` (degrees; null
         where there is none) and ``area`` (in the plane, square metres); one Point a vertex, or a
@@ -70,8 +69,6 @@ def write(
         Leave the coordinates in the CRS, every digit kept, and name it in the ``crs`` member of
         the 2008 specification: not RFC 7946, but GDAL and QGIS understand it. Default WGS 84
         longitude and latitude with 9 decimals, elevation in metres with 6.
-    progress : callable, optional
-        Called with the fraction done.
 
     Raises
     ------
