@@ -101,7 +101,7 @@ def read(
     progress: Callable[[float], None] | None = None,
     **options: Any,
 ) -> Any:
-    """Read elevation points or a TIN; the reader is chosen by content and suffix.
+    r"""Read elevation points or a TIN; the reader is chosen by content and suffix.
 
     Parameters
     ----------
@@ -154,11 +154,12 @@ def read(
     >>> import tinsmith as ts
     >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
-    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:32616")
+    >>> rows = ["number,easting,northing,elevation", "1,0,0,5", "2,4,0,6", "3,0,3,8"]
     >>> with TemporaryDirectory() as folder:
-    ...     path = ts.write(tin, Path(folder, "surface.ply"))
-    ...     ts.read(Path(folder, "surface.ply"))
-    <TIN: 3 vertices, 1 triangle, z 5 to 8, crs EPSG:32616>
+    ...     path = Path(folder, "site.csv")
+    ...     size = path.write_text("\n".join(rows))
+    ...     ts.read(path, crs="EPSG:32616")
+    <Survey: 3 points from site.csv, attributes number, crs EPSG:32616>
     """
     return read_as_wished(
         path,

@@ -75,11 +75,10 @@ def write(
     >>> import tinsmith as ts
     >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
-    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:32616")
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]], crs="EPSG:32616")
     >>> with TemporaryDirectory() as folder:
-    ...     path = ts.write(tin, Path(folder, "surface.ply"))
-    ...     ts.read(Path(folder, "surface.ply"))
-    <TIN: 3 vertices, 1 triangle, z 5 to 8, crs EPSG:32616>
+    ...     ts.write(ts.contours(tin, interval=1.0), Path(folder, "contours.xml")).name
+    'contours.xml'
     """
     file = as_path(path)
     chosen = find_writer(file, format, (find_kind(obj, file),))

@@ -44,9 +44,10 @@ from .table import describe_columns, describe_faults_of_rows, read_cells, read_t
 from .truncation import leave_out_cut_row
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...arrays import AnyArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from .columns import Columns
@@ -76,7 +77,7 @@ def read(
     source_crs: CrsLike | None = None,
     nodata: float | Sequence[float] | None = None,
     skip_bad: bool = False,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> Survey:
     """Read survey points.
 
@@ -296,7 +297,7 @@ def write(
     columns: str | None = None,
     delimiter: str | None = None,
     header: bool | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> None:
     """Write points; of a TIN its vertices.
 
@@ -412,9 +413,7 @@ def _choose_by_letters(
     return chosen
 
 
-def _iterate_rows(
-    columns: Sequence[AnyArray], progress: Callable[[float], None] | None
-) -> Iterator[tuple[Any, ...]]:
+def _iterate_rows(columns: Sequence[AnyArray], progress: Tell | None) -> Iterator[tuple[Any, ...]]:
     """Walk the rows as Python values; a float's text is the shortest that reads back the same."""
     count = len(columns[0])
     for start in range(0, count, _CHUNK_ROWS):

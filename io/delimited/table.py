@@ -361,17 +361,7 @@ def _measure_distinct_share(values: Float64Array) -> float:
 
 
 def read_table(cells: Cells, layout: Layout, columns: Columns, lines: TextLines) -> Table:
-    """Take the coordinates and the attributes of rows; rows with bad numbers become faults.
-
-    Parameters
-    ----------
-    cells : Cells
-    layout : Layout
-    columns : Columns
-        What the columns mean.
-    lines : TextLines
-        For sentences.
-    """
+    """Take the coordinates and the attributes of rows; rows with bad numbers become faults."""
     has_groups = _has_groups(cells, columns.coordinates, layout)
     numbers = [
         _parse_numbers(cells.columns[column], layout, has_groups=has_groups)

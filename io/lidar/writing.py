@@ -17,9 +17,10 @@ from ..mesh.common import require_writable
 from ..reprojection.crs_kept import require_kept
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...arrays import AnyArray, Float64Array, Int32Array
     from ...crs import CRS
 
@@ -74,11 +75,7 @@ class _Scaling(NamedTuple):
 
 
 def write(
-    surface: TIN | Survey,
-    path: Path,
-    *,
-    scale: float | None = None,
-    progress: Callable[[float], None] | None = None,
+    surface: TIN | Survey, path: Path, *, scale: float | None = None, progress: Tell | None = None
 ) -> None:
     """Write the points of a survey, or the vertices of a TIN, as LAS 1.4; ``.laz`` is compressed.
 

@@ -21,9 +21,9 @@ from ..isolated import run_isolated
 from .common import choose_reference, make_survey, make_tin, read_content, require_tin
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...arrays import BoolArray, Int32Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
@@ -68,7 +68,7 @@ def _flag_edges(triangles: Int32Array, lines: Int32Array, n_points: int) -> Bool
     return np.isin(edge_keys(edges, n_points), edge_keys(lines, n_points))
 
 
-def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
+def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN as a Gmsh file, MSH 2.2 in text."""
     tin = require_tin(surface, path, format_name="Gmsh")
     meshio = _optional.load("meshio", "Writing Gmsh files")

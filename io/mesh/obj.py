@@ -22,10 +22,11 @@ from .texture import choose_picture, load_texture
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
     from typing import IO
 
+    from ..._progress import Tell
     from ...arrays import AnyArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
@@ -169,17 +170,15 @@ def write(
     *,
     drape: str | os.PathLike[str] | None = None,
     texture: str | os.PathLike[str] | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> None:
     """Write a TIN as OBJ; :func:`read` gives the same vertices and triangles back.
 
     Parameters
     ----------
-    drape : path-like, optional
-        Picture to lay over it: a GeoTIFF in any CRS, or a PNG or JPEG file with a world file beside
-        it. The material (``.mtl``) and the picture are written beside the file, under its name.
-    texture : path-like, optional
-        The former name of ``drape``.
+    drape, texture : path-like, optional
+        Picture to lay over it, as :func:`.gltf.writing.write` takes it. The material (``.mtl``) and
+        the picture are written beside the file, under its name.
 
     Raises
     ------
@@ -217,9 +216,7 @@ def _require_other_file(texture: str | os.PathLike[str], targets: Sequence[Path]
             )
 
 
-def _write_body(
-    file: IO[str], tin: TIN, texture: Texture | None, progress: Callable[[float], None] | None
-) -> None:
+def _write_body(file: IO[str], tin: TIN, texture: Texture | None, progress: Tell | None) -> None:
     write_reference(file, tin)
     if texture is not None:
         name = PurePath(file.name).with_suffix(".mtl").name

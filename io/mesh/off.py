@@ -19,9 +19,10 @@ from .text_rows import TextRows, describe_row_fault, parse_integers, split_rows
 from .text_writing import BATCH, write_batches, write_reference
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...arrays import Int64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
@@ -130,7 +131,7 @@ def _parse_faces(rows: TextRows) -> tuple[Int64Array, Int64Array]:
     return np.array(found, np.int64), np.array(offsets, np.int64)
 
 
-def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
+def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN as OFF; :func:`read` gives the same vertices and triangles back."""
     tin = common.require_tin(surface, path, format_name="OFF")
     with replacing(path, binary=False) as file:

@@ -19,9 +19,10 @@ from .text_rows import TextRows, parse_integers, split_rows
 from .text_writing import BATCH, write_batches
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...arrays import Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
@@ -172,7 +173,7 @@ def _describe_losses(cards: dict[str, TextRows], n_quadrilaterals: int) -> list[
     return notes
 
 
-def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
+def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN as 2DM, numbers ascending from 1; :func:`read` gives the same TIN back.
 
     Lines of the TIN become node strings, as do chains of its other constrained edges.

@@ -35,9 +35,9 @@ from .common import (
 from .solid import build_solid
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...arrays import AnyArray, Float32Array, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN
@@ -133,7 +133,7 @@ def write(
     scale: float | None = None,
     size: float | None = None,
     exaggeration: float = 1.0,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> None:
     """Write a TIN as binary STL, relative to an origin that the header records.
 

@@ -34,11 +34,12 @@ from .common import (
 from .linework import Chain, add_lines, chain_edges
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from ..._progress import Tell
     from ...arrays import AnyArray, Float64Array, Int32Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
@@ -199,7 +200,7 @@ def _find_opposite(triangles: Int32Array, edges: Int64Array) -> NDArray[np.intp]
     return np.asarray(np.argmin(is_end, axis=1))
 
 
-def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
+def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN as UGRID 1.0 in netCDF 4."""
     tin = require_tin(surface, path, format_name="UGRID")
     netcdf = _optional.load("netCDF4", "Writing UGRID files")

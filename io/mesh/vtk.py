@@ -23,9 +23,10 @@ from . import common
 from .vtk_child import catch_errors, load_vtk_class
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...arrays import AnyArray, Float64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
@@ -117,7 +118,7 @@ def _require_likely_counts(content: bytes, path: Path) -> None:
             )
 
 
-def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
+def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN as VTK XML: an UnstructuredGrid to ``.vtu``, else PolyData."""
     tin = common.require_tin(surface, path, format_name="VTK")
     pv = _optional.load("pyvista", "Writing VTK files")

@@ -119,7 +119,7 @@ def read(
     most_cells: int | None = None,
     nodata: float | Sequence[float] | None = None,
     fill: bool = False,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> Survey:
     """Read a raster as points, one at the centre of every cell that has an elevation.
 

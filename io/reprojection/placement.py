@@ -50,22 +50,11 @@ def place(
     unit: Unit | None = None,
     looks_at_area: bool = True,
 ) -> Placed:
-    """Bring points into a projected CRS.
+    """Bring points, (n, 3), into a projected CRS: the target, else their source.
 
-    Parameters
-    ----------
-    points : (n, 3) float64 array
-    source : CRS, optional
-        CRS of the points; unknown points are declared to be in the target.
-    target : CRS, optional
-        CRS wanted; default the source.
-    path : Path
-        For sentences.
-    unit : Unit, optional
-        Unit of the elevations, if it is known otherwise than by the source.
-    looks_at_area : bool, optional
-        Whether it is told which points lie outside the area of use of either CRS; False where the
-        reader has looked at it.
+    Points without a source are declared to be in the target. ``unit`` is that of the elevations, if
+    it is known otherwise than by the source. Which points lie outside the area of use of either CRS
+    is not told where the reader has looked at it.
 
     Raises
     ------

@@ -26,9 +26,10 @@ from .names import APPLICATION, CRS_PROPERTY, ELEVATION_PROPERTY, LAYERS, UNKNOW
 from .units import find_code
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
     from pathlib import Path
 
+    from ...._progress import Tell
     from ....crs import Unit, UnitLike
 
 __all__ = ["write"]
@@ -43,7 +44,7 @@ def write(
     version: DrawingVersion = "R2010",
     unit: UnitLike | None = None,
     labels: bool = True,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> None:
     """Write a TIN, a survey, or features as a DXF drawing.
 

@@ -22,9 +22,9 @@ from .properties import ELEVATION_UNIT, FEATURE, UNKNOWN
 from .units import name_unit
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
+    from ...._progress import Tell
     from ....arrays import Float64Array
     from ....crs import Unit, UnitLike
 
@@ -55,7 +55,7 @@ def write(
     *,
     surface: str = "surface",
     unit: UnitLike | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> None:
     """Write a TIN, the points and lines of a survey, or contours and other lines.
 
@@ -108,7 +108,7 @@ def _write_content(
     obj: TIN | Survey | Features,
     surface: str,
     factor: float,
-    progress: Callable[[float], None] | None,
+    progress: Tell | None,
 ) -> None:
     if isinstance(obj, TIN):
         points = _scale(obj.points, factor)
@@ -190,7 +190,7 @@ def _write_definition(
     file: IO[str],
     tin: TIN,
     points: Float64Array,
-    progress: Callable[[float], None] | None,
+    progress: Tell | None,
 ) -> None:
     total = len(points) + len(tin.triangles)
     low, high = float(points[:, 2].min()), float(points[:, 2].max())
@@ -224,7 +224,7 @@ def _format_faces(tin: TIN, start: int, end: int) -> str:
     )
 
 
-def _report(progress: Callable[[float], None] | None, done: float) -> None:
+def _report(progress: Tell | None, done: float) -> None:
     if progress is not None:
         progress(done)
 

@@ -31,9 +31,9 @@ from .lines import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
+    from ...._progress import Tell
     from ....arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ....crs import CrsLike, UnitLike
     from ....tin.constraints.breaklines import Lines
@@ -154,9 +154,7 @@ def _find_vertex_attributes(vertices: Table) -> dict[str, AnyArray]:
     }
 
 
-def write(
-    surface: TIN | Survey, path: Path, *, progress: Callable[[float], None] | None = None
-) -> None:
+def write(surface: TIN | Survey, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN, or the points of a survey, as binary PLY; :func:`read` gives it back.
 
     Of the attributes of points those that are numbers are written (whole numbers beyond 32 bits as

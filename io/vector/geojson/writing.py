@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
+    from ...._progress import Tell
     from ....arrays import BoolArray, Float64Array, Int32Array
     from ....tin import TIN
 
@@ -50,7 +51,7 @@ def write(
     *,
     kind: Kind | None = None,
     projected: bool = False,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> None:
     """Write a surface, the points of a survey, or features as GeoJSON.
 
