@@ -24,10 +24,11 @@ class CellBounds:
     data: bytes
     """The rows, with a line feed between them."""
     before: Int64Array
-    ends: Int64Array
-    """Both (n, k), for each cell of n rows and k columns the byte before its first one (-1 for the
-    first of all), and the byte behind its last one. Quotes around a cell are part of it.
+    """(n, k), for each cell of n rows and k columns the byte before its first one (-1 for the first
+    of all). Quotes around a cell are part of it.
     """
+    ends: Int64Array
+    """(n, k), the byte behind its last one."""
 
     def __len__(self) -> int:
         return len(self.ends)

@@ -59,8 +59,9 @@ class Column:
     is_padded: bool = False
     """Whether numbers have leading zeros."""
     text_share: float = 0.0
+    """Of the cells, those that are no numbers and not empty."""
     distinct_share: float = 1.0
-    """Of the cells, those that are no numbers and not empty; of the values, those that differ."""
+    """Of the values, those that differ."""
 
     @property
     def counts_rows(self) -> bool:

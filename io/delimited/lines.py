@@ -39,8 +39,9 @@ class TextLines:
 
     data: bytes
     starts: Int64Array
+    """(k,), the first byte of every line."""
     ends: Int64Array
-    """Both (k,), first byte of every line and the byte behind its last, without the line end."""
+    """(k,), the byte behind its last one, without the line end."""
     is_whole: bool
     """Whether the last line has an end, too."""
 

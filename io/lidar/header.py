@@ -67,12 +67,12 @@ class Header:
     point_bytes: int
     is_compressed: bool
     count: int
-    """Points."""
+    """Of points."""
     offset: int
     """Where the points begin."""
     scales: np.ndarray[tuple[int], np.dtype[np.float64]]
     offsets: np.ndarray[tuple[int], np.dtype[np.float64]]
-    """Both (3,), a coordinate is its whole number times the scale plus the offset."""
+    """Both (3,): a coordinate is its whole number times the scale plus the offset."""
     low: np.ndarray[tuple[int], np.dtype[np.float64]]
     high: np.ndarray[tuple[int], np.dtype[np.float64]]
     """Both (3,), the bounds that it gives, which no coordinate has to keep to."""

@@ -71,8 +71,9 @@ class Tile:
     triangles: Int64Array
     """(m, 3), counter-clockwise seen from above."""
     lowest: float
+    """Height of the step 0, metres above the ellipsoid."""
     highest: float
-    """Heights of the steps 0 and 32767, metres above the ellipsoid."""
+    """Height of the step 32767 likewise."""
     normals: Float64Array | None = None
     """(n, 3), unit vectors in the axes of the globe."""
 
