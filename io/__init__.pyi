@@ -17,9 +17,9 @@ from .raster.libraries import to_rasterio as to_rasterio
 from .reading import read as read
 from .reading import read_points as read_points
 from .reading import read_tin as read_tin
-from .registry import Format as Format
-from .registry import find_format as find_format
-from .registry import known_formats as known_formats
+from .registry.format import Format as Format
+from .registry.lookup import find_format as find_format
+from .registry.lookup import known_formats as known_formats
 from .reprojection.surfaces import reproject as reproject
 from .reprojection.transformation import LengthUnit as LengthUnit
 from .reprojection.transformation import length_unit as length_unit

@@ -31,19 +31,8 @@ from .isolated.spooling import (
     translate_system_errors,
 )
 from .raster.virtual import is_virtual
-from .registry import (
-    Format,
-    choose_clear,
-    choose_format,
-    find_format,
-    find_format_of_suffix,
-    find_suffixes,
-    known_formats,
-    list_suffixes,
-    require_options,
-    signatures,
-    takes_progress,
-)
+from .registry import lookup, signatures
+from .registry.format import Format, require_options, takes_progress
 
 if TYPE_CHECKING:
     import os
@@ -112,7 +101,7 @@ def read(
     progress: Callable[[float], None] | None = None,
     **options: Any,
 ) -> Any:
-    """Read elevation points or a TIN; the reader is chosen by content and suffix.
+    r"""Read elevation points or a TIN; the reader is chosen by content and suffix.
 
     Parameters
     ----------
@@ -165,11 +154,12 @@ def read(
     >>> import tinsmith as ts
     >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
-    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:32616")
+    >>> rows = ["number,easting,northing,elevation", "1,0,0,5", "2,4,0,6", "3,0,3,8"]
     >>> with TemporaryDirectory() as folder:
-    ...     path = ts.write(tin, Path(folder, "surface.ply"))
-    ...     ts.read(Path(folder, "surface.ply"))
-    <TIN: 3 vertices, 1 triangle, z 5 to 8, crs EPSG:32616>
+    ...     path = Path(folder, "site.csv")
+    ...     size = path.write_text("\n".join(rows))
+    ...     ts.read(path, crs="EPSG:32616")
+    <Survey: 3 points from site.csv, attributes number, crs EPSG:32616>
     """
     return read_as_wished(
         path,
@@ -413,8 +403,8 @@ def _read_file(
     if chosen.read is None:
         raise FormatError(
             f"'{file}' is {chosen.description}, a format that is written, not read: "
-            f"{list_suffixes('read')} can be read.",
-            known=find_suffixes("read"),
+            f"{lookup.list_suffixes('read')} can be read.",
+            known=lookup.find_suffixes("read"),
         )
     reader = chosen.load("read")
     of_file = {name: declared[name] for name in declared if name != "crs"} | dict(options)
@@ -450,7 +440,7 @@ def _blame_plug_in(one: Format, file: Path, reason: str) -> ReadError:
 
 def _choose_format(file: Path, name: str | None) -> Format:
     """Return the format of a file that is there and not empty, or of a folder."""
-    named = None if name is None else find_format(name, "read")
+    named = None if name is None else lookup.find_format(name, "read")
     if _is_folder(file):
         return _choose_format_of_folder(file, named)
     head = _read_head(file)
@@ -462,7 +452,7 @@ def _choose_format(file: Path, name: str | None) -> Format:
 def _find_format_of_part(file: Path) -> Format | None:
     """Return the format of a folder of which a file is a part, as its name tells."""
     name = file.name.lower()
-    return next((one for one in known_formats() if name in one.part_names), None)
+    return next((one for one in lookup.known_formats() if name in one.part_names), None)
 
 
 def _list_tiles(folder: Path, name: str | None) -> list[Path]:
@@ -473,12 +463,12 @@ def _list_tiles(folder: Path, name: str | None) -> list[Path]:
     ReadError
         If they are of several formats.
     """
-    named = None if name is None else find_format(name, "read")
-    whole = [one for one in known_formats() if one.read and one.sniff_folder is not None]
+    named = None if name is None else lookup.find_format(name, "read")
+    whole = [one for one in lookup.known_formats() if one.read and one.sniff_folder is not None]
     if named in whole or any(_recognises(one, one.sniff_folder, folder) for one in whole):
         return []
     files = sorted(one for one in folder.iterdir() if _is_visible_file(one))
-    found = {file: choose_format(_drop_packing(file), "read") for file in files}
+    found = {file: lookup.choose_format(_drop_packing(file), "read") for file in files}
     known = {file: one for file, one in found.items() if one and "Survey" in one.reads}
     kinds = {one.name for one in known.values()} if named is None else {named.name}
     tiles = [file for file, one in known.items() if one.name in kinds]
@@ -510,12 +500,12 @@ def _is_folder(file: Path) -> bool:
 
 
 def _choose_format_of_folder(folder: Path, named: Format | None) -> Format:
-    known = [one for one in known_formats() if one.read and one.sniff_folder is not None]
+    known = [one for one in lookup.known_formats() if one.read and one.sniff_folder is not None]
     if named in known:
         return named
     shown = [one for one in known if named is None and _recognises(one, one.sniff_folder, folder)]
     if shown:
-        return choose_clear(shown, f"The folder '{folder}'")
+        return lookup.choose_clear(shown, f"The folder '{folder}'")
     raise ReadError(f"'{folder}' is a folder: name a file in it.", path=folder)
 
 
@@ -558,27 +548,27 @@ def detect(path: Path, head: bytes) -> Format:
     4. Otherwise the suffix decides.
     5. A file of unknown suffix is a raster if GDAL says so.
     """
-    shown = [one for one in known_formats() if _recognises(one, one.sniff, head)]
+    shown = [one for one in lookup.known_formats() if _recognises(one, one.sniff, head)]
     if shown:
         return _choose_recognised(shown, path)
     if is_virtual(path):
-        return find_format("raster")
+        return lookup.find_format("raster")
     _require_not_foreign(path, head)
-    by_suffix = choose_format(path, "read")
+    by_suffix = lookup.choose_format(path, "read")
     if by_suffix is not None and (by_suffix.sniff is None or not _is_table(head)):
         return by_suffix
     if by_suffix is not None:
-        return find_format("delimited")
+        return lookup.find_format("delimited")
     if _is_binary(head) and _is_gdal_raster(path):
-        return find_format("raster")
-    return find_format_of_suffix(path, "read")
+        return lookup.find_format("raster")
+    return lookup.find_format_of_suffix(path, "read")
 
 
 def _choose_recognised(shown: Sequence[Format], path: Path) -> Format:
     """Return the first built-in format, else the only one of plug-ins."""
     first = shown[0]
     if not first.is_built_in:
-        return choose_clear(shown, f"The content of '{path}'")
+        return lookup.choose_clear(shown, f"The content of '{path}'")
     for other in shown[1:]:
         if not other.is_built_in:
             reason = f"it claims '{path}' too, which is read as {first.name}; format= chooses"
@@ -606,8 +596,8 @@ def _require_not_foreign(path: Path, head: bytes) -> None:
     kind = signatures.find_foreign_kind(head)
     if kind is not None:
         raise FormatError(
-            f"'{path}' is {kind}, which cannot be read: {list_suffixes('read')} can.",
-            known=find_suffixes("read"),
+            f"'{path}' is {kind}, which cannot be read: {lookup.list_suffixes('read')} can.",
+            known=lookup.find_suffixes("read"),
         )
 
 

@@ -11,14 +11,15 @@ from .._progress import Progress
 from ..errors import FormatError, TinsmithError, WriteError
 from ..terrain.results import Features, Raster, Table
 from ..tin import TIN, Survey
-from .registry import find_writer, require_options, takes_progress
+from .registry.format import require_options, takes_progress
+from .registry.lookup import find_writer
 from .registry.losses import tell_lost_lines
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Callable
 
-    from .registry import Format
+    from .registry.format import Format
 
 __all__ = ["find_kind", "write"]
 
@@ -73,11 +74,10 @@ def write(
     >>> import tinsmith as ts
     >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
-    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:32616")
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]], crs="EPSG:32616")
     >>> with TemporaryDirectory() as folder:
-    ...     path = ts.write(tin, Path(folder, "surface.ply"))
-    ...     ts.read(Path(folder, "surface.ply"))
-    <TIN: 3 vertices, 1 triangle, z 5 to 8, crs EPSG:32616>
+    ...     ts.write(ts.contours(tin, interval=1.0), Path(folder, "contours.xml")).name
+    'contours.xml'
     """
     file = as_path(path)
     chosen = find_writer(file, format, (find_kind(obj, file),))

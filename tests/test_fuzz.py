@@ -13,7 +13,7 @@ import pytest
 from fuzz import coordinates, minimise, readers, samples
 
 from tinsmith.io import reading
-from tinsmith.io.registry import known_formats
+from tinsmith.io.registry.lookup import known_formats
 
 TESTS = Path(__file__).parent
 

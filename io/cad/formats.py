@@ -1,35 +1,33 @@
 """The formats of drawings and design data."""
 
+from typing import Any
+
 from ..registry.format import SURFACES, Format
 from . import signatures
 
 __all__ = ["FORMATS"]
 
+
+def _make(name: str, description: str, *suffixes: str, **more: Any) -> Format:
+    """Describe a format that the package of its name reads and writes."""
+    where = f"{__package__}.{name}"
+    ends: dict[str, Any] = {"read": f"{where}.reading:read", "reads": ("TIN", "Survey")}
+    ends |= {"write": f"{where}.writing:write", "writes": (*SURFACES, "Features")}
+    ends["precision"] = "Coordinates come back bit for bit."
+    return Format(name=name, description=description, suffixes=suffixes, **(ends | more))
+
+
 FORMATS = (
-    Format(
-        name="landxml",
-        description="LandXML (Civil 3D, Carlson, 12d, Trimble)",
-        suffixes=(".xml", ".landxml"),
-        read="tinsmith.io.cad.landxml.reading:read",
-        reads=("TIN", "Survey"),
-        write="tinsmith.io.cad.landxml.writing:write",
-        writes=(*SURFACES, "Features"),
-        precision="Coordinates come back bit for bit.",
+    _make(
+        *("landxml", "LandXML (Civil 3D, Carlson, 12d, Trimble)", ".xml", ".landxml"),
         losses="One unit for coordinates and elevations; of a survey no attributes but number, "
         "description and code, and no erased areas; no notes and no report; vertices of no "
         "triangle.",
         loses=("elevation unit", "erased areas", "attributes", "notes", "report"),
         sniff=signatures.is_landxml,
     ),
-    Format(
-        name="dxf",
-        description="DXF drawing (AutoCAD and other CAD)",
-        suffixes=(".dxf",),
-        read="tinsmith.io.cad.dxf.reading:read",
-        reads=("TIN", "Survey"),
-        write="tinsmith.io.cad.dxf.writing:write",
-        writes=(*SURFACES, "Features"),
-        precision="Coordinates come back bit for bit.",
+    _make(
+        *("dxf", "DXF drawing (AutoCAD and other CAD)", ".dxf"),
         losses="One unit for coordinates and elevations; the numbers of vertices; attributes of "
         "points but number and description; columns of features; notes and report. R12 has no "
         "CRS.",

@@ -22,17 +22,10 @@ __all__ = ["Placing", "place_rows"]
 
 
 class Placing(NamedTuple):
-    """Coordinates where they are wanted.
-
-    Attributes
-    ----------
-    rows : list of (k, 2) or (k, 3) float64 arrays
-    crs : CRS or None
-    elevation_unit : Unit or None
-    notes : list of str
-    """
+    """Coordinates where they are wanted."""
 
     rows: list[Float64Array]
+    """Each (k, 2) or (k, 3)."""
     crs: CRS | None
     elevation_unit: Unit | None
     notes: list[str]

@@ -26,26 +26,17 @@ __all__ = ["Declared", "Measures", "Stated", "choose_measures"]
 
 
 class Stated(NamedTuple):
-    """What a file says.
-
-    Attributes
-    ----------
-    crs : CRS or None
-    unit : Unit or None
-        Of all lengths.
-    elevation_unit : Unit or None
-        Of elevations, where the file tells it apart from other lengths.
-    is_elevation_unknown : bool
-        The file says that the unit of elevations is not known.
-    what : str
-        Where it says the unit, for sentences.
-    """
+    """What a file says."""
 
     crs: CRS | None = None
     unit: Unit | None = None
+    """Of all lengths."""
     elevation_unit: Unit | None = None
+    """Of elevations, where the file tells it apart from other lengths."""
     is_elevation_unknown: bool = False
+    """The file says that the unit of elevations is not known."""
     what: str = "the file"
+    """Where it says the unit, for sentences."""
 
 
 class Declared(NamedTuple):
@@ -65,26 +56,16 @@ class Declared(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Measures:
-    """How coordinates of a file become those of a survey.
-
-    Attributes
-    ----------
-    source : CRS or None
-        CRS of the coordinates.
-    elevation_unit : Unit or None
-    scale : float
-        From the file's eastings and northings to those of the CRS.
-    elevation_scale : float
-    is_swapped : bool
-        Whether the first of two coordinates is the other one than the format says.
-    notes : tuple of str
-    """
+    """How coordinates of a file become those of a survey."""
 
     source: CRS | None
+    """CRS of the coordinates."""
     elevation_unit: Unit | None
     scale: float = 1.0
+    """From the file's eastings and northings to those of the CRS."""
     elevation_scale: float = 1.0
     is_swapped: bool = False
+    """Whether the first of two coordinates is the other one than the format says."""
     notes: tuple[str, ...] = ()
 
     def tell(self, *notes: str, first: bool = False, **changes: Any) -> Measures:

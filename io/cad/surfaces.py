@@ -29,38 +29,26 @@ millionth of a metre or foot they are the same."""
 
 
 class EdgeLine(NamedTuple):
-    """A line that may run along edges of a surface.
-
-    Attributes
-    ----------
-    coordinates : (k, 2) or (k, 3) float64 array
-    kind : LineKind or None
-        None for what is constrained, but no line.
-    name : str
-    source : int, optional
-        Its number as ``Lines.sources`` has it; default it is counted.
-    """
+    """A line that may run along edges of a surface."""
 
     coordinates: Float64Array
+    """(k, 2) or (k, 3)."""
     kind: LineKind | None
+    """None for what is constrained, but no line."""
     name: str
     source: int | None = None
+    """Its number as ``Lines.sources`` has it; default it is counted."""
 
 
 class Mesh(NamedTuple):
-    """Points and triangles, and what is told of them.
-
-    Attributes
-    ----------
-    points : (n, 3) float64 array
-    triangles : (m, 3) int64 array
-    constrained : (m, 3) bool array or None
-    notes : list of str
-    """
+    """Points and triangles, and what is told of them."""
 
     points: Float64Array
+    """(n, 3)."""
     triangles: Int64Array
+    """(m, 3)."""
     constrained: BoolArray | None
+    """(m, 3)."""
     notes: list[str]
 
 

@@ -19,20 +19,16 @@ _QUOTE, _SPACE, _TAB, _LINE_FEED = b'" \t\n'
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CellBounds:
-    """The cells of a table in a text.
-
-    Attributes
-    ----------
-    data : bytes
-        The rows, with a line feed between them.
-    before, ends : (n, k) int64 arrays
-        For each cell of n rows and k columns the byte before its first one (-1 for the first of
-        all), and the byte behind its last one. Quotes around a cell are part of it.
-    """
+    """The cells of a table in a text."""
 
     data: bytes
+    """The rows, with a line feed between them."""
     before: Int64Array
+    """(n, k), for each cell of n rows and k columns the byte before its first one (-1 for the first
+    of all). Quotes around a cell are part of it.
+    """
     ends: Int64Array
+    """(n, k), the byte behind its last one."""
 
     def __len__(self) -> int:
         return len(self.ends)

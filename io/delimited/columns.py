@@ -109,28 +109,20 @@ _ROLE_LETTERS = {
 
 @dataclass(frozen=True, slots=True)
 class Columns:
-    """What the columns of a table mean.
-
-    Attributes
-    ----------
-    names : tuple of str
-        One a column, for attributes and sentences.
-    roles : mapping of str to int
-        Column number (from 0) of each role found: ``"easting"``, ``"northing"``,
-        ``"elevation"``, ``"number"``, ``"description"``.
-    is_degrees : bool
-        Whether easting and northing are called longitude and latitude.
-    units : mapping of str to str
-        Words that the header uses for the units of coordinates, by role; ``{}`` if none.
-    notes : tuple of str
-        What was assumed to understand the header, in sentences.
-    """
+    """What the columns of a table mean."""
 
     names: tuple[str, ...]
+    """One a column, for attributes and sentences."""
     roles: Mapping[str, int]
+    """Column number (from 0) of each role found: ``"easting"``, ``"northing"``, ``"elevation"``,
+    ``"number"``, ``"description"``.
+    """
     is_degrees: bool = False
+    """Whether easting and northing are called longitude and latitude."""
     units: Mapping[str, str] = field(default_factory=dict)
+    """Words that the header uses for the units of coordinates, by role; ``{}`` if none."""
     notes: tuple[str, ...] = ()
+    """What was assumed to understand the header, in sentences."""
 
     @property
     def coordinates(self) -> list[int]:

@@ -48,31 +48,22 @@ _WHOLE = re.compile(r"[+-]?[0-9]+([eE][+-]?[0-9]+)?")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Column:
-    """What is in a column.
-
-    Attributes
-    ----------
-    values : (n,) float64 array
-        NaN where a cell is no number.
-    is_text : bool
-        Whether most cells are no numbers.
-    is_whole : bool
-        Whether all numbers are whole, none below zero, and written without a decimal mark.
-    is_padded : bool
-        Whether numbers have leading zeros.
-    text_share, distinct_share : float
-        Of the cells, those that are no numbers and not empty; of the values, those that differ.
-    text : str
-        The first cell of a column of text.
-    """
+    """What is in a column."""
 
     values: Float64Array
+    """(n,), NaN where a cell is no number."""
     is_text: bool = False
+    """Whether most cells are no numbers."""
     is_whole: bool = False
+    """Whether all numbers are whole, none below zero, and written without a decimal mark."""
     is_padded: bool = False
+    """Whether numbers have leading zeros."""
     text_share: float = 0.0
+    """Of the cells, those that are no numbers and not empty."""
     distinct_share: float = 1.0
+    """Of the values, those that differ."""
     text: str = ""
+    """The first cell of a column of text."""
 
     @property
     def counts_rows(self) -> bool:

@@ -59,60 +59,40 @@ _UNIT_WORDS = frozenset(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Layout:
-    """How to read the table of a text file.
-
-    Attributes
-    ----------
-    delimiter : str
-        One letter; ``BLANKS`` for runs of spaces and tabs.
-    decimal : str
-        Decimal mark, "." or ",".
-    is_decimal_told : bool
-        Whether the caller named the decimal mark.
-    count : int
-        Number of columns.
-    columns : Columns or None
-        What they mean, by the caller's word or the header; None if their content must tell.
-    rows : (n,) int64 array
-        Line numbers (from 0) of the rows.
-    has_text_tail : bool
-        Whether the last column is text that may itself hold the delimiter.
-    may_lack_tail : bool
-        Whether a row that is one cell short lacks this text: it is never a number.
-    text_columns : frozenset of int
-        Columns to be kept as text.
-    mostly_text : frozenset of int
-        Columns most of whose cells are no numbers.
-    padded : frozenset of int
-        Columns with whole numbers that have leading zeros.
-    divided : frozenset of int
-        Columns with a decimal mark or an exponent.
-    is_scan : bool
-        Whether the suffix says that rows begin with x, y, z.
-    is_announced : bool
-        Whether a point count above the table says it, too.
-    skipped : mapping of str to int
-        Lines that are no rows.
-    notes : tuple of str
-        What was assumed, in sentences.
-    """
+    """How to read the table of a text file."""
 
     delimiter: str
+    """One letter; ``BLANKS`` for runs of spaces and tabs."""
     decimal: str
+    """Decimal mark, "." or ","."""
     is_decimal_told: bool
+    """Whether the caller named the decimal mark."""
     count: int
+    """Number of columns."""
     columns: Columns | None
+    """What they mean, by the caller's word or the header; None if their content must tell."""
     rows: Int64Array
+    """(n,), line numbers (from 0) of the rows."""
     has_text_tail: bool
+    """Whether the last column is text that may itself hold the delimiter."""
     may_lack_tail: bool
+    """Whether a row that is one cell short lacks this text: it is never a number."""
     text_columns: frozenset[int]
+    """Columns to be kept as text."""
     mostly_text: frozenset[int]
+    """Columns most of whose cells are no numbers."""
     padded: frozenset[int]
+    """Columns with whole numbers that have leading zeros."""
     divided: frozenset[int]
+    """Columns with a decimal mark or an exponent."""
     is_scan: bool
+    """Whether the suffix says that rows begin with x, y, z."""
     is_announced: bool
+    """Whether a point count above the table says it, too."""
     skipped: Mapping[str, int]
+    """Lines that are no rows."""
     notes: tuple[str, ...] = ()
+    """What was assumed, in sentences."""
 
     @property
     def elevation_unit(self) -> str | None:
@@ -150,27 +130,11 @@ def find_layout(
     decimal: str | None = None,
     comment: str | None = None,
 ) -> Layout:
-    """Find how to read a table.
+    """Find how to read a table; what the caller does not know of it is found by looking.
 
-    Parameters
-    ----------
-    lines : TextLines
-    path : Path
-        For sentences.
-    columns : str, sequence of str, or mapping of str to str or int, optional
-        See :func:`find_columns_by_word`.
-    delimiter, decimal, comment : str, optional
-        As the caller knows them; found by looking otherwise.
+    A ReadError is raised if no table is there, or its columns cannot be told, a FormatError if an
+    option has a value that it cannot have.
 
-    Raises
-    ------
-    ReadError
-        If no table is there, or its columns cannot be told.
-    FormatError
-        If an option has a value that it cannot have.
-
-    Notes
-    -----
     Some hundred lines are looked at: the first ones, and others spread over the file.
 
     1. Lines that are blank or start with a comment prefix are set aside.

@@ -35,21 +35,15 @@ _LONGEST_LINE = 1_000_000
 
 @dataclass(frozen=True, eq=False)
 class TextLines:
-    r"""Text in UTF-8 whose lines end with ``"\n"``, and where its lines are.
-
-    Attributes
-    ----------
-    data : bytes
-    starts, ends : (k,) int64 arrays
-        First byte of every line and the byte behind its last, without the line end.
-    is_whole : bool
-        Whether the last line has an end, too.
-    """
+    r"""Text in UTF-8 whose lines end with ``"\n"``, and where its lines are."""
 
     data: bytes
     starts: Int64Array
+    """(k,), the first byte of every line."""
     ends: Int64Array
+    """(k,), the byte behind its last one, without the line end."""
     is_whole: bool
+    """Whether the last line has an end, too."""
 
     @classmethod
     def of(cls, data: bytes) -> TextLines:

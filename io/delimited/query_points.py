@@ -28,23 +28,16 @@ _SHOWN = 5
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class QueryPoints:
-    """A table with points at which something is asked.
-
-    Attributes
-    ----------
-    columns : dict of str to (n,) object array
-        The text of every cell, as it stands in the file.
-    xy : (n, 2) float64 array
-    is_degrees : bool
-        Whether the columns of coordinates are called longitude and latitude.
-    notes : tuple of str
-        What was assumed.
-    """
+    """A table with points at which something is asked."""
 
     columns: dict[str, ObjectArray]
+    """Each (n,), the text of every cell, as it stands in the file."""
     xy: Float64Array
+    """(n, 2)."""
     is_degrees: bool
+    """Whether the columns of coordinates are called longitude and latitude."""
     notes: tuple[str, ...]
+    """What was assumed."""
 
 
 class _Table(NamedTuple):

@@ -43,9 +43,10 @@ from .table import describe_columns, describe_faults_of_rows, read_cells, read_t
 from .truncation import leave_out_cut_row
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...arrays import AnyArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from .columns import Columns
@@ -74,18 +75,15 @@ def read(
     source_crs: CrsLike | None = None,
     nodata: float | Sequence[float] | None = None,
     skip_bad: bool = False,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> Survey:
     """Read survey points.
 
+    Longitude and latitude (WGS 84) are reprojected to ``crs``. An ``encoding`` that is not given is
+    UTF-8 or UTF-16, else Windows-1252.
+
     Parameters
     ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        CRS of the coordinates. Where the file has longitude and latitude (WGS 84), or
-        ``source_crs`` is another, points are reprojected to it.
-    z_unit : Unit or str, optional
-        Unit of the elevations, if the header does not give it.
     columns : str, sequence of str, or mapping of str to str or int, optional
         What the columns are; default by header, else by content. Letters in their order
         (``"PNEZD"``: P point number, N northing, E easting, Z elevation, D description, X
@@ -97,18 +95,9 @@ def read(
     decimal : {".", ","}, optional
     comment : str, optional
         What comment lines start with; default by looking (``# // ; ! %``), "" for none.
-    encoding : str, optional
-        Default by looking: UTF-8, UTF-16, else Windows-1252.
-    source_crs : CRS, str, int or pyproj.CRS, optional
-        CRS in which the file's coordinates are, if not ``crs``.
-    nodata : float or sequence of float, optional
-        Elevations that stand for "no data": their points are left out.
     skip_bad : bool, optional
         Whether rows with too few or too many cells, or a coordinate that is no number, are left
         out, instead of the file being refused.
-    progress : callable, optional
-        Called with the fraction done, ascending, by columns and blocks of rows. What it raises ends
-        the call.
 
     Returns
     -------
@@ -306,14 +295,12 @@ def write(
     columns: str | None = None,
     delimiter: str | None = None,
     header: bool | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> None:
     """Write points; of a TIN its vertices.
 
     Parameters
     ----------
-    obj : TIN or Survey
-    path : Path
     columns : {"PNEZD", "PENZD", "ENZ", "NEZ", ...}, optional
         Letters as in :func:`read`. Default PNEZD for a survey with numbers and descriptions;
         otherwise easting, northing, elevation and all attributes (``.xyz`` and ``.pts``: the
@@ -322,8 +309,6 @@ def write(
         One letter; default by suffix: ``.tsv`` tab, ``.xyz`` and ``.pts`` space, else comma.
     header : bool, optional
         Whether names stand in the first line; default not for ``.xyz`` and ``.pts``.
-    progress : callable, optional
-        Called with the fraction done.
 
     Raises
     ------
@@ -407,9 +392,7 @@ def _choose_by_letters(
     return chosen
 
 
-def _iterate_rows(
-    columns: Sequence[AnyArray], progress: Callable[[float], None] | None
-) -> Iterator[tuple[Any, ...]]:
+def _iterate_rows(columns: Sequence[AnyArray], progress: Tell | None) -> Iterator[tuple[Any, ...]]:
     """Walk the rows as Python values; a float's text is the shortest that reads back the same."""
     count = len(columns[0])
     for start in range(0, count, _CHUNK_ROWS):

@@ -71,19 +71,12 @@ class Fault(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cells:
-    """The rows of a table that have the right number of cells, and those that have not.
-
-    Attributes
-    ----------
-    columns : tuple of (n,) arrays
-        As :func:`.parsing.parse_column` returns them.
-    rows : (n,) int64 array
-        Line number (from 0) of each row.
-    faults : tuple of Fault
-    """
+    """The rows of a table that have the right number of cells, and those that have not."""
 
     columns: tuple[AnyArray, ...]
+    """Each (n,), as :func:`.parsing.parse_column` returns them."""
     rows: Int64Array
+    """(n,), line number (from 0) of each row."""
     faults: tuple[Fault, ...] = ()
 
 
@@ -370,17 +363,7 @@ def _measure_distinct_share(values: Float64Array) -> float:
 
 
 def read_table(cells: Cells, layout: Layout, columns: Columns, lines: TextLines) -> Table:
-    """Take the coordinates and the attributes of rows; rows with bad numbers become faults.
-
-    Parameters
-    ----------
-    cells : Cells
-    layout : Layout
-    columns : Columns
-        What the columns mean.
-    lines : TextLines
-        For sentences.
-    """
+    """Take the coordinates and the attributes of rows; rows with bad numbers become faults."""
     has_groups = _has_groups(cells, columns.coordinates, layout)
     numbers = [
         _parse_numbers(cells.columns[column], layout, has_groups=has_groups)

@@ -31,50 +31,32 @@ _LARGEST = 10 * 2**20
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """What a code becomes.
-
-    Attributes
-    ----------
-    kind : str
-        One of ``CodeKind``.
-    is_closed : bool
-        Whether its lines are rings, marked so or not.
-    arc_tolerance : float or None
-        By which chords may leave the arcs of its curves, CRS units; None is that of the table.
-    description : str
-    """
+    """What a code becomes."""
 
     kind: CodeKind
+    """One of ``CodeKind``."""
     is_closed: bool = False
+    """Whether its lines are rings, marked so or not."""
     arc_tolerance: float | None = None
+    """By which chords may leave the arcs of its curves, CRS units; None is that of the table."""
     description: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class CodeTable:
-    """What codes become, and how they are written.
-
-    Attributes
-    ----------
-    rules : mapping of str to Rule
-        By code; upper case unless ``is_exact``.
-    style : Style or None
-        None finds it out.
-    arc_tolerance : float or None
-    is_exact : bool
-        Whether upper and lower case differ.
-    is_complete : bool
-        Whether a code that it does not have is worth telling.
-    source : str
-        For sentences.
-    """
+    """What codes become, and how they are written."""
 
     rules: Mapping[str, Rule] = field(default_factory=dict)
+    """By code; upper case unless ``is_exact``."""
     style: Style | None = None
+    """None finds it out."""
     arc_tolerance: float | None = None
     is_exact: bool = False
+    """Whether upper and lower case differ."""
     is_complete: bool = True
+    """Whether a code that it does not have is worth telling."""
     source: str = "the code table"
+    """For sentences."""
 
 
 def read_code_table(table: str | os.PathLike[str] | Mapping[str, Any]) -> CodeTable:

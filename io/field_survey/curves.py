@@ -31,18 +31,13 @@ nanometre in each metre of it."""
 
 
 class Arc(NamedTuple):
-    """An arc of a circle, or its chord.
-
-    Attributes
-    ----------
-    start, end : (2,) float64 arrays
-    angle : float
-        From the tangent at the start to the chord, counter-clockwise; half of what the arc turns.
-    """
+    """An arc of a circle, or its chord."""
 
     start: Float64Array
     end: Float64Array
+    """Both (2,)."""
     angle: float
+    """From the tangent at the start to the chord, counter-clockwise; half of what the arc turns."""
 
     @property
     def length(self) -> float:

@@ -21,24 +21,16 @@ _LONGEST, LONGEST_CODE = 2_000, 64
 
 
 class Coded(NamedTuple):
-    """One code of a shot.
-
-    Attributes
-    ----------
-    code : str
-        As the table of codes writes it.
-    number : str
-        Of the line; "" if there is none.
-    marks : tuple of str
-        What its marks say, in their order.
-    words : tuple of str
-        The marks as they stand there.
-    """
+    """One code of a shot."""
 
     code: str
+    """As the table of codes writes it."""
     number: str
+    """Of the line; "" if there is none."""
     marks: tuple[Meaning, ...] = ()
+    """What its marks say, in their order."""
     words: tuple[str, ...] = ()
+    """The marks as they stand there."""
 
     @property
     def name(self) -> str:
@@ -47,18 +39,12 @@ class Coded(NamedTuple):
 
 
 class Description(NamedTuple):
-    """What is in a description.
-
-    Attributes
-    ----------
-    codes : tuple of Coded
-        Empty if it begins with no known code.
-    unread : str
-        The first word behind a code that is neither mark nor code; "" if there is none.
-    """
+    """What is in a description."""
 
     codes: tuple[Coded, ...]
+    """Empty if it begins with no known code."""
     unread: str = ""
+    """The first word behind a code that is neither mark nor code; "" if there is none."""
 
     @property
     def n_words(self) -> int:
@@ -68,16 +54,10 @@ class Description(NamedTuple):
 
 @dataclass(frozen=True)
 class Vocabulary:
-    """The words that descriptions are read by: codes, and the marks of a style.
-
-    Attributes
-    ----------
-    codes : collection of str
-        Upper case, unless the style is exact.
-    style : Style
-    """
+    """The words that descriptions are read by: codes, and the marks of a style."""
 
     codes: Collection[str]
+    """Upper case, unless the style is exact."""
     style: Style
 
     def parse(self, text: str) -> Description:

@@ -35,23 +35,14 @@ class Unread(NamedTuple):
 
 @dataclass(frozen=True)
 class Reading:
-    """Descriptions as they are read in one style.
-
-    Attributes
-    ----------
-    style : Style
-    figures : list of Figure
-    faults : list of Fault
-    unread : list of Unread
-    descriptions : dict of str to Description
-        By their texts; of those that begin with a code.
-    """
+    """Descriptions as they are read in one style."""
 
     style: Style
     figures: list[Figure]
     faults: list[Fault]
     unread: list[Unread]
     descriptions: dict[str, Description]
+    """By their texts; of those that begin with a code."""
 
     @property
     def n_faults(self) -> int:

@@ -39,36 +39,24 @@ class Fault(NamedTuple):
 
 @dataclass
 class Figure:
-    """The shots of one line.
-
-    Attributes
-    ----------
-    name : str
-        Code and number.
-    rule : Rule
-    rows : list of int
-        Of its shots.
-    marks : dict of int to tuple of str
-        What the marks at a shot say, by its place in ``rows``; most shots have none.
-    is_closed : bool
-        Whether it comes back to its first shot.
-    is_rectangle : bool
-        Whether a fourth corner closes it.
-    is_begun, is_ended : bool
-        Whether marks say so.
-    n_added : int
-        Vertices of its curves that are no shots.
-    """
+    """The shots of one line."""
 
     name: str
+    """Code and number."""
     rule: Rule
     rows: list[int] = field(default_factory=list)
+    """Of its shots."""
     marks: dict[int, tuple[Meaning, ...]] = field(default_factory=dict)
+    """What the marks at a shot say, by its place in ``rows``; most shots have none."""
     is_closed: bool = False
+    """Whether it comes back to its first shot."""
     is_rectangle: bool = False
+    """Whether a fourth corner closes it."""
     is_begun: bool = False
     is_ended: bool = False
+    """Whether marks say that it begins, and ends."""
     n_added: int = 0
+    """Vertices of its curves that are no shots."""
 
     @property
     def is_long_enough(self) -> bool:

@@ -9,8 +9,8 @@ __all__ = ["FORMATS"]
 
 
 def _make(name: str, description: str, suffix: str, sniff: Callable[[bytes], bool]) -> Format:
-    """Describe a format that the module of its name reads."""
-    read = f"{__package__}.instruments.{name}:read"
+    """Describe a format of an instrument."""
+    read = f"{__package__}.instruments.reading:read_{name}"
     return Format(
         name=name, description=description, suffixes=(suffix,), read=read, writes=(), sniff=sniff
     )

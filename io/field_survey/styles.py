@@ -68,35 +68,23 @@ COMMENTS = ",;(/"
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """How codes are written.
-
-    Attributes
-    ----------
-    name : str
-    marks : mapping of str to str
-        Words, and what each says.
-    separators : str
-        Letters that part words, as blanks do.
-    comments : str
-        Letters behind which a remark follows; quotes always do so.
-    place : {"behind", "before"}
-        Where the words stand, seen from the code.
-    others : str
-        Pattern of words that are known, such as those with a number, and not applied.
-    is_exact : bool
-        Whether upper and lower case differ.
-    least_words : int
-        How many different words of its own show that the style is meant.
-    """
+    """How codes are written."""
 
     name: str
     marks: Mapping[str, Meaning] = field(default_factory=dict)
+    """Words, and what each says."""
     separators: str = ""
+    """Letters that part words, as blanks do."""
     comments: str = COMMENTS
+    """Letters behind which a remark follows; quotes always do so."""
     place: Literal["behind", "before"] = "behind"
+    """Where the words stand, seen from the code: "behind" or "before"."""
     others: str = ""
+    """Pattern of words that are known, such as those with a number, and not applied."""
     is_exact: bool = False
+    """Whether upper and lower case differ."""
     least_words: int = 0
+    """How many different words of its own show that the style is meant."""
 
     def find_meaning(self, word: str) -> Meaning | None:
         """Return what a word says, None if it is no mark."""

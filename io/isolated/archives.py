@@ -63,10 +63,6 @@ _OFFICE = "[Content_Types].xml"
 def unpack(path: Path) -> Iterator[Path]:
     """Yield a file that can be read: ``path`` itself, or what is compressed in it.
 
-    Parameters
-    ----------
-    path : Path
-
     Yields
     ------
     Path

@@ -38,18 +38,12 @@ takes some ten."""
 
 
 class Limits(NamedTuple):
-    """What reading one file may take.
-
-    Attributes
-    ----------
-    seconds : float
-        Of processor time, until the next part of the answer.
-    memory : int
-        Bytes beyond those that the libraries take at rest, and bytes of a part of the answer.
-    """
+    """What reading one file may take."""
 
     seconds: float
+    """Of processor time, until the next part of the answer."""
     memory: int
+    """Bytes beyond those that the libraries take at rest, and bytes of a part of the answer."""
 
     @property
     def waiting_seconds(self) -> float:

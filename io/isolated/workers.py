@@ -44,9 +44,10 @@ def run_isolated(
     Parameters
     ----------
     function : str
-        ``"module:function"`` of this package. It takes the arguments and returns an
-        :class:`Answer`, or is a generator of them; a :class:`Refusal` that it raises becomes a
-        ReadError of the same sentence.
+        ``"module:function"`` of this package. It takes the arguments, of which ``path`` is the file
+        and ``shown`` its path as the user wrote it, for sentences, and returns an :class:`Answer`,
+        or is a generator of them; a :class:`Refusal` that it raises becomes a ReadError of the same
+        sentence.
     arguments : mapping
         What JSON can hold.
     path : Path

@@ -45,19 +45,12 @@ _IN_FEET = {(5703, US_SURVEY_FOOT): 6360, (5703, FOOT): 8228}
 
 
 class Reference(NamedTuple):
-    """What the coordinates of a file are measured in.
-
-    Attributes
-    ----------
-    crs : CRS or None
-        None if the file names none.
-    unit : Unit or None
-        Of elevations, if it is told apart from the CRS.
-    notes : tuple of str
-    """
+    """What the coordinates of a file are measured in."""
 
     crs: CRS | None = None
+    """None if the file names none."""
     unit: Unit | None = None
+    """Of elevations, if it is told apart from the CRS."""
     notes: tuple[str, ...] = ()
 
 

@@ -56,44 +56,29 @@ class Record(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """What a file says of itself.
-
-    Attributes
-    ----------
-    path : Path
-    size : int
-        Bytes of the file.
-    version : int
-        The minor one of LAS 1.
-    point_format, point_bytes : int
-    is_compressed : bool
-    count : int
-        Points.
-    offset : int
-        Where the points begin.
-    scales, offsets : (3,) float64 arrays
-        A coordinate is its whole number times the scale plus the offset.
-    low, high : (3,) float64 arrays
-        The bounds that it gives, which no coordinate has to keep to.
-    records : tuple of Record
-    surplus : int
-        Bytes behind the points of a file that is not compressed, which no record explains.
-    """
+    """What a file says of itself."""
 
     path: Path
     size: int
+    """Bytes of the file."""
     version: int
+    """The minor one of LAS 1."""
     point_format: int
     point_bytes: int
     is_compressed: bool
     count: int
+    """Of points."""
     offset: int
+    """Where the points begin."""
     scales: np.ndarray[tuple[int], np.dtype[np.float64]]
     offsets: np.ndarray[tuple[int], np.dtype[np.float64]]
+    """Both (3,): a coordinate is its whole number times the scale plus the offset."""
     low: np.ndarray[tuple[int], np.dtype[np.float64]]
     high: np.ndarray[tuple[int], np.dtype[np.float64]]
+    """Both (3,), the bounds that it gives, which no coordinate has to keep to."""
     records: tuple[Record, ...]
     surplus: int
+    """Bytes behind the points of a file that is not compressed, which no record explains."""
 
     @property
     def is_copc(self) -> bool:

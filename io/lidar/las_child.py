@@ -46,19 +46,9 @@ def prepare() -> None:
 def read_points(path: str, *, shown: str, wanted: dict[str, Any]) -> Iterator[Answer]:
     """Yield the points of a file that are wanted, as whole numbers, with their attributes.
 
-    Parameters
-    ----------
-    path : str
-    shown : str
-        The path as the user wrote it, for sentences.
-    wanted : dict
-        A Selection as it is sent.
-
-    Yields
-    ------
-    Answer
-        The value counts why points were left out, as :class:`Tally`. The arrays hold ``xyz``, (n,
-        3) int32, ``classes``, the points of each class, and the attributes by their names.
+    ``wanted`` is a Selection as it is sent. The value counts why points were left out, as
+    :class:`Tally`. The arrays hold ``xyz``, (n, 3) int32, ``classes``, the points of each class,
+    and the attributes by their names.
     """
     done = 0
     for points in _prefetch(_iterate_chunks(path, shown, wanted)):

@@ -65,15 +65,11 @@ def read(
 ) -> Survey:
     """Read a lidar file, or a folder of tiles as one survey.
 
+    Of a folder all files ``.las`` and ``.laz`` in it are read, in the order of their names. Points
+    are reprojected to ``crs``, which also declares the CRS of a file whose own is not understood.
+
     Parameters
     ----------
-    path : Path
-        Of a folder all files ``.las`` and ``.laz`` in it, in the order of their names.
-    crs : CRS, str, int or pyproj.CRS, optional
-        CRS wanted, to which the points are reprojected. It declares the CRS of a file that names
-        none, or one that is not understood.
-    z_unit : Unit or str, optional
-        Unit of the elevations, if the file does not say.
     classes : int or sequence of int, optional
         Classes to take, such as 2, the ground. Default all, as PDAL and LAStools do; a note says
         which there are.
@@ -90,8 +86,6 @@ def read(
     attributes : str or sequence of str, optional
         Attributes of the points to keep, by laspy's names; "all". Default classification,
         intensity, return_number and number_of_returns; an empty sequence keeps none.
-    progress : callable, optional
-        Called with the fraction of the points that were read, after each chunk of them.
 
     Returns
     -------

@@ -61,30 +61,19 @@ _GROUND = 2
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """Which points are taken; None takes all.
-
-    Attributes
-    ----------
-    classes : tuple of int, optional
-    returns : tuple of int or str, optional
-        Numbers of returns, or "first", "last", "only".
-    window : Bounds, optional
-    resolution : float, optional
-        Distance of points that is fine enough.
-    every : int
-    withheld : bool
-        Whether points that are marked as withheld are taken too.
-    attributes : tuple of str, optional
-        None for all.
-    """
+    """Which points are taken; None takes all."""
 
     classes: tuple[int, ...] | None
     returns: tuple[int | str, ...] | None
+    """Numbers of returns, or "first", "last", "only"."""
     window: Bounds | None
     resolution: float | None
+    """Distance of points that is fine enough."""
     every: int
     withheld: bool
+    """Whether points that are marked as withheld are taken too."""
     attributes: tuple[str, ...] | None
+    """None for all."""
 
     def to_request(self) -> dict[str, Any]:
         """Return it as values that JSON can hold."""
@@ -102,26 +91,19 @@ class Selection:
 
 @dataclass(slots=True, eq=False)
 class Tally:
-    """How many points there are and why some were left out, of one file or several.
-
-    Attributes
-    ----------
-    classes : (256,) int64 array
-        Points of each class, withheld ones apart.
-    withheld, of_other_classes, of_other_returns, outside, thinned : int
-        Points left out, in this order.
-    synthetic, overlap : int
-        Points among those taken that are marked so.
-    """
+    """How many points there are and why some were left out, of one file or several."""
 
     classes: Int64Array
+    """(256,), points of each class, withheld ones apart."""
     withheld: int = 0
     of_other_classes: int = 0
     of_other_returns: int = 0
     outside: int = 0
     thinned: int = 0
+    """These five are points left out, in this order."""
     synthetic: int = 0
     overlap: int = 0
+    """These two are points among those taken that are marked so."""
 
     def add(self, part: dict[str, int], classes: Int64Array) -> None:
         """Add the counts of some points."""

@@ -18,9 +18,10 @@ from ..registry.losses import tell_lost_attributes
 from ..reprojection.crs_kept import require_kept
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...arrays import AnyArray, Float64Array, Int32Array
     from ...crs import CRS
 
@@ -65,39 +66,26 @@ _EXTRA_TYPES = frozenset(("u1", "u2", "u4", "u8", "i1", "i2", "i4", "i8", "f4", 
 
 
 class _Scaling(NamedTuple):
-    """How coordinates become whole numbers.
-
-    Attributes
-    ----------
-    scales, offsets : (3,) float64 arrays
-    error : (3,) float64 array
-        By how much the coordinates that are read differ most.
-    """
+    """How coordinates become whole numbers."""
 
     scales: Float64Array
     offsets: Float64Array
+    """Both (3,)."""
     error: Float64Array
+    """(3,), by how much the coordinates that are read differ most."""
 
 
 def write(
-    surface: TIN | Survey,
-    path: Path,
-    *,
-    scale: float | None = None,
-    progress: Callable[[float], None] | None = None,
+    surface: TIN | Survey, path: Path, *, scale: float | None = None, progress: Tell | None = None
 ) -> None:
     """Write the points of a survey, or the vertices of a TIN, as LAS 1.4; ``.laz`` is compressed.
 
     Parameters
     ----------
-    surface : Survey or TIN
-    path : Path
     scale : float, optional
         Distance of neighbouring coordinates, in CRS units. Default on each axis the coarsest power
         of ten that gives every coordinate back, else the finest from a millionth on that holds the
         extent of the points in 32 bits.
-    progress : callable, optional
-        Called with the fraction done.
 
     Raises
     ------

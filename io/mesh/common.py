@@ -51,20 +51,14 @@ _MUCH = 1e-3
 
 
 class Fans(NamedTuple):
-    """Triangles of polygons.
-
-    Attributes
-    ----------
-    triangles : (m, 3) int64 array
-    polygon : (m,) int64 array
-        The polygon that each triangle comes from.
-    notes : tuple of str
-        Whether polygons were cut, which has more than one way.
-    """
+    """Triangles of polygons."""
 
     triangles: Int64Array
+    """(m, 3)."""
     polygon: Int64Array
+    """(m,), the polygon that each triangle comes from."""
     notes: tuple[str, ...] = ()
+    """Whether polygons were cut, which has more than one way."""
 
 
 def read_content(path: Path) -> bytes:

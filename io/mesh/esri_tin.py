@@ -58,7 +58,7 @@ class _Tables(NamedTuple):
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN:
-    """Read an Esri TIN by its folder, or any of the files in it; called as :class:`.Format` says.
+    """Read an Esri TIN by its folder, or any of the files in it.
 
     The CRS defaults to that of ``prj.adf``; the unit of the elevations the files do not tell.
     Masked triangles, and the nodes that only they have, are left out. Enforced edges become hard

@@ -3,7 +3,7 @@
 from typing import Any
 
 from ..registry import signatures
-from ..registry.format import Format
+from ..registry.format import SURFACES, Format, Loss
 from .signatures import (
     TIN_FILES,
     is_2dm,
@@ -15,14 +15,17 @@ from .signatures import (
 
 __all__ = ["FORMATS"]
 
-_EXACT = "Every number comes back bit for bit."
+_LOSSES = "Which edges are constrained, lines, attributes and the report"
+_LOSES: tuple[Loss, ...] = ("constrained", "lines", "attributes", "notes", "report")
+"""What formats of nothing but vertices and triangles do not hold."""
 
 
 def _make(name: str, description: str, *suffixes: str, module: str, **more: Any) -> Format:
-    """Describe a format that a module here reads and writes."""
+    """Describe a format of TINs that a module here reads and writes, exactly if nothing is said."""
     where = f"{__package__}.{module}"
-    ends: dict[str, Any] = {"read": f"{where}:read", "reads": ("TIN",), "write": f"{where}:write"}
-    return Format(name=name, description=description, suffixes=suffixes, **(ends | more))
+    usual: dict[str, Any] = {"read": f"{where}:read", "reads": ("TIN",), "write": f"{where}:write"}
+    usual |= {"writes": ("TIN",), "precision": "Every number comes back bit for bit."}
+    return Format(name=name, description=description, suffixes=suffixes, **(usual | more))
 
 
 FORMATS = (
@@ -31,8 +34,6 @@ FORMATS = (
         "A whole TIN as a GeoPackage (opens in QGIS, ArcGIS, GDAL)",
         ".gpkg",
         module="geopackage",
-        writes=("TIN",),
-        precision=_EXACT,
         sniff=signatures.is_tin_geopackage,
     ),
     _make(
@@ -41,7 +42,7 @@ FORMATS = (
         ".ply",
         module="ply.file",
         sniff=signatures.is_ply,
-        precision=_EXACT,
+        writes=SURFACES,
         losses="The report and its notes, and what undoing edits needs; of points, their lines and "
         "attributes that are no numbers.",
         loses=("survey lines", "attributes", "notes", "report"),
@@ -50,29 +51,24 @@ FORMATS = (
         *("obj", "Wavefront OBJ mesh", ".obj"),
         module="obj",
         sniff=signatures.is_obj,
-        writes=("TIN",),
-        precision=_EXACT,
-        losses="Which edges are constrained, lines, attributes and the report.",
-        loses=("constrained", "lines", "attributes", "notes", "report"),
+        losses=f"{_LOSSES}.",
+        loses=_LOSES,
     ),
     _make(
         *("stl", "STL mesh", ".stl"),
         module="stl",
         sniff=signatures.is_stl,
-        writes=("TIN",),
         precision="Coordinates are rounded to float32 after an origin is subtracted: to a sixteen "
         "millionth of the extent.",
         relative_rounding=6e-8,
         losses="The order of vertices and triangles, which edges are constrained, lines, "
         "attributes and the report.",
-        loses=("order", "constrained", "lines", "attributes", "notes", "report"),
+        loses=("order", *_LOSES),
     ),
     _make(
         *("vtk", "VTK XML mesh (opens in ParaView)", ".vtp", ".vtu"),
         module="vtk",
         sniff=signatures.is_vtk_xml,
-        writes=("TIN",),
-        precision=_EXACT,
         losses="Names and kinds of lines, attributes, and the report.",
         loses=("lines", "attributes", "notes", "report"),
     ),
@@ -83,8 +79,6 @@ FORMATS = (
         module="gmsh",
         extra="mesh",
         sniff=signatures.is_gmsh,
-        writes=("TIN",),
-        precision=_EXACT,
         losses="The CRS and the unit of elevations; lines are named groups of edges, which are "
         "read as constrained edges; attributes; the report.",
         loses=("crs", "elevation unit", "lines", "attributes", "notes", "report"),
@@ -94,8 +88,6 @@ FORMATS = (
         "2DM mesh of SMS (for hydraulic models; opens in QGIS)",
         ".2dm",
         module="sms",
-        writes=("TIN",),
-        precision=_EXACT,
         losses="The CRS and the unit of elevations; names and kinds of lines; attributes; the "
         "report.",
         loses=("crs", "elevation unit", "lines", "attributes", "notes", "report"),
@@ -106,8 +98,6 @@ FORMATS = (
         "UGRID mesh in netCDF (for Delft3D FM and xugrid; opens in QGIS)",
         ".nc",
         module="ugrid",
-        writes=("TIN",),
-        precision=_EXACT,
         losses="Names of lines, which are chained anew, attributes, and the report.",
         loses=("lines", "attributes", "notes", "report"),
         extra="mesh",
@@ -122,20 +112,15 @@ FORMATS = (
         sniff_folder=is_esri_tin,
         part_names=TIN_FILES,
     ),
-    Format(
-        name="cityjson",
-        description="CityJSON 2.0 with a TINRelief",
-        suffixes=(".city.json", ".cityjson"),
-        read="tinsmith.io.mesh.city_json.reading:read",
-        reads=("TIN",),
+    _make(
+        *("cityjson", "CityJSON 2.0 with a TINRelief", ".city.json", ".cityjson"),
+        module="city_json.reading",
         write="tinsmith.io.mesh.city_json.writing:write",
-        writes=("TIN",),
         precision="Decimals come back bit for bit, other numbers to the last digit of float64; or "
         "to the precision asked for.",
         rounding=2e-9,
-        losses="Which edges are constrained, lines, attributes and the report; vertices of no "
-        "triangle.",
-        loses=("constrained", "lines", "attributes", "notes", "report"),
+        losses=f"{_LOSSES}; vertices of no triangle.",
+        loses=_LOSES,
         sniff=is_cityjson,
     ),
     Format(
@@ -148,16 +133,7 @@ FORMATS = (
         "range of elevations in a tile.",
         losses="The surface is cut into tiles in longitude and latitude, without lines and "
         "attributes; one tile is read at a time.",
-        loses=(
-            "crs",
-            "elevation unit",
-            "triangles",
-            "constrained",
-            "lines",
-            "attributes",
-            "notes",
-            "report",
-        ),
+        loses=("crs", "elevation unit", "triangles", *_LOSES),
     ),
     Format(
         name="terrain",
@@ -174,19 +150,16 @@ FORMATS = (
         write="tinsmith.io.mesh.gltf.writing:write",
         writes=("TIN",),
         precision="A sixteen millionth of the extent, from an origin that the file tells.",
-        losses="Which edges are constrained, lines, attributes and the report; vertices of no "
-        "triangle.",
-        loses=("constrained", "lines", "attributes", "notes", "report"),
+        losses=f"{_LOSSES}; vertices of no triangle.",
+        loses=_LOSES,
     ),
     _make(
         "off",
         "Object File Format mesh",
         ".off",
         module="off",
-        writes=("TIN",),
-        precision=_EXACT,
-        losses="Which edges are constrained, lines, attributes and the report.",
-        loses=("constrained", "lines", "attributes", "notes", "report"),
+        losses=f"{_LOSSES}.",
+        loses=_LOSES,
         sniff=is_off,
     ),
 )

@@ -21,9 +21,9 @@ from ..isolated import run_isolated
 from .common import choose_reference, make_survey, make_tin, read_content, require_tin
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...arrays import BoolArray, Int32Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
@@ -48,8 +48,7 @@ class _Edges(NamedTuple):
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
     """Read the triangles of a Gmsh file; line elements along their edges become constrained.
 
-    Called as :class:`.Format` says; the file tells neither CRS nor unit. One without triangles
-    gives a survey.
+    The file tells neither CRS nor unit. One without triangles gives a survey.
     """
     _optional.require("meshio", "Reading Gmsh files")
     if not path.is_file():
@@ -69,11 +68,8 @@ def _flag_edges(triangles: Int32Array, lines: Int32Array, n_points: int) -> Bool
     return np.isin(edge_keys(edges, n_points), edge_keys(lines, n_points))
 
 
-def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
-    """Write a TIN as a Gmsh file, MSH 2.2 in text.
-
-    Parameters and errors are those of every writer, see :class:`.Format`.
-    """
+def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
+    """Write a TIN as a Gmsh file, MSH 2.2 in text."""
     tin = require_tin(surface, path, format_name="Gmsh")
     meshio = _optional.load("meshio", "Writing Gmsh files")
     edges = _gather_edges(tin)

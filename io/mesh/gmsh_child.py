@@ -23,14 +23,7 @@ def prepare() -> None:
 
 
 def read_mesh(path: str, shown: str) -> Answer:
-    """Return the ``points``, ``triangles`` and ``lines`` of a file.
-
-    Parameters
-    ----------
-    path : str
-    shown : str
-        The path as the user wrote it, for sentences.
-    """
+    """Return the ``points``, ``triangles`` and ``lines`` of a file."""
     found = _read_with_meshio(path, shown)
     points = np.asarray(found.points, np.float64)
     if points.ndim != 2 or points.shape[1] != 3:

@@ -22,18 +22,12 @@ __all__ = ["Chain", "add_lines", "chain_edges", "list_chains"]
 
 
 class Chain(NamedTuple):
-    """A line along edges.
-
-    Attributes
-    ----------
-    vertices : (k,) int array
-    kind : {"hard", "soft", "boundary", "hole", "water"} or None
-        None for one that is of the boundary if all its edges are, else a hard breakline.
-    name : str
-    """
+    """A line along edges."""
 
     vertices: Int64Array
+    """(k,)."""
     kind: LineKind | None = None
+    """None for one that is of the boundary if all its edges are, else a hard breakline."""
     name: str = ""
 
 

@@ -17,19 +17,16 @@ import numpy as np
 from ..._atomic import replacing, replacing_files
 from ...errors import ReadError, WriteError
 from . import common
-from .common import (
-    format_crs,
-    format_unit,
-    require_tin,
-)
+from .text_writing import BATCH, write_batches, write_reference
 from .texture import choose_picture, load_texture
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
     from typing import IO
 
+    from ..._progress import Tell
     from ...arrays import AnyArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
@@ -37,7 +34,6 @@ if TYPE_CHECKING:
 
 __all__ = ["read", "write"]
 
-_BATCH = 65_536
 _MATERIAL = "terrain"
 _PICTURE = "_texture"
 _SHOWN_LETTERS = 60
@@ -49,7 +45,7 @@ _VERTEX_NUMBER = re.compile(r"([-+]?)([0-9]+)(?:/|$)")
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
-    """Read the vertices and faces of an OBJ file; called as :class:`.Format` says.
+    """Read the vertices and faces of an OBJ file.
 
     CRS and unit default to those in the comments ``# crs: ...`` and ``# elevation unit: ...``.
     Polygons are cut into triangles; texture, normals, colours, groups and materials are skipped. A
@@ -174,19 +170,15 @@ def write(
     *,
     drape: str | os.PathLike[str] | None = None,
     texture: str | os.PathLike[str] | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> None:
     """Write a TIN as OBJ; :func:`read` gives the same vertices and triangles back.
 
-    Parameters and errors are those of every writer, see :class:`.Format`; and:
-
     Parameters
     ----------
-    drape : path-like, optional
-        Picture to lay over it: a GeoTIFF in any CRS, or a PNG or JPEG file with a world file beside
-        it. The material (``.mtl``) and the picture are written beside the file, under its name.
-    texture : path-like, optional
-        The former name of ``drape``.
+    drape, texture : path-like, optional
+        Picture to lay over it, as :func:`.gltf.writing.write` takes it. The material (``.mtl``) and
+        the picture are written beside the file, under its name.
 
     Raises
     ------
@@ -197,7 +189,7 @@ def write(
     WriteError
         Also if the texture itself would be overwritten.
     """
-    tin = require_tin(surface, path, format_name="OBJ")
+    tin = common.require_tin(surface, path, format_name="OBJ")
     source = choose_picture(drape, texture)
     if source is None:
         with replacing(path, binary=False) as file:
@@ -224,35 +216,25 @@ def _require_other_file(texture: str | os.PathLike[str], targets: Sequence[Path]
             )
 
 
-def _write_body(
-    file: IO[str], tin: TIN, texture: Texture | None, progress: Callable[[float], None] | None
-) -> None:
-    if tin.crs is not None:
-        file.write(f"# crs: {format_crs(tin.crs)}\n")
-    if unit := format_unit(tin):
-        file.write(f"# elevation unit: {unit}\n")
+def _write_body(file: IO[str], tin: TIN, texture: Texture | None, progress: Tell | None) -> None:
+    write_reference(file, tin)
     if texture is not None:
         name = PurePath(file.name).with_suffix(".mtl").name
         file.write(f"mtllib {name}\nusemtl {_MATERIAL}\n")
-        for start in range(0, len(texture.places), _BATCH):
-            u, v = texture.places[start : start + _BATCH].T
+        for start in range(0, len(texture.places), BATCH):
+            u, v = texture.places[start : start + BATCH].T
             rows = np.column_stack([u, 1.0 - v]).ravel().tolist()  # v grows upwards here
             file.write(("vt %.9g %.9g\n" * len(u)) % tuple(rows))
-    total = len(tin.points) + len(tin.triangles)
-    done = 0
-    for count, batch in _iterate_batches(tin, is_textured=texture is not None):
-        file.write(batch)
-        done += count
-        if progress is not None:
-            progress(done / total)
+    batches = _iterate_batches(tin, is_textured=texture is not None)
+    write_batches(file, tin, batches, progress)
 
 
 def _iterate_batches(tin: TIN, *, is_textured: bool) -> Iterator[tuple[int, str]]:
-    for start in range(0, len(tin.points), _BATCH):
-        rows = tin.points[start : start + _BATCH]
+    for start in range(0, len(tin.points), BATCH):
+        rows = tin.points[start : start + BATCH]
         yield len(rows), ("v %r %r %r\n" * len(rows)) % tuple(rows.ravel().tolist())
     face = "f %d/%d %d/%d %d/%d\n" if is_textured else "f %d %d %d\n"
-    for start in range(0, len(tin.triangles), _BATCH):
-        corners = tin.triangles[start : start + _BATCH].astype(np.int64).ravel() + 1
+    for start in range(0, len(tin.triangles), BATCH):
+        corners = tin.triangles[start : start + BATCH].astype(np.int64).ravel() + 1
         numbers = np.repeat(corners, 2 if is_textured else 1).tolist()
         yield len(corners) // 3, (face * (len(corners) // 3)) % tuple(numbers)

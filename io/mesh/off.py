@@ -14,35 +14,21 @@ import numpy as np
 from ..._atomic import replacing
 from ..._sentences import counted
 from ...errors import ReadError
-from .common import (
-    choose_reference,
-    cut_into_fans,
-    format_crs,
-    format_unit,
-    make_survey,
-    make_tin,
-    read_content,
-    require_tin,
-)
-from .text_rows import (
-    describe_row_fault,
-    parse_floats,
-    parse_integer_columns,
-    parse_integers,
-    split_rows,
-)
+from . import common
+from .text_rows import TextRows, describe_row_fault, parse_integers, split_rows
+from .text_writing import BATCH, write_batches, write_reference
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...arrays import Int64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
 
 __all__ = ["read", "write"]
 
-_BATCH = 65_536
 _KEYWORD = re.compile(r"(ST)?(C)?(N)?(4)?(n)?OFF")
 _RECORD = re.compile(rb"^# (crs|elevation unit): (.*?)\s*$", re.M)
 
@@ -53,40 +39,36 @@ class _Counts(NamedTuple):
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
-    """Read the vertices and faces of an OFF file in text; called as :class:`.Format` says.
+    """Read the vertices and faces of an OFF file in text.
 
     CRS and unit default to those in the comments ``# crs: ...`` and ``# elevation unit: ...``.
     Polygons are cut into triangles; normals, colours and texture (NOFF, COFF, STOFF) are skipped. A
     file without faces gives a survey.
     """
-    content = read_content(path)
-    rows, lines = split_rows(content)
-    rows, lines = _skip_keyword(rows, lines, path)
-    counts = _parse_counts(rows, lines, path)
-    rows, lines = rows[1:], lines[1:]
-    vertices, faces = slice(0, counts.vertices), slice(counts.vertices, sum(counts))
-    points = parse_floats(
-        rows[vertices],
-        lines[vertices],
-        path,
-        columns=slice(0, 3),
-        what="a vertex needs x, y and z",
+    content = common.read_content(path)
+    rows = _skip_keyword(split_rows(content, path))
+    counts = _parse_counts(rows)
+    vertices, faces = (
+        rows.cut(1, counts.vertices + 1),
+        rows.cut(counts.vertices + 1, sum(counts) + 1),
     )
+    points = vertices.parse_floats(slice(0, 3), "a vertex needs x, y and z")
     found = {name.decode(): text.decode("utf-8", "replace")
              for name, text in _RECORD.findall(content)}  # fmt: skip
-    reference = choose_reference(
+    reference = common.choose_reference(
         crs, z_unit, path, found_crs=found.get("crs"), found_unit=found.get("elevation unit")
     )
     if counts.faces == 0:
-        return make_survey(points, path, reference=reference)
-    corners, offsets = _parse_faces(rows[faces], lines[faces], path)
-    made = cut_into_fans(corners, offsets, points, path)
-    return make_tin(points, made.triangles, path, reference=reference, notes=made.notes)
+        return common.make_survey(points, path, reference=reference)
+    corners, offsets = _parse_faces(faces)
+    made = common.cut_into_fans(corners, offsets, points, path)
+    return common.make_tin(points, made.triangles, path, reference=reference, notes=made.notes)
 
 
-def _skip_keyword(rows: list[str], lines: list[int], path: Path) -> tuple[list[str], list[int]]:
+def _skip_keyword(rows: TextRows) -> TextRows:
     """Return what stands behind the keyword, which some programs put before the counts."""
-    first = rows[0].split() if rows else [""]
+    path = rows.path
+    first = rows.texts[0].split() if rows.texts else [""]
     keyword = first[0]
     found = _KEYWORD.fullmatch(keyword)
     if "BINARY" in first:
@@ -106,21 +88,21 @@ def _skip_keyword(rows: list[str], lines: list[int], path: Path) -> tuple[list[s
             path=path,
         )
     if len(first) > 1:
-        return [" ".join(first[1:]), *rows[1:]], lines
-    return rows[1:], lines[1:]
+        return TextRows(path, [" ".join(first[1:]), *rows.texts[1:]], rows.lines)
+    return rows.cut(1)
 
 
-def _parse_counts(rows: Sequence[str], lines: Sequence[int], path: Path) -> _Counts:
+def _parse_counts(rows: TextRows) -> _Counts:
     """Return the numbers of vertices and faces, once the file is long enough for them."""
-    if not rows:
+    path = rows.path
+    if not rows.texts:
         raise ReadError(f"'{path}' ends before the numbers of its vertices and faces.", path=path)
-    first = rows[0].split()
+    first = rows.texts[0].split()
     if len(first) < 2:
-        what = "the numbers of vertices and of faces are needed"
-        raise describe_row_fault(first, lines[0], what, path)
-    counts = _Counts(*parse_integers(first[:2], lines[0], path))
+        raise rows.describe_fault(0, "the numbers of vertices and of faces are needed")
+    counts = _Counts(*parse_integers(first[:2], rows.lines[0], path))
     if min(counts) < 0:
-        raise describe_row_fault(first, lines[0], "a count is negative", path)
+        raise rows.describe_fault(0, "a count is negative")
     if sum(counts) > len(rows) - 1:
         promised = counted(counts.vertices, "vertex", "vertices")
         raise ReadError(
@@ -131,52 +113,38 @@ def _parse_counts(rows: Sequence[str], lines: Sequence[int], path: Path) -> _Cou
     return counts
 
 
-def _parse_faces(
-    rows: Sequence[str], lines: Sequence[int], path: Path
-) -> tuple[Int64Array, Int64Array]:
+def _parse_faces(rows: TextRows) -> tuple[Int64Array, Int64Array]:
     """Return the vertex numbers of all faces, and the offsets of each."""
-    if rows and all(row.startswith(("3 ", "3\t")) for row in rows):
-        what = "a face has fewer corners than it promises"
-        corners = parse_integer_columns(rows, lines, path, columns=slice(1, 4), what=what)
+    path, too_short = rows.path, "a face has fewer corners than it promises"
+    if all(text.startswith(("3 ", "3\t")) for text in rows.texts):
+        corners = rows.parse_integers(slice(1, 4), too_short)
         return corners.ravel(), np.arange(0, corners.size + 1, 3)
     found: list[int] = []
     offsets = [0]
-    for text, line in zip(rows, lines, strict=True):
+    for text, line in zip(rows.texts, rows.lines, strict=True):
         row = text.split()
         count = parse_integers(row[:1], line, path, what="a face begins with its number of corners")
         if not 0 <= count[0] <= len(row) - 1:
-            raise describe_row_fault(row, line, "a face has fewer corners than it promises", path)
+            raise describe_row_fault(row, line, too_short, path)
         found += parse_integers(row[1 : count[0] + 1], line, path)
         offsets.append(len(found))
     return np.array(found, np.int64), np.array(offsets, np.int64)
 
 
-def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
-    """Write a TIN as OFF; :func:`read` gives the same vertices and triangles back.
-
-    Parameters and errors are those of every writer, see :class:`.Format`.
-    """
-    tin = require_tin(surface, path, format_name="OFF")
-    total = len(tin.points) + len(tin.triangles)
+def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
+    """Write a TIN as OFF; :func:`read` gives the same vertices and triangles back."""
+    tin = common.require_tin(surface, path, format_name="OFF")
     with replacing(path, binary=False) as file:
         file.write("OFF\n")
-        if tin.crs is not None:
-            file.write(f"# crs: {format_crs(tin.crs)}\n")
-        if unit := format_unit(tin):
-            file.write(f"# elevation unit: {unit}\n")
+        write_reference(file, tin)
         file.write(f"{len(tin.points)} {len(tin.triangles)} 0\n")
-        done = 0
-        for count, batch in _iterate_batches(tin):
-            file.write(batch)
-            done += count
-            if progress is not None:
-                progress(done / total)
+        write_batches(file, tin, _iterate_batches(tin), progress)
 
 
 def _iterate_batches(tin: TIN) -> Iterator[tuple[int, str]]:
-    for start in range(0, len(tin.points), _BATCH):
-        rows = tin.points[start : start + _BATCH]
+    for start in range(0, len(tin.points), BATCH):
+        rows = tin.points[start : start + BATCH]
         yield len(rows), ("%r %r %r\n" * len(rows)) % tuple(rows.ravel().tolist())
-    for start in range(0, len(tin.triangles), _BATCH):
-        faces = tin.triangles[start : start + _BATCH]
+    for start in range(0, len(tin.triangles), BATCH):
+        faces = tin.triangles[start : start + BATCH]
         yield len(faces), ("3 %d %d %d\n" * len(faces)) % tuple(faces.ravel().tolist())

@@ -6,42 +6,29 @@ along lines. 2DM has no place for CRS and units.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..._atomic import replacing
 from ..._sentences import counted
 from ...errors import ReadError
-from .common import (
-    add_notes,
-    choose_reference,
-    cut_into_fans,
-    make_survey,
-    make_tin,
-    read_content,
-    require_tin,
-)
+from . import common
 from .linework import Chain, add_lines, list_chains
-from .text_rows import (
-    describe_row_fault,
-    parse_floats,
-    parse_integer_columns,
-    parse_integers,
-    split_rows,
-)
+from .text_rows import TextRows, parse_integers, split_rows
+from .text_writing import BATCH, write_batches
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...arrays import Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
 
 __all__ = ["read", "write"]
 
-_BATCH = 65_536
 _NODES_IN_A_ROW = 10
 _FACES = {
     # Corners and midside nodes stand in turn; each element becomes polygons of these.
@@ -54,91 +41,78 @@ _FACES = {
 _EDGES = ("E2L", "E3L")
 
 
-class _Rows(NamedTuple):
-    """Rows of one card, and their lines in the file."""
-
-    texts: list[str]
-    lines: list[int]
-
-
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
     """Read a 2DM mesh: nodes in any order with gaps, elements, node strings.
 
-    Called as :class:`.Format` says; the file tells neither CRS nor unit. Quadrilaterals (E4Q, and
-    those within E8Q and E9Q) are cut along a diagonal, which the report tells; elements with
-    midside nodes (E6T, E8Q, E9Q) are cut at these. Node strings along edges become lines: of the
-    boundary if they lie on it, else hard breaklines. Elements that are lines and materials are left
-    out and told. A file without faces gives a survey.
+    The file tells neither CRS nor unit. Quadrilaterals (E4Q, and those within E8Q and E9Q) are cut
+    along a diagonal, which the report tells; elements with midside nodes (E6T, E8Q, E9Q) are cut at
+    these. Node strings along edges become lines: of the boundary if they lie on it, else hard
+    breaklines. Elements that are lines and materials are left out and told. A file without faces
+    gives a survey.
 
     Raises
     ------
     ReadError
         Also if two nodes have one number, or an element names a node that is not there.
     """
-    cards = _sort_cards(read_content(path), path)
-    numbers, points = _parse_nodes(cards.get("ND", _Rows([], [])), path)
-    reference = choose_reference(crs, z_unit, path)
+    cards = _sort_cards(split_rows(common.read_content(path), path))
+    numbers, points = _parse_nodes(cards.get("ND", TextRows(path)))
+    reference = common.choose_reference(crs, z_unit, path)
     if not any(card in cards for card in _FACES):
-        return make_survey(points, path, reference=reference)
-    faces = [_parse_elements(card, cards[card], numbers, path) for card in _FACES if card in cards]
+        return common.make_survey(points, path, reference=reference)
+    faces = [_parse_elements(card, cards[card], numbers) for card in _FACES if card in cards]
     corners = np.concatenate([part[0] for part in faces])
     lengths = np.concatenate([part[1] for part in faces])
     offsets = np.concatenate([[0], np.cumsum(lengths)])
-    triangles = cut_into_fans(corners, offsets, points, path).triangles
+    triangles = common.cut_into_fans(corners, offsets, points, path).triangles
     notes = _describe_losses(cards, int((lengths == 4).sum()))
-    tin = make_tin(points, triangles, path, reference=reference, notes=notes)
-    strings = _parse_strings(cards.get("NS", _Rows([], [])), numbers, path)
+    tin = common.make_tin(points, triangles, path, reference=reference, notes=notes)
+    strings = _parse_strings(cards.get("NS", TextRows(path)), numbers)
     tin, lost = add_lines(tin, strings)
     if not lost:
         return tin
     note = f"{counted(lost, 'segment')} of node strings lie along no edge and are left out."
-    return add_notes(tin, [note])
+    return common.add_notes(tin, [note])
 
 
-def _sort_cards(content: bytes, path: Path) -> dict[str, _Rows]:
+def _sort_cards(rows: TextRows) -> dict[str, TextRows]:
     """Return the rows of each card, by its name."""
-    rows, lines = split_rows(content)
-    if not rows or not rows[0].startswith("MESH2D"):
+    path = rows.path
+    if not rows.texts or not rows.texts[0].startswith("MESH2D"):
         raise ReadError(f"'{path}' is no 2DM mesh: it must begin with 'MESH2D'.", path=path)
-    cards: dict[str, _Rows] = {}
-    for row, line in zip(rows, lines, strict=True):
-        texts, numbers = cards.setdefault(row.split(None, 1)[0], _Rows([], []))
-        texts.append(row)
-        numbers.append(line)
+    cards: dict[str, TextRows] = {}
+    for text, line in zip(rows.texts, rows.lines, strict=True):
+        card = cards.setdefault(text.split(None, 1)[0], TextRows(path))
+        card.texts.append(text)
+        card.lines.append(line)
     return cards
 
 
-def _parse_nodes(rows: _Rows, path: Path) -> tuple[Int64Array, Float64Array]:
+def _parse_nodes(rows: TextRows) -> tuple[Int64Array, Float64Array]:
     """Return the numbers of the nodes as the file calls them, and their coordinates."""
     what = "a node needs its number, x, y and z"
-    points = parse_floats(rows.texts, rows.lines, path, columns=slice(2, 5), what=what)
-    numbers = parse_integer_columns(
-        rows.texts, rows.lines, path, columns=slice(1, 2), what=what
-    ).ravel()
+    points = rows.parse_floats(slice(2, 5), what)
+    numbers = rows.parse_integers(slice(1, 2), what).ravel()
     order = np.argsort(numbers, kind="stable")
     again = np.flatnonzero(np.diff(numbers[order]) == 0)
     if len(again):
         row = int(order[again[0] + 1])
-        what = f"there is a node {numbers[row]} already"
-        raise describe_row_fault(rows.texts[row].split(), rows.lines[row], what, path)
+        raise rows.describe_fault(row, f"there is a node {numbers[row]} already")
     return numbers, points
 
 
 def _parse_elements(
-    card: str, rows: _Rows, numbers: Int64Array, path: Path
+    card: str, rows: TextRows, numbers: Int64Array
 ) -> tuple[Int64Array, Int64Array]:
     """Return the corners of the polygons that elements of one kind become, and their lengths."""
     count, polygons = _FACES[card]
     what = f"an element {card} needs its number and {count} nodes"
-    named = parse_integer_columns(
-        rows.texts, rows.lines, path, columns=slice(2, count + 2), what=what
-    )
-    nodes = _find_nodes(named, numbers, rows, path)
+    nodes = _find_nodes(rows.parse_integers(slice(2, count + 2), what), numbers, rows)
     corners = nodes[:, [slot for polygon in polygons for slot in polygon]].ravel()
     return corners, np.tile([len(polygon) for polygon in polygons], len(nodes))
 
 
-def _find_nodes(named: Int64Array, numbers: Int64Array, rows: _Rows, path: Path) -> Int64Array:
+def _find_nodes(named: Int64Array, numbers: Int64Array, rows: TextRows) -> Int64Array:
     """Return the rows of nodes that are called by number."""
     order = np.argsort(numbers)
     at = np.searchsorted(numbers, named, sorter=order)
@@ -147,21 +121,20 @@ def _find_nodes(named: Int64Array, numbers: Int64Array, rows: _Rows, path: Path)
     if wrong.any():
         row = int(np.argmax(wrong.reshape(len(named), -1).any(axis=1)))
         first = int(named[row].ravel()[np.argmax(wrong[row])])
-        what = f"there is no node {first}"
-        raise describe_row_fault(rows.texts[row].split(), rows.lines[row], what, path)
+        raise rows.describe_fault(row, f"there is no node {first}")
     return np.asarray(found, np.int64)
 
 
-def _parse_strings(rows: _Rows, numbers: Int64Array, path: Path) -> list[Chain]:
+def _parse_strings(rows: TextRows, numbers: Int64Array) -> list[Chain]:
     """Return the node strings: a negative number ends one, and the string's own may follow it."""
     chains: list[Chain] = []
     open_nodes: list[int] = []
-    for text, line in zip(rows.texts, rows.lines, strict=True):
+    for i, (text, line) in enumerate(zip(rows.texts, rows.lines, strict=True)):
         row = text.split()
         for at, word in enumerate(row[1:], start=1):
-            node = parse_integers([word], line, path)[0]
+            node = parse_integers([word], line, rows.path)[0]
             called = np.array([[abs(node)]], np.int64)
-            open_nodes.append(int(_find_nodes(called, numbers, _Rows([text], [line]), path)[0, 0]))
+            open_nodes.append(int(_find_nodes(called, numbers, rows.cut(i, i + 1))[0, 0]))
             if node < 0:
                 name = row[at + 1] if at + 1 < len(row) else ""
                 chains.append(Chain(np.array(open_nodes), None, name))
@@ -172,7 +145,7 @@ def _parse_strings(rows: _Rows, numbers: Int64Array, path: Path) -> list[Chain]:
     return chains
 
 
-def _describe_losses(cards: dict[str, _Rows], n_quadrilaterals: int) -> list[str]:
+def _describe_losses(cards: dict[str, TextRows], n_quadrilaterals: int) -> list[str]:
     """Tell what of the file the TIN does not hold, and what was chosen."""
     notes = []
     if n_quadrilaterals:
@@ -181,7 +154,7 @@ def _describe_losses(cards: dict[str, _Rows], n_quadrilaterals: int) -> list[str
             f"{'was' if n_quadrilaterals == 1 else 'were'} cut into triangles along a diagonal: "
             "the file does not tell which of the two."
         )
-    n_edges = sum(len(cards[card].texts) for card in _EDGES if card in cards)
+    n_edges = sum(len(cards[card]) for card in _EDGES if card in cards)
     if n_edges:
         kinds = " and ".join(card for card in _EDGES if card in cards)
         notes.append(
@@ -192,41 +165,35 @@ def _describe_losses(cards: dict[str, _Rows], n_quadrilaterals: int) -> list[str
     materials = {
         tuple(row.split(None, count + 2)[count + 2 :])
         for card, (count, _) in _FACES.items()
-        for row in cards.get(card, _Rows([], [])).texts
+        if card in cards
+        for row in cards[card].texts
     }
     if len(materials) > 1:
         notes.append("The materials of the elements are left out.")
     return notes
 
 
-def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
+def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN as 2DM, numbers ascending from 1; :func:`read` gives the same TIN back.
 
-    Lines of the TIN become node strings, as do chains of its other constrained edges. Parameters
-    and errors are those of every writer, see :class:`.Format`.
+    Lines of the TIN become node strings, as do chains of its other constrained edges.
     """
-    tin = require_tin(surface, path, format_name="2DM")
-    total = len(tin.points) + len(tin.triangles)
+    tin = common.require_tin(surface, path, format_name="2DM")
     with replacing(path, binary=False) as file:
         file.write("MESH2D\n")
-        done = 0
-        for count, batch in _iterate_batches(tin):
-            file.write(batch)
-            done += count
-            if progress is not None:
-                progress(done / total)
+        write_batches(file, tin, _iterate_batches(tin), progress)
         for number, chain in enumerate(list_chains(tin), start=1):
             file.write(_format_string(chain, number))
 
 
 def _iterate_batches(tin: TIN) -> Iterator[tuple[int, str]]:
-    for start in range(0, len(tin.triangles), _BATCH):
-        faces = tin.triangles[start : start + _BATCH].astype(np.int64) + 1
+    for start in range(0, len(tin.triangles), BATCH):
+        faces = tin.triangles[start : start + BATCH].astype(np.int64) + 1
         numbers = np.arange(start, start + len(faces))[:, None] + 1
         cells = np.hstack([numbers, faces]).ravel().tolist()
         yield len(faces), ("E3T %d %d %d %d 1\n" * len(faces)) % tuple(cells)
-    for start in range(0, len(tin.points), _BATCH):
-        rows = tin.points[start : start + _BATCH].tolist()
+    for start in range(0, len(tin.points), BATCH):
+        rows = tin.points[start : start + BATCH].tolist()
         text = [f"ND {number} {x!r} {y!r} {z!r}\n"
                 for number, (x, y, z) in enumerate(rows, start=start + 1)]  # fmt: skip
         yield len(rows), "".join(text)

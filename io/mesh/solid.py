@@ -20,16 +20,12 @@ __all__ = ["Solid", "build_solid"]
 
 
 class Solid(NamedTuple):
-    """A mesh without holes, its triangles counter-clockwise seen from outside.
-
-    Attributes
-    ----------
-    points : (n, 3) float64 array
-    triangles : (m, 3) int64 array
-    """
+    """A mesh without holes, its triangles counter-clockwise seen from outside."""
 
     points: Float64Array
+    """(n, 3)."""
     triangles: Int64Array
+    """(m, 3)."""
 
     @property
     def volume(self) -> float:

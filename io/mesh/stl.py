@@ -35,9 +35,9 @@ from .common import (
 from .solid import build_solid
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...arrays import AnyArray, Float32Array, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN
@@ -57,8 +57,8 @@ _RECORD = re.compile(r"origin (\S+) (\S+) (\S+)(?: crs (\S+))?(?: z (\S+))?")
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN:
     """Read a binary STL file; corners at the same place become one vertex.
 
-    Called as :class:`.Format` says. CRS and unit default to those recorded in the header, whose
-    origin is added back, if there is one; a text STL is refused.
+    CRS and unit default to those recorded in the header, whose origin is added back, if there is
+    one; a text STL is refused.
     """
     content = read_content(path)
     facets = _find_facets(content, path)
@@ -133,11 +133,9 @@ def write(
     scale: float | None = None,
     size: float | None = None,
     exaggeration: float = 1.0,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> None:
     """Write a TIN as binary STL, relative to an origin that the header records.
-
-    Parameters and errors are those of every writer, see :class:`.Format`; and:
 
     Parameters
     ----------

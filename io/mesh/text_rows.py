@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,74 +16,84 @@ if TYPE_CHECKING:
 
     from ...arrays import AnyArray, Float64Array, Int64Array
 
-__all__ = [
-    "describe_row_fault",
-    "parse_floats",
-    "parse_integer_columns",
-    "parse_integers",
-    "split_rows",
-]
+__all__ = ["TextRows", "describe_row_fault", "parse_integers", "split_rows"]
 
 _SHOWN_LETTERS = 60
 _MOST_DIGITS = 18
 """Digits of a number that 64 bits hold whatever they are."""
 
 
-def split_rows(content: bytes, *, comment: str = "#") -> tuple[list[str], list[int]]:
-    """Cut a text into rows, and tell the line of each, from 1 on.
+@dataclass(frozen=True, slots=True)
+class TextRows:
+    """Rows of a text file, and the line of each, from 1 on."""
 
-    Parameters
-    ----------
-    content : bytes
-    comment : str
-        What begins a comment, which lasts to the end of its line.
+    path: Path
+    texts: list[str] = field(default_factory=list)
+    lines: list[int] = field(default_factory=list)
 
-    Returns
-    -------
-    rows : list of str
-        Those that are not empty, without comments and the spaces about them.
-    lines : list of int
-    """
+    def __len__(self) -> int:
+        return len(self.texts)
+
+    def cut(self, start: int, stop: int | None = None) -> TextRows:
+        """Return the rows from one to before another."""
+        return TextRows(self.path, self.texts[start:stop], self.lines[start:stop])
+
+    def parse_floats(self, columns: slice, what: str) -> Float64Array:
+        """Return the numbers in some columns, from a start to a stop.
+
+        Parameters
+        ----------
+        what : str
+            What a row must hold, for a sentence: "a vertex needs x, y and z".
+
+        Raises
+        ------
+        ReadError
+            If a row is too short, or a word is no number.
+        """
+        plain = _parse_plain_rows(self.texts, columns, np.float64)
+        if plain is not None and np.isfinite(plain).all():
+            return plain
+        picked = self._pick_words(columns, what)
+        try:
+            return np.array(picked, np.float64).reshape(-1, columns.stop - columns.start)
+        except ValueError:
+            for words, line in zip(picked, self.lines, strict=True):
+                _require_numbers(words, line, self.path)
+            raise
+
+    def parse_integers(self, columns: slice, what: str) -> Int64Array:
+        """Return the whole numbers in some columns, as :meth:`parse_floats`."""
+        plain = _parse_plain_rows(self.texts, columns, np.int64)
+        if plain is not None:
+            return plain
+        picked = zip(self._pick_words(columns, what), self.lines, strict=True)
+        numbers = [parse_integers(words, line, self.path) for words, line in picked]
+        return np.array(numbers, np.int64).reshape(-1, columns.stop - columns.start)
+
+    def _pick_words(self, columns: slice, what: str) -> list[list[str]]:
+        """Return the words in some columns; refuse a row that has fewer."""
+        picked = [text.split()[columns] for text in self.texts]
+        for row, words in enumerate(picked):
+            if len(words) < columns.stop - columns.start:
+                raise self.describe_fault(row, what)
+        return picked
+
+    def describe_fault(self, row: int, what: str) -> ReadError:
+        """Return the error of a row."""
+        return describe_row_fault(self.texts[row].split(), self.lines[row], what, self.path)
+
+
+def split_rows(content: bytes, path: Path, *, comment: str = "#") -> TextRows:
+    """Cut a text into rows that are not empty, without comments and the spaces about them."""
     text = content.decode("utf-8", errors="replace").removeprefix("\ufeff")
     every = text.split("\n")
     if comment in text:
         every = [line.partition(comment)[0] for line in every]
     every = [line.strip() for line in every]
     lines = [number for number, line in enumerate(every, start=1) if line]
-    return (every if len(lines) == len(every) else [line for line in every if line]), lines
-
-
-def parse_floats(
-    rows: Sequence[str], lines: Sequence[int], path: Path, *, columns: slice, what: str
-) -> Float64Array:
-    """Return the numbers in some columns of rows.
-
-    Parameters
-    ----------
-    rows : sequence of str
-    lines : sequence of int
-        The line of each row.
-    path : Path
-    columns : slice
-        With a start and a stop.
-    what : str
-        What a row must hold, for a sentence: "a vertex needs x, y and z".
-
-    Raises
-    ------
-    ReadError
-        If a row is too short, or a word is no number.
-    """
-    plain = _parse_plain_rows(rows, columns, np.float64)
-    if plain is not None and np.isfinite(plain).all():
-        return plain
-    picked = _pick_words(rows, lines, path, columns=columns, what=what)
-    try:
-        return np.array(picked, np.float64).reshape(-1, columns.stop - columns.start)
-    except ValueError:
-        for row, line in zip(picked, lines, strict=True):
-            _require_numbers(row, line, path)
-        raise
+    texts = every if len(lines) == len(every) else [line for line in every if line]
+    return TextRows(path, texts, lines)
 
 
 def _parse_plain_rows(
@@ -100,34 +111,11 @@ def _parse_plain_rows(
         return None
 
 
-def _pick_words(
-    rows: Sequence[str], lines: Sequence[int], path: Path, *, columns: slice, what: str
-) -> list[list[str]]:
-    """Return the words in some columns; refuse a row that has fewer."""
-    picked = [row.split()[columns] for row in rows]
-    for row, words, line in zip(rows, picked, lines, strict=True):
-        if len(words) < columns.stop - columns.start:
-            raise describe_row_fault(row.split(), line, what, path)
-    return picked
-
-
 def _require_numbers(row: Sequence[str], line: int, path: Path) -> None:
     try:
         np.array(row, np.float64)
     except ValueError:
         raise describe_row_fault(row, line, "a coordinate is no number", path) from None
-
-
-def parse_integer_columns(
-    rows: Sequence[str], lines: Sequence[int], path: Path, *, columns: slice, what: str
-) -> Int64Array:
-    """Return the whole numbers in some columns of rows, as :func:`parse_floats`."""
-    plain = _parse_plain_rows(rows, columns, np.int64)
-    if plain is not None:
-        return plain
-    picked = _pick_words(rows, lines, path, columns=columns, what=what)
-    numbers = [parse_integers(row, line, path) for row, line in zip(picked, lines, strict=True)]
-    return np.array(numbers, np.int64).reshape(-1, columns.stop - columns.start)
 
 
 def parse_integers(

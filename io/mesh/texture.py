@@ -38,20 +38,14 @@ _BEYOND = "its edge is drawn out to them"
 
 @dataclass(frozen=True, eq=False)
 class Texture:
-    """A picture with its places.
-
-    Attributes
-    ----------
-    content : bytes
-        A PNG or JPEG file.
-    kind : {"png", "jpeg"}
-    places : (n, 2) float64 array
-        Of each vertex: from left to right and from top to bottom, 0 to 1 within the picture.
-    """
+    """A picture with its places."""
 
     content: bytes
+    """A PNG or JPEG file."""
     kind: str
+    """Either "png" or "jpeg"."""
     places: Float64Array
+    """(n, 2), of each vertex from left to right and from top to bottom, 0 to 1 in the picture."""
 
     @property
     def suffix(self) -> str:
@@ -60,33 +54,10 @@ class Texture:
 
 
 def load_texture(source: str | os.PathLike[str], tin: TIN, *, stacklevel: int = 3) -> Texture:
-    """Read the picture to drape over a TIN.
+    """Read the picture to drape over a TIN: a GeoTIFF, or PNG or JPEG with a world file beside it.
 
-    Parameters
-    ----------
-    source : path-like
-        A GeoTIFF, or a PNG or JPEG file with a world file beside it.
-    tin : TIN
-    stacklevel : int
-        Of the caller who is told of losses.
-
-    Raises
-    ------
-    OptionError
-        If it is no path.
-    ReadError
-        If the file is missing, damaged, no picture, or has no place on the ground; or shows none of
-        the surface.
-    CrsError
-        If it cannot be brought to the CRS of the TIN.
-    MissingExtraError
-        If a GeoTIFF is given and rasterio is not installed.
-
-    Warns
-    -----
-    LossWarning
-        If the picture is warped or made smaller, does not reach over all of the surface, or
-        something is taken for granted that it does not tell.
+    Errors and warnings are those of :func:`.read_ortho`; ``stacklevel`` is that of the caller who
+    is told of losses.
     """
     path = as_picture_path(source, "drape")
     kind = _find_kind(path)

@@ -34,11 +34,12 @@ from .common import (
 from .linework import Chain, add_lines, chain_edges
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from ..._progress import Tell
     from ...arrays import AnyArray, Float64Array, Int32Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
@@ -69,8 +70,7 @@ def read(
 
     CRS and unit default to those of the grid-mapping variable and of the variable of elevations.
     Polygons are cut into triangles, which the report tells; other variables, and fields that change
-    in time, are left out. A mesh without faces gives a survey. Parameters and errors are those of
-    every reader, see :class:`.Format`; and:
+    in time, are left out. A mesh without faces gives a survey.
 
     Parameters
     ----------
@@ -200,11 +200,8 @@ def _find_opposite(triangles: Int32Array, edges: Int64Array) -> NDArray[np.intp]
     return np.asarray(np.argmin(is_end, axis=1))
 
 
-def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
-    """Write a TIN as UGRID 1.0 in netCDF 4.
-
-    Parameters and errors are those of every writer, see :class:`.Format`.
-    """
+def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
+    """Write a TIN as UGRID 1.0 in netCDF 4."""
     tin = require_tin(surface, path, format_name="UGRID")
     netcdf = _optional.load("netCDF4", "Writing UGRID files")
     with replacing_path(path) as beside:

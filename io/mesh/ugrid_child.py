@@ -41,25 +41,13 @@ def prepare() -> None:
 
 
 def read_mesh(path: str, shown: str, *, surface: str | None, variable: str | None) -> Answer:
-    """Return the points and faces of a mesh.
+    """Return the points and faces of a mesh, of several the one that is named.
 
-    Parameters
-    ----------
-    path : str
-    shown : str
-        The path as the user wrote it, for sentences.
-    surface : str, optional
-        Name of the mesh, where there are several.
-    variable : str, optional
-        Name of the elevations, default the one that its attributes tell.
-
-    Returns
-    -------
-    Answer
-        The value holds the ``mesh``, the ``variable`` of elevations and whether it is a ``depth``,
-        its ``unit``, texts of the CRS to try, ``xy_units`` and the ``dtype`` of eastings and
-        northings. The arrays hold ``points``, ``corners`` of the
-        faces, their ``offsets``, and where the file has them ``edges`` and their ``types``.
+    The value holds the ``mesh``, the ``variable`` of elevations, by default the one that its
+    attributes tell, and whether it is a ``depth``, its ``unit``, texts of the CRS to try,
+    ``xy_units`` and the ``dtype`` of eastings and northings. The arrays hold ``points``,
+    ``corners`` of the faces, their ``offsets``, and where the file has them ``edges`` and their
+    ``types``.
     """
     with import_module("netCDF4").Dataset(path) as data:
         mesh = _find_mesh(data, surface, shown)

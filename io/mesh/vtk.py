@@ -23,9 +23,10 @@ from . import common
 from .vtk_child import catch_errors, load_vtk_class
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...arrays import AnyArray, Float64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
@@ -40,7 +41,7 @@ _COUNTS = re.compile(rb'NumberOf\w+="(\d+)"')
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
-    """Read a VTK XML file of faces; called as :class:`.Format` says.
+    """Read a VTK XML file of faces.
 
     CRS and unit default to the field data ``crs`` and ``elevation_unit``. Polygons are cut into
     triangles; cells that are no faces are refused. Field data ``origin`` is added to the
@@ -117,11 +118,8 @@ def _require_likely_counts(content: bytes, path: Path) -> None:
             )
 
 
-def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
-    """Write a TIN as VTK XML: an UnstructuredGrid to ``.vtu``, else PolyData.
-
-    Parameters and errors are those of every writer, see :class:`.Format`.
-    """
+def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
+    """Write a TIN as VTK XML: an UnstructuredGrid to ``.vtu``, else PolyData."""
     tin = common.require_tin(surface, path, format_name="VTK")
     pv = _optional.load("pyvista", "Writing VTK files")
     mesh, class_name = _make_poly_data(tin, pv), "vtkXMLPolyDataWriter"

@@ -28,23 +28,13 @@ def prepare() -> None:
 
 
 def read_mesh(path: str, shown: str, *, kind: str) -> Answer:
-    """Return the points and faces of a file.
+    """Return the points and faces of a file, a "PolyData" or an "UnstructuredGrid".
 
-    Parameters
-    ----------
-    path : str
-    shown : str
-        The path as the user wrote it, for sentences.
-    kind : {"PolyData", "UnstructuredGrid"}
-
-    Returns
-    -------
-    Answer
-        The value holds ``crs``, ``elevation_unit``, the names of the ``attributes``, and the
-        ``dtype`` of the coordinates. The arrays hold ``points``, the ``corners`` of faces, one face
-        after the other, their ``offsets``, the number of the cell that each is (``cells``),
-        ``attribute 0`` ..., and where the file has them ``flags`` of the faces' edges, ``origin``,
-        ``exaggeration`` and ``elevation_scale``.
+    The value holds ``crs``, ``elevation_unit``, the names of the ``attributes``, and the ``dtype``
+    of the coordinates. The arrays hold ``points``, the ``corners`` of faces, one face after the
+    other, their ``offsets``, the number of the cell that each is (``cells``), ``attribute 0`` ...,
+    and where the file has them ``flags`` of the faces' edges, ``origin``, ``exaggeration`` and
+    ``elevation_scale``.
     """
     pv = import_module("pyvista")
     reader = load_vtk_class(f"vtkXML{kind}Reader")()
@@ -57,10 +47,7 @@ def read_mesh(path: str, shown: str, *, kind: str) -> Answer:
 
 
 def read_dataset(found: Any, shown: str) -> Answer:
-    """Return the points and faces of a PolyData or UnstructuredGrid of PyVista.
-
-    Parameters and answer are those of :func:`read_mesh`.
-    """
+    """Return what a PolyData or UnstructuredGrid of PyVista holds, as :func:`read_mesh` does."""
     is_poly_data = hasattr(found, "GetPolys")
     if not (is_poly_data or hasattr(found, "celltypes")):
         raise Refusal(f"'{shown}' is neither a PolyData nor an UnstructuredGrid.")

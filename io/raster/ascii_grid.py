@@ -12,9 +12,9 @@ from ..._atomic import replacing_files
 from ...errors import LossWarning, OptionError, WriteError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...arrays import AnyArray
     from ...terrain.results import Raster
 
@@ -26,15 +26,9 @@ _BLOCK_CELLS = 1 << 20
 
 
 def write(
-    raster: Raster,
-    path: Path,
-    *,
-    band: str | None = None,
-    progress: Callable[[float], None] | None = None,
+    raster: Raster, path: Path, *, band: str | None = None, progress: Tell | None = None
 ) -> None:
     """Write one band of a raster as an Esri ASCII grid, and its CRS beside it, as ``.prj``.
-
-    Parameters and errors are those of every writer, see :class:`.Format`; and:
 
     Parameters
     ----------

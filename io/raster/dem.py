@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 __all__ = [
     "LEFT_OUT",
     "Affine",
+    "Choice",
     "Header",
     "choose_band",
     "find_elevation_unit",
@@ -68,6 +69,18 @@ _READ = 0.8
 """Of the work as it is told, what is done once all strips are read."""
 
 _COLOURS = ("red", "green", "blue", "palette", "cyan", "magenta", "yellow", "black")
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """What of a raster is taken, in the words of :func:`read`."""
+
+    band: int | None
+    window: Sequence[int] | Bounds | None
+    stride: int | None
+    nodata: float | Sequence[float] | None
+    fill: bool
+    most_cells: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,19 +119,15 @@ def read(
     most_cells: int | None = None,
     nodata: float | Sequence[float] | None = None,
     fill: bool = False,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> Survey:
     """Read a raster as points, one at the centre of every cell that has an elevation.
 
+    The points are transformed to ``crs``, nothing is resampled. ``z_unit`` may also be that of the
+    band or that of the vertical axis of its CRS, if they differ.
+
     Parameters
     ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        CRS wanted. The points are transformed to it, nothing is resampled. It declares the CRS
-        of a raster that has none.
-    z_unit : Unit or str, optional
-        Unit of the elevations, if neither the band nor the vertical axis of its CRS gives one; or
-        the one of the two that is right, if they differ.
     band : int, optional
         Band to read, from 1; default the first.
     window : (4,) sequence of int, or Bounds, optional
@@ -129,13 +138,9 @@ def read(
     most_cells : int, optional
         Read so many cells at most: every n-th row and column of a larger raster, with the smallest
         n for which they are no more, which ``notes`` tell. Not with ``stride``.
-    nodata : float or sequence of float, optional
-        Elevations that stand for no data, besides the one that the raster declares.
     fill : bool
         Let the surface span the voids. Otherwise it ends at the cells around them, along the
         rings of ``Survey.extent``.
-    progress : callable, optional
-        Called with the fraction done, ascending, strip by strip. What it raises ends the call.
 
     Returns
     -------
@@ -163,53 +168,33 @@ def read(
     for each valid cell at most, and a strip.
     """
     header = read_header(path)
+    choice = Choice(band, window, stride, nodata, fill, most_cells)
     return make_survey(
-        header,
-        partial(stream_strips, header),
-        crs=crs,
-        z_unit=z_unit,
-        band=band,
-        window=window,
-        stride=stride,
-        most_cells=most_cells,
-        nodata=nodata,
-        fill=fill,
-        progress=progress,
+        header, partial(stream_strips, header), choice, crs=crs, z_unit=z_unit, progress=progress
     )
 
 
 def make_survey(
     dataset: Header,
     open_strips: OpenStrips,
+    choice: Choice,
     *,
     crs: CrsLike | None,
     z_unit: UnitLike | None,
-    band: int | None,
-    window: Sequence[int] | Bounds | None,
-    stride: int | None,
-    most_cells: int | None = None,
-    nodata: float | Sequence[float] | None,
-    fill: bool,
     progress: Tell | None = None,
 ) -> Survey:
     """Make a survey of the cells of a raster, as :func:`read` does.
 
-    Parameters
-    ----------
-    dataset : Header
-    open_strips : callable
-        Takes what to read, and gives the strips that ``gdal_child.read_strips`` yields.
-    crs, z_unit, band, window, stride, most_cells, nodata, fill, progress
-        As of :func:`read`.
+    ``open_strips`` takes what to read, and gives the strips that ``gdal_child.read_strips`` yields.
     """
     path = dataset.path
-    number = choose_band(dataset, band, path)
-    require_elevation_band(dataset, number, band is not None, path)
+    number = choose_band(dataset, choice.band, path)
+    require_elevation_band(dataset, number, choice.band is not None, path)
     target, source = CRS.of(crs), CRS.of(dataset.crs)
     unit, said = find_elevation_unit(dataset, number, source, Unit.of(z_unit))
-    cells = _choose_cells(dataset, window, stride, path, most_cells)
-    left_out = 0 if most_cells is None else cells.width * cells.height - cells.count
-    marks = parse_nodata(nodata)
+    cells = _choose_cells(dataset, choice, path)
+    left_out = 0 if choice.most_cells is None else cells.width * cells.height - cells.count
+    marks = parse_nodata(choice.nodata)
     _require_few_cells(cells, path)
     place(find_middle(dataset), source=source, target=target, path=path)
     points, valid, n_nodata = _read_points(dataset, open_strips, number, cells, marks, progress)
@@ -234,17 +219,13 @@ def make_survey(
         },
         notes=[*said, *_describe_sample(cells, left_out), *notes, *placed.notes],
     )
-    return survey if fill or valid.all() else _add_void_rings(survey, valid)
+    return survey if choice.fill or valid.all() else _add_void_rings(survey, valid)
 
 
 def read_georeference(
     path: Path,
 ) -> tuple[tuple[float, ...], tuple[int, int], str | None]:
     """Return where the cells of a raster lie, read in a child from its header.
-
-    Parameters
-    ----------
-    path : Path
 
     Returns
     -------
@@ -469,14 +450,8 @@ def find_middle(dataset: Header) -> Float64Array:
 # ------------------------------------------------------------------ which cells
 
 
-def _choose_cells(
-    dataset: Header,
-    window: Sequence[int] | Bounds | None,
-    stride: int | None,
-    path: Path,
-    most_cells: int | None = None,
-) -> _Cells:
-    bounds = None
+def _choose_cells(dataset: Header, choice: Choice, path: Path) -> _Cells:
+    window, stride, bounds = choice.window, choice.stride, None
     if window is None:
         part = (0, 0, dataset.width, dataset.height)
     elif isinstance(window, Bounds):
@@ -484,8 +459,8 @@ def _choose_cells(
         part = _cut_bounds(dataset, bounds, path)
     else:
         part = _cut_window(dataset, window, path)
-    if most_cells is not None:
-        return _Cells(*part, _choose_stride(part[2], part[3], stride, most_cells), bounds)
+    if choice.most_cells is not None:
+        return _Cells(*part, _choose_stride(part[2], part[3], stride, choice.most_cells), bounds)
     smaller, stride = min(part[2:]), 1 if stride is None else stride
     if not isinstance(stride, Integral) or not (1 <= stride < smaller or stride == 1):
         raise OptionError(

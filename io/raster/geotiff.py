@@ -19,9 +19,10 @@ from ...terrain.results.columns import UNKNOWN_UNIT, unit_text
 from ..reprojection.crs_kept import require_kept
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...terrain.results import Raster
 
 __all__ = ["write", "write_cog"]
@@ -45,11 +46,9 @@ def write(
     *,
     overviews: OverviewMethod | None = None,
     compression: RasterCompression = "deflate",
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> None:
     """Write a raster as a tiled GeoTIFF, compressed without loss.
-
-    Parameters and errors are those of every writer, see :class:`.Format`; and:
 
     Parameters
     ----------
@@ -89,7 +88,7 @@ def write_cog(
     path: Path,
     *,
     overviews: OverviewMethod | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> None:
     """Write a raster as a cloud optimized GeoTIFF; parameters and errors as :func:`write`.
 
@@ -166,7 +165,7 @@ def _write_tiles(
     new: Path,
     path: Path,
     compression: RasterCompression,
-    progress: Callable[[float], None] | None,
+    progress: Tell | None,
 ) -> None:
     rasterio = _optional.load("rasterio", f"Writing '{path}'")
     with rasterio.open(new, "w", **_make_profile(raster, path, compression)) as dataset:

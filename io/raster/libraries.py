@@ -15,7 +15,7 @@ from ... import _optional
 from ...errors import OptionError
 from ...terrain.results import Raster
 from ...tin.validation.options import require_type
-from .dem import Affine, Header, make_survey
+from .dem import Affine, Choice, Header, make_survey
 from .gdal_child import cut_strips, describe
 
 if TYPE_CHECKING:
@@ -102,17 +102,8 @@ def from_raster(
         limits=None,
         **{**(about := describe(dataset)), "transform": Affine(*about["transform"])},
     )
-    return make_survey(
-        header,
-        partial(_cut, dataset),
-        crs=crs,
-        z_unit=z_unit,
-        band=number,
-        window=window,
-        stride=stride,
-        nodata=nodata,
-        fill=fill,
-    )
+    choice = Choice(number, window, stride, nodata, fill)
+    return make_survey(header, partial(_cut, dataset), choice, crs=crs, z_unit=z_unit)
 
 
 @contextmanager

@@ -85,27 +85,14 @@ def read_picture(
 ) -> Answer:
     """Return the part of a picture over a surface, at most so many pixels wide and high.
 
-    Parameters
-    ----------
-    path : str
-    shown : str
-        The path as the user wrote it, for sentences.
-    crs : str or None
-        WKT of the surface's CRS.
-    bounds : list of float
-        Of the surface: west, south, east, north.
-    most_pixels : int
-    transparent : str
-        Kind of the bytes where the picture is partly transparent, "png" or "webp".
+    ``crs`` is the WKT of the surface's CRS, ``bounds`` are its west, south, east and north,
+    ``transparent`` is the kind of the bytes where the picture is partly so, "png" or "webp".
 
-    Returns
-    -------
-    Answer
-        The value holds the ``kind`` of the bytes in the array ``content``, the ``shape`` and
-        ``transform`` of the picture, the ``part`` of it that was read before it was made smaller
-        (width, height), whether it has a CRS (``crs``), the CRS that it was warped from if any
-        (``warped``), and what was taken for granted (``told``). The array ``opacity`` is there
-        where the picture is partly transparent.
+    The value holds the ``kind`` of the bytes in the array ``content``, the ``shape`` and
+    ``transform`` of the picture, the ``part`` of it that was read before it was made smaller
+    (width, height), whether it has a CRS (``crs``), the CRS that it was warped from if any
+    (``warped``), and what was taken for granted (``told``). The array ``opacity`` is there where
+    the picture is partly transparent.
     """
     import rasterio
     from rasterio.errors import NotGeoreferencedWarning, RasterioError

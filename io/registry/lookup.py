@@ -186,15 +186,9 @@ def _describe_unknown_suffix(path: Path, action: str) -> FormatError:
 
 
 def find_writer(path: Path, name: str | None, kinds: Sequence[str]) -> Format:
-    """Choose the format to write a file in.
+    """Choose the format to write a file in, by its suffix or the name of a format.
 
-    Parameters
-    ----------
-    path : Path
-    name : str or None
-        Of a format, to choose it whatever the suffix.
-    kinds : sequence of str
-        What is to be written is one of these: "TIN", "Survey", "Features", "Raster", "Table".
+    What is to be written is one of the ``kinds``: "TIN", "Survey", "Features", "Raster", "Table".
 
     Raises
     ------
@@ -206,24 +200,10 @@ def find_writer(path: Path, name: str | None, kinds: Sequence[str]) -> Format:
 
 
 def find_writers(path: Path, name: str | None, kinds: Sequence[str]) -> dict[str, Format]:
-    """Choose the format for each kind of thing that may be written to a file.
+    """Choose the format of each kind of thing that may be written to a file, as for one.
 
-    Parameters
-    ----------
-    path : Path
-    name : str or None
-        Of a format, to choose it whatever the suffix.
-    kinds : sequence of str
-
-    Returns
-    -------
-    dict of str to Format
-        By kind, without those that no format holds; never empty.
-
-    Raises
-    ------
-    FormatError
-        As :func:`find_writer`.
+    Kinds that no format holds are left out; the answer is never empty, else a FormatError is
+    raised.
     """
     claims = {kind: _list_writers(path, name, kind) for kind in kinds}
     clear = {kind: formats[0] for kind, formats in claims.items() if _is_clear(formats)}

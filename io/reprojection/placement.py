@@ -30,22 +30,15 @@ class DegreesError(ReadError):
 
 
 class Placed(NamedTuple):
-    """Points in the CRS wanted.
-
-    Attributes
-    ----------
-    points : (n, 3) float64 array
-    crs : CRS or None
-    elevation_unit : Unit or None
-        None if it is not known.
-    notes : tuple of str
-        What was done to the elevations, and whether points lie where the CRS does not apply.
-    """
+    """Points in the CRS wanted."""
 
     points: Float64Array
+    """(n, 3)."""
     crs: CRS | None
     elevation_unit: Unit | None
+    """None if it is not known."""
     notes: tuple[str, ...]
+    """What was done to the elevations, and whether points lie where the CRS does not apply."""
 
 
 def place(
@@ -57,22 +50,11 @@ def place(
     unit: Unit | None = None,
     looks_at_area: bool = True,
 ) -> Placed:
-    """Bring points into a projected CRS.
+    """Bring points, (n, 3), into a projected CRS: the target, else their source.
 
-    Parameters
-    ----------
-    points : (n, 3) float64 array
-    source : CRS, optional
-        CRS of the points; unknown points are declared to be in the target.
-    target : CRS, optional
-        CRS wanted; default the source.
-    path : Path
-        For sentences.
-    unit : Unit, optional
-        Unit of the elevations, if it is known otherwise than by the source.
-    looks_at_area : bool, optional
-        Whether it is told which points lie outside the area of use of either CRS; False where the
-        reader has looked at it.
+    Points without a source are declared to be in the target. ``unit`` is that of the elevations, if
+    it is known otherwise than by the source. Which points lie outside the area of use of either CRS
+    is not told where the reader has looked at it.
 
     Raises
     ------

@@ -15,27 +15,16 @@ _MOST_NAMES = 2
 
 
 class Quality(NamedTuple):
-    """What the operation that was used leaves undone.
-
-    Attributes
-    ----------
-    keeps_datum : bool
-        Whether elevations went over unchanged although their datums differ.
-    note : str or None
-        What is to be told of the places in the plane.
-    """
+    """What the operation that was used leaves undone."""
 
     keeps_datum: bool = False
+    """Whether elevations went over unchanged although their datums differ."""
     note: str | None = None
+    """What is to be told of the places in the plane."""
 
 
 def judge(source: CRS, target: CRS, transformer: Any) -> Quality:
     """Say how good the operation is that a transformer has just used.
-
-    Parameters
-    ----------
-    source, target : CRS
-    transformer : pyproj.Transformer
 
     Notes
     -----

@@ -37,23 +37,16 @@ LengthUnit = Unit
 
 
 class Reprojected(NamedTuple):
-    """Points in another CRS.
-
-    Attributes
-    ----------
-    points : (n, 3) float64 array
-    unit : Unit or None
-        Of their elevations; None if it is still not known.
-    note : str or None
-        What was done to the elevations, in a sentence; None if nothing.
-    quality : Quality
-        What the transformation leaves undone.
-    """
+    """Points in another CRS."""
 
     points: Float64Array
+    """(n, 3)."""
     unit: Unit | None
+    """Of their elevations; None if it is still not known."""
     note: str | None
+    """What was done to the elevations, in a sentence; None if nothing."""
     quality: Quality = Quality()
+    """What the transformation leaves undone."""
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -14,9 +14,10 @@ from ...terrain.results import Features, Table
 from ...terrain.results.columns import unit_text
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...arrays import AnyArray
     from ...terrain.results.columns import Units
 
@@ -26,14 +27,11 @@ _CHUNK_ROWS = 100_000
 _AXES = ("easting", "northing", "elevation")
 
 
-def write(
-    obj: Table | Features, path: Path, *, progress: Callable[[float], None] | None = None
-) -> None:
+def write(obj: Table | Features, path: Path, *, progress: Tell | None = None) -> None:
     """Write a table, or points with their columns: cells parted by commas, in a ``.tsv`` by tabs.
 
-    Parameters and errors are those of every writer, see :class:`.Format`; features that are lines
-    or polygons, and a column of points with the name of a coordinate, are refused with a
-    FormatError.
+    Features that are lines or polygons, and a column of points with the name of a coordinate, are
+    refused with a FormatError.
 
     Notes
     -----
@@ -86,7 +84,7 @@ def _tabulate_points(features: Features, path: Path) -> Table:
 
 
 def _iterate_rows(
-    columns: Sequence[AnyArray], count: int, progress: Callable[[float], None] | None
+    columns: Sequence[AnyArray], count: int, progress: Tell | None
 ) -> Iterator[tuple[Any, ...]]:
     for start in range(0, count, _CHUNK_ROWS):
         stop = min(start + _CHUNK_ROWS, count)

@@ -10,9 +10,9 @@ from ...terrain.results.columns import unit_text
 from ..vector.geojson.values import json_texts, properties_template
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
+    from ..._progress import Tell
     from ...terrain.results import Table
 
 __all__ = ["write"]
@@ -20,10 +20,8 @@ __all__ = ["write"]
 _CHUNK_ROWS = 50_000
 
 
-def write(table: Table, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
+def write(table: Table, path: Path, *, progress: Tell | None = None) -> None:
     """Write a table as an object with ``name``, ``notes``, ``units`` and ``rows``.
-
-    Parameters and errors are those of every writer, see :class:`.Format`.
 
     Notes
     -----

@@ -39,21 +39,14 @@ _UNIT_AT_END = re.compile(
 
 
 class Elevations(NamedTuple):
-    """Elevations of vertices.
-
-    Attributes
-    ----------
-    z : (n,) float64 array
-        NaN where there is none.
-    unit : Unit or None
-        What the name of their column says.
-    notes : tuple of str
-        What was assumed.
-    """
+    """Elevations of vertices."""
 
     z: Float64Array
+    """(n,), NaN where there is none."""
     unit: Unit | None = None
+    """What the name of their column says."""
     notes: tuple[str, ...] = ()
+    """What was assumed."""
 
 
 def find_named_unit(name: str, features: Features) -> Unit | None:

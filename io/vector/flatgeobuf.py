@@ -18,25 +18,9 @@ __all__ = ["write"]
 def write(features: Features, path: Path, *, has_index: bool = True) -> None:
     """Write features as FlatGeobuf, named after the product.
 
-    Parameters
-    ----------
-    features : Features
-    path : Path
-    has_index : bool
-        Whether it gets a spatial index, which gives features another order.
-
-    Raises
-    ------
-    MissingExtraError
-        If pyogrio is not installed.
-    WriteError
-        If the file cannot be written.
-
-    Notes
-    -----
-    Coordinates and numbers are the same float64. Features stand in the order of the spatial index
-    if there is one, else in their own. Units of columns and of elevations, and notes, are metadata
-    of the layer.
+    A spatial index gives features another order; without one they stand in their own. Coordinates
+    and numbers are the same float64. Units of columns and of elevations, and notes, are metadata of
+    the layer.
     """
     how: dict[str, Any] = {} if has_index else {"SPATIAL_INDEX": "NO"}
     with replacing_files(path) as new:

@@ -16,7 +16,6 @@ from .signatures import (
 
 __all__ = ["FORMATS"]
 
-_EXACT = "Every coordinate is the same double."
 _LOSSES = (
     "Of a TIN what the kind that is written does not show: lines and attributes beside triangles, "
     "the report, vertices of no triangle; of a survey its lines."
@@ -32,7 +31,8 @@ def _make(name: str, description: str, *suffixes: str, writer: str = "", **more:
     ends: dict[str, Any] = {"read": f"{__package__}.points:read", "reads": ("Survey", "TIN")}
     if writer:
         ends["write"] = f"{__package__}.{writer}"
-        ends["writes"] = ("Features", *SURFACES)
+        ends |= {"writes": ("Features", *SURFACES), "losses": _LOSSES, "loses": _LOSES}
+        ends["precision"] = "Every coordinate is the same double."
     return Format(name=name, description=description, suffixes=suffixes, **(ends | more))
 
 
@@ -47,7 +47,6 @@ FORMATS = (
         ),
         rounding=2e-4,
         losses="The CRS, as RFC 7946 knows WGS 84 alone: name it on reading. " + _LOSSES,
-        loses=_LOSES,
         sniff=signatures.is_geojson,
     ),
     _make(
@@ -59,14 +58,12 @@ FORMATS = (
         rounding=2e-4,
         losses="The CRS, units and notes, which a sequence has no place for: name it on reading. "
         + _LOSSES,
-        loses=_LOSES,
         sniff=is_geojson_sequence,
     ),
     _make(
         *("gpkg", "GeoPackage", ".gpkg"),
         writer="surface_layers:write_geopackage",
         writes=("Features", "Survey"),
-        precision=_EXACT,
         losses="Of a survey its lines.",
         loses=("survey lines",),
         extra="vector",
@@ -75,9 +72,6 @@ FORMATS = (
     _make(
         *("flatgeobuf", "FlatGeobuf", ".fgb"),
         writer="surface_layers:write_flatgeobuf",
-        precision=_EXACT,
-        losses=_LOSSES,
-        loses=_LOSES,
         extra="vector",
         sniff=is_flatgeobuf,
     ),
@@ -94,9 +88,6 @@ FORMATS = (
     _make(
         *("geoparquet", "GeoParquet", ".parquet", ".geoparquet"),
         writer="surface_layers:write_geoparquet",
-        precision=_EXACT,
-        losses=_LOSSES,
-        loses=_LOSES,
         extra="interop",
         sniff=is_parquet,
     ),

@@ -69,21 +69,10 @@ def _name_further_kinds() -> None:
 def read_features(path: str, shown: str, *, layer: str | None, where: str | None) -> Answer:
     """Return the features of one layer.
 
-    Parameters
-    ----------
-    path : str
-    shown : str
-        The path as the user wrote it, for sentences.
-    layer, where : str, optional
-
-    Returns
-    -------
-    Answer
-        The value holds ``layer``, ``crs``, ``elevation_unit`` if the layer tells it, ``names`` of
-        the columns, ``texts``, the columns that are no numbers, by their place, and ``notes``. The
-        arrays hold
-        ``numbers`` of the features, ``wkb`` of all geometries, ``lengths`` of each (-1 where there
-        is none), and ``column 0`` ...
+    The value holds ``layer``, ``crs``, ``elevation_unit`` if the layer tells it, ``names`` of the
+    columns, ``texts``, the columns that are no numbers, by their place, and ``notes``. The arrays
+    hold ``numbers`` of the features, ``wkb`` of all geometries, ``lengths`` of each (-1 where there
+    is none), and ``column 0`` ...
     """
     import pyogrio
     from pyogrio.errors import DataSourceError

@@ -22,8 +22,6 @@ _OWN_COLUMNS = ("fid", "geom")
 def write(features: Features, path: Path) -> None:
     """Write features as a GeoPackage with one layer, named after the product.
 
-    Parameters are those of every writer, see :class:`.Format`.
-
     Raises
     ------
     WriteError

@@ -35,11 +35,6 @@ _MOST_BYTES = 2**31 - 1
 def write(features: Features, path: Path) -> None:
     """Write features as GeoParquet, geometries as well-known binary.
 
-    Parameters
-    ----------
-    features : Features
-    path : Path
-
     Raises
     ------
     MissingExtraError

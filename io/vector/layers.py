@@ -16,34 +16,22 @@ __all__ = ["Features", "name_apart", "name_columns"]
 
 
 class Features(NamedTuple):
-    """What a layer holds.
-
-    Attributes
-    ----------
-    path : Path
-    numbers : (n,) int64 array
-        Feature numbers as GDAL counts them.
-    geometries : (n,) object array
-        Shapely geometries, none of them missing or empty.
-    columns : dict of str to (n,) array
-        By their names in lower case; those that only capitals keep apart by their own.
-    crs : CRS or None
-    notes : tuple of str
-        What was left out.
-    names : tuple of str
-        Of the columns, as the file writes them.
-    elevation_unit : str
-        What the file calls the unit of its elevations, apart from its CRS; empty if it does not.
-    """
+    """What a layer holds."""
 
     path: Path
     numbers: Int64Array
+    """(n,), feature numbers as GDAL counts them."""
     geometries: ObjectArray
+    """(n,), Shapely geometries, none of them missing or empty."""
     columns: dict[str, AnyArray]
+    """Each (n,), by their names in lower case; those that only capitals keep apart by their own."""
     crs: CRS | None
     notes: tuple[str, ...]
+    """What was left out."""
     names: tuple[str, ...] = ()
+    """Of the columns, as the file writes them."""
     elevation_unit: str = ""
+    """What the file calls the unit of its elevations, apart from its CRS; empty if it does not."""
 
     def label(self, row: int) -> str:
         """Return what a feature is called in sentences."""

@@ -41,27 +41,11 @@ def write_layer(
     geometry_type: str | None = None,
     **options: str,
 ) -> None:
-    """Write features as one layer.
+    """Write features as one layer of a new file, called as the product, else as ``shown``.
 
-    Parameters
-    ----------
-    features : Features
-    path : Path
-        A new file.
-    shown : Path
-        What it is called in sentences; the layer is called as the product, else as this file.
-    driver : str
-        Name of GDAL's driver.
-    names : sequence of str, optional
-        Of the columns, if the format needs others.
-    metadata : mapping of str to str, optional
-        Of the layer.
-    geometries : (n,) object array, optional
-        Well-known binary, if it is another than that of the features.
-    geometry_type : str, optional
-        Then the type that pyogrio is told.
-    **options : str
-        Of the layer's creation.
+    Sentences call the file ``shown``, too. ``names`` of columns are given if the format needs
+    others, ``geometries``, (n,) well-known binary, and their type if they are others than those of
+    the features; ``metadata`` and the options of creation are those of the layer.
 
     Raises
     ------

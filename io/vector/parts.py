@@ -32,40 +32,26 @@ _POLYGON = 3
 
 
 class Part(NamedTuple):
-    """A line or ring.
-
-    Attributes
-    ----------
-    coords : (k, 2) or (k, 3) float64 array
-    row : int
-        Of its feature.
-    is_closed : bool
-    ring : int
-        0 for lines and outer rings, 1, 2, ... for the inner rings of a polygon.
-    """
+    """A line or ring."""
 
     coords: Float64Array
+    """(k, 2) or (k, 3)."""
     row: int
+    """Of its feature."""
     is_closed: bool
     ring: int
+    """0 for lines and outer rings, 1, 2, ... for the inner rings of a polygon."""
 
 
 class Wanted(NamedTuple):
-    """What lines are to be measured in, that of the points, and what the caller declares of them.
-
-    Attributes
-    ----------
-    crs : CRS or None
-        Of the points.
-    elevation_unit : Unit or None
-        Of their elevations, if it is known.
-    z_unit : Unit or None
-        Of the elevations in the file, if its CRS does not tell.
-    """
+    """What lines are to be measured in, as the points are, and what the caller declares of them."""
 
     crs: CRS | None = None
+    """Of the points."""
     elevation_unit: Unit | None = None
+    """Of their elevations, if it is known."""
     z_unit: Unit | None = None
+    """Of the elevations in the file, if its CRS does not tell."""
 
 
 class _Lines(NamedTuple):

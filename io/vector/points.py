@@ -49,13 +49,10 @@ def read(
 ) -> Survey | TIN:
     """Read the points of a vector layer, or the triangles that another program wrote as polygons.
 
+    Points are reprojected to ``crs``.
+
     Parameters
     ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-        CRS wanted, to which the points are reprojected. It declares that of a file without one.
-    z_unit : Unit or str, optional
-        Unit of the elevations, if the file does not say.
     layer : str, optional
         Needed if several layers have geometry.
     z_field : str, optional
@@ -66,8 +63,6 @@ def read(
     lines_as : {"points", "breaklines"}, optional
         Take the vertices of lines, and of polygons that are no triangles, as points, or the lines
         as breaklines too. Needed for a layer of them.
-    nodata : float or sequence of float, optional
-        Elevations that stand for none: such points are left out and counted.
 
     Returns
     -------

@@ -35,11 +35,7 @@ _LARGEST_WHOLE = 10**18
 def write(features: Features, path: Path) -> None:
     """Write features as a shapefile: PointZ, PolyLineZ or PolygonZ where there are elevations.
 
-    Parameters
-    ----------
-    features : Features
-    path : Path
-        Its parts are written beside it: ``.shx``, ``.dbf``, ``.cpg``, with a CRS ``.prj``.
+    Its parts are written beside it: ``.shx``, ``.dbf``, ``.cpg``, with a CRS ``.prj``.
 
     Raises
     ------

@@ -12,10 +12,10 @@ from . import flatgeobuf, geopackage, shapefile
 from .surface_features import make_features, make_whole_surface
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
     from typing import TypeAlias
 
+    from ..._progress import Tell
     from ...policies import FeatureKind
     from ...tin import TIN
 
@@ -40,8 +40,6 @@ def write_flatgeobuf(surface: Writable, path: Path, *, kind: FeatureKind | None 
 
     Parameters
     ----------
-    surface : TIN, Survey or Features
-    path : Path
     kind : {"triangles", "points", "edges", "lines", "hull"}, optional
         Of a TIN; default triangles.
     """
@@ -89,11 +87,7 @@ def write_geoparquet(surface: Writable, path: Path, *, kind: FeatureKind | None 
 
 
 def write_geojson_sequence(
-    surface: Writable,
-    path: Path,
-    *,
-    kind: FeatureKind | None = None,
-    progress: Callable[[float], None] | None = None,
+    surface: Writable, path: Path, *, kind: FeatureKind | None = None, progress: Tell | None = None
 ) -> None:
     """Write a kind of parts of a surface, or features, as lines of GeoJSON, each a feature.
 

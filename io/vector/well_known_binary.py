@@ -35,10 +35,6 @@ _HAS_Z, _HAS_M, _HAS_SRID = 0x8000_0000, 0x4000_0000, 0x2000_0000
 def encode_equal_shapes(features: Features) -> NDArray[np.void] | None:
     """Return points, lines of equally many vertices, or polygons of one such ring each.
 
-    Parameters
-    ----------
-    features : Features
-
     Returns
     -------
     (n,) array of void or None

@@ -51,12 +51,7 @@ def load(module: str, purpose: str = "This") -> Any:
 
 
 def describe_missing(error: ImportError) -> MissingExtraError | None:
-    """Return what to install where a module was not found that comes with this package.
-
-    Parameters
-    ----------
-    error : ImportError
-    """
+    """Return what to install where a module was not found that comes with this package."""
     library = (error.name or "").partition(".")[0]
     is_ours = isinstance(error, ModuleNotFoundError) and library in _INCLUDED
     return _describe_missing(library, "This") if is_ours else None

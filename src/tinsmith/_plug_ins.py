@@ -19,21 +19,14 @@ __all__ = ["PlugIn", "describe_failure", "find_plug_ins", "name_distribution", "
 
 
 class PlugIn(NamedTuple):
-    """An entry point of another distribution, not loaded yet.
-
-    Attributes
-    ----------
-    name : str
-        Of the entry point.
-    distribution : str
-        Name and version of the distribution that has it.
-    load : callable
-        Load what the entry point names.
-    """
+    """An entry point of another distribution, not loaded yet."""
 
     name: str
+    """Of the entry point."""
     distribution: str
+    """Name and version of the distribution that has it."""
     load: Callable[[], Any]
+    """Load what the entry point names."""
 
 
 def find_plug_ins(group: str) -> list[PlugIn]:

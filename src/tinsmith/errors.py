@@ -74,20 +74,7 @@ class OptionError(TinsmithError, ValueError):
 
 
 def choice(option: str, value: Value, allowed: Any) -> Value:
-    """Return an option that is one of a few words, or refuse it.
-
-    Parameters
-    ----------
-    option : str
-        Name of the parameter.
-    value : str
-    allowed : Literal or sequence of str
-        The words.
-
-    Raises
-    ------
-    OptionError
-        If it is none of them.
+    """Return an option that is one of the words of a Literal, or of a few, or refuse it.
 
     Examples
     --------

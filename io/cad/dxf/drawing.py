@@ -29,21 +29,15 @@ _SLOWNESS = 5
 
 
 class Drawing(NamedTuple):
-    """What a drawing holds in its model space, blocks taken apart.
-
-    Attributes
-    ----------
-    path : Path
-    value : dict
-        ``layers`` by number, what was left out, and texts, as the child process answers.
-    arrays : dict of str to array
-        ``points`` (n, 3), ``faces`` (m, 4, 3), ``lines`` (k, 3) with ``lengths`` and ``is_flat``
-        of each, ``text_places``, and the layer of each point, face and line.
-    """
+    """What a drawing holds in its model space, blocks taken apart."""
 
     path: Path
     value: dict[str, Any]
+    """``layers`` by number, what was left out, and texts, as the child process answers."""
     arrays: dict[str, AnyArray]
+    """``points`` (n, 3), ``faces`` (m, 4, 3), ``lines`` (k, 3) with ``lengths`` and ``is_flat`` of
+    each, ``text_places``, and the layer of each point, face and line.
+    """
 
     @property
     def lines(self) -> list[Float64Array]:

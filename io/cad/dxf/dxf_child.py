@@ -49,19 +49,10 @@ def prepare() -> None:
 def read_drawing(
     path: str, shown: str, *, layer: str | None, texts: bool, tolerance: float | None
 ) -> Answer:
-    """Return the points, faces and lines of the model space.
+    """Return the points, faces and lines of the model space, and its texts if they are asked for.
 
-    Parameters
-    ----------
-    path : str
-    shown : str
-        The path as the user wrote it, for sentences.
-    layer : str, optional
-        Names or patterns of layers, with commas between.
-    texts : bool
-        Return the texts too.
-    tolerance : float, optional
-        How far a curve may lie from its chords, in the unit of the drawing.
+    ``layer`` is names or patterns of layers, with commas between; ``tolerance`` is how far a curve
+    may lie from its chords, in the unit of the drawing.
     """
     document = _load(path, shown)
     try:

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from .names import APPLICATION
 
 if TYPE_CHECKING:
@@ -16,6 +18,9 @@ if TYPE_CHECKING:
 
 __all__ = ["EntityWriter"]
 
+_IN_SPACE = 8
+"""Flag of a polyline that is not of one elevation."""
+
 _LONGEST_TEXT = 250
 """DXF allows 255 letters in extended data."""
 
@@ -23,13 +28,7 @@ _LONGEST_TEXT = 250
 class EntityWriter:
     """Makes the text of entities of one drawing, with handles that count on.
 
-    Parameters
-    ----------
-    is_r12 : bool
-        The version has no subclasses.
-    owner : str
-        Handle of the record of the model space.
-    first_handle : int
+    R12 has no subclasses; ``owner`` is the handle of the record of the model space.
     """
 
     def __init__(self, *, is_r12: bool, owner: str, first_handle: int) -> None:
@@ -84,29 +83,13 @@ class EntityWriter:
         if is_flat:
             self._add_plane_line(layer, rows, 0.0, is_closed=is_closed, told=told)
         else:
-            self._add_space_line(layer, rows, is_closed=is_closed, told=told)
+            self._add_polyline(layer, rows, _IN_SPACE | is_closed, told)
 
     def add_contour(self, layer: str, rows: Float64Array) -> None:
         """Add a line of one elevation as a polyline in the plane."""
         is_closed = len(rows) > 3 and bool((rows[0] == rows[-1]).all())
         plane = rows[:-1, :2] if is_closed else rows[:, :2]
         self._add_plane_line(layer, plane, float(rows[0, 2]), is_closed=is_closed, told=())
-
-    def _add_space_line(
-        self, layer: str, rows: Float64Array, *, is_closed: bool, told: Sequence[str]
-    ) -> None:
-        handle = f"{self.next_handle:X}"
-        head = self._begin("POLYLINE", layer, "AcDb3dPolyline")
-        flags = 8 | is_closed
-        self.parts.append(
-            f"{head}66\n1\n10\n0.0\n20\n0.0\n30\n0.0\n70\n{flags}\n{format_told(told)}"
-        )
-        for row in rows.tolist():
-            vertex = self._begin(
-                "VERTEX", layer, "AcDbVertex", "AcDb3dPolylineVertex", owner=handle
-            )
-            self.parts.append(f"{vertex}{_format_place(row)}70\n32\n")
-        self.parts.append(self._begin("SEQEND", layer, owner=handle))
 
     def _add_plane_line(
         self,
@@ -118,32 +101,38 @@ class EntityWriter:
         told: Sequence[str],
     ) -> None:
         if self._is_r12:
-            self._add_old_plane_line(layer, rows, elevation, is_closed=is_closed, told=told)
+            places = np.column_stack([rows, np.full(len(rows), elevation)])
+            self._add_polyline(layer, places, int(is_closed), told, elevation=elevation)
             return
         head = self._begin("LWPOLYLINE", layer, "AcDbPolyline")
-        places = "".join(f"10\n{x!r}\n20\n{y!r}\n" for x, y in rows.tolist())
+        corners = "".join(f"10\n{x!r}\n20\n{y!r}\n" for x, y in rows.tolist())
         self.parts.append(
-            f"{head}90\n{len(rows)}\n70\n{int(is_closed)}\n38\n{elevation!r}\n{places}"
+            f"{head}90\n{len(rows)}\n70\n{int(is_closed)}\n38\n{elevation!r}\n{corners}"
             f"{format_told(told)}"
         )
 
-    def _add_old_plane_line(
+    def _add_polyline(
         self,
         layer: str,
-        rows: Float64Array,
-        elevation: float,
-        *,
-        is_closed: bool,
+        places: Float64Array,
+        flags: int,
         told: Sequence[str],
+        *,
+        elevation: float = 0.0,
     ) -> None:
-        head = self._begin("POLYLINE", layer)
+        """Add a polyline with an entity for each vertex: one in space, or one of R12."""
+        handle = f"{self.next_handle:X}"
+        head = self._begin("POLYLINE", layer, "AcDb3dPolyline")
         self.parts.append(
-            f"{head}66\n1\n10\n0.0\n20\n0.0\n30\n{elevation!r}\n70\n{int(is_closed)}\n"
-            f"{format_told(told)}"
+            f"{head}66\n1\n10\n0.0\n20\n0.0\n30\n{elevation!r}\n70\n{flags}\n{format_told(told)}"
         )
-        for x, y in rows.tolist():
-            self.parts.append(f"{self._begin('VERTEX', layer)}{_format_place([x, y, elevation])}")
-        self.parts.append(self._begin("SEQEND", layer))
+        vertex_flags = "70\n32\n" if flags & _IN_SPACE else ""
+        for row in places.tolist():
+            vertex = self._begin(
+                "VERTEX", layer, "AcDbVertex", "AcDb3dPolylineVertex", owner=handle
+            )
+            self.parts.append(f"{vertex}{_format_place(row)}{vertex_flags}")
+        self.parts.append(self._begin("SEQEND", layer, owner=handle))
 
     def add_texts(
         self, layer: str, points: Float64Array, texts: Sequence[str], height: float

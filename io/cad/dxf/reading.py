@@ -54,8 +54,7 @@ def read(
 
     A TIN has the drawing's own triangles. Lines of a survey are breaklines; those of plane entities
     without elevation are draped. What was assumed or left out is in the notes. Points and lines are
-    reprojected to ``crs``. Parameters and errors are those of every reader, see :class:`.Format`;
-    and:
+    reprojected to ``crs``.
 
     Parameters
     ----------

@@ -27,9 +27,10 @@ from .names import APPLICATION, CRS_PROPERTY, ELEVATION_PROPERTY, LAYERS, UNKNOW
 from .units import find_code
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
     from pathlib import Path
 
+    from ...._progress import Tell
     from ....arrays import AnyArray
     from ....crs import Unit, UnitLike
 
@@ -45,13 +46,12 @@ def write(
     version: DrawingVersion = "R2010",
     unit: UnitLike | None = None,
     labels: bool = True,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> None:
     """Write a TIN, a survey, or features as a DXF drawing.
 
     Triangles become 3DFACEs on the layer TIN, lines 3D polylines on BREAKLINES, BOUNDARY and so on,
     contours plane polylines with an elevation on CONTOURS and INDEX_CONTOURS, points POINTs.
-    Parameters and errors are those of every writer, see :class:`.Format`; and:
 
     Parameters
     ----------

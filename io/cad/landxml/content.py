@@ -16,76 +16,51 @@ __all__ = ["Content", "Line", "Points", "Surface"]
 
 @dataclass(slots=True, eq=False)
 class Line:
-    """A breakline, boundary or contour.
-
-    Attributes
-    ----------
-    element : str
-        "Breakline", "Boundary", "Contour" or "DataPoints".
-    attributes : dict of str to str
-    line : int
-        Of the file.
-    coordinates : list of (k, 2) or (k, 3) arrays
-        Northing, easting, and elevation where there is one; a list for each PntList.
-    properties : dict of str to str
-        Of its ``Feature``.
-    """
+    """A breakline, boundary or contour."""
 
     element: str
+    """One of "Breakline", "Boundary", "Contour" and "DataPoints"."""
     attributes: dict[str, str]
     line: int
+    """Of the file."""
     coordinates: list[Float64Array] = field(default_factory=list)
+    """Each (k, 2) or (k, 3), northing, easting, and elevation where there is one; a list for each
+    PntList.
+    """
     properties: dict[str, str] = field(default_factory=dict)
+    """Of its ``Feature``."""
 
 
 @dataclass(slots=True, eq=False)
 class Surface:
-    """A surface: its definition and its source data.
-
-    Attributes
-    ----------
-    name : str
-    number : int
-        In the file, from 1.
-    line : int
-    kind : str
-        ``surfType``, "" without a definition.
-    ids : list of (n,) int64 arrays
-    points : list of (n, 3) float64 arrays
-        Northing, easting, elevation; NaN in a row that refers to a survey point.
-    references : dict of int to str
-        The survey point by name that a row refers to.
-    faces : list of (m, 3) int64 arrays
-        Ids of the visible faces.
-    sides : array of unsigned bytes
-        The sides of each visible face that are breaklines, one bit each.
-    n_faces, n_hidden, n_visible : int
-    lines : list of Line
-    chains : list of (str, dict, int)
-        Names of survey points that lines join, attributes and line of the file.
-    point_files : list of str
-    n_walls : int
-        Retaining walls.
-    is_kept : bool
-        Whether points and faces are gathered.
-    """
+    """A surface: its definition and its source data."""
 
     name: str
     number: int
+    """In the file, from 1."""
     line: int
     kind: str = ""
+    """``surfType``, "" without a definition."""
     ids: list[Int64Array] = field(default_factory=list)
+    """Each (n,)."""
     points: list[Float64Array] = field(default_factory=list)
+    """Each (n, 3), northing, easting, elevation; NaN in a row that refers to a survey point."""
     references: dict[int, str] = field(default_factory=dict)
+    """The survey point by name that a row refers to."""
     faces: list[Int64Array] = field(default_factory=list)
+    """Each (m, 3), ids of the visible faces."""
     sides: array[int] = field(default_factory=lambda: array("B"))
+    """The sides of each visible face that are breaklines, one bit each."""
     n_hidden: int = 0
     n_visible: int = 0
     lines: list[Line] = field(default_factory=list)
     chains: list[tuple[str, dict[str, str], int]] = field(default_factory=list)
+    """Names of survey points that lines join, attributes and line of the file."""
     point_files: list[str] = field(default_factory=list)
     n_walls: int = 0
+    """Retaining walls."""
     is_kept: bool = True
+    """Whether points and faces are gathered."""
 
     @property
     def has_source(self) -> bool:
@@ -100,27 +75,19 @@ class Surface:
 
 @dataclass(slots=True)
 class Points:
-    """The survey points.
-
-    Attributes
-    ----------
-    coordinates : array of double
-        Northing, easting, elevation, one after the other; NaN for what is missing.
-    names, descriptions, codes, groups, states : list of str
-    references : dict of int to str
-        The point by name that a row refers to.
-    excluded : set of int
-        Rows that are marked as not for a surface.
-    """
+    """The survey points."""
 
     coordinates: array[float] = field(default_factory=lambda: array("d"))
+    """Northing, easting, elevation, one after the other; NaN for what is missing."""
     names: list[str] = field(default_factory=list)
     descriptions: list[str] = field(default_factory=list)
     codes: list[str] = field(default_factory=list)
     groups: list[str] = field(default_factory=list)
     states: list[str] = field(default_factory=list)
     references: dict[int, str] = field(default_factory=dict)
+    """The point by name that a row refers to."""
     excluded: set[int] = field(default_factory=set)
+    """Rows that are marked as not for a surface."""
 
     def __len__(self) -> int:
         return len(self.names)
@@ -133,27 +100,16 @@ class Points:
 
 @dataclass(slots=True)
 class Content:
-    """A whole file.
-
-    Attributes
-    ----------
-    version : str
-    units : list of (str, dict)
-        "Metric" or "Imperial" with its attributes, as often as they stand there.
-    system : dict of str to str
-        Attributes of ``CoordinateSystem``.
-    system_properties : dict of str to str
-        Of its ``Feature``.
-    surfaces : list of Surface
-    points : Points
-    others : dict of str to int
-        How many elements there are of each kind that is not read, such as plan features.
-    """
+    """A whole file."""
 
     version: str = ""
     units: list[tuple[str, dict[str, Any]]] = field(default_factory=list)
+    """Either "Metric" or "Imperial" with its attributes, as often as they stand there."""
     system: dict[str, str] = field(default_factory=dict)
+    """Attributes of ``CoordinateSystem``."""
     system_properties: dict[str, str] = field(default_factory=dict)
+    """Of its ``Feature``."""
     surfaces: list[Surface] = field(default_factory=list)
     points: Points = field(default_factory=Points)
     others: dict[str, int] = field(default_factory=dict)
+    """How many elements there are of each kind that is not read, such as plan features."""

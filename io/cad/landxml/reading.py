@@ -42,8 +42,7 @@ def read(
     """Read a LandXML file, version 1.0 to 2.0.
 
     A TIN has the file's own triangles; source data and points are a survey, which is reprojected to
-    ``crs``. What was assumed or left out is in the notes. Parameters and errors are those of every
-    reader, see :class:`.Format`; and:
+    ``crs``. What was assumed or left out is in the notes.
 
     Parameters
     ----------

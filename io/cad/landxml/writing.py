@@ -24,9 +24,9 @@ from .properties import ELEVATION_UNIT, FEATURE, UNKNOWN
 from .units import name_unit
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
+    from ...._progress import Tell
     from ....arrays import Float64Array
     from ....crs import Unit, UnitLike
 
@@ -60,13 +60,12 @@ def write(
     *,
     surface: str = "surface",
     unit: UnitLike | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> None:
     """Write a TIN, the points and lines of a survey, or contours and other lines.
 
     Of a survey points become CgPoints and lines the source data of a surface; of features points
-    become CgPoints, lines of one elevation contours, other lines breaklines. Parameters and errors
-    are those of every writer, see :class:`.Format`; and:
+    become CgPoints, lines of one elevation contours, other lines breaklines.
 
     Parameters
     ----------
@@ -117,7 +116,7 @@ def _write_content(
     surface: str,
     texts: dict[str, list[str]],
     factor: float,
-    progress: Callable[[float], None] | None,
+    progress: Tell | None,
 ) -> None:
     if isinstance(obj, TIN):
         points = _scale(obj.points, factor)
@@ -199,7 +198,7 @@ def _write_definition(
     file: IO[str],
     tin: TIN,
     points: Float64Array,
-    progress: Callable[[float], None] | None,
+    progress: Tell | None,
 ) -> None:
     total = len(points) + len(tin.triangles)
     low, high = float(points[:, 2].min()), float(points[:, 2].max())
@@ -233,7 +232,7 @@ def _format_faces(tin: TIN, start: int, end: int) -> str:
     )
 
 
-def _report(progress: Callable[[float], None] | None, done: float) -> None:
+def _report(progress: Tell | None, done: float) -> None:
     if progress is not None:
         progress(done)
 

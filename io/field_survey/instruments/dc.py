@@ -16,19 +16,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ....crs import METRE
-from ....errors import ReadError
 from ...delimited.lines import read_lines
-from .record_lines import find_head, parse_coordinate, read_records
+from .record_lines import describe_head_fault, find_head, parse_coordinate, read_records
 from .records import Book
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....crs import CrsLike, UnitLike
-    from ....tin import Survey
     from ...delimited.lines import TextLines
 
-__all__ = ["read"]
+__all__ = ["read_book"]
 
 _WIDTH = 16
 _POINTS = ("69", "08")
@@ -38,41 +35,10 @@ _POSITIONS = ("66", "68")
 _OBSERVATIONS = ("67", "70", "79", "80")
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    encoding: str | None = None,
-    source_crs: CrsLike | None = None,
-) -> Survey:
-    """Read points of a Trimble DC file.
-
-    Parameters
-    ----------
-    path : Path
-    crs : CRS, str, int or pyproj.CRS, optional
-    z_unit : Unit or str, optional
-        Which feet the file is in, if it is in feet.
-    encoding : str, optional
-    source_crs : CRS, str, int or pyproj.CRS, optional
-        CRS in which the file's coordinates are, if not ``crs``.
-
-    Returns
-    -------
-    Survey
-        Of the grid positions (69) and coordinates (08), with ``number``, ``description`` (the
-        codes), and ``method`` with the method and classification if there are several. Positions of
-        GNSS and observations of points that have no such record are left out and counted.
-
-    Raises
-    ------
-    ReadError
-        If it has no header, a number is none, or no point has coordinates.
-    """
+def read_book(path: Path, *, encoding: str | None = None) -> Book:
+    """Gather the points of a file."""
     lines = read_lines(path, encoding=encoding)
-    book = read_records(lines, _Reader(lines, path))
-    return book.make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
+    return read_records(lines, _Reader(lines, path))
 
 
 class _Reader:
@@ -88,19 +54,15 @@ class _Reader:
         """Read units and the order of coordinates, and return whether eastings come first."""
         head = find_head(lines)
         if not head.startswith("00"):
-            raise ReadError(
-                f"'{path}' begins with '{head[:20]}', and a Trimble DC file with the record 00.",
-                path=path,
-                lines=[1],
-            )
+            what = f" begins with '{head[:20]}', and a Trimble DC file with the record 00."
+            raise describe_head_fault(path, what)
         length, order = head[41:42], head[44:45]
         if length not in ("1", "2", "3") or order not in ("1", "2"):
-            raise ReadError(
-                f"'{path}', line 1: the units of the header are '{head[40:46].strip()}', and they "
-                "must be digits for angles, lengths (1, 2 or 3), pressure, temperature, order of "
+            raise describe_head_fault(
+                path,
+                f", line 1: the units of the header are '{head[40:46].strip()}', and they must be "
+                "digits for angles, lengths (1, 2 or 3), pressure, temperature, order of "
                 "coordinates (1 or 2) and direction of angles.",
-                path=path,
-                lines=[1],
             )
         self.book.unit = METRE if length == "1" else None
         return order == "2"

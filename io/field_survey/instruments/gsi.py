@@ -26,14 +26,12 @@ from .records import Book, require_refraction
 from .reduction import Shot, Station, reduce_shot, to_radians
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Container, Iterator
     from pathlib import Path
 
-    from ....crs import CrsLike, UnitLike
-    from ....tin import Survey
     from ...delimited.lines import TextLines
 
-__all__ = ["read"]
+__all__ = ["read_book"]
 
 _WIDTHS = (8, 16)
 _HEAD = 7  # word index, information and sign
@@ -69,42 +67,15 @@ class _Block:
         return 41 in self.words and 11 not in self.words
 
 
-def read(
+def read_book(
     path: Path,
     *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
     encoding: str | None = None,
-    source_crs: CrsLike | None = None,
     code_blocks: str | None = None,
     oriented: bool = False,
     refraction: float | None = None,
-) -> Survey:
-    """Read points of a Leica GSI file.
-
-    Parameters and errors are those of :func:`.dc.read`; and:
-
-    Parameters
-    ----------
-    code_blocks : {"before", "after"}, optional
-        Whether a block of codes (word 41) stands before or after the point that it is for; default
-        where the first and last block show it.
-    oriented : bool, optional
-        Whether the circle reads azimuths, so that shots without coordinates are reduced.
-    refraction : float, optional
-        Coefficient of refraction by which shots are corrected, with the earth's curvature.
-
-    Returns
-    -------
-    Survey
-        With ``number``, and ``description`` of the remarks (word 71) or codes (41). Shots without
-        coordinates are reduced where station, heights and orientation are known, and else left out.
-
-    Raises
-    ------
-    ReadError
-        If a word is no word, lengths are in feet and in metres, or no point has coordinates.
-    """
+) -> Book:
+    """Gather the points of a file, with the codes that are theirs, and reduce shots."""
     if code_blocks not in (None, "before", "after"):
         raise OptionError("code_blocks", code_blocks, ("before", "after"))
     coefficient = require_refraction(refraction)
@@ -119,7 +90,7 @@ def read(
         if not block.is_code:
             reader.add(block, codes.get(i, ""))
     reader.tell()
-    return reader.book.make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
+    return reader.book
 
 
 # ------------------------------------------------------------------ words
@@ -317,25 +288,30 @@ class _Reader:
         return Shot(circle, zenith, self._read_length(block, 31), self._read_length(block, 87))
 
     def _read_length(self, block: _Block, index: int) -> float:
-        word = block.words.get(index)
-        if word is None:
-            return math.nan
-        if word.unit not in _LENGTHS:
-            raise self._fail_value(block, word, "a unit digit 0, 1, 6, 7 or 8")
-        return self._parse_number(block, word) / _LENGTHS[word.unit][0]
+        word = self._find_word(block, index, _LENGTHS, "a unit digit 0, 1, 6, 7 or 8")
+        return (
+            math.nan if word is None else self._parse_number(block, word) / _LENGTHS[word.unit][0]
+        )
 
     def _read_angle(self, block: _Block, index: int) -> float:
-        word = block.words.get(index)
+        word = self._find_word(block, index, _ANGLES, "a unit digit 2, 3, 4 or 5")
         if word is None:
             return math.nan
-        if word.unit not in _ANGLES:
-            raise self._fail_value(block, word, "a unit digit 2, 3, 4 or 5")
         unit = _ANGLES[word.unit]
         value = self._parse_number(block, word) / (_MIL_DIGITS if unit == "mil" else _ANGLE_DIGITS)
         angle = to_radians(value, unit)
         if math.isnan(angle):
             raise self._fail_value(block, word, "minutes and seconds below 60")
         return angle
+
+    def _find_word(
+        self, block: _Block, index: int, units: Container[str], allowed: str
+    ) -> _Word | None:
+        """Return a word whose unit must be one of some; None if the block does not have it."""
+        word = block.words.get(index)
+        if word is not None and word.unit not in units:
+            raise self._fail_value(block, word, allowed)
+        return word
 
     def _parse_number(self, block: _Block, word: _Word) -> float:
         if not (word.data.isascii() and word.data.isdigit()):

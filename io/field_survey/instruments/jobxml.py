@@ -21,10 +21,7 @@ from .records import Book
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....crs import CrsLike, UnitLike
-    from ....tin import Survey
-
-__all__ = ["read"]
+__all__ = ["read_book"]
 
 _RECORDS: dict[tuple[str, ...], str] = {
     ("JOBFile", "Reductions", "Point"): "reductions",
@@ -40,31 +37,8 @@ _LONGEST = 10_000
 _CHUNK = 1 << 20
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    source_crs: CrsLike | None = None,
-) -> Survey:
-    """Read points of a Trimble JobXML file.
-
-    Parameters and errors are those of :func:`.dc.read`. The file names its coordinate system in
-    words of its own: ``crs`` is that of the grid coordinates, whose metres are converted to its
-    unit; of units only the metre is taken.
-
-    Returns
-    -------
-    Survey
-        With ``number``, ``description`` (the codes), and ``method`` if there are several. Points
-        that are deleted, or have no position in the grid, are left out and counted.
-
-    Raises
-    ------
-    ReadError
-        If it is no well-formed JobXML, declares a document type, has a grid that does not count
-        to north and east, or no point has coordinates.
-    """
+def read_book(path: Path) -> Book:
+    """Gather the points of a file."""
     reader = _Reader(path)
     parser = expat.ParserCreate()
     parser.buffer_text = True
@@ -89,7 +63,7 @@ def read(
         if isinstance(error, ReadError):
             raise
         raise ReadError(f"'{path}' is in an encoding that is not read.", path=path) from error
-    return reader.finish().make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
+    return reader.finish()
 
 
 class _Record:

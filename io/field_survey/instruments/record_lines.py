@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ...delimited.lines import TextLines
     from .records import Book
 
-__all__ = ["find_head", "parse_coordinate", "read_records"]
+__all__ = ["describe_head_fault", "find_head", "parse_coordinate", "read_records"]
 
 
 class _Reader(Protocol):
@@ -35,6 +35,11 @@ class _Reader(Protocol):
 def find_head(lines: TextLines) -> str:
     """Return the first line that is not blank, or an empty one."""
     return next((lines.decode_line(i) for i in range(len(lines)) if not lines.is_blank[i]), "")
+
+
+def describe_head_fault(path: Path, what: str) -> ReadError:
+    """Return the error of a first line that is not as the format asks for."""
+    return ReadError(f"'{path}'{what}", path=path, lines=[1])
 
 
 def read_records(lines: TextLines, reader: _Reader) -> Book:

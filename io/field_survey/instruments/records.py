@@ -41,20 +41,13 @@ def require_refraction(value: object) -> float | None:
 
 @dataclass
 class Book:
-    """What a file of an instrument holds, as it is read.
-
-    Attributes
-    ----------
-    path : Path
-    program : str
-        What wrote it, for sentences.
-    unit : Unit or None
-        Of its lengths; None for feet of which it does not say whether they are of the US.
-    """
+    """What a file of an instrument holds, as it is read."""
 
     path: Path
     program: str
+    """What wrote it, for sentences."""
     unit: Unit | None = METRE
+    """Of its lengths; None for feet of which it does not say whether they are of the US."""
     names: list[str] = field(default_factory=list)
     points: list[tuple[float, float, float]] = field(default_factory=list)
     codes: list[str] = field(default_factory=list)

@@ -22,22 +22,15 @@ NOT_APPLIED = "no scale of the projection, sea level, weather or prism constant"
 
 
 class Station(NamedTuple):
-    """Where an instrument stood, all in one unit of length; NaN for what is not known.
-
-    Attributes
-    ----------
-    easting, northing, elevation : float
-        Of the mark.
-    instrument_height : float
-    orientation : float
-        Azimuth of the circle's zero, radians clockwise from north.
-    """
+    """Where an instrument stood, all in one unit of length; NaN for what is not known."""
 
     easting: float
     northing: float
     elevation: float
+    """These three are those of the mark."""
     instrument_height: float
     orientation: float
+    """Azimuth of the circle's zero, radians clockwise from north."""
 
     @property
     def is_known(self) -> bool:

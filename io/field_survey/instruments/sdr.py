@@ -20,18 +20,16 @@ from ....crs import METRE
 from ....errors import ReadError
 from ...delimited.cells import is_number
 from ...delimited.lines import read_lines
-from .record_lines import find_head, read_records
+from .record_lines import describe_head_fault, find_head, read_records
 from .records import Book, require_refraction
 from .reduction import Shot, Station, reduce_shot, to_radians
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....crs import CrsLike, UnitLike
-    from ....tin import Survey
     from ...delimited.lines import TextLines
 
-__all__ = ["read"]
+__all__ = ["read_book"]
 
 _ANGLES = {"1": "degrees", "2": "gon", "4": "mil"}
 _RIGHT_ANGLE = math.pi / 2
@@ -59,36 +57,11 @@ class _Columns:
 _VERSIONS = {"SDR33": _Columns(16, 16), "SDR2": _Columns(4, 10)}
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    encoding: str | None = None,
-    source_crs: CrsLike | None = None,
-    refraction: float | None = None,
-) -> Survey:
-    """Read points of an SDR file.
-
-    Parameters and errors are those of :func:`.dc.read`; and:
-
-    Parameters
-    ----------
-    refraction : float, optional
-        Coefficient of refraction by which shots are corrected, with the earth's curvature.
-
-    Returns
-    -------
-    Survey
-        Of the records of coordinates (08). Observations (09F1, 09F2) of points that have none are
-        reduced where station, back bearing and height of the target are known, and else left out;
-        so are those that the instrument has corrected itself (09MC), of which the file does not say
-        by what.
-    """
+def read_book(path: Path, *, encoding: str | None = None, refraction: float | None = None) -> Book:
+    """Gather the points of a file, and reduce observations."""
     coefficient = require_refraction(refraction)
     lines = read_lines(path, encoding=encoding)
-    book = read_records(lines, _Reader(lines, path, coefficient))
-    return book.make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
+    return read_records(lines, _Reader(lines, path, coefficient))
 
 
 class _Reader:
@@ -120,20 +93,17 @@ class _Reader:
         version = head[4:20].strip().upper()
         columns = next((one for name, one in _VERSIONS.items() if version.startswith(name)), None)
         if not head.startswith("00") or columns is None:
-            raise ReadError(
-                f"'{path}' begins with '{head[:20]}', and an SDR file with the record 00 of SDR33 "
-                "or SDR20.",
-                path=path,
-                lines=[1],
+            what = (
+                f" begins with '{head[:20]}', and an SDR file with the record 00 of SDR33 or SDR20."
             )
+            raise describe_head_fault(path, what)
         angle, length, order = head[40:41], head[41:42], head[44:45]
         if angle not in _ANGLES or length not in "12" or order not in "12" or not length + order:
-            raise ReadError(
-                f"'{path}', line 1: the units of the header are '{head[40:46]}', and they must be "
-                "digits for angles (1, 2 or 4), lengths (1 or 2), pressure, temperature and order "
-                "of coordinates (1 or 2).",
-                path=path,
-                lines=[1],
+            raise describe_head_fault(
+                path,
+                f", line 1: the units of the header are '{head[40:46]}', and they must be digits "
+                "for angles (1, 2 or 4), lengths (1 or 2), pressure, temperature and order of "
+                "coordinates (1 or 2).",
             )
         self.book.unit = METRE if length == "1" else None
         return columns, order == "2", _ANGLES[angle]

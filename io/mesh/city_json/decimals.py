@@ -18,18 +18,12 @@ _LARGEST_EXACT = 2.0**53
 
 @dataclass(frozen=True)
 class DecimalGrid:
-    """Places at a whole number of steps from an origin.
-
-    Attributes
-    ----------
-    digits : int
-        Decimals: the step is 10 to the power of minus this.
-    origin : int
-        In whole units.
-    """
+    """Places at a whole number of steps from an origin."""
 
     digits: int
+    """Decimals: the step is 10 to the power of minus this."""
     origin: int
+    """In whole units."""
 
     @property
     def step(self) -> float:

@@ -54,7 +54,6 @@ def read(
     The CRS defaults to that of the metadata; the unit of elevations is known where tinsmith wrote
     the file. Vertices at the same place become one. Polygons of more than three corners are cut
     into triangles, and of several levels of detail the finest is read, which the report tells.
-    Parameters and errors are those of every reader, see :class:`.Format`; and:
 
     Parameters
     ----------

@@ -20,9 +20,10 @@ from ..common import format_crs, format_unit, require_tin
 from .decimals import DecimalGrid, choose_digits
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
     from pathlib import Path
 
+    from ...._progress import Tell
     from ....arrays import Float64Array, Int64Array
     from ....tin import TIN
 
@@ -34,15 +35,9 @@ _MOST_DIGITS = 15
 
 
 def write(
-    surface: TIN,
-    path: Path,
-    *,
-    precision: float | None = None,
-    progress: Callable[[float], None] | None = None,
+    surface: TIN, path: Path, *, precision: float | None = None, progress: Tell | None = None
 ) -> None:
     """Write a TIN as CityJSON 2.0.
-
-    Parameters and errors are those of every writer, see :class:`.Format`; and:
 
     Parameters
     ----------

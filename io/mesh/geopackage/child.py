@@ -30,18 +30,9 @@ _READ_ONLY = {sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_FUNCTIO
 def read_tables(path: str, shown: str) -> Answer:
     """Return points, triangles, flags and record of a file.
 
-    Parameters
-    ----------
-    path : str
-    shown : str
-        The path as the user wrote it, for sentences.
-
-    Returns
-    -------
-    Answer
-        The value holds the ``document`` and the ``digests`` as text, that of the ``lines``, and
-        the names of the record's arrays; the arrays are ``points``, ``triangles``, ``flags`` and
-        those of the record, each behind a space.
+    The value holds the ``document`` and the ``digests`` as text, that of the ``lines``, and the
+    names of the record's arrays; the arrays are ``points``, ``triangles``, ``flags`` and those of
+    the record, each behind a space.
     """
     try:
         with closing(_open(path)) as file:

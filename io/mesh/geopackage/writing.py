@@ -30,9 +30,9 @@ from .schema import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
+    from ...._progress import Tell
     from ....arrays import Float64Array
     from ....tin import TIN
 
@@ -45,10 +45,8 @@ _PAGE = 1 << 15
 """Bytes of a page: a fifth faster than SQLite's own 4096, and all names of tables in the first."""
 
 
-def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None = None) -> None:
+def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     """Write all that a TIN is as a GeoPackage; :func:`read` gives it back, bit for bit.
-
-    Parameters are those of every writer, see :class:`.Format`.
 
     Raises
     ------
@@ -73,7 +71,7 @@ def write(surface: TIN, path: Path, *, progress: Callable[[float], None] | None 
             raise WriteError(f"Cannot write '{path}': {error}.", path=path) from error
 
 
-def _write_content(file: sqlite3.Connection, tin: TIN, progress: Callable[[float], None]) -> None:
+def _write_content(file: sqlite3.Connection, tin: TIN, progress: Tell) -> None:
     file.execute("PRAGMA journal_mode = OFF")  # the file takes its place when it is complete
     file.execute("PRAGMA synchronous = OFF")
     file.execute(f"PRAGMA page_size = {_PAGE}")
@@ -188,9 +186,7 @@ def _write_vertices(file: sqlite3.Connection, tin: TIN, srs: int) -> None:
         )
 
 
-def _write_triangles(
-    file: sqlite3.Connection, tin: TIN, srs: int, progress: Callable[[float], None]
-) -> None:
+def _write_triangles(file: sqlite3.Connection, tin: TIN, srs: int, progress: Tell) -> None:
     slopes, aspects = _measure(tin)
     flags = tin.constrained @ np.array([1, 2, 4], np.uint8)
     for start in range(0, len(tin.triangles), _CHUNK):

@@ -24,9 +24,9 @@ from ..common import format_crs, format_unit, require_factor, require_tin
 from ..texture import choose_picture, load_texture
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
+    from ...._progress import Tell
     from ....arrays import AnyArray, Float32Array, Float64Array, Int64Array, UInt16Array
     from ....tin import TIN
     from ..texture import Texture
@@ -64,11 +64,9 @@ def write(
     drape: str | os.PathLike[str] | None = None,
     texture: str | os.PathLike[str] | None = None,
     exaggeration: float = 1.0,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> None:
     """Write a TIN as GLB.
-
-    Parameters and errors are those of every writer, see :class:`.Format`; and:
 
     Parameters
     ----------

@@ -27,16 +27,12 @@ __all__ = ["Ragged", "Table", "read_tables"]
 
 
 class Ragged(NamedTuple):
-    """Lists of any length, one after the other.
-
-    Attributes
-    ----------
-    items : (k,) array
-    offsets : (rows + 1,) int64 array
-    """
+    """Lists of any length, one after the other."""
 
     items: AnyArray
+    """(k,)."""
     offsets: Int64Array
+    """(rows + 1,)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

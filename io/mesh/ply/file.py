@@ -32,9 +32,9 @@ from .lines import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
+    from ...._progress import Tell
     from ....arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ....crs import CrsLike, UnitLike
     from ....tin.constraints.breaklines import Lines
@@ -59,7 +59,7 @@ _TYPE_NAMES = {
 
 
 def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
-    """Read a PLY file, text or binary of either byte order; called as :class:`.Format` says.
+    """Read a PLY file, text or binary of either byte order.
 
     CRS and unit default to those named in the header. Polygons are cut into triangles, and further
     vertex properties become attributes; other properties and elements are skipped. A file without
@@ -156,13 +156,11 @@ def _find_vertex_attributes(vertices: Table) -> dict[str, AnyArray]:
     }
 
 
-def write(
-    surface: TIN | Survey, path: Path, *, progress: Callable[[float], None] | None = None
-) -> None:
+def write(surface: TIN | Survey, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN, or the points of a survey, as binary PLY; :func:`read` gives it back.
 
     Of the attributes of points those that are numbers are written (whole numbers beyond 32 bits as
-    double); PLY has no text. Parameters and errors are those of every writer, see :class:`.Format`.
+    double); PLY has no text.
     """
     surface = common.require_writable(surface, path)
     columns, lost = _select_number_columns(surface.attributes)

@@ -48,20 +48,13 @@ _BYTE_ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": "
 
 @dataclass(frozen=True, slots=True)
 class Property:
-    """One property of an element.
-
-    Attributes
-    ----------
-    name : str
-    type : str
-        NumPy type without byte order.
-    count_type : str or None
-        NumPy type of the length of a list; None for a single value.
-    """
+    """One property of an element."""
 
     name: str
     type: str
+    """NumPy type without byte order."""
     count_type: str | None = None
+    """NumPy type of the length of a list; None for a single value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,30 +68,20 @@ class Element:
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """What the header says.
-
-    Attributes
-    ----------
-    byte_order : str
-        "<", ">", or "" for text.
-    elements : list of Element
-        In the order in which they follow.
-    crs : str or None
-        From the comment ``crs: ...``.
-    elevation_unit : str or None
-        From the comment ``elevation unit: ...``.
-    lines : list of LineComment or None
-        What the first edges are, where all edges are constrained ones; None where that is not said.
-    size : int
-        Bytes of the header.
-    """
+    """What the header says."""
 
     byte_order: str
+    """One of "<", ">", and "" for text."""
     elements: list[Element]
+    """In the order in which they follow."""
     crs: str | None
+    """From the comment ``crs: ...``."""
     size: int
+    """Bytes of the header."""
     elevation_unit: str | None = None
+    """From the comment ``elevation unit: ...``."""
     lines: list[LineComment] | None = None
+    """What the first edges are, where all are constrained ones; None where that is not said."""
 
 
 def parse_header(content: bytes, path: Path) -> Header:

@@ -20,20 +20,14 @@ __all__ = ["GridMesh", "cut_along_grid"]
 
 
 class GridMesh(NamedTuple):
-    """A mesh on a grid.
-
-    Attributes
-    ----------
-    steps : (n, 2) int64 array
-        Eastings and northings.
-    heights : (n,) float64 array
-    triangles : (m, 3) int64 array
-        Counter-clockwise.
-    """
+    """A mesh on a grid."""
 
     steps: Int64Array
+    """(n, 2), eastings and northings."""
     heights: Float64Array
+    """(n,)."""
     triangles: Int64Array
+    """(m, 3), counter-clockwise."""
 
 
 def cut_along_grid(mesh: GridMesh, spacing: int) -> GridMesh:
@@ -61,6 +55,17 @@ class _Cuts(NamedTuple):
     first_point: Int64Array
 
 
+class _Strips(NamedTuple):
+    """The strips between lines that triangles are cut into."""
+
+    along: Int64Array
+    """Of each vertex: its coordinate across the lines."""
+    low: Int64Array
+    """Of each triangle: the line at which its strip begins."""
+    spacing: int
+    cuts: _Cuts
+
+
 def _cut(mesh: GridMesh, axis: int, spacing: int) -> GridMesh:
     """Cut along the lines on which one coordinate is a multiple of the spacing."""
     along = mesh.steps[:, axis]
@@ -76,7 +81,7 @@ def _cut(mesh: GridMesh, axis: int, spacing: int) -> GridMesh:
     rows = np.repeat(np.arange(len(parts)), counts)
     within = np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)
     low = (first[is_cut][rows] + within) * spacing
-    rings = _clip(parts[rows], along, low, spacing, cuts, len(mesh.steps))
+    rings = _clip(parts[rows], _Strips(along, low, spacing, cuts))
     return GridMesh(
         np.concatenate([mesh.steps, steps]),
         np.concatenate([mesh.heights, heights]),
@@ -111,21 +116,15 @@ def _cut_edges(
     return _Cuts(keys, first_line, first_point), steps, heights
 
 
-def _clip(
-    triangles: Int64Array,
-    along: Int64Array,
-    low: Int64Array,
-    spacing: int,
-    cuts: _Cuts,
-    n_vertices: int,
-) -> Int64Array:
+def _clip(triangles: Int64Array, strips: _Strips) -> Int64Array:
     """Return the ring of vertices that each triangle has in its strip, (k, 6), -1 for none."""
     slots = []
+    keys, n_vertices = strips.cuts.keys, len(strips.along)
     for corner in range(3):
         a, b = triangles[:, corner], triangles[:, (corner + 1) % 3]
-        edge = np.searchsorted(cuts.keys, edge_keys(np.stack([a, b], axis=1), n_vertices))
+        edge = np.searchsorted(keys, edge_keys(np.stack([a, b], axis=1), n_vertices))
         for near, far in ((a, b), (b, a)):
-            slots.append(_find_end(near, far, edge, along, low, spacing, cuts, n_vertices))
+            slots.append(_find_end(near, far, edge, strips))
     ring = np.stack(slots, axis=1)
     last = ring.max(axis=1) * 0 - 1
     for slot in range(6):  # what repeats the one before it is left out
@@ -140,20 +139,12 @@ def _clip(
     return ring
 
 
-def _find_end(
-    near: Int64Array,
-    far: Int64Array,
-    edge: Int64Array,
-    along: Int64Array,
-    low: Int64Array,
-    spacing: int,
-    cuts: _Cuts,
-    n_vertices: int,
-) -> Int64Array:
+def _find_end(near: Int64Array, far: Int64Array, edge: Int64Array, strips: _Strips) -> Int64Array:
     """Return the vertex at which edges end in their strips, towards ``near``; -1 outside."""
+    along, low, spacing, cuts = strips
     at, other = along[near], along[far]
     line = np.where(at < low, low, low + spacing)
-    number = n_vertices + cuts.first_point[edge] + line // spacing - cuts.first_line[edge]
+    number = len(along) + cuts.first_point[edge] + line // spacing - cuts.first_line[edge]
     inside = (at >= low) & (at <= low + spacing)
     found = np.where(inside, near, np.where(other == line, far, number))
     absent = (np.maximum(at, other) < low) | (np.minimum(at, other) > low + spacing)

@@ -41,7 +41,6 @@ def read(
 
     A CRS or unit that is given must be EPSG:4979 and the metre. Triangles without area, which
     programs leave in tiles, are left out and told. Normals, water and other extensions are skipped.
-    Parameters and errors are those of every reader, see :class:`.Format`; and:
 
     Parameters
     ----------

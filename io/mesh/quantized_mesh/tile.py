@@ -64,25 +64,18 @@ class TileName:
 
 @dataclass(frozen=True, eq=False)
 class Tile:
-    """A tile as it is stored.
-
-    Attributes
-    ----------
-    steps : (n, 3) int64 array
-        Of each vertex from west to east, south to north, lowest to highest, 0 to 32767.
-    triangles : (m, 3) int64 array
-        Counter-clockwise seen from above.
-    lowest, highest : float
-        Heights of the steps 0 and 32767, metres above the ellipsoid.
-    normals : (n, 3) float64 array, optional
-        Unit vectors in the axes of the globe.
-    """
+    """A tile as it is stored."""
 
     steps: Int64Array
+    """(n, 3), of each vertex from west to east, south to north, lowest to highest, 0 to 32767."""
     triangles: Int64Array
+    """(m, 3), counter-clockwise seen from above."""
     lowest: float
+    """Height of the step 0, metres above the ellipsoid."""
     highest: float
+    """Height of the step 32767 likewise."""
     normals: Float64Array | None = None
+    """(n, 3), unit vectors in the axes of the globe."""
 
     def place(self, name: TileName) -> Float64Array:
         """Return longitude, latitude (degrees) and height (metres) of the vertices."""

@@ -28,9 +28,10 @@ from .simplification import simplify
 from .tile import STEPS, Tile, TileName, encode_tile
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
+    from ...._progress import Tell
     from ....arrays import Float64Array, Int64Array
 
 __all__ = ["write"]
@@ -65,12 +66,11 @@ def write(
     *,
     max_level: int | None = None,
     gzipped: bool = False,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> None:
     """Write a TIN as a folder of quantized-mesh 1.0 tiles with normals and ``layer.json``.
 
-    A folder that holds such tiles is replaced, another one must be empty. Parameters and errors are
-    those of every writer, see :class:`.Format`; and:
+    A folder that holds such tiles is replaced, another one must be empty.
 
     Parameters
     ----------

@@ -50,28 +50,18 @@ class Located(Protocol):
 
 
 class Places(NamedTuple):
-    """Coordinates as they are written.
-
-    Attributes
-    ----------
-    xyz : (n, 3) float64 array
-    crs_member : str or None
-        JSON text of the old-style ``crs`` member; None where RFC 7946 forbids one.
-    members : tuple of (str, str)
-        Further members of the file, which tell the unit of elevations.
-    """
+    """Coordinates as they are written."""
 
     xyz: Float64Array
+    """(n, 3)."""
     crs_member: str | None = None
+    """JSON text of the old-style ``crs`` member; None where RFC 7946 forbids one."""
     members: tuple[tuple[str, str], ...] = ()
+    """Further members of the file, which tell the unit of elevations."""
 
 
 def project_to_wgs84(surface: Located) -> Places:
     """Move points to WGS 84 longitude, latitude and elevation in metres, rounded.
-
-    Parameters
-    ----------
-    surface : TIN, Survey, or another holder of points
 
     Raises
     ------

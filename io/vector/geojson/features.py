@@ -15,9 +15,10 @@ from .coordinates import format_positions, keep_in_crs, project_to_wgs84
 from .values import json_texts, properties_template
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
     from pathlib import Path
 
+    from ...._progress import Tell
     from ....arrays import Float64Array, Int64Array, ObjectArray
     from ....crs import CRS, Unit
     from ....terrain.results import Features
@@ -38,33 +39,10 @@ class _Located(NamedTuple):
 
 
 def write_features(
-    features: Features,
-    path: Path,
-    *,
-    projected: bool = False,
-    progress: Callable[[float], None] | None = None,
+    features: Features, path: Path, *, projected: bool = False, progress: Tell | None = None
 ) -> None:
-    """Write features as GeoJSON.
+    """Write features as GeoJSON; options and errors are those of :func:`.writing.write`.
 
-    Parameters
-    ----------
-    features : Features
-        The CRS must be known, unless ``projected``.
-    path : Path
-    projected : bool
-        Leave the coordinates in the CRS, and name it as the specification of 2008 does.
-    progress : callable, optional
-        Called with the fraction done.
-
-    Raises
-    ------
-    CrsError
-        If the CRS is not known, or puts points outside the Earth.
-    WriteError
-        If the file cannot be written, or a feature crosses the antimeridian.
-
-    Notes
-    -----
     As a surface's GeoJSON: longitude and latitude with 9 decimals, elevations in metres with 6. A
     position whose elevation is not known has two numbers. Columns stay in their own units, which
     the member ``units`` names (``"unknown"`` if they are not known); exterior rings run
@@ -85,9 +63,7 @@ def write_features(
         file.write("\n]}\n")
 
 
-def write_feature_lines(
-    features: Features, path: Path, *, progress: Callable[[float], None] | None = None
-) -> None:
+def write_feature_lines(features: Features, path: Path, *, progress: Tell | None = None) -> None:
     """Write features as a sequence of GeoJSON texts, a line each, with no head around them.
 
     Parameters, errors and coordinates are those of :func:`write_features`.

@@ -31,14 +31,7 @@ _LINE = (
 
 
 def format_edge_properties(tin: TIN, flags: BoolArray) -> ObjectArray:
-    """Return the properties of each edge, as JSON, opposite each corner: (m, 3) array.
-
-    Parameters
-    ----------
-    tin : TIN
-    flags : (m, 3) bool array
-        Whether the edge is constrained.
-    """
+    """Return the properties of each edge, as JSON, opposite each corner, (m, 3), flags likewise."""
     kinds = find_edge_kinds(tin, flags)
     texts = ['"constrained":false,"kind":null', '"constrained":true,"kind":null']
     texts += [f'"constrained":true,"kind":"{kind}"' for kind in EDGE_KINDS]
@@ -49,11 +42,7 @@ def format_edge_properties(tin: TIN, flags: BoolArray) -> ObjectArray:
 def find_edge_kinds(tin: TIN, flags: BoolArray) -> Int8Array:
     """Return the kind of each edge, an index into ``EDGE_KINDS``; -1 where none is known: (m, 3).
 
-    Parameters
-    ----------
-    tin : TIN
-    flags : (m, 3) bool array
-        Whether the edge is constrained.
+    The flags, (m, 3) likewise, tell which edges are constrained.
     """
     kinds = np.full(flags.shape, -1, np.int8)
     if len(tin.lines):

@@ -18,19 +18,12 @@ _FEATURES = re.compile(rb'"features"\s*:')
 
 
 class Members(NamedTuple):
-    """What a file says beside its features.
-
-    Attributes
-    ----------
-    names_no_crs : bool
-        Whether it says that its CRS is not known, by the rule of 2008.
-    elevation_unit : str
-        Empty if it names none.
-    is_json : bool
-    """
+    """What a file says beside its features."""
 
     names_no_crs: bool = False
+    """Whether it says that its CRS is not known, by the rule of 2008."""
     elevation_unit: str = ""
+    """Empty if it names none."""
     is_json: bool = False
 
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
+    from ...._progress import Tell
     from ....arrays import BoolArray, Float64Array, Int32Array
     from ....tin import TIN
 
@@ -50,15 +51,14 @@ def write(
     *,
     kind: Kind | None = None,
     projected: bool = False,
-    progress: Callable[[float], None] | None = None,
+    progress: Tell | None = None,
 ) -> None:
     """Write a surface, the points of a survey, or features as GeoJSON.
 
+    The CRS must be known, unless ``projected``.
+
     Parameters
     ----------
-    surface : TIN, Survey or Features
-        Its CRS must be known, unless ``projected``.
-    path : Path
     kind : {"triangles", "points", "edges", "lines", "hull"}, optional
         One Polygon a triangle with the properties ``id``, ``slope`` and ``aspect`` (degrees; null
         where there is none) and ``area`` (in the plane, square metres); one Point a vertex, or a
@@ -70,8 +70,6 @@ def write(
         Leave the coordinates in the CRS, every digit kept, and name it in the ``crs`` member of
         the 2008 specification: not RFC 7946, but GDAL and QGIS understand it. Default WGS 84
         longitude and latitude with 9 decimals, elevation in metres with 6.
-    progress : callable, optional
-        Called with the fraction done.
 
     Raises
     ------

@@ -57,21 +57,13 @@ _WISHES = ("most_cells", "attributes")
 
 @dataclass(frozen=True)
 class Output:
-    """A file to write: where, as what, how; standard output also stands for a suffix.
-
-    Attributes
-    ----------
-    path : Path
-    formats : dict of str to Format
-        By what may be written, such as "TIN".
-    options : dict
-        Options given, of which each format takes its own.
-    suffix : str
-    """
+    """A file to write: where, as what, how; standard output also stands for a suffix."""
 
     path: Path
     formats: dict[str, Format]
+    """By what may be written, such as "TIN"."""
     options: dict[str, Any]
+    """Options given, of which each format takes its own."""
     suffix: str = ""
 
     def takes(self, name: str) -> bool:
@@ -154,10 +146,7 @@ def open_standard_input() -> IO[bytes]:
 def add_coded_lines(survey: Survey, how: Coding) -> Survey:
     """Add the lines of the points' codes to a survey, if they are asked for.
 
-    Raises
-    ------
-    click.UsageError
-        If there is a tolerance of curves, but no codes.
+    A tolerance of curves without codes is wrong usage.
     """
     if how.arc_tolerance is not None and not how.has_codes:
         raise click.UsageError("--arc-tolerance needs --codes, --code-table or --code-style.")
@@ -171,10 +160,7 @@ def add_coded_lines(survey: Survey, how: Coding) -> Survey:
 def add_lines(survey: Survey, how: Triangulating, console: Console) -> Survey:
     """Add the lines of the points' codes and of files to a survey, showing progress.
 
-    Raises
-    ------
-    click.UsageError
-        If there is a height of water, but no water.
+    A height of water without water is wrong usage.
     """
     if how.water_z is not None and not how.water:
         raise click.UsageError("--water-z needs --water: a file of the polygons that it is for.")
@@ -260,15 +246,7 @@ def plan_outputs(
 ) -> list[Output]:
     """Choose the format of every output, and compare all paths, before any work is done.
 
-    Parameters
-    ----------
-    paths : sequence of Path
-    writing : Writing
-    inputs : sequence of Named
-    console : Console
-    report : Path, optional
-    kinds : sequence of str
-        What will be written is one of these: "TIN", "Survey", "Features", "Raster", "Table".
+    What will be written is one of the ``kinds``: "TIN", "Survey", "Features", "Raster", "Table".
 
     Raises
     ------
@@ -308,13 +286,7 @@ def require_picture(
 ) -> None:
     """Refuse a picture that would overwrite an input, has another suffix, or cannot be written.
 
-    Parameters
-    ----------
-    path : Path
-    place : str
-        The option that names it.
-    inputs : sequence of Named
-    suffixes : sequence of str
+    ``place`` is the option that names it.
 
     Raises
     ------
@@ -374,7 +346,7 @@ def _describe_option_not_taken(name: str) -> click.UsageError:
 def _require_format(flag: str, name: str | None) -> None:
     """Refuse a name that no format has: that is wrong usage, whatever the data."""
     from ..errors import FormatError
-    from ..io.registry import find_format
+    from ..io.registry.lookup import find_format
 
     try:
         if name is not None:
@@ -385,7 +357,7 @@ def _require_format(flag: str, name: str | None) -> None:
 
 def _choose_output_formats(path: Path, name: str | None, kinds: Sequence[str]) -> dict[str, Format]:
     from ..errors import FormatError
-    from ..io.registry import find_writers, known_formats, list_claims
+    from ..io.registry.lookup import find_writers, known_formats, list_claims
 
     _require_format("--output-format", name)
     if name is None and path == STANDARD:

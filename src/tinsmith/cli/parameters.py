@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, get_args
 import click
 
 from .._sentences import suggest
-from .paths import INPUT, OUTPUT
+from .paths import INPUT, LINES, OUTPUT
 
 __all__ = [
     "Command",
@@ -16,13 +16,16 @@ __all__ = [
     "FormatName",
     "Words",
     "choice_option",
+    "command",
     "crs_option",
+    "file_command",
+    "file_option",
     "input_file",
     "input_files",
     "number_option",
+    "numbers_option",
     "output_files",
     "output_option",
-    "parse_numbers",
     "picture_option",
     "refuse_value",
     "report_option",
@@ -52,6 +55,16 @@ class Command(click.Command):
                 formatter.write_dl(sections[heading])
 
 
+def command(function: Callable[..., Any]) -> click.Command:
+    """Make a command of a function."""
+    return click.command(cls=Command)(function)
+
+
+def file_command(function: Callable[..., Any]) -> click.Command:
+    """Make a command that reads one file, and writes what it makes of it to others."""
+    return command(input_file("file")(output_files(function)))
+
+
 def under(subject: str, *options: Decorator) -> tuple[Decorator, ...]:
     """Return options whose subject is a heading in the help of commands."""
 
@@ -79,13 +92,7 @@ class Words(click.Choice[str]):
 
 
 class FormatName(click.ParamType[str]):
-    """A format's name, which is looked up later; shells complete it.
-
-    Parameters
-    ----------
-    way : str
-        ``"read"`` or ``"write"``: what the format can.
-    """
+    """A format's name, which is looked up later; shells complete it. ``way``: "read" or "write"."""
 
     name = "format"
 
@@ -125,6 +132,27 @@ def number_option(
     if default is not None:
         more |= {"default": default, "show_default": True}
     return click.option(*names, metavar=metavar, type=type, help=help, **more)
+
+
+def numbers_option(flag: str, metavar: str, help: str) -> Decorator:  # noqa: A002 - click's name
+    """Return an option for several numbers."""
+    return click.option(flag, metavar=metavar, callback=_parse_numbers, help=help)
+
+
+def _parse_numbers(
+    ctx: click.Context,  # noqa: ARG001 - click's signature
+    param: click.Parameter,
+    value: str | None,
+) -> list[float] | None:
+    """Return numbers that are given with commas between them."""
+    if value is None:
+        return None
+    try:
+        return [float(part) for part in value.split(",")]
+    except ValueError:
+        raise click.UsageError(
+            f"Invalid {param.opts[0]} '{value}': it must be numbers with commas between them."
+        ) from None
 
 
 def choice_option(
@@ -172,9 +200,9 @@ def refuse_value(flag: str, error: Exception, more: str = "") -> click.UsageErro
     return click.UsageError(f"Invalid {flag}: {sentence[:1].lower()}{sentence[1:]}{more}")
 
 
-def input_file(name: str) -> Decorator:
-    """Return the argument for the file to read."""
-    return click.argument(name, type=INPUT)
+def input_file(name: str, type: click.ParamType[Any] = INPUT) -> Decorator:  # noqa: A002 - click's
+    """Return the argument for a file to read."""
+    return click.argument(name, type=type)
 
 
 def input_files(name: str) -> Decorator:
@@ -203,6 +231,19 @@ output_files = output_option(
 )
 
 
+def file_option(
+    flag: str,
+    help: str,  # noqa: A002 - click's name
+    *,
+    name: str | None = None,
+    type: click.ParamType[Any] = LINES,  # noqa: A002 - click's name
+    required: bool = False,
+) -> Decorator:
+    """Return an option for one more file to read, of lines or points if nothing else is said."""
+    names = [flag] if name is None else [flag, name]
+    return click.option(*names, metavar="FILE", type=type, required=required, help=help)
+
+
 def report_option(help: str) -> Decorator:  # noqa: A002 - click's name
     """Return the option for a report as JSON."""
     return click.option("--report", metavar="FILE", type=OUTPUT, help=help)
@@ -211,19 +252,3 @@ def report_option(help: str) -> Decorator:  # noqa: A002 - click's name
 def picture_option(help: str) -> Decorator:  # noqa: A002 - click's name
     """Return the option for the one picture that a command writes."""
     return click.option("-o", "--output", metavar="FILE", type=OUTPUT, help=help)
-
-
-def parse_numbers(
-    ctx: click.Context,  # noqa: ARG001 - click's signature
-    param: click.Parameter,
-    value: str | None,
-) -> list[float] | None:
-    """Return numbers that are given with commas between them."""
-    if value is None:
-        return None
-    try:
-        return [float(part) for part in value.split(",")]
-    except ValueError:
-        raise click.UsageError(
-            f"Invalid {param.opts[0]} '{value}': it must be numbers with commas between them."
-        ) from None

@@ -70,14 +70,7 @@ def plan_products(
 ) -> Products:
     """Choose what each output holds, before any work is done.
 
-    Parameters
-    ----------
-    paths : sequence of Path
-    writing : Writing
-    inputs : sequence of Named
-    console : Console
-    kinds : sequence of str
-        What there will be, of "Table", "Features", "TIN" and "picture".
+    What there will be is of the ``kinds`` "Table", "Features", "TIN" and "picture".
     """
     require_separate(inputs, [Named(path, "--output") for path in paths])
     groups: dict[str, list[Path]] = {}

@@ -35,18 +35,7 @@ __all__ = ["Request", "surface_options"]
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
-    """Options that commands on surfaces share, and the steps from them to the last words.
-
-    Attributes
-    ----------
-    outputs : tuple of Path
-    reading : Reading
-    how : Triangulating
-    writing : Writing
-    console : Console
-    started : float
-        When the command began.
-    """
+    """Options that commands on surfaces share, and the steps from them to the last words."""
 
     outputs: tuple[Path, ...]
     reading: Reading
@@ -54,6 +43,7 @@ class Request:
     writing: Writing
     console: Console
     started: float = field(default_factory=perf_counter)
+    """When the command began."""
 
     def plan(self, inputs: Sequence[Named], kind: str, *, report: Path | None = None) -> Products:
         """Choose the formats of outputs that all hold one thing, before any work is done."""
@@ -132,12 +122,8 @@ def surface_options(
 ) -> Decorator:
     """Return a decorator that adds the shared options, and hands them over as ``request``.
 
-    Parameters
-    ----------
-    writing_options : decorator
-        The options of writing: of products, or those that a command has in their place.
-    reading_options : decorator
-        Those of reading likewise.
+    The options of writing are those of products, or those that a command has in their place; those
+    of reading likewise.
     """
     groups = (reading_options, triangulating_options, writing_options, console_options)
 

@@ -6,17 +6,7 @@ import pytest
 
 from tinsmith.errors import OptionError
 from tinsmith.io import ReadError
-from tinsmith.io.delimited.columns import (
-    Columns,
-    find_columns_by_header,
-    find_columns_by_word,
-    find_role,
-    find_unit_word,
-    list_meanings,
-    list_names,
-    name_columns,
-    shorten,
-)
+from tinsmith.io.delimited import columns
 
 ROLES = {
     "easting": "Easting EAST e X x_coord POINT_X Rechtswert RW este grid-easting utm.x lon",
@@ -31,19 +21,21 @@ OTHERS = ["intensity", "red", "classification", "time", "gridz", "quality", "dat
 @pytest.mark.parametrize("role", ROLES)
 def test_names_say_what_a_column_means(role):
     for name in ROLES[role].split():
-        assert find_role(name) == role, name
-        assert find_role(f" {name} ") == role, name
+        assert columns.find_role(name) == role, name
+        assert columns.find_role(f" {name} ") == role, name
 
 
 @pytest.mark.parametrize("name", ["Elev (ft)", "elev_us_ft", "Elev US-ft", "ELEV.m", "Elev [m]"])
 def test_a_unit_is_no_part_of_a_name(name):
-    assert find_role(name) == "elevation"
+    assert columns.find_role(name) == "elevation"
 
 
 def test_other_names_say_nothing():
-    assert [find_role(name) for name in (*OTHERS, "", "x" * 300)] == [None] * (len(OTHERS) + 2)
-    assert find_role("e" + " " * 199) == "easting"
-    assert find_role("e" + " " * 200) is None  # some other text
+    assert [columns.find_role(name) for name in (*OTHERS, "", "x" * 300)] == [None] * (
+        len(OTHERS) + 2
+    )
+    assert columns.find_role("e" + " " * 199) == "easting"
+    assert columns.find_role("e" + " " * 200) is None  # some other text
 
 
 @pytest.mark.parametrize(
@@ -59,7 +51,7 @@ def test_other_names_say_nothing():
     ],
 )  # fmt: skip
 def test_units_stand_in_brackets_or_behind_a_name(name, unit):
-    assert find_unit_word(name) == unit
+    assert columns.find_unit_word(name) == unit
 
 
 TWO_PAIRS = "The header names two pairs of coordinates: {} are taken, {} are not."
@@ -97,7 +89,7 @@ HEIGHTS = "The header's 'Z' is taken as the elevation, not {}."
     ],
 )
 def test_a_header_names_the_columns_and_what_it_leaves_open_is_told(header, word, notes):
-    found = find_columns_by_header(header.split(), strict=False)
+    found = columns.find_columns_by_header(header.split(), strict=False)
     assert found.word == word
     assert list(found.notes) == notes
     assert not found.is_degrees
@@ -106,11 +98,11 @@ def test_a_header_names_the_columns_and_what_it_leaves_open_is_told(header, word
 @pytest.mark.parametrize("header", ["E N Northing Z", "n;e;nord;z", "Easting E N Z"])
 def test_n_and_e_beside_another_northing_or_easting_are_refused(header):
     with pytest.raises(ReadError, match=r"several columns for the (north|east)ing \('.', '.*'\)"):
-        find_columns_by_header(header.replace(";", " ").split())
+        columns.find_columns_by_header(header.replace(";", " ").split())
 
 
 def test_letters_of_other_alphabets_are_no_blanks():
-    assert [find_role(name) for name in ("«ø±ê", "Zд", "東N", "Xé", "é")] == [
+    assert [columns.find_role(name) for name in ("«ø±ê", "Zд", "東N", "Xé", "é")] == [
         *(None, None, None, None, "easting")
     ]
 
@@ -120,45 +112,48 @@ def test_letters_of_other_alphabets_are_no_blanks():
     [("Z (pieds)", True), ("Z (')", True), ("Z (NAVD88)", False), ("Z (m)", False), ("Z", False)],
 )
 def test_brackets_behind_the_elevation_that_are_no_unit_are_told(name, told):
-    notes = find_columns_by_header(["E", "N", name]).notes
+    notes = columns.find_columns_by_header(["E", "N", name]).notes
     assert [f"'{name}' tells no unit that is known" in note for note in notes] == [True] * told
 
 
 @pytest.mark.parametrize("header", ["E N", "X Z q", "Lon N Z", "E Lat Z", "", "P D"])
 def test_a_header_without_three_coordinates_names_none(header):
-    assert find_columns_by_header(header.split(), strict=False) is None
+    assert columns.find_columns_by_header(header.split(), strict=False) is None
 
 
 def test_longitude_and_latitude_are_degrees():
-    found = find_columns_by_header(["Lat", "Long", "Alt"])
+    found = columns.find_columns_by_header(["Lat", "Long", "Alt"])
     assert found.is_degrees
     assert found.coordinates == [1, 0, 2]
-    assert find_columns_by_word("x,y,z", ["Long", "Lat", "Z"], 3).is_degrees
-    assert not find_columns_by_word("x,y,z", ["Long", "North", "Z"], 3).is_degrees
-    assert find_columns_by_word("lon,lat,z", [], 3).is_degrees
-    assert not find_columns_by_word("ENZ", [], 3).is_degrees
+    assert columns.find_columns_by_word("x,y,z", ["Long", "Lat", "Z"], 3).is_degrees
+    assert not columns.find_columns_by_word("x,y,z", ["Long", "North", "Z"], 3).is_degrees
+    assert columns.find_columns_by_word("lon,lat,z", [], 3).is_degrees
+    assert not columns.find_columns_by_word("ENZ", [], 3).is_degrees
     named = {"easting": 2, "northing": 1, "elevation": 3}
-    assert find_columns_by_word(named, ["Lat", "Lon", "h"], 3).is_degrees
-    assert not find_columns_by_word(named, [], 3).is_degrees
+    assert columns.find_columns_by_word(named, ["Lat", "Lon", "h"], 3).is_degrees
+    assert not columns.find_columns_by_word(named, [], 3).is_degrees
 
 
 def test_units_stand_in_the_header_or_below_it():
     units = {"easting": "ft", "elevation": "m"}
-    assert find_columns_by_header(["E (ft)", "N", "Z"], ["", "", "(m)"]).units == units
-    assert find_columns_by_word("ENZ", ["E (ft)", "N", "Z"], 3, ["m", "q", "[m]"]).units == units
-    assert find_columns_by_header(["E", "N", "Z"], ["m"]).units == {"easting": "m"}
-    assert find_columns_by_header(["E", "N", "Z"]).units == {}
+    assert columns.find_columns_by_header(["E (ft)", "N", "Z"], ["", "", "(m)"]).units == units
+    assert (
+        columns.find_columns_by_word("ENZ", ["E (ft)", "N", "Z"], 3, ["m", "q", "[m]"]).units
+        == units
+    )
+    assert columns.find_columns_by_header(["E", "N", "Z"], ["m"]).units == {"easting": "m"}
+    assert columns.find_columns_by_header(["E", "N", "Z"]).units == {}
 
 
 def test_equal_names_of_a_coordinate_are_refused():
     header = ["E", "N", "Z", "z (m)", "e"]
     with pytest.raises(ReadError) as caught:
-        find_columns_by_header(header)
+        columns.find_columns_by_header(header)
     assert str(caught.value) == (
         "the header has 2 columns named 'E' for the easting: say with the option columns which is "
         "meant."
     )
-    assert find_columns_by_header(header, strict=False).word == "ENZ"
+    assert columns.find_columns_by_header(header, strict=False).word == "ENZ"
 
 
 # ---------------------------------------------------------------- the caller's word
@@ -178,7 +173,7 @@ def test_equal_names_of_a_coordinate_are_refused():
     ],
 )
 def test_columns_by_the_callers_word(word, header, count, letters, names):
-    found = find_columns_by_word(word, header, count)
+    found = columns.find_columns_by_word(word, header, count)
     assert found.word == letters
     if names is not None:
         assert found.names == tuple(name.replace("_", " ") for name in names.split())
@@ -186,14 +181,14 @@ def test_columns_by_the_callers_word(word, header, count, letters, names):
 
 
 def test_the_caller_may_contradict_the_header_which_is_told():
-    found = find_columns_by_word("NEZ", ["E", "N", "Z"], 3)
+    found = columns.find_columns_by_word("NEZ", ["E", "N", "Z"], 3)
     assert found.notes == (
         "The option columns takes 'E' as the northing and 'N' as the easting, against the header.",
     )
-    assert find_columns_by_word("ENZ", ["E", "N", "Z"], 3).notes == ()
-    assert find_columns_by_word("ENZ", ["a", "b", "c"], 3).notes == ()
-    assert find_columns_by_word("ENZD", ["E", "N"], 4).notes == ()
-    three = find_columns_by_word("NZE", ["E", "N", "Z"], 3).notes[0]
+    assert columns.find_columns_by_word("ENZ", ["E", "N", "Z"], 3).notes == ()
+    assert columns.find_columns_by_word("ENZ", ["a", "b", "c"], 3).notes == ()
+    assert columns.find_columns_by_word("ENZD", ["E", "N"], 4).notes == ()
+    three = columns.find_columns_by_word("NZE", ["E", "N", "Z"], 3).notes[0]
     assert "'E' as the northing, 'Z' as the easting and 'N' as the elevation" in three or (
         three.count("'") == 6
     )
@@ -274,25 +269,31 @@ MISSING = (
 )
 def test_words_that_fit_no_table_are_refused(word, header, count, sentence):
     with pytest.raises(OptionError) as caught:
-        find_columns_by_word(word, header, count)
+        columns.find_columns_by_word(word, header, count)
     assert str(caught.value) == sentence
 
 
 def test_letters_and_names_are_told_apart():
-    assert list_meanings("PNEZD") == ["number", "northing", "easting", "elevation", "description"]
-    assert list_meanings("-H") == ["", "elevation"]
-    assert list_meanings("x,Q ,z") == ["easting", "Q", "elevation"]
-    assert list_meanings(["PN", "N"]) == ["PN", "northing"]
+    assert columns.list_meanings("PNEZD") == [
+        "number",
+        "northing",
+        "easting",
+        "elevation",
+        "description",
+    ]
+    assert columns.list_meanings("-H") == ["", "elevation"]
+    assert columns.list_meanings("x,Q ,z") == ["easting", "Q", "elevation"]
+    assert columns.list_meanings(["PN", "N"]) == ["PN", "northing"]
 
 
 # ------------------------------------------------------------------- for sentences
 
 
 def test_names_are_shortened_and_listed_to_a_limit():
-    assert shorten("x" * 40) == "x" * 40
-    assert shorten("x" * 41) == "x" * 40 + "..."
-    assert list_names(["a"] * 12) == ", ".join("a" * 12)
-    assert list_names(["a"] * 13) == ", ".join("a" * 12) + ", ..."
+    assert columns.shorten("x" * 40) == "x" * 40
+    assert columns.shorten("x" * 41) == "x" * 40 + "..."
+    assert columns.list_names(["a"] * 12) == ", ".join("a" * 12)
+    assert columns.list_names(["a"] * 13) == ", ".join("a" * 12) + ", ..."
 
 
 @pytest.mark.parametrize(
@@ -306,20 +307,20 @@ def test_names_are_shortened_and_listed_to_a_limit():
     ],
 )
 def test_every_column_has_a_name_of_its_own(names, count, unique):
-    assert list(name_columns(names, count)) == unique
+    assert list(columns.name_columns(names, count)) == unique
 
 
 def test_columns_are_named_in_sentences():
     roles = {"easting": 1, "northing": 2, "elevation": 3, "number": 0}
-    columns = Columns(("id", "column 2", "", "N" * 50, "red"), roles)
-    assert [columns.label(k) for k in range(4)] == [
+    found = columns.Columns(("id", "column 2", "", "N" * 50, "red"), roles)
+    assert [found.label(k) for k in range(4)] == [
         *("column 1 ('id')", "column 2", "column 3"),
         f"column 4 ('{'N' * 40}...')",
     ]
-    assert columns.coordinates == [1, 2, 3]
-    assert columns.layout == "number, easting, northing, elevation, red"
-    assert columns.word == "PENZ"
-    turned = columns.permute([2, 0, 1])
+    assert found.coordinates == [1, 2, 3]
+    assert found.layout == "number, easting, northing, elevation, red"
+    assert found.word == "PENZ"
+    turned = found.permute([2, 0, 1])
     assert turned.coordinates == [3, 1, 2]
     assert turned.roles["number"] == 0
     assert turned.word == "PNZE"

@@ -28,6 +28,11 @@ def header(**given):
     return dem.Header(**{**usual, **given})
 
 
+def choose_cells(window, stride):
+    choice = dem.Choice(band=None, window=window, stride=stride, nodata=None, fill=False)
+    return dem._choose_cells(header(), choice, PATH)
+
+
 def sentence_of(kind, function, *arguments):
     with pytest.raises(kind) as caught:
         function(*arguments)
@@ -108,7 +113,7 @@ def test_strips_are_whole_blocks_of_some_cells(monkeypatch, block, width, height
     ],
 )
 def test_bounds_choose_the_cells_that_they_touch(bounds, part):
-    cells = dem._choose_cells(header(), Bounds(*map(float, bounds)), 1, PATH)
+    cells = choose_cells(Bounds(*map(float, bounds)), 1)
     assert (cells.column, cells.row, cells.width, cells.height) == part
     assert cells.bounds == Bounds(*bounds)
 
@@ -119,9 +124,7 @@ def test_bounds_choose_the_cells_that_they_touch(bounds, part):
      (110, 485, 105, 500), (100, 495, 114, 490)],
 )  # fmt: skip
 def test_bounds_beyond_the_raster_or_turned_are_refused(bounds):
-    said = sentence_of(
-        OptionError, dem._choose_cells, header(), Bounds(*map(float, bounds)), 1, PATH
-    )
+    said = sentence_of(OptionError, choose_cells, Bounds(*map(float, bounds)), 1)
     assert said == (
         f"Invalid window {list(map(float, bounds))}: it must be an area that meets 'ground.tif', "
         "which spans easting 100 to 114 and northing 485 to 500."
@@ -130,7 +133,7 @@ def test_bounds_beyond_the_raster_or_turned_are_refused(bounds):
 
 @pytest.mark.parametrize("window", [(0, 0, 7, 5), (6, 4, 1, 1), [1, 1, 2, 3]])
 def test_a_window_in_cells_is_taken_as_it_is(window):
-    cells = dem._choose_cells(header(), window, 1, PATH)
+    cells = choose_cells(window, 1)
     assert (cells.column, cells.row, cells.width, cells.height) == tuple(window)
     assert cells.bounds is None
 
@@ -141,7 +144,7 @@ def test_a_window_in_cells_is_taken_as_it_is(window):
      (6, 0, 2, 1), (0, 4, 1, 2)],
 )  # fmt: skip
 def test_a_window_must_lie_in_the_raster(window):
-    said = sentence_of(OptionError, dem._choose_cells, header(), window, 1, PATH)
+    said = sentence_of(OptionError, choose_cells, window, 1)
     assert said == (
         f"Invalid window {list(window)}: it must be a part of 'ground.tif': the raster has 7 "
         "columns and 5 rows."
@@ -150,7 +153,7 @@ def test_a_window_must_lie_in_the_raster(window):
 
 @pytest.mark.parametrize("window", [(0, 0, 7), (0, 0, 7, 5, 1), (0.0, 0, 7, 5), 7, "abcd"])
 def test_a_window_is_four_whole_numbers(window):
-    said = sentence_of(OptionError, dem._choose_cells, header(), window, 1, PATH)
+    said = sentence_of(OptionError, choose_cells, window, 1)
     shown = list(window) if isinstance(window, tuple) else window
     assert said == (
         f"Invalid window {shown!r}: it must be four whole numbers (first column, first row, width, "
@@ -163,9 +166,9 @@ def test_a_window_is_four_whole_numbers(window):
     [(None, 5, 4), (None, 0, 4), (None, 1.5, 4), ((0, 0, 3, 5), 3, 2), ((0, 0, 1, 1), 2, 1)],
 )
 def test_a_stride_leaves_two_rows_and_columns_at_least(window, stride, most):
-    said = sentence_of(OptionError, dem._choose_cells, header(), window, stride, PATH)
+    said = sentence_of(OptionError, choose_cells, window, stride)
     assert f"Invalid stride {stride!r}: it must be a whole number from 1 to {most} for the" in said
-    assert dem._choose_cells(header(), window, most, PATH).stride == most
+    assert choose_cells(window, most).stride == most
 
 
 # --------------------------------------------------------------------- room

@@ -20,7 +20,7 @@ import shapely
 from support import matrix
 
 import tinsmith as ts
-from tinsmith.io.registry import KINDS
+from tinsmith.io.registry.format import KINDS
 
 FORMATS = [one for one in ts.io.known_formats() if one.is_built_in]
 WRITTEN = [

@@ -37,16 +37,10 @@ _NO_ROWS = np.empty((0, 3))
 
 
 class Record(NamedTuple):
-    """What is known of a TIN beside its points, triangles and flags.
-
-    Attributes
-    ----------
-    document : dict
-        What JSON holds; ``{"array": name}`` stands for an array.
-    arrays : dict of str to array
-    """
+    """What is known of a TIN beside its points, triangles and flags."""
 
     document: dict[str, Any]
+    """What JSON holds; ``{"array": name}`` stands for an array."""
     arrays: dict[str, AnyArray]
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..options import writing_options
-from ..parameters import Command, input_files, output_files, report_option
+from ..parameters import command, input_files, output_files, report_option
 from ..paths import describe_inputs, name_files
 from ..request import surface_options
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["build"]
 
 
-@click.command(cls=Command)
+@command
 @input_files("points")
 @output_files
 @report_option(

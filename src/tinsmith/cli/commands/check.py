@@ -9,7 +9,7 @@ import click
 from ..._sentences import counted
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import Failure
-from ..parameters import Command, input_file
+from ..parameters import command, input_file
 from ..paths import name_file
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ _PROVED = {
 }
 
 
-@click.command(cls=Command)
+@command
 @input_file("file")
 @click.option(
     "--level",

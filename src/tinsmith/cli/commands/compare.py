@@ -9,7 +9,7 @@ import click
 from ..._sentences import counted
 from ..options import console_options, reading_options
 from ..output.failures import Failure
-from ..parameters import Command, input_file, number_option, picture_option
+from ..parameters import command, input_file, number_option, picture_option
 from ..paths import make_title, name_file
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ __all__ = ["compare"]
 _COLUMN = 16
 
 
-@click.command(cls=Command)
+@command
 @input_file("file")
 @picture_option("Picture to write (.png): the triangles side by side, faults marked.")
 @number_option(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from ..parameters import Command, Words
+from ..parameters import Words, command
 
 __all__ = ["completion"]
 
@@ -12,7 +12,7 @@ _VARIABLE = "_TINSMITH_COMPLETE"
 """What click asks for in the environment, by the name of the program."""
 
 
-@click.command(cls=Command)
+@command
 @click.argument("shell", type=Words(("bash", "zsh", "fish")))
 @click.pass_context
 def completion(ctx: click.Context, shell: str) -> None:

@@ -8,7 +8,7 @@ import click
 
 from ..._sentences import counted
 from ..options import vector_options
-from ..parameters import Command, input_file, number_option, output_files, parse_numbers
+from ..parameters import file_command, number_option, numbers_option
 from ..paths import make_title
 from ..request import surface_options
 
@@ -24,16 +24,9 @@ if TYPE_CHECKING:
 __all__ = ["contours"]
 
 
-@click.command(cls=Command)
-@input_file("file")
-@output_files
+@file_command
 @number_option("--interval", "HEIGHT", "Between levels, in the unit of elevations.")
-@click.option(
-    "--levels",
-    metavar="Z,Z,...",
-    callback=parse_numbers,
-    help="Explicit levels instead of an interval, with commas.",
-)
+@numbers_option("--levels", "Z,Z,...", "Explicit levels instead of an interval, with commas.")
 @number_option("--base", "ELEVATION", "A level from which the others are counted.", default=0.0)
 @number_option(
     "--index",

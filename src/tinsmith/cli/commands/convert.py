@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import click
-
 from ..._sentences import counted
 from ..options import console_options, reading_options, writing_options
 from ..output.console import format_json
-from ..parameters import Command, input_file, output_files
+from ..parameters import file_command
 from ..paths import name_file
 
 if TYPE_CHECKING:
@@ -28,9 +26,7 @@ _KINDS = ("TIN", "Survey", "Raster")
 """What can be written."""
 
 
-@click.command(cls=Command)
-@input_file("file")
-@output_files
+@file_command
 @reading_options
 @writing_options
 @console_options

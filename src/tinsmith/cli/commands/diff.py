@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..parameters import Command, output_files
-from ..paths import INPUT, make_title
+from ..parameters import command, input_file, output_files
+from ..paths import make_title
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 __all__ = ["diff"]
 
 
-@click.command(cls=Command)
-@click.argument("file", metavar="FILE", type=INPUT)
-@click.argument("other", metavar="OTHER", type=INPUT)
+@command
+@input_file("file")
+@input_file("other")
 @output_files
 @click.option(
     "--zero-line",

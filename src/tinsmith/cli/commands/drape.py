@@ -5,10 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
 from ...policies import OutsidePolicy
-from ..parameters import Command, choice_option, input_file, output_files
+from ..parameters import choice_option, command, input_file, output_files
 from ..paths import LINES, Named
 from ..request import surface_options
 
@@ -19,9 +17,9 @@ if TYPE_CHECKING:
 __all__ = ["drape"]
 
 
-@click.command(cls=Command)
+@command
 @input_file("file")
-@click.argument("features", type=LINES)
+@input_file("features", LINES)
 @output_files
 @choice_option(
     "--outside",

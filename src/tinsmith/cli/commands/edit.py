@@ -6,12 +6,10 @@ import json
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-import click
-
 from ..._sentences import counted
 from ..options import writing_options
-from ..parameters import Command, input_file, output_files, report_option
-from ..paths import INPUT, STANDARD, Named, name_file
+from ..parameters import command, input_file, output_files, report_option
+from ..paths import STANDARD, Named, name_file
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -23,9 +21,9 @@ if TYPE_CHECKING:
 __all__ = ["edit"]
 
 
-@click.command(cls=Command)
+@command
 @input_file("file")
-@click.argument("script", type=INPUT)
+@input_file("script")
 @output_files
 @report_option("JSON file that accounts for every row and every edit.")
 @surface_options(writing_options)

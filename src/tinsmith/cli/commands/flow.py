@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...policies import FlowProduct
-from ..parameters import Command, choice_option, input_file, number_option, output_files
-from ..paths import LINES
+from ..parameters import choice_option, file_command, file_option, number_option
 from ..places import name_places, read_places
 from ..request import surface_options
 
@@ -37,9 +36,7 @@ _FLAGS = {
 }
 
 
-@click.command(cls=Command)
-@input_file("file")
-@output_files
+@file_command
 @choice_option("--find", FlowProduct, "What to find.", default="depressions")
 @click.option(
     "--from",
@@ -50,7 +47,7 @@ _FLAGS = {
     multiple=True,
     help="Where a drop falls, for paths, or an outlet, for catchments. May be given several times.",
 )
-@click.option("--points", metavar="FILE", type=LINES, help="Vector file of such places.")
+@file_option("--points", "Vector file of such places.")
 @number_option("--level", "ELEVATION", "Of the water, for ponds.")
 @number_option("--min-depth", "HEIGHT", "Leave out depressions that are not as deep.")
 @click.option("--nested", is_flag=True, help="Also depressions that are part of larger ones.")

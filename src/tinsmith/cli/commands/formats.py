@@ -5,11 +5,9 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
-import click
-
 from ..options import console_options
 from ..output.console import format_json
-from ..parameters import Command
+from ..parameters import command
 
 if TYPE_CHECKING:
     from ...io import Format
@@ -18,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["formats"]
 
 
-@click.command(cls=Command)
+@command
 @console_options
 def formats(console: Console) -> None:
     """List the formats: what each reads and writes, what it needs, and whether that is there.

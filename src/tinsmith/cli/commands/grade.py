@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import click
-
 from ..._sentences import counted
-from ..flags import name_flags
 from ..options import writing_options
-from ..output.failures import Failure, refuse_option
-from ..parameters import Command, input_file, number_option, output_files
-from ..paths import LINES, Named
+from ..output.failures import Failure
+from ..parameters import file_command, file_option, number_option
+from ..paths import Named
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -25,12 +22,8 @@ if TYPE_CHECKING:
 __all__ = ["grade"]
 
 
-@click.command(cls=Command)
-@input_file("file")
-@output_files
-@click.option(
-    "--pad", metavar="FILE", type=LINES, required=True, help="Vector file of one polygon: the pad."
-)
+@file_command
+@file_option("--pad", "Vector file of one polygon: the pad.", required=True)
 @number_option(
     "--elevation",
     "ELEVATION",
@@ -59,7 +52,6 @@ def grade(
       tinsmith grade sample_data/site_survey.csv --codes --crs EPSG:32616 --pad pad.geojson \\
         --elevation 326 --cut-slope 2 --fill-slope 3 -o graded.gpkg
     """  # noqa: D301 - click reads the control character
-    from ...errors import OptionError, TinsmithError
     from ...terrain import grade as grade_tin
     from ...terrain import volume
 
@@ -67,19 +59,14 @@ def grade(
     tin = request.read_tin(file)
     ring = _read_pad(pad, tin, elevation)
     with request.step("Grading") as progress:
-        try:
-            graded = grade_tin(
-                tin,
-                ring,
-                elevation,
-                cut_slope=cut_slope,
-                fill_slope=fill_slope,
-                progress=progress,
-            )
-        except OptionError as error:
-            raise refuse_option(error) from error
-        except TinsmithError as error:
-            raise Failure(name_flags(str(error))) from error
+        graded = grade_tin(
+            tin,
+            ring,
+            elevation,
+            cut_slope=cut_slope,
+            fill_slope=fill_slope,
+            progress=progress,
+        )
         table = volume(tin, graded)
     planned.write("TIN", graded)
     rows = _summarise_grading(tin, graded, table)

@@ -9,7 +9,7 @@ import click
 
 from ..._sentences import counted
 from ..options import writing_options
-from ..parameters import Command, input_files, number_option, output_files
+from ..parameters import command, input_files, number_option, output_files
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ _PARAMETERS = (
 )
 
 
-@click.command(cls=Command)
+@command
 @input_files("points")
 @output_files
 @number_option("--building", "METRES", "Width of the largest building.", default=40.0)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..parameters import Command, input_file, number_option, output_files
+from ..parameters import file_command, number_option
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -18,9 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["hillshade"]
 
 
-@click.command(cls=Command)
-@input_file("file")
-@output_files
+@file_command
 @number_option("--spacing", "LENGTH", "Side of a cell; default a thousandth of it.")
 @number_option(
     "--azimuth", "DEGREES", "Where the light comes from, clockwise from north.", default=315.0

@@ -8,7 +8,7 @@ import click
 
 from ..options import coding_options, console_options, reading_options
 from ..output.failures import Failure
-from ..parameters import Command, input_files
+from ..parameters import command, input_files
 from ..paths import OUTPUT, describe_inputs, make_title, name_file, name_files
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["info"]
 
 
-@click.command(cls=Command)
+@command
 @input_files("files")
 @click.option(
     "--plot",

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..parameters import Command, input_files, output_option
+from ..parameters import command, input_files, output_option
 from ..paths import describe_inputs, make_title, name_files
 from ..request import surface_options
 
@@ -24,7 +24,7 @@ __all__ = ["inspect"]
 _SHOWN = 12
 
 
-@click.command(cls=Command)
+@command
 @input_files("points")
 @output_option("Table (.csv, .json), points (.gpkg, .geojson, .shp, .fgb) or map (.png) to write.")
 @click.option("--title", metavar="TEXT", help="Of the map; default the name of the file.")

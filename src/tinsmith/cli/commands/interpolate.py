@@ -9,8 +9,8 @@ import click
 from ..._sentences import counted
 from ...policies import Extrapolation, InterpolationMethod
 from ..output.failures import Failure
-from ..parameters import Command, choice_option, crs_option, input_file, output_files
-from ..paths import LINES, Named
+from ..parameters import choice_option, command, crs_option, file_option, input_file, output_files
+from ..paths import Named
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -25,15 +25,13 @@ if TYPE_CHECKING:
 __all__ = ["interpolate"]
 
 
-@click.command(cls=Command)
+@command
 @input_file("file")
-@click.option(
+@file_option(
     "--at",
-    "points_file",
-    metavar="FILE",
-    type=LINES,
+    "CSV file of points; its first line names the columns, all of which are kept.",
+    name="points_file",
     required=True,
-    help="CSV file of points; its first line names the columns, all of which are kept.",
 )
 @output_files
 @choice_option("--method", InterpolationMethod, "What lies between the vertices.", default="linear")

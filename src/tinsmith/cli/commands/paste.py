@@ -5,11 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import click
-
 from ..options import writing_options
-from ..parameters import Command, output_files
-from ..paths import INPUT
+from ..parameters import command, input_file, output_files
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -20,9 +17,9 @@ if TYPE_CHECKING:
 __all__ = ["paste"]
 
 
-@click.command(cls=Command)
-@click.argument("base", metavar="BASE", type=INPUT)
-@click.argument("patch", metavar="PATCH", type=INPUT)
+@command
+@input_file("base")
+@input_file("patch")
 @output_files
 @surface_options(writing_options)
 def paste(base: Path, patch: Path, request: Request) -> None:

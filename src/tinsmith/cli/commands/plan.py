@@ -17,8 +17,15 @@ from ...policies import (
 )
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import Failure, note_written
-from ..parameters import Command, choice_option, input_file, number_option, output_option
-from ..paths import LINES, Named, make_title, require_separate
+from ..parameters import (
+    choice_option,
+    command,
+    file_option,
+    input_file,
+    number_option,
+    output_option,
+)
+from ..paths import Named, make_title, require_separate
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,7 +38,7 @@ if TYPE_CHECKING:
 __all__ = ["plan"]
 
 
-@click.command(cls=Command)
+@command
 @input_file("file")
 @output_option("Plan to write (.pdf, .svg, .png).", required=True)
 @click.option(
@@ -54,9 +61,7 @@ __all__ = ["plan"]
     "All on one sheet, rows of sheets, or strips along the axis of a long surface.",
     default="single",
 )
-@click.option(
-    "--axis", "axis_file", metavar="FILE", type=LINES, help="Vector file of the axis of strips."
-)
+@file_option("--axis", "Vector file of the axis of strips.", name="axis_file")
 @number_option("--interval", "HEIGHT", "Between contours; chosen if absent.")
 @number_option(
     "--smooth",

@@ -10,8 +10,8 @@ import click
 
 from ..._sentences import counted
 from ..output.failures import Failure
-from ..parameters import Command, number_option, output_files
-from ..paths import INPUT, LINES, Named, make_title
+from ..parameters import command, file_option, number_option, output_files
+from ..paths import INPUT, Named, make_title
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -42,10 +42,10 @@ class _Line:
             raise click.UsageError("A line is needed: --line FILE, or --from X Y and --to X Y.")
 
 
-@click.command(cls=Command)
+@command
 @click.argument("files", nargs=-1, required=True, type=INPUT)
 @output_files
-@click.option("--line", "line_file", metavar="FILE", type=LINES, help="Vector file of the lines.")
+@file_option("--line", "Vector file of the lines.", name="line_file")
 @click.option("--from", "begin", metavar="X Y", nargs=2, type=float, help="Where a line begins.")
 @click.option("--to", "end", metavar="X Y", nargs=2, type=float, help="Where it ends.")
 @number_option("--interval", "LENGTH", "Add a row at every multiple of this station.")

@@ -8,8 +8,8 @@ import click
 
 from ...policies import InterpolationMethod, RasterSample, RasterValue
 from ..options import format_options
-from ..parameters import Command, choice_option, input_file, number_option, output_files
-from ..paths import LINES, Named
+from ..parameters import choice_option, file_command, file_option, number_option
+from ..paths import Named
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -23,13 +23,11 @@ if TYPE_CHECKING:
 __all__ = ["raster"]
 
 
-@click.command(cls=Command)
-@input_file("file")
-@output_files
+@file_command
 @number_option(
     "--spacing", "LENGTH", "Side of a cell, CRS units; cells are aligned to its multiples."
 )
-@click.option("--like", metavar="FILE", type=LINES, help="Raster whose cells are taken.")
+@file_option("--like", "Raster whose cells are taken.")
 @choice_option(
     "--value",
     RasterValue,

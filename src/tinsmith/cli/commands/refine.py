@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import click
-
 from ..._sentences import counted
 from ..flags import name_flags
 from ..options import writing_options
 from ..output.failures import Failure, refuse_option
-from ..parameters import Command, input_file, number_option, output_files
+from ..parameters import file_command, number_option
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -24,9 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["refine"]
 
 
-@click.command(cls=Command)
-@input_file("file")
-@output_files
+@file_command
 @number_option("--min-angle", "DEGREES", "Least angle of a triangle, up to 33.", default=25.0)
 @number_option("--max-area", "AREA", "Largest triangle, in CRS units squared.")
 @number_option(

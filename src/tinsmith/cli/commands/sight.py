@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..parameters import Command, input_file, number_option, output_files
-from ..paths import LINES
+from ..parameters import file_command, file_option, number_option
 from ..places import name_places, read_places
 from ..request import surface_options
 
@@ -25,11 +24,9 @@ __all__ = ["sight"]
 _SHOWN = 12
 
 
-@click.command(cls=Command)
-@input_file("file")
-@output_files
+@file_command
 @click.option("--from", "eye", metavar="X Y", nargs=2, type=float, help="The eye.")
-@click.option("--eye", "eyes", metavar="FILE", type=LINES, help="In its place: a file of points.")
+@file_option("--eye", "In its place: a file of points.", name="eyes")
 @click.option(
     "--to",
     "targets",
@@ -39,9 +36,7 @@ _SHOWN = 12
     multiple=True,
     help="A target, for a line of sight; without one the viewshed. May be given several times.",
 )
-@click.option(
-    "--targets", "points", metavar="FILE", type=LINES, help="In its place: a file of points."
-)
+@file_option("--targets", "In its place: a file of points.", name="points")
 @number_option("--eye-height", "HEIGHT", "Of the eye above the ground.", default=0.0)
 @number_option("--target-height", "HEIGHT", "Of targets above the ground.", default=0.0)
 @number_option("--radius", "LENGTH", "Of the viewshed; any distance if absent.")

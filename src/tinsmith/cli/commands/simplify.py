@@ -8,8 +8,8 @@ import click
 
 from ..._sentences import counted
 from ..options import writing_options
-from ..output.failures import Failure, refuse_option
-from ..parameters import Command, input_file, number_option, output_files
+from ..output.failures import Failure
+from ..parameters import file_command, file_option, number_option
 from ..paths import INPUT, Named
 from ..request import surface_options
 
@@ -26,20 +26,17 @@ if TYPE_CHECKING:
 __all__ = ["simplify"]
 
 
-@click.command(cls=Command)
-@input_file("file")
-@output_files
+@file_command
 @number_option(
     "--tolerance",
     "HEIGHT",
     "Farthest that a point may be above or below the new surface, in the unit of elevations.",
 )
 @number_option("--points", "N", "In its place: leave so many points.", type=int)
-@click.option(
+@file_option(
     "--keep",
-    metavar="FILE",
+    "Points that stay, such as benchmarks: each must be one of the surface.",
     type=INPUT,
-    help="Points that stay, such as benchmarks: each must be one of the surface.",
 )
 @surface_options(writing_options)
 def simplify(
@@ -59,7 +56,6 @@ def simplify(
     Example:
       tinsmith simplify sample_data/jacksboro.tif --tolerance 2 -o hills.ply
     """  # noqa: D301 - click reads the control character
-    from ...errors import OptionError
     from ...terrain import simplify as simplify_surface
     from ..output.line_summaries import mesh_counts
     from ..raster_input import find_cells, read_cells
@@ -75,17 +71,14 @@ def simplify(
     kept = () if keep is None else _find_kept(given, find, keep, request)
     size, counts = _count(given)
     with request.step(f"Simplifying {size}") as progress:
-        try:
-            simple = simplify_surface(
-                given,
-                tolerance=tolerance,
-                points=points,
-                keep=kept,
-                threads=request.how.threads,
-                progress=progress,
-            )
-        except OptionError as error:
-            raise refuse_option(error) from error
+        simple = simplify_surface(
+            given,
+            tolerance=tolerance,
+            points=points,
+            keep=kept,
+            threads=request.how.threads,
+            progress=progress,
+        )
     planned.write("TIN", simple)
     rows = [
         ("Read", counts),

@@ -8,7 +8,7 @@ import click
 
 from ...policies import SlopeUnit
 from ..options import make_reading_options
-from ..parameters import Command, choice_option, input_file, output_files, parse_numbers
+from ..parameters import choice_option, file_command, numbers_option
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -22,9 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["slope"]
 
 
-@click.command(cls=Command)
-@input_file("file")
-@output_files
+@file_command
 @choice_option(
     "--unit",
     SlopeUnit,
@@ -32,11 +30,8 @@ __all__ = ["slope"]
     name="slope_unit",
     default="degrees",
 )
-@click.option(
-    "--breaks",
-    metavar="S,S,...",
-    callback=parse_numbers,
-    help="Limits between the classes, in that unit; usual ones if absent.",
+@numbers_option(
+    "--breaks", "S,S,...", "Limits between the classes, in that unit; usual ones if absent."
 )
 @click.option("--aspect", is_flag=True, help="Classes of the direction in which it falls instead.")
 @surface_options(reading_options=make_reading_options(unit_flag="--length-unit"))

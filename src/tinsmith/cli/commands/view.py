@@ -12,11 +12,12 @@ from ...policies import Tint
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import note_written, tell_warning
 from ..parameters import (
-    Command,
     choice_option,
+    command,
+    file_option,
     input_files,
     number_option,
-    parse_numbers,
+    numbers_option,
     picture_option,
 )
 from ..paths import INPUT, Named, describe_inputs, make_title
@@ -50,7 +51,7 @@ def _parse_size(
     return int(found[1]), int(found[2])
 
 
-@click.command(cls=Command)
+@command
 @input_files("files")
 @picture_option("Picture to write (.png, .jpg, .tif) instead of opening a window.")
 @number_option("--exaggeration", "FACTOR", "Vertical exaggeration; chosen if absent.")
@@ -62,12 +63,11 @@ def _parse_size(
     help="Draw breaklines and rings.",
 )
 @click.option("--top", is_flag=True, help="Look straight down, north up.")
-@click.option(
+@file_option(
     "--ortho",
-    metavar="FILE",
-    type=INPUT,
-    help="Picture of the ground to drape over the surface: a GeoTIFF in any CRS, or another with "
+    "Picture of the ground to drape over the surface: a GeoTIFF in any CRS, or another with "
     "its place.",
+    type=INPUT,
 )
 @number_option("--azimuth", "DEGREES", "Where the viewer stands, clockwise from north.")
 @number_option("--tilt", "DEGREES", "Height of the viewer above the horizon, 90 from above.")
@@ -85,22 +85,18 @@ def _parse_size(
     help="Pixels of a picture or window; default 1600x1000.",
 )
 @number_option("--dpi", "NUMBER", "Dots per inch written into a picture, for printing.")
-@click.option(
+@numbers_option(
     "--sun",
-    metavar="AZIMUTH,ALTITUDE",
-    callback=parse_numbers,
-    help="Light in a picture, degrees from north and above the horizon; default 315,45.",
+    "AZIMUTH,ALTITUDE",
+    "Light in a picture, degrees from north and above the horizon; default 315,45.",
 )
 @click.option(
     "--background",
     metavar="COLOR",
     help="white, black, light, dark, or as #e8edf2; default white.",
 )
-@click.option(
-    "--elevations",
-    metavar="LOW,HIGH",
-    callback=parse_numbers,
-    help="Range of the tints in a picture; default that of the surface.",
+@numbers_option(
+    "--elevations", "LOW,HIGH", "Range of the tints in a picture; default that of the surface."
 )
 @choice_option("--tint", Tint, "What colours tell in a picture.", default="elevation")
 @number_option("--contours", "INTERVAL", "Draw contours in a picture, in the unit of elevations.")

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..parameters import Command, number_option, output_option
-from ..paths import INPUT, LINES, Named, make_title
+from ..parameters import command, file_option, number_option, output_option
+from ..paths import INPUT, Named, make_title
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -28,18 +28,16 @@ _CUBIC_YARD = 27.0
 _FEET = ("ft³", "US ft³")
 
 
-@click.command(cls=Command)
+@command
 @click.argument("files", metavar="GROUND [DESIGN]", nargs=-1, required=True, type=INPUT)
 @output_option(
     "Table (.csv, .json), parts that are cut and filled (.gpkg, .geojson, .shp, .fgb) or map "
     "(.png) to write."
 )
 @number_option("--base", "ELEVATION", "Level in place of a design.")
-@click.option(
+@file_option(
     "--regions",
-    metavar="FILE",
-    type=LINES,
-    help="Vector file of polygons to measure in; a column name, region, id or label names them.",
+    "Vector file of polygons to measure in; a column name, region, id or label names them.",
 )
 @click.option(
     "--stage-storage",

@@ -64,18 +64,12 @@ def list_records(table: Table) -> list[dict[str, Any]]:
 
 
 class Suspects(NamedTuple):
-    """What a build found.
-
-    Attributes
-    ----------
-    table : Table
-        Of :func:`tinsmith.blunders`.
-    dropped : (k,) int64 array or None
-        Rows that were left out; None if that was not asked for.
-    """
+    """What a build found."""
 
     table: Table
+    """Of :func:`tinsmith.blunders`."""
     dropped: Int64Array | None
+    """(k,), rows that were left out; None if that was not asked for."""
 
 
 def tell_suspects(found: Suspects) -> list[Row]:

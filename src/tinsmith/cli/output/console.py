@@ -32,21 +32,14 @@ _LABEL_WIDTH = 11
 
 @dataclass(frozen=True)
 class Console:
-    """How a command speaks.
-
-    Attributes
-    ----------
-    quiet : bool
-        Leave out summary and progress; errors and results are still written.
-    as_json : bool
-        Write the result as JSON on stdout instead of for people.
-    events : bool
-        Write summary and progress as events, for programs.
-    """
+    """How a command speaks."""
 
     quiet: bool = False
+    """Leave out summary and progress; errors and results are still written."""
     as_json: bool = False
+    """Write the result as JSON on stdout instead of for people."""
     events: bool = False
+    """Write summary and progress as events, for programs."""
 
     def steps(self) -> Steps:
         """Return the context in which long work shows its progress."""
