@@ -44,22 +44,16 @@ _SHADES = (1, 255)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Map:
-    """A figure with axes that are true to scale.
-
-    Attributes
-    ----------
-    figure : matplotlib.figure.Figure
-    axes : matplotlib.axes.Axes
-    ground : Ground
-        How the coordinates are measured.
-    beside : tuple of float
-        Left, bottom, width and height of the room on the right of the map, shares of the figure.
-    """
+    """A figure with axes that are true to scale."""
 
     figure: Any
+    """``matplotlib.figure.Figure``."""
     axes: Any
+    """``matplotlib.axes.Axes``."""
     ground: Ground
+    """How the coordinates are measured."""
     beside: tuple[float, float, float, float]
+    """Left, bottom, width and height of the room on the right of the map, shares of the figure."""
 
 
 def start_map(

@@ -63,27 +63,17 @@ class _Section:
 
 @dataclass(frozen=True, slots=True)
 class _Sheet:
-    """How all sections are measured.
-
-    Attributes
-    ----------
-    offsets : tuple of float
-    span : float
-        Of elevations in each section.
-    step : float
-        Between lines of the grid of elevations.
-    exaggeration : float
-    width, height : float
-        Of a section, inches.
-    columns, rows : int
-    """
+    """How all sections are measured."""
 
     offsets: tuple[float, float]
     span: float
+    """Of elevations in each section."""
     step: float
+    """Between lines of the grid of elevations."""
     exaggeration: float
     width: float
     height: float
+    """Width and height of a section, inches."""
     columns: int
     rows: int
 

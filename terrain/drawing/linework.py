@@ -44,18 +44,12 @@ _NEARER = -4.0
 
 
 class LineEdges(NamedTuple):
-    """Edges of lines, each once, in the order of the lines.
-
-    Attributes
-    ----------
-    pairs : (k, 2) int32 array
-        Vertices, in the direction of the line.
-    kinds : (k,) int8 array
-        Indices into ``EDGE_KINDS``.
-    """
+    """Edges of lines, each once, in the order of the lines."""
 
     pairs: Int32Array
+    """(k, 2): vertices, in the direction of the line."""
     kinds: Int8Array
+    """(k,): indices into ``EDGE_KINDS``."""
 
 
 def find_line_edges(tin: TIN, *, guess: bool = True) -> LineEdges:

@@ -19,16 +19,11 @@ __all__ = ["Pieces", "cut_pieces", "fan_out", "turns"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pieces:
-    """The parts of a surface's triangles in some groups.
-
-    Attributes
-    ----------
-    surface : Surface
-    groups : (m,) int32 array
-    """
+    """The parts of a surface's triangles in some groups."""
 
     surface: Surface
     groups: Int32Array
+    """(m,)."""
 
 
 def fan_out(offsets: Int64Array, corners: Int32Array) -> tuple[Int32Array, Int64Array]:

@@ -20,19 +20,13 @@ _ALLOWED = "a level, or three points (easting, northing, elevation) of a plane"
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """A plane through a point, with its rise in both directions.
-
-    Attributes
-    ----------
-    point : tuple of float
-        Easting, northing, elevation.
-    east, north : float
-        Rise for a unit of easting and of northing, in the unit of elevations.
-    """
+    """A plane through a point, with its rise in both directions."""
 
     point: tuple[float, float, float]
+    """Easting, northing, elevation."""
     east: float = 0.0
     north: float = 0.0
+    """Both the rise for a unit of easting and of northing, in the unit of elevations."""
 
     def heights_above(self, points: Float64Array) -> Float64Array:
         """Return how far the plane lies above (n, 3) points."""

@@ -47,23 +47,15 @@ class PlaneUnits(NamedTuple):
 
 
 class Agreement(NamedTuple):
-    """The one CRS and the one unit of several surfaces.
-
-    Attributes
-    ----------
-    crs : CRS or None
-    elevation_unit : Unit or None
-        The one that is known; None if none is.
-    factors : tuple of float
-        From the elevations of each to that unit.
-    notes : tuple of str
-        What is not known, was assumed or converted.
-    """
+    """The one CRS and the one unit of several surfaces."""
 
     crs: CRS | None
     elevation_unit: Unit | None
+    """The one that is known; None if none is."""
     factors: tuple[float, ...]
+    """From the elevations of each to that unit."""
     notes: tuple[str, ...]
+    """What is not known, was assumed or converted."""
 
 
 def find_plane_units(crs: CRS | None) -> PlaneUnits:

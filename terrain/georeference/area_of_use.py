@@ -27,18 +27,12 @@ _ORIGIN_METRES = 20_000.0
 
 @dataclass(frozen=True, slots=True)
 class AreaOfUse:
-    """The areas of use of the CRS of some coordinates, and of the one that they are moved to.
-
-    Attributes
-    ----------
-    source : CRS
-        CRS of the coordinates.
-    targets : tuple of CRS
-        CRSs whose areas count, without those whose area is not known.
-    """
+    """The areas of use of the CRS of some coordinates, and of the one that they are moved to."""
 
     source: CRS
+    """CRS of the coordinates."""
     targets: tuple[CRS, ...]
+    """CRSs whose areas count, without those whose area is not known."""
 
     @classmethod
     def of(cls, source: CRS | None, target: CRS | None) -> AreaOfUse | None:

@@ -22,61 +22,39 @@ NOT_KNOWN = Unit("unit", "", None)
 
 
 class Scales(NamedTuple):
-    """Factors from easting, northing and elevation to one unit of length.
-
-    Attributes
-    ----------
-    east, north : float or (k,) float64 array
-        Arrays, one value a place, above longitude and latitude.
-    up : float
-    """
+    """Factors from easting, northing and elevation to one unit of length."""
 
     east: Any
     north: Any
+    """Both are (k,) arrays above longitude and latitude, one value a place."""
     up: float
 
 
 class Ellipsoid(NamedTuple):
-    """Shape of the earth under a geographic CRS.
-
-    Attributes
-    ----------
-    major : float
-        Half axis in the plane of the equator, metres.
-    squared : float
-        Squared eccentricity.
-    to_radians : float
-        Radians of a unit of the CRS.
-    """
+    """Shape of the earth under a geographic CRS."""
 
     major: float
+    """Half axis in the plane of the equator, metres."""
     squared: float
+    """Squared eccentricity."""
     to_radians: float
+    """Radians of a unit of the CRS."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ground:
-    """How a TIN's coordinates are drawn true to scale.
-
-    Attributes
-    ----------
-    crs_name : str
-        Name for a caption, for example "WGS 84 / UTM zone 16N (EPSG:32616)".
-    unit : Unit
-        Of horizontal lengths in the picture.
-    elevation_unit : Unit
-        The one that elevations are taken to have.
-    is_assumed : bool
-        Whether that unit is the usual one of the CRS, and not known.
-    scale : tuple of float
-        Factors from easting, northing and elevation to ``unit``.
-    """
+    """How a TIN's coordinates are drawn true to scale."""
 
     crs_name: str
+    """Name for a caption, for example "WGS 84 / UTM zone 16N (EPSG:32616)"."""
     unit: Unit
+    """Of horizontal lengths in the picture."""
     elevation_unit: Unit
+    """The one that elevations are taken to have."""
     is_assumed: bool
+    """Whether that unit is the usual one of the CRS, and not known."""
     scale: tuple[float, float, float]
+    """Factors from easting, northing and elevation to ``unit``."""
 
     @property
     def elevation_caption(self) -> str:

@@ -50,13 +50,7 @@ _FINEST = 2.0**9 * np.finfo(np.float64).eps
 
 
 class Cells(NamedTuple):
-    """A grid of another raster, with what is told of it.
-
-    Attributes
-    ----------
-    grid : Grid
-    crs : CRS or None
-    """
+    """A grid of another raster, with what is told of it."""
 
     grid: Grid
     crs: CRS | None

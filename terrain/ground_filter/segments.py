@@ -45,21 +45,15 @@ _FEWEST = 2
 
 
 class Links(NamedTuple):
-    """Pairs of neighbouring points, each once.
-
-    Attributes
-    ----------
-    one, other : (n,) int64 arrays
-    rise : (n,) float64 array
-        From one point to the other, metres.
-    is_even : (n,) bool array
-        Whether the points differ by no more than noise and the terrain's slope allow.
-    """
+    """Pairs of neighbouring points, each once."""
 
     one: Int64Array
     other: Int64Array
+    """Both (n,)."""
     rise: Float64Array
+    """(n,): from one point to the other, metres."""
     is_even: BoolArray
+    """(n,): whether the points differ by no more than noise and the terrain's slope allow."""
 
 
 def link(points: Float64Array, ring: Float64Array, parameters: Parameters) -> Links:

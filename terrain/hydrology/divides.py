@@ -24,30 +24,22 @@ _NEAR = 1e-10
 
 
 class _Cuts(NamedTuple):
-    """Fall lines across triangles, by triangle and share of the base.
-
-    Attributes
-    ----------
-    triangles : (k,) int64 array
-    lower, upper : (k,) int64 arrays
-        Their ends, at the base and on the other two edges: vertices, or places from n on.
-    before, beyond : (k,) int32 arrays
-        The labels on both sides.
-    places : (p, 2) float64 array
-    edges : (p,) int64 array
-        The edge that each place is on, ascending, and in an edge from its smaller vertex on.
-    touched : (t,) int32 array
-        Triangles with a place on an edge of theirs, beyond the cut ones.
-    """
+    """Fall lines across triangles, by triangle and share of the base."""
 
     triangles: Int64Array
+    """(k,)."""
     lower: Int64Array
     upper: Int64Array
+    """Both (k,): their ends, at the base and on other edges: vertices, or places from n on."""
     before: Int32Array
     beyond: Int32Array
+    """Both (k,): the labels on both sides."""
     places: Float64Array
+    """(p, 2)."""
     edges: Int64Array
+    """(p,): the edge of each place, ascending, and in an edge from its smaller vertex on."""
     touched: Int32Array
+    """(t,): triangles with a place on an edge of theirs, beyond the cut ones."""
 
 
 def cut_at_divides(network: Network, labels: Int32Array, level: Int32Array) -> Patches:

@@ -17,25 +17,18 @@ __all__ = ["Hierarchy", "build_hierarchy", "rank_vertices"]
 
 
 class Hierarchy(NamedTuple):
-    """Depressions, those that join before the one that they make.
-
-    Attributes
-    ----------
-    pits : (d,) int64 array
-        Lowest vertex of each.
-    spill_vertices : (d,) int64 array
-        Where each is full: it joins another one, or runs over.
-    parents : (d,) int64 array
-        The depression that it becomes a part of, ``NOWHERE`` for the outermost ones.
-    basins : (n,) int64 array
-        For each vertex the smallest depression that its water is in once it is full, ``NOWHERE`` if
-        it leaves the surface; it need not be under water then.
-    """
+    """Depressions, those that join before the one that they make."""
 
     pits: Int64Array
+    """(d,): lowest vertex of each."""
     spill_vertices: Int64Array
+    """(d,): where each is full: it joins another one, or runs over."""
     parents: Int64Array
+    """(d,): the depression that it becomes a part of, ``NOWHERE`` for the outermost ones."""
     basins: Int64Array
+    """(n,): for each vertex the smallest depression that its water is in once it is full,
+    ``NOWHERE`` if it leaves the surface; it need not be under water then.
+    """
 
     def find_roots(self) -> Int64Array:
         """Return the outermost depression of each."""

@@ -26,24 +26,16 @@ _ROUNDING = 4 * 2.0**-53
 
 
 class Exits(NamedTuple):
-    """Steepest descent from vertices: to another one along an edge, or down a triangle.
-
-    Attributes
-    ----------
-    vertices : (k,) int64 array
-        At the other end of the edge, else ``NOWHERE``.
-    triangles : (k,) int64 array
-        Through which the fall line runs, else ``NOWHERE``.
-    slopes : (k,) float64 array
-        Fall over run, elevations as they are; 0 where there is no descent.
-    leaves : (k,) bool array
-        Whether water leaves the surface there.
-    """
+    """Steepest descent from vertices: to another one along an edge, or down a triangle."""
 
     vertices: Int64Array
+    """(k,): at the other end of the edge, else ``NOWHERE``."""
     triangles: Int64Array
+    """(k,): through which the fall line runs, else ``NOWHERE``."""
     slopes: Float64Array
+    """(k,): fall over run, elevations as they are; 0 where there is no descent."""
     leaves: BoolArray
+    """(k,): whether water leaves the surface there."""
 
 
 class _Candidates(NamedTuple):

@@ -23,18 +23,14 @@ class Patches(NamedTuple):
     """Triangles that share their vertices, each part of a region.
 
     Has what :func:`tinsmith.terrain.relief.dissolving.dissolve` asks of a TIN.
-
-    Attributes
-    ----------
-    points : (n, 2) or (n, 3) float64 array
-    triangles, neighbors : (m, 3) int32 arrays
-    regions : (m,) int64 array
     """
 
     points: Float64Array
     triangles: Int32Array
     neighbors: Int32Array
+    """Both (m, 3)."""
     regions: Int64Array
+    """(m,)."""
 
 
 class Polygons(NamedTuple):
@@ -49,20 +45,14 @@ class Polygons(NamedTuple):
 
 
 class Waters(NamedTuple):
-    """Waters that stand in triangles, each with a level of its own.
-
-    Attributes
-    ----------
-    triangles : (k,) int64 array
-        Of the surface, with a corner under water.
-    numbers : (k,) int64 array
-        The water in each.
-    levels : (w,) float64 array
-    """
+    """Waters that stand in triangles, each with a level of its own."""
 
     triangles: Int64Array
+    """(k,): of the surface, with a corner under water."""
     numbers: Int64Array
+    """(k,): the water in each."""
     levels: Float64Array
+    """(w,)."""
 
 
 def measure_waters(

@@ -24,25 +24,18 @@ _ROUNDS = 3
 
 
 class TracedLines(NamedTuple):
-    """Lines as the kernel returns them.
-
-    Attributes
-    ----------
-    coordinates : (n, 3) float64 array
-        Of closed lines the first point is repeated.
-    offsets : (k + 1,) int64 array
-    level : (k,) int32 array
-        Place in the levels.
-    is_closed : (k,) bool array
-    length : (k,) float64 array
-        In the plane of the coordinates.
-    """
+    """Lines as the kernel returns them."""
 
     coordinates: Float64Array
+    """(n, 3): of closed lines the first point is repeated."""
     offsets: Int64Array
+    """(k + 1,)."""
     level: Int32Array
+    """(k,): place in the levels."""
     is_closed: BoolArray
+    """(k,)."""
     length: Float64Array
+    """(k,): in the plane of the coordinates."""
 
 
 def require_tolerance(option: str, value: Any) -> float:

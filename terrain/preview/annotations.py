@@ -37,12 +37,7 @@ _LEAST_FORESHORTENING = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """The picture's layout, in design pixels from the lower left.
-
-    Attributes
-    ----------
-    width, height : float
-    """
+    """The picture's layout, in design pixels from the lower left."""
 
     width: float
     height: float
@@ -55,40 +50,26 @@ class Sheet:
 
 @dataclass(frozen=True, slots=True)
 class Caption:
-    """The words and numbers of the annotations.
-
-    Attributes
-    ----------
-    title, subtitle : str
-    exaggeration : float
-    elevations : tuple of float
-        Lowest and highest.
-    elevation_caption : str
-        Their unit, as it stands behind "Elevation"; "" if it is not known.
-    unit : Unit
-        Of lengths in the scene.
-    sun : Light
-        Where the light comes from.
-    warning : str
-        What a reader must know of the elevations; "" for nothing.
-    palette : Palette
-    legend : Legend or None
-        Of the colours; default that of the elevations.
-    has_tints : bool
-        Whether colours that tell something are seen anywhere.
-    """
+    """The words and numbers of the annotations."""
 
     title: str
     subtitle: str
     exaggeration: float
     elevations: tuple[float, float]
+    """Lowest and highest."""
     elevation_caption: str
+    """Their unit, as it stands behind "Elevation"; "" if it is not known."""
     unit: Unit
+    """Of lengths in the scene."""
     sun: Light = NORTHWEST
+    """Where the light comes from."""
     warning: str = ""
+    """What a reader must know of the elevations; "" for nothing."""
     palette: Palette = Palette()  # noqa: RUF009 - colours that are never changed
     legend: Legend | None = None
+    """Of the colours; default that of the elevations."""
     has_tints: bool = True
+    """Whether colours that tell something are seen anywhere."""
 
 
 def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> None:

@@ -48,18 +48,12 @@ _POINTS = (
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """A direction to look from.
-
-    Attributes
-    ----------
-    azimuth : float
-        Where the viewer stands, degrees clockwise from north.
-    height : float
-        Of the viewer above the horizon, degrees.
-    """
+    """A direction to look from."""
 
     azimuth: float
+    """Where the viewer stands, degrees clockwise from north."""
     height: float
+    """Of the viewer above the horizon, degrees."""
 
     @classmethod
     def of(cls, camera: Any) -> View:

@@ -22,19 +22,13 @@ _GAP = 4.0
 
 
 class ElevationRange(NamedTuple):
-    """The range of elevations that a picture shows.
-
-    Attributes
-    ----------
-    low, high : float
-        Lowest and highest elevation but for those far off.
-    is_far_off : (n,) bool array
-        Which points are left out.
-    """
+    """The range of elevations that a picture shows."""
 
     low: float
     high: float
+    """Lowest and highest elevation but for those far off."""
     is_far_off: BoolArray
+    """(n,): which points are left out."""
 
 
 def find_elevation_range(elevations: Float64Array, extent: float) -> ElevationRange:

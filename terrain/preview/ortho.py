@@ -34,35 +34,24 @@ _OUTSIDE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Ortho:
-    """A picture with its place on the ground.
-
-    Attributes
-    ----------
-    path : Path
-        Where it was read.
-    content : bytes
-        A file that browsers and graphics libraries read.
-    kind : {"jpeg", "png", "webp"}
-    shape : tuple of int
-        Rows and columns.
-    transform : tuple of float
-        Affine, from columns and rows to eastings and northings: a, b, x, d, e, y.
-    opacity : (rows, columns) uint8 array or None
-        0 where there is no picture; None where there is everywhere.
-    gap : float
-        Share of the vertices of the surfaces at which there is no picture.
-    told : tuple of str
-        What was done to it, or taken for granted.
-    """
+    """A picture with its place on the ground."""
 
     path: Path
+    """Where it was read."""
     content: bytes
+    """A file that browsers and graphics libraries read."""
     kind: str
+    """One of "jpeg", "png", "webp"."""
     shape: tuple[int, int]
+    """Rows and columns."""
     transform: tuple[float, ...]
+    """Affine, from columns and rows to eastings and northings: a, b, x, d, e, y."""
     opacity: UInt8Array | None = None
+    """(rows, columns): 0 where there is no picture; None where there is everywhere."""
     gap: float = 0.0
+    """Share of the vertices of the surfaces at which there is no picture."""
     told: tuple[str, ...] = ()
+    """What was done to it, or taken for granted."""
 
     def __post_init__(self) -> None:
         a, b, _, d, e, _ = self.transform

@@ -24,22 +24,15 @@ _CIRCLE = tuple((0.72, 0.11, float(hue)) for hue in range(250, 250 + 361, 20))
 
 
 class Legend(NamedTuple):
-    """What a ramp of colours tells.
-
-    Attributes
-    ----------
-    name : str
-    colors : (k, 3) uint8 array
-    ends : tuple of float
-        Values of the first and the last colour.
-    ticks : tuple of (float, str)
-        Values and words below the ramp; none for round numbers.
-    """
+    """What a ramp of colours tells."""
 
     name: str
     colors: UInt8Array
+    """(k, 3)."""
     ends: tuple[float, float]
+    """Values of the first and the last colour."""
     ticks: tuple[tuple[float, str], ...] = ()
+    """Values and words below the ramp; none for round numbers."""
 
 
 def choose_ramp(tint: Tint, count: int) -> UInt8Array:

@@ -74,33 +74,20 @@ behind its own wall."""
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """What is to be drawn, and how.
-
-    Attributes
-    ----------
-    tin : TIN
-    ground : Ground
-    look : Look
-    view : View
-    shown : ElevationRange
-        Elevations that must be in the picture.
-    caption : Caption
-    has_block : bool
-    strips : Strips or None
-        Pieces of a corridor.
-    ortho : Ortho or None
-        Picture draped over the surface.
-    """
+    """What is to be drawn, and how."""
 
     tin: TIN
     ground: Ground
     look: Look
     view: View
     shown: ElevationRange
+    """Elevations that must be in the picture."""
     caption: Caption
     has_block: bool
     strips: Strips | None
+    """Pieces of a corridor."""
     ortho: Ortho | None = None
+    """Picture draped over the surface."""
 
     @property
     def exaggeration(self) -> float:

@@ -24,23 +24,15 @@ _ELLIPSIS = "..."
 
 
 class Title(NamedTuple):
-    """A title as it is written.
-
-    Attributes
-    ----------
-    lines : tuple of str
-    size : float
-        Of the letters, design pixels.
-    drops : tuple of float
-        How far below the upper edge each line stands.
-    next_drop : float
-        How far the line below the title stands.
-    """
+    """A title as it is written."""
 
     lines: tuple[str, ...]
     size: float
+    """Of the letters, design pixels."""
     drops: tuple[float, ...]
+    """How far below the upper edge each line stands."""
     next_drop: float
+    """How far the line below the title stands."""
 
 
 def fit_title(overlay: Overlay, words: str, room: float) -> Title:

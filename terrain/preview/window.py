@@ -47,20 +47,14 @@ _HELP = (
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What the surface is at a place, in the units of the TIN.
-
-    Attributes
-    ----------
-    easting, northing, elevation : float
-        Elevation as :meth:`tinsmith.TIN.interpolate` gives it.
-    slope : float
-        Of the triangle there, degrees.
-    """
+    """What the surface is at a place, in the units of the TIN."""
 
     easting: float
     northing: float
     elevation: float
+    """As :meth:`tinsmith.TIN.interpolate` gives it."""
     slope: float
+    """Of the triangle there, degrees."""
 
 
 class Window:

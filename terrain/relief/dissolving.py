@@ -36,23 +36,16 @@ class Mesh(Protocol):
 
 
 class Dissolved(NamedTuple):
-    """Polygons of vertices, as :meth:`Features.of_polygons` takes them.
-
-    Attributes
-    ----------
-    vertices : (n,) int64 array
-        Of all rings, each closed.
-    ring_offsets, polygon_offsets, feature_offsets : int64 arrays
-        A feature has all polygons of a class.
-    classes : (n_features,) int64 array
-        Those that have a triangle, ascending.
-    """
+    """Polygons of vertices, as :meth:`Features.of_polygons` takes them."""
 
     vertices: Int64Array
+    """(n,): of all rings, each closed."""
     ring_offsets: Int64Array
     polygon_offsets: Int64Array
     feature_offsets: Int64Array
+    """A feature has all polygons of a class."""
     classes: Int64Array
+    """(n_features,): those that have a triangle, ascending."""
 
 
 def dissolve(tin: Mesh, classes: Int64Array) -> Dissolved:

@@ -23,34 +23,27 @@ _LINE, _VERTEX, _EDGE, _BREAKLINE, _BOUNDARY = range(len(CROSSED))
 
 
 class Breaks(NamedTuple):
-    """Breaks along segments, those of each from its start to its end.
-
-    Attributes
-    ----------
-    segments : (n,) int64 array
-        The segment of each.
-    ratios : (n,) float64 array
-        Share of the segment before it, 0 at the start and 1 at the end.
-    xy : (n, 2) float64 array
-    elevations : (n,) float64 array
-        NaN where there is no surface.
-    crossed : (n,) int8 array
-        Index into ``CROSSED``.
-    triangles : (n,) int32 array
-        Through which, or along an edge of which, the segment goes on; -1 where there is no surface.
-    vertices, edges : (n,) int32 arrays
-        What lies there: a vertex of the TIN, or an edge as three times its triangle plus the corner
-        opposite; -1 for none.
-    """
+    """Breaks along segments, those of each from its start to its end."""
 
     segments: Int64Array
+    """(n,): the segment of each."""
     ratios: Float64Array
+    """(n,): share of the segment before it, 0 at the start and 1 at the end."""
     xy: Float64Array
+    """(n, 2)."""
     elevations: Float64Array
+    """(n,): NaN where there is no surface."""
     crossed: Int8Array
+    """(n,): index into ``CROSSED``."""
     triangles: Int32Array
+    """(n,): through which, or along an edge of which, the segment goes on; -1 where there is no
+    surface.
+    """
     vertices: Int32Array
     edges: Int32Array
+    """Both (n,): what lies there: a vertex of the TIN, or an edge as three times its triangle plus
+    the corner opposite; -1 for none.
+    """
 
     def scale_elevations(self, factor: float) -> Breaks:
         """Return the breaks with elevations times a factor."""

@@ -39,20 +39,14 @@ __all__ = ["cross_sections", "section_lines"]
 
 
 class _Axes(NamedTuple):
-    """Cross sections in the plane.
-
-    Attributes
-    ----------
-    segments : Segments
-        From left to right, their stations being offsets, their lines the sections.
-    lines : (s,) int64 array
-        The centreline of each section.
-    stations : (s,) float64 array
-    """
+    """Cross sections in the plane."""
 
     segments: Segments
+    """From left to right, their stations being offsets, their lines the sections."""
     lines: Int64Array
+    """(s,): the centreline of each section."""
     stations: Float64Array
+    """(s,)."""
 
 
 class _Cut(NamedTuple):

@@ -24,41 +24,28 @@ _FIRST, _LAST = -1, np.iinfo(np.int64).max
 
 
 class Places(NamedTuple):
-    """Places on segments.
-
-    Attributes
-    ----------
-    segments : (n,) int64 array
-    stations : (n,) float64 array
-    xy : (n, 2) float64 array
-    """
+    """Places on segments."""
 
     segments: Int64Array
+    """(n,)."""
     stations: Float64Array
+    """(n,)."""
     xy: Float64Array
+    """(n, 2)."""
 
 
 class Rows(NamedTuple):
-    """Rows along lines; a kink, where two segments of a line meet, is one row.
-
-    Attributes
-    ----------
-    places : Places
-    is_last : (n,) bool array
-        Whether the row is the last of its line.
-    elevations : (n, k) float64 array
-        Of each surface; NaN where it is not.
-    crossed : (n, k) array of str
-        What each surface has there: a word of ``CROSSED``, "gap", or "" if nothing.
-    triangles : (n, k) int32 array
-        Of each surface, from here to the next row; -1 where there is none.
-    """
+    """Rows along lines; a kink, where two segments of a line meet, is one row."""
 
     places: Places
     is_last: BoolArray
+    """(n,): whether the row is the last of its line."""
     elevations: Float64Array
+    """(n, k): of each surface; NaN where it is not."""
     crossed: StrArray
+    """(n, k): what each surface has there: a word of ``CROSSED``, "gap", or "" if nothing."""
     triangles: Int32Array
+    """(n, k): of each surface, from here to the next row; -1 where there is none."""
 
     @property
     def is_gap(self) -> BoolArray:

@@ -16,21 +16,16 @@ __all__ = ["Segments", "as_segments"]
 
 
 class Segments(NamedTuple):
-    """Straight pieces, line after line; those of one line follow each other.
-
-    Attributes
-    ----------
-    starts, ends : (m, 2) float64 array
-    start_stations, end_stations : (m,) float64 array
-    lines : (m,) int64 array
-        The line that each belongs to, in ascending order.
-    """
+    """Straight pieces, line after line; those of one line follow each other."""
 
     starts: Float64Array
     ends: Float64Array
+    """Both (m, 2)."""
     start_stations: Float64Array
     end_stations: Float64Array
+    """Both (m,)."""
     lines: Int64Array
+    """(m,): the line that each belongs to, in ascending order."""
 
     @property
     def directions(self) -> Float64Array:

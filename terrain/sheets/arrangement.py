@@ -35,19 +35,12 @@ _AIR = 2.0
 
 
 class Ground(NamedTuple):
-    """What is to be shown.
-
-    Attributes
-    ----------
-    bounds : Bounds
-    footprint : Footprint
-    unit : Unit
-        Of the coordinates.
-    """
+    """What is to be shown."""
 
     bounds: Bounds
     footprint: Footprint
     unit: Unit
+    """Of the coordinates."""
 
 
 def choose_single(

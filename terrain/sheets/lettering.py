@@ -30,20 +30,13 @@ _SMALLER = 0.94
 
 
 class Lettering(NamedTuple):
-    """A text in lines, as it fits.
-
-    Attributes
-    ----------
-    lines : tuple of str
-    size : float
-        Of the letters, millimetres.
-    is_cut : bool
-        Whether the end is left out.
-    """
+    """A text in lines, as it fits."""
 
     lines: tuple[str, ...]
     size: float
+    """Of the letters, millimetres."""
     is_cut: bool
+    """Whether the end is left out."""
 
 
 def clean_text(text: str) -> str:

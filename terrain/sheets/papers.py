@@ -47,19 +47,13 @@ _LEAST, _MOST = 190.0, 5000.0
 
 @dataclass(frozen=True, slots=True)
 class Paper:
-    """A sheet of paper.
-
-    Attributes
-    ----------
-    name : str
-        "A3 landscape", or the size of one that has no name.
-    width, height : float
-        Millimetres.
-    """
+    """A sheet of paper."""
 
     name: str
+    """Such as "A3 landscape", or the size of one that has no name."""
     width: float
     height: float
+    """Width and height are millimetres."""
 
     @classmethod
     def choices(cls, paper: PaperLike, orientation: str | None) -> tuple[Paper, ...]:

@@ -38,13 +38,6 @@ _LARGEST_ERROR = 0.01
 class Scale:
     r"""How many times smaller paper is than ground.
 
-    Attributes
-    ----------
-    denominator : float
-        500 of 1:500.
-    text : str
-        As it stands on the sheet.
-
     Examples
     --------
     >>> from tinsmith.crs import FOOT, METRE
@@ -55,7 +48,9 @@ class Scale:
     """
 
     denominator: float
+    """500 of 1:500."""
     text: str
+    """As it stands on the sheet."""
 
     @classmethod
     def of(cls, value: Any, unit: Unit) -> Scale:

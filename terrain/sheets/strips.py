@@ -30,35 +30,22 @@ _AROUND = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
 
 
 class Joint(NamedTuple):
-    """Where one strip ends and the next begins.
-
-    Attributes
-    ----------
-    place : (2,) float64 array
-        On the axis.
-    angle : float
-        Direction of the axis there, radians.
-    """
+    """Where one strip ends and the next begins."""
 
     place: Float64Array
+    """(2,): on the axis."""
     angle: float
+    """Direction of the axis there, radians."""
 
 
 class Strip(NamedTuple):
-    """A rectangle of ground.
-
-    Attributes
-    ----------
-    center : tuple of float
-    angle : float
-        Of its longer side, in the direction of the axis, degrees counter-clockwise from east.
-    end : Joint
-        To the next strip.
-    """
+    """A rectangle of ground."""
 
     center: tuple[float, float]
     angle: float
+    """Of its longer side, in the direction of the axis, degrees counter-clockwise from east."""
     end: Joint
+    """To the next strip."""
 
 
 def cut_strips(

@@ -54,27 +54,17 @@ _PENS = {
 
 
 class Caption(NamedTuple):
-    """What a title block says.
-
-    Attributes
-    ----------
-    title : str
-    facts : tuple of str
-        CRS, elevations, contours, points: a line each.
-    scale : str
-    sheet : str
-        "Sheet 1 of 3".
-    date : str
-    unit : Unit
-        Of the coordinates.
-    """
+    """What a title block says."""
 
     title: str
     facts: tuple[str, ...]
+    """CRS, elevations, contours, points: a line each."""
     scale: str
     sheet: str
+    """Such as "Sheet 1 of 3"."""
     date: str
     unit: Unit
+    """Of the coordinates."""
 
 
 def draw_title_block(

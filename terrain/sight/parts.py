@@ -23,22 +23,17 @@ _THINNEST = 1e-10
 
 
 class DividedMesh(NamedTuple):
-    """Triangles that share their vertices, of which a view sees each as a whole or not at all.
-
-    Attributes
-    ----------
-    points : (n, 2) float64 array
-    triangles, neighbors : (m, 3) int32 arrays
-    is_seen : (m,) bool array
-    owners : (m,) int64 array
-        The triangle of the TIN that each is a part of.
-    """
+    """Triangles that share their vertices, of which a view sees each as a whole or not at all."""
 
     points: Float64Array
+    """(n, 2)."""
     triangles: Int32Array
     neighbors: Int32Array
+    """Both (m, 3)."""
     is_seen: BoolArray
+    """(m,)."""
     owners: Int64Array
+    """(m,): the triangle of the TIN that each is a part of."""
 
 
 class _Cells(NamedTuple):

@@ -37,24 +37,18 @@ class Rays(NamedTuple):
 
 
 class Blocks(NamedTuple):
-    """What stands in the way of rays.
-
-    Attributes
-    ----------
-    is_blocked : (k,) bool array
-    ratios : (k,) float64 array
-        Share of the way after which the ray first goes into the ground; NaN if it does not.
-    clearances : (k,) float64 array
-        Least height of the ray above ground between its ends, at edges and vertices; negative if it
-        is blocked, NaN where it crosses none.
-    leaves : (k,) bool array
-        Whether it passes over places without surface.
-    """
+    """What stands in the way of rays."""
 
     is_blocked: BoolArray
+    """(k,)."""
     ratios: Float64Array
+    """(k,): share of the way after which the ray first goes into the ground; NaN if it does not."""
     clearances: Float64Array
+    """(k,): least height of the ray above ground between its ends, at edges and vertices; negative
+    if it is blocked, NaN where it crosses none.
+    """
     leaves: BoolArray
+    """(k,): whether it passes over places without surface."""
 
 
 def find_curvature(reference: Reference, curvature: Any, refraction: Any) -> float:

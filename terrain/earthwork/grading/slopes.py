@@ -25,21 +25,14 @@ _PLANE = 1e-6
 
 
 class Slope(NamedTuple):
-    """One of the slopes where it is made: cut or filled.
-
-    Attributes
-    ----------
-    surface : TIN
-        The difference to the ground, cut along all edges.
-    is_made : (m,) bool array
-        Its triangles that hang together with the pad.
-    elevations : (n,) float64 array
-        Of the slope at its vertices.
-    """
+    """One of the slopes where it is made: cut or filled."""
 
     surface: TIN
+    """The difference to the ground, cut along all edges."""
     is_made: BoolArray
+    """(m,): its triangles that hang together with the pad."""
     elevations: Float64Array
+    """(n,): of the slope at its vertices."""
 
     def find_rim(self, pad: Any, tolerance: float) -> list[Float64Array]:
         """Return the daylight lines, (k, 3) each."""

@@ -60,25 +60,16 @@ class Labels(NamedTuple):
 
 
 class Start(NamedTuple):
-    """How a page looks when it is opened.
-
-    Attributes
-    ----------
-    exaggeration : float
-    elevations : tuple of float
-        Lowest and highest of the tints.
-    relief : tuple of float
-        Lowest and highest but for those far off all others.
-    tint : {"elevation", "slope", "aspect", "plain"}
-    interval : float
-        Of contours, 0 for none.
-    """
+    """How a page looks when it is opened."""
 
     exaggeration: float
     elevations: tuple[float, float]
+    """Lowest and highest of the tints."""
     relief: tuple[float, float]
+    """Lowest and highest but for those far off all others."""
     tint: Tint
     interval: float
+    """Of contours, 0 for none."""
 
 
 class _Steps(NamedTuple):
