@@ -67,18 +67,9 @@ def start_map(
 ) -> Map:
     """Return a figure as tall as the map asks for, with a title and labelled axes.
 
-    Parameters
-    ----------
-    tin : TIN
-    title : str
-    purpose : str
-        What matplotlib is needed for.
-    pad : float
-        Of the ground around the TIN, as a share of its extent.
-    beside : float
-        Inches on the right of the map for a scale or a legend.
-    has_caption : bool
-        Whether there is a line between title and map.
+    ``purpose`` is what matplotlib is needed for; ``pad`` the ground around the TIN, as a share of
+    its extent; ``beside`` inches on the right of the map, for a scale or a legend; ``has_caption``
+    tells whether there is a line between title and map.
     """
     ground, bounds = find_ground(tin), tin.bounds
     east, north, _ = ground.scale

@@ -55,15 +55,7 @@ class AreaOfUse:
         )
 
     def covers(self, xy: Float64Array, *, margin: float = _MARGIN_DEGREES) -> BoolArray:
-        """Whether each point lies in all areas, a margin around them included.
-
-        Parameters
-        ----------
-        xy : (n, 2) float64 array
-            Easting (longitude), northing (latitude).
-        margin : float
-            Degrees.
-        """
+        """Whether each point, (n, 2), lies in all areas, a margin of some degrees included."""
         longitude, latitude = _convert_to_degrees(self.source, xy)
         inside: BoolArray = np.isfinite(longitude) & np.isfinite(latitude)
         for crs in self.targets:

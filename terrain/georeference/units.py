@@ -66,15 +66,8 @@ class Ground:
 def find_ground(tin: TIN) -> Ground:
     """Read the units of a TIN from its CRS and its unit of elevations.
 
-    Parameters
-    ----------
-    tin : TIN
-
-    Returns
-    -------
-    Ground
-        Degrees are drawn as metres along the ellipsoid at the middle of the TIN, which holds for
-        small areas.
+    Degrees are drawn as metres along the ellipsoid at the middle of the TIN, which holds for small
+    areas.
     """
     crs = tin.crs
     up = assume_elevation_unit(crs, tin.elevation_unit) or NOT_KNOWN
@@ -97,19 +90,10 @@ def _choose_drawn_unit(crs: CRS | None) -> Unit:
 def find_scales(crs: CRS | None, unit: Unit | None, northing: ArrayLike) -> Scales:
     """Return the factors that make all three coordinates lengths of one unit.
 
-    Parameters
-    ----------
-    crs : CRS or None
-    unit : Unit or None
-        Unit of elevations, if it is known; else the usual one of the CRS is taken.
-    northing : float or (k,) array
-        Where: the length of a degree of longitude depends on the latitude.
-
-    Returns
-    -------
-    Scales
-        To the unit of eastings, in a geographic CRS to metres along the ellipsoid. Where a unit is
-        not known it is taken to be the same as the other.
+    That is the unit of eastings, in a geographic CRS metres along the ellipsoid, for which
+    ``northing`` tells where: a number, or an array of k. If ``unit``, that of elevations, is not
+    known the usual one of the CRS is taken. Where a unit is not known it is taken to be the same as
+    the other.
     """
     if crs is None or not crs.is_geographic:
         return Scales(1.0, 1.0, scale_elevations(crs, unit))

@@ -65,14 +65,8 @@ def find_surface(valid: BoolArray) -> BoolArray:
 def find_border(valid: BoolArray) -> tuple[Int64Array, Int64Array]:
     """Return the directed edges between cells that have surface on their left only.
 
-    Parameters
-    ----------
-    valid : (rows, columns) bool array
-
-    Returns
-    -------
-    start, end : (k,) int64 arrays
-        Cells, row by row.
+    ``valid`` tells of each cell whether it has an elevation. Returns start and end, (k,) each:
+    cells, row by row.
     """
     cells = np.arange(valid.size).reshape(valid.shape)
     a, b = cells[:-1, :-1], cells[:-1, 1:]  # northwest, northeast

@@ -59,13 +59,8 @@ class Links(NamedTuple):
 def link(points: Float64Array, ring: Float64Array, parameters: Parameters) -> Links:
     """Link points that are neighbours in their TIN, and no further apart than the edge length.
 
-    Parameters
-    ----------
-    points : (n, 3) float64 array
-        At different places, in metres.
-    ring : (k, 3) float64 array
-        Points around them, not all in line, that are linked with none.
-    parameters : Parameters
+    Points are (n, 3), at different places, in metres; those of the ring around them, (k, 3) and not
+    all in line, are linked with none.
     """
     edges = triangulate(np.concatenate([points, ring])).edges.astype(np.int64)
     one, other = edges[(edges < len(points)).all(axis=1)].T

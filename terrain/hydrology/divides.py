@@ -45,13 +45,7 @@ class _Cuts(NamedTuple):
 def cut_at_divides(network: Network, labels: Int32Array, level: Int32Array) -> Patches:
     """Return triangles that share their vertices, each of one label.
 
-    Parameters
-    ----------
-    network : Network
-    labels : (s,) int32 array
-        Of the strips.
-    level : (m,) int32 array
-        Of the triangles, for those that are level.
+    ``labels`` are those of the strips, (s,); ``level`` those of level triangles, (m,).
     """
     falls, offsets = network.walker.falls, network.strips.offsets
     whole = level.copy()

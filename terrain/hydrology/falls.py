@@ -97,21 +97,9 @@ def round_share(share: Any) -> Any:
 
 
 def find_falls(tin: TIN) -> Falls:
-    """Find how the triangles of a TIN fall.
+    """Find how the triangles of a TIN fall: signs are exact, values good to ten digits at least.
 
-    Parameters
-    ----------
-    tin : TIN
-
-    Returns
-    -------
-    Falls
-        Signs are exact; values are good to ten digits at least.
-
-    Raises
-    ------
-    PointsError
-        If elevations are of a magnitude at which signs are not exact.
+    Raises PointsError if elevations are of a magnitude at which signs are not exact.
     """
     surface = tin.triangulation
     require_exact_range(surface.points[:, 2:], "Elevations")

@@ -154,11 +154,8 @@ def _spread(
 ) -> tuple[Int64Array, Int64Array]:
     """Search breadth first from sources, against the direction of ways.
 
-    Returns
-    -------
-    chosen, steps : (count,) int64 arrays
-        The way to take from each node, of several the one of least rank, ``NOWHERE`` for none; and
-        how many there are to a source.
+    Returns, (count,) each, the way to take from each node, of several the one of least rank,
+    ``NOWHERE`` for none; and how many there are to a source.
     """
     order = np.argsort(ways.ends, kind="stable")
     starts, ranks = ways.starts[order], ranks[order]

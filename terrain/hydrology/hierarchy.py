@@ -204,10 +204,7 @@ class _Joining:
 def _leave_out_shallow(found: _Joining, z: Float64Array) -> Int64Array:
     """Leave out nodes without depth, and those that are the only part of another one.
 
-    Returns
-    -------
-    (nodes,) int64 array
-        The node that stands for each, ``NOWHERE`` for none; parents are those that are left.
+    Returns the node that stands for each, ``NOWHERE`` for none; parents are those that are left.
     """
     parents = found.parents
     count = len(parents)

@@ -120,10 +120,7 @@ def leave_strips(
 def settle(walker: Walker, drops: Drops) -> tuple[Drops, Int64Array]:
     """Follow drops until each has come to a vertex or to an edge that is a channel, or has ended.
 
-    Returns
-    -------
-    Drops, and (k,) int64 array
-        The upper end of the edge along which each has left a vertex, -1 for others.
+    Returns them, and the upper end of the edge along which each has left a vertex, -1 for others.
     """
     found = make_drops(len(drops.vertices))
     upper = np.full(len(drops.vertices), -1)

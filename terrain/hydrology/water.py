@@ -58,19 +58,10 @@ class Waters(NamedTuple):
 def measure_waters(
     points: Float64Array, triangles: Int32Array, waters: Waters, up: float
 ) -> tuple[Float64Array, Float64Array]:
-    """Measure areas and volumes of waters, exact but for rounding.
+    """Measure areas and volumes of waters, (w,) each, exact but for rounding.
 
-    Parameters
-    ----------
-    points, triangles : arrays
-        Of the surface.
-    waters : Waters
-    up : float
-        Factor from elevations to the unit of eastings.
-
-    Returns
-    -------
-    areas, volumes : (w,) float64 arrays
+    Points and triangles are those of the surface; ``up`` is the factor from elevations to the unit
+    of eastings.
     """
     corners = triangles[waters.triangles]
     depths = waters.levels[waters.numbers][:, None] - points[corners, 2]

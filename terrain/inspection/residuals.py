@@ -114,13 +114,9 @@ class Residuals:
 
 
 def fit_plane(points: Float64Array, place: Float64Array) -> tuple[float, Float64Array]:
-    """Return the elevation at a place of the plane that fits points best, and how far they are.
+    """Return the elevation at a place of the plane that fits points best.
 
-    Returns
-    -------
-    elevation : float
-    left : (k,) float64 array
-        Elevations of the points above the plane.
+    The second array are the elevations of the points, (k,), above the plane.
     """
     xy = points[:, :2] - place[:2]
     size = np.abs(xy).max()

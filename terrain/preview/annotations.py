@@ -75,13 +75,7 @@ class Caption:
 def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> None:
     """Draw all annotations for the present camera, in place of earlier ones.
 
-    Parameters
-    ----------
-    overlay : Overlay
-    sheet : Sheet
-    caption : Caption
-    camera : pyvista.Camera
-        In parallel projection.
+    The camera is one in parallel projection.
     """
     overlay.clear()
     palette = caption.palette
@@ -95,23 +89,10 @@ def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> N
 
 
 def scale_bar_length(unit: Unit, pixels: float) -> tuple[float, float, str]:
-    """Choose the length of the scale bar.
+    """Choose the length of the scale bar, where a length of 1 has so many design pixels.
 
-    Parameters
-    ----------
-    unit : Unit
-        Of lengths in the scene.
-    pixels : float
-        Design pixels for a length of 1.
-
-    Returns
-    -------
-    length : float
-        In ``unit``.
-    shown : float
-        The number to write for it.
-    symbol : str
-        The unit to write behind it.
+    Returns the length in ``unit``, that of the scene; the number to write for it, and the symbol to
+    write behind it.
     """
     length = round_down(_BAR_WIDTH / pixels)
     if unit.symbol == "m" and length >= 1000:

@@ -68,13 +68,6 @@ class Strips(NamedTuple):
 def find_corridor(tin: TIN, ground: Ground) -> Corridor | None:
     """Return the corridor that a surface is, None if it is none.
 
-    Parameters
-    ----------
-    tin : TIN
-    ground : Ground
-
-    Notes
-    -----
     The rectangle of least width around the convex hull is found by comparing directions, ever
     nearer to the best.
     """
@@ -103,22 +96,10 @@ def measure_mean_width(tin: TIN, ground: Ground) -> float:
 
 
 def cut_into_strips(points: Float64Array, edges: Int32Array, view: View, frame: Bounds) -> Strips:
-    """Cut a picture into as many strips as make it largest.
+    """Cut a picture into as many strips as make it largest; one alone if more would not.
 
-    Parameters
-    ----------
-    points : (n, 3) float64 array
-        Vertices as drawn.
-    edges : (k, 2) int32 array
-        All edges of the surface.
-    view : View
-    frame : Bounds
-        Design pixels for the terrain.
-
-    Returns
-    -------
-    Strips
-        One alone if more would not make it larger.
+    ``points`` are vertices as drawn, (n, 3), and ``edges`` all edges of the surface, (k, 2);
+    ``frame`` is the room for the terrain in design pixels.
     """
     right, up, _ = view.axes
     across, along = points @ right, points @ up

@@ -70,13 +70,7 @@ class Ortho:
         return np.asarray(matrix / np.array(self.shape)[::-1, None])
 
     def place(self, points: Float64Array) -> Float64Array:
-        """Return where in the picture points lie, (n, 2): from the left and from the top, 0 to 1.
-
-        Parameters
-        ----------
-        points : (n, 2) or (n, 3) float64 array
-            Eastings and northings.
-        """
+        """Return where in the picture points lie, (n, 2): from the left and the top, 0 to 1."""
         a, b, x, d, e, y = self.transform
         along, up = points[:, 0] - x, points[:, 1] - y
         area = a * e - b * d
@@ -135,20 +129,10 @@ def _cross(a: Float64Array, b: Float64Array) -> Float64Array:
 def read_ortho(
     source: str | os.PathLike[str], tins: Sequence[TIN], *, stacklevel: int = 3
 ) -> Ortho:
-    """Read the picture to drape over surfaces of one CRS.
+    """Read the picture to drape over surfaces of one CRS: any that GDAL places, as a GeoTIFF.
 
-    Parameters
-    ----------
-    source : path-like
-        A GeoTIFF, or another picture that GDAL places.
-    tins : sequence of TIN
-    stacklevel : int
-        Of the caller who is told of what was done to it.
-
-    Raises
-    ------
-    OptionError, ReadError, CrsError, MissingExtraError
-        As :func:`tinsmith.io.raster.ortho.read_ortho` tells.
+    ``stacklevel`` is that of the caller who is told of what was done to it. Raises what
+    :func:`tinsmith.io.raster.ortho.read_ortho` does.
     """
     reader = import_module(_READER)
     ortho: Ortho = reader.read_ortho(

@@ -105,13 +105,7 @@ def make_stage(
 ) -> Stage:
     """Choose all that the caller left open.
 
-    Parameters
-    ----------
-    tin : TIN
-    look : Look
-    ortho : Ortho, optional
-    has_strips : bool, optional
-        Cut a corridor into strips, if nobody chose where to look from.
+    With ``has_strips`` a corridor is cut into strips, if nobody chose where to look from.
     """
     _optional.load("pyvista", _PURPOSE)
     ground = find_ground(tin)
@@ -247,12 +241,7 @@ def open_plotter(stage: Stage, window: tuple[int, int], *, off_screen: bool) -> 
 def add_stage(plotter: Any, stage: Stage, factor: float) -> tuple[list[Any], Float64Array]:
     """Add terrain and lines to a plotter; return actors with edges, and what must be seen.
 
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-    stage : Stage
-    factor : float
-        Window pixels for one design pixel.
+    ``factor`` is window pixels for one design pixel.
     """
     points = stage.points
     surface, seen = add_terrain(
@@ -349,13 +338,7 @@ def _warn(tin: TIN, look: Look, shown: ElevationRange) -> str:
 
 
 def describe_far_off(tin: TIN, shown: ElevationRange) -> str:
-    """Return how many elevations are far off all others, and the farthest; "" if none.
-
-    Parameters
-    ----------
-    tin : TIN
-    shown : ElevationRange
-    """
+    """Return how many elevations are far off all others, and the farthest; "" if none."""
     far = tin.points[shown.is_far_off, 2]
     if len(far) == 0:
         return ""

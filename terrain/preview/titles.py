@@ -38,18 +38,8 @@ class Title(NamedTuple):
 def fit_title(overlay: Overlay, words: str, room: float) -> Title:
     """Write a title in one line, or in up to three of smaller letters.
 
-    Parameters
-    ----------
-    overlay : Overlay
-        Which measures words.
-    words : str
-    room : float
-        Width for it, design pixels.
-
-    Returns
-    -------
-    Title
-        Cut, which three dots at its end show, if it is too long for three lines.
+    The overlay measures words; ``room`` is the width for it, design pixels. A title that is too
+    long for three lines is cut, which three dots at its end show.
     """
     kept = words[:_MOST_LETTERS]
     for sizes, drops, next_drop in _LAYOUTS:

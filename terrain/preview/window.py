@@ -128,17 +128,9 @@ class Window:
     # ------------------------------------------------------------------ reading
 
     def pick(self, x: float, y: float) -> Reading | None:
-        """Read the surface at a place of the window.
+        """Read the surface at a place of the window, in pixels from the lower left.
 
-        Parameters
-        ----------
-        x, y : float
-            Pixels from the lower left.
-
-        Returns
-        -------
-        Reading or None
-            None where there is no surface; the last two readings are kept for a section.
+        None where there is no surface; the last two readings are kept for a section.
         """
         from vtkmodules.vtkRenderingCore import vtkCellPicker
 

@@ -39,19 +39,9 @@ class Surfaces(NamedTuple):
 def as_surfaces(given: Any) -> Surfaces:
     """Return one TIN or several as surfaces of one CRS and one unit of elevations.
 
-    Parameters
-    ----------
-    given : TIN, sequence of TIN, or mapping of str to TIN
-        In a sequence they are called 1, 2, ...
-
-    Raises
-    ------
-    OptionError
-        If there is none, or a name is no printable text.
-    PointsError
-        If one is no TIN.
-    CrsError
-        As :func:`tinsmith.terrain.georeference.agree` says.
+    Without names, in a sequence, they are called 1, 2, ... Raises OptionError if there is none, or
+    a name is no printable text; PointsError if one is no TIN; CrsError as
+    :func:`tinsmith.terrain.georeference.agree` does.
     """
     names, tins = _name_tins(given)
     for tin in tins:

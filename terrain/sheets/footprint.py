@@ -94,16 +94,8 @@ def _list_water_rings(tin: TIN) -> AnyArray:
 
 
 def cut_into_pieces(faces: AnyArray, side: float) -> Pieces:
-    """Cut polygons into what lies in each cell of a square grid.
+    """Cut polygons into what lies in each cell of a square grid, of a side in CRS units.
 
-    Parameters
-    ----------
-    faces : array of shapely.Polygon
-    side : float
-        Of a cell, CRS units.
-
-    Notes
-    -----
     Halved again and again, so that the time is in proportion to the corners and the logarithm of
     the number of cells.
     """

@@ -93,15 +93,8 @@ def draw_map(
 ) -> Drawn:
     """Draw the ground of a window: water, contours, lines, points, grid, match lines, frame.
 
-    Parameters
-    ----------
-    canvas : Canvas
-    window : Window
-    contents : Contents
-    labeling : {"index", "all", "none"}
-    grid : {"crosses", "lines", "none"}
-    numbers : tuple of int
-        Of the sheet of each window, as match lines name them.
+    ``labeling`` is "index", "all" or "none", ``grid`` "crosses", "lines" or "none"; ``numbers`` are
+    those of the sheet of each window, as match lines name them.
     """
     drawn, room = Drawn(set()), Room(window.frame)
     _fill_water(canvas, window, contents, drawn)

@@ -72,14 +72,7 @@ def draw_title_block(
 ) -> bool:
     """Draw border and title block; tell whether all of its texts had room.
 
-    Parameters
-    ----------
-    canvas : Canvas
-    layout : Layout
-    window : Window
-    caption : Caption
-    kinds : sequence of str
-        What the legend explains.
+    The legend explains ``kinds``.
     """
     border = list_corners(layout.border)
     canvas.draw_paths([border[[0, 1, 2, 3, 0]]], _BORDER, "border")

@@ -79,23 +79,11 @@ def find_curvature(reference: Reference, curvature: Any, refraction: Any) -> flo
 def find_blocks(tin: TIN, rays: Rays, fall: float) -> Blocks:
     """Find where the ground is above rays.
 
-    Parameters
-    ----------
-    tin : TIN
-    rays : Rays
-    fall : float
-        Of the earth at a distance of 1, 0 for a plane.
-
-    Returns
-    -------
-    Blocks
-
-    Notes
-    -----
-    Between two edges the ground is straight, and so is the ray: it is enough to compare them where
-    it crosses edges and vertices. Where doubles cannot tell, fractions do; what only touches the
-    ray does not block it. Over a curved earth the ground bulges between edges, too: the highest
-    place of each bulge is found in closed form, in doubles.
+    ``fall`` is that of the earth at a distance of 1, 0 for a plane. Between two edges the ground is
+    straight, and so is the ray: it is enough to compare them where it crosses edges and vertices.
+    Where doubles cannot tell, fractions do; what only touches the ray does not block it. Over a
+    curved earth the ground bulges between edges, too: the highest place of each bulge is found in
+    closed form, in doubles.
     """
     breaks = _trace(tin, rays)
     owner = breaks.segments

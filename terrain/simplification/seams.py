@@ -55,17 +55,8 @@ def trace_block(valid: BoolArray) -> list[Int64Array]:
 def find_frame(elevations: Elevations, blocks: Sequence[Block], goal: Goal) -> Frame:
     """Read a raster once: find its boundary, and choose the vertices on seams.
 
-    Parameters
-    ----------
-    elevations : Elevations
-    blocks : sequence of Block
-    goal : Goal
-        Cells on seams are within its tolerance of the line between the vertices.
-
-    Raises
-    ------
-    PointsError
-        If the raster has no surface.
+    Cells on seams are within the goal's tolerance of the line between the vertices. Raises
+    PointsError if the raster has no surface.
     """
     rings, corners, heights, rounding = [], [], [], 0.0
     for block in blocks:

@@ -71,24 +71,9 @@ class Slope(NamedTuple):
 def find_slope(tin: TIN, area: Any, pad: Any, level: float, rate: float, reach: float) -> Slope:
     """Follow a slope from the pad until daylight, at most as far as the ground's relief needs.
 
-    Parameters
-    ----------
-    tin : TIN
-        The ground, without a CRS.
-    area : geometry of shapely
-        What it covers.
-    pad : shapely.Polygon
-    level : float
-        Of the pad.
-    rate : float
-        Rise of the slope for a unit along, negative over a fill.
-    reach : float
-        How far it can go on the highest, or lowest, of the ground.
-
-    Raises
-    ------
-    PointsError
-        If the ground ends before.
+    ``tin`` is the ground, without a CRS, and ``area`` what it covers; ``level`` is that of the pad,
+    ``rate`` the rise of the slope for a unit along, negative over a fill, and ``reach`` how far it
+    can go on the highest, or lowest, of the ground. Raises PointsError if the ground ends before.
     """
     far: float = min(reach, _estimate_reach(tin, pad, level, rate))
     tolerance = measure_tolerance(tin.points)
