@@ -48,8 +48,8 @@ def measure_tint(
     """Return what is to be coloured, and its legend; None both for a plain surface.
 
     Coloured are elevations of vertices, (n,), or slopes or aspects of triangles, (m,), in degrees,
-    NaN where level. ``elevations`` are those of the lowest and the highest tint; ``unit`` is theirs, as it
-    stands behind their name, "" if it is not known.
+    NaN where level. ``elevations`` are those of the lowest and the highest tint; ``unit`` is
+    theirs, as it stands behind their name, "" if it is not known.
     """
     if tint == "plain":
         return None, None

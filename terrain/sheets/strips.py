@@ -165,9 +165,9 @@ class _Walk:
 def find_axis(footprint: Footprint, pieces: Pieces, height: float) -> Float64Array:
     """Return a line along a footprint, (k, 2), from west to east.
 
-    If all fits a straight strip of a height in CRS units it is the middle line of the smallest rectangle around the
-    footprint. Else it runs through the middles of bands at equal distances, along the surface, from
-    the one of its places that is farthest from the others.
+    If all fits a straight strip of a height in CRS units it is the middle line of the smallest
+    rectangle around the footprint. Else it runs through the middles of bands at equal distances,
+    along the surface, from the one of its places that is farthest from the others.
     """
     straight, is_enough = _find_straight_axis(footprint, height)
     if is_enough:
