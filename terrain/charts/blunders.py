@@ -13,7 +13,8 @@ from ...tin.validation.options import require_tin, require_type
 from ..inspection.findings import DROPPED
 from ..results import Table
 from .arguments import parse_title
-from .maps import INK, draw_shade, shade_for_map, start_map
+from .figures import INK
+from .maps import draw_shade, shade_for_map, start_map
 
 if TYPE_CHECKING:
     from ...tin import TIN
@@ -89,8 +90,7 @@ def blunder_map(tin: TIN, table: Table, *, title: str | None = None) -> Any:
     if len(ground.points) <= _MOST_DOTS:
         drawn.axes.plot(*ground.points[:, :2].T, ".", color=INK, markersize=1.2, zorder=2)
     _mark(drawn, table)
-    caption = _write_caption(drawn, table)
-    drawn.axes.set_title(caption, loc="left", fontsize=10, color=INK, parse_math=False)
+    drawn.write_caption(_write_caption(drawn, table), size=10)
     return drawn.figure
 
 

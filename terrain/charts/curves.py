@@ -11,6 +11,7 @@ from ...crs import CRS, Unit, assume_elevation_unit
 from ...errors import OptionError
 from ...tin.validation.options import is_finite_number, is_whole_number
 from ..drawing.rounding import format_number, round_down
+from .figures import INK, color_frame
 
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FAINT",
-    "INK",
     "Curve",
     "Measure",
     "choose_exaggeration",
@@ -33,7 +33,7 @@ __all__ = [
     "write_elevation",
 ]
 
-INK, FAINT = "#333333", "#d9d9d9"
+FAINT = "#d9d9d9"
 _COLORS = ("#7a5230", "#c0392b", "#1f618d", "#6c3483", "#117864")
 _GROUND = "#efe6da"
 _CUT, _FILL = "#eba694", "#9cc9e4"  # the hues of a map of cut and fill
@@ -132,9 +132,7 @@ def draw_grid(axes: Any, elevations: list[float], step: float) -> None:
     axes.set_yticks(elevations, [format_number(place, step=step) for place in elevations])
     axes.grid(color=FAINT, linewidth=0.6)
     axes.set_axisbelow(True)
-    axes.tick_params(colors=INK)
-    for spine in axes.spines.values():
-        spine.set_color(INK)
+    color_frame(axes)
 
 
 def draw(axes: Any, curves: list[Curve], marks: Float64Array, floor: float) -> None:

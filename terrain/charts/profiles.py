@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
 from ...crs import CRS
 from ...errors import OptionError
 from ..drawing.rounding import choose_ticks, format_number
 from ..results import Table
 from . import curves
 from .arguments import parse_title
+from .figures import INK, color_frame, start_figure, write_title
 
 if TYPE_CHECKING:
     from ...arrays import Float64Array
@@ -105,15 +105,7 @@ def profile_picture(
     scale = _choose_scale(surfaces, curves.find_ratio(along, up), exaggeration)
     rows = len(surfaces) + 1 + (len(surfaces) == 2)
     figure, axes, band = _start_figure(scale, rows)
-    height = figure.get_figheight()
-    figure.text(
-        _LEFT / figure.get_figwidth(),
-        1 - 0.42 / height,
-        heading,
-        fontsize=15,
-        color=curves.INK,
-        parse_math=False,
-    )
+    write_title(figure, heading, left=_LEFT, drop=0.42)
     _write_caption(figure, scale, system)
     curves.draw(axes, surfaces, marks, scale.elevations[0])
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=6, frameon=False, fontsize=9)
@@ -165,7 +157,7 @@ def _start_figure(scale: _Scale, rows: int) -> tuple[Any, Any, Any]:
     width = _LEFT + _PLOT_WIDTH + _RIGHT
     band = rows * _BAND
     height = _ABOVE + scale.height + band + _BELOW
-    figure = _optional.load("matplotlib.figure", _PURPOSE).Figure(figsize=(width, height))
+    figure = start_figure(_PURPOSE, width, height)
     left, across = _LEFT / width, _PLOT_WIDTH / width
     axes = figure.add_axes((left, (_BELOW + band) / height, across, scale.height / height))
     below = figure.add_axes((left, _BELOW / height, across, band / height), sharex=axes)
@@ -175,7 +167,7 @@ def _start_figure(scale: _Scale, rows: int) -> tuple[Any, Any, Any]:
 def _write_caption(figure: Any, scale: _Scale, crs: CRS | None) -> None:
     text = curves.describe_drawing(crs, scale.exaggeration)
     width, height = figure.get_size_inches()
-    how = {"fontsize": 9, "color": curves.INK, "parse_math": False}
+    how = {"fontsize": 9, "color": INK, "parse_math": False}
     figure.text(_LEFT / width, 1 - 0.68 / height, text, **how)
 
 
@@ -185,7 +177,7 @@ def _dress(axes: Any, scale: _Scale, label: str) -> None:
     places = choose_ticks(*scale.elevations, count=max(3, round(scale.height * 2)))
     step = places[1] - places[0] if len(places) > 1 else 1.0
     curves.draw_grid(axes, places, step)
-    axes.set_ylabel(label, color=curves.INK)
+    axes.set_ylabel(label, color=INK)
     axes.tick_params(axis="x", length=0, labelbottom=False)
 
 
@@ -194,14 +186,14 @@ def _list_band_lines(surfaces: list[curves.Curve], scale: _Scale, station: str) 
     places = choose_ticks(*scale.stations, count=_LABELS) or [scale.stations[0]]
     step = places[1] - places[0] if len(places) > 1 else 1.0
     at = np.array(places)
-    lines = [_BandLine(station, [format_number(place, step=step) for place in places], curves.INK)]
+    lines = [_BandLine(station, [format_number(place, step=step) for place in places], INK)]
     for curve in surfaces:
         texts = [curves.write_elevation(value) for value in curve.at(at).tolist()]
         lines.append(_BandLine(curve.name or "elevation", texts, curve.color))
     if len(surfaces) == 2:
         differences = (surfaces[1].at(at) - surfaces[0].at(at)).tolist()
         texts = [curves.write_elevation(value, sign="+") for value in differences]
-        lines.append(_BandLine("difference", texts, curves.INK))
+        lines.append(_BandLine("difference", texts, INK))
     return lines
 
 
@@ -211,7 +203,7 @@ def _fill_band(band: Any, lines: list[_BandLine], scale: _Scale) -> None:
     band.set_xticks(places)
     band.set_ylim(len(lines), 0)
     band.set_yticks([])
-    band.tick_params(colors=curves.INK, labelbottom=False, length=0)
+    band.tick_params(labelbottom=False, length=0)
     how = {"va": "center", "parse_math": False}
     for row, line in enumerate(lines):
         middle = row + 0.5
@@ -240,8 +232,7 @@ def _fill_band(band: Any, lines: list[_BandLine], scale: _Scale) -> None:
                 color=line.color,
                 **how,
             )
-    for spine in band.spines.values():
-        spine.set_color(curves.INK)
+    color_frame(band)
 
 
 def _find_side(place: float, scale: _Scale) -> tuple[float, str, int]:

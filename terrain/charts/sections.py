@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
 from ...crs import CRS
 from ...errors import OptionError
 from ...tin.validation.options import is_whole_number
@@ -16,6 +15,7 @@ from ..drawing.rounding import choose_ticks, round_down
 from ..results import Table
 from . import curves
 from .arguments import parse_title
+from .figures import INK, start_figure, write_title
 
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array
@@ -191,7 +191,7 @@ def _plan_sheet(sections: list[_Section], ratio: float, wanted: Any, most: int) 
 
 def _start_figure(sheet: _Sheet) -> Any:
     height = _TOP + sheet.rows * (sheet.height + _HEAD) + _BOTTOM
-    return _optional.load("matplotlib.figure", _PURPOSE).Figure(figsize=(_WIDTH, height))
+    return start_figure(_PURPOSE, _WIDTH, height)
 
 
 def _find_box(figure: Any, sheet: _Sheet, number: int) -> tuple[float, float, float, float]:
@@ -205,16 +205,16 @@ def _find_box(figure: Any, sheet: _Sheet, number: int) -> tuple[float, float, fl
 
 def _write_heading(figure: Any, heading: str, sheet: _Sheet, crs: CRS | None) -> None:
     width, height = figure.get_size_inches()
-    how = {"color": curves.INK, "parse_math": False, "va": "top"}
-    figure.text(_LEFT / width, 1 - 0.18 / height, heading, fontsize=15, **how)
+    write_title(figure, heading, left=_LEFT, drop=0.18, va="top")
     text = curves.describe_drawing(crs, sheet.exaggeration) + "; left is left of the centreline"
-    figure.text(_LEFT / width, 1 - 0.52 / height, text, fontsize=9, **how)
+    how = {"fontsize": 9, "color": INK, "parse_math": False, "va": "top"}
+    figure.text(_LEFT / width, 1 - 0.52 / height, text, **how)
 
 
 def _draw_section(axes: Any, section: _Section, sheet: _Sheet, *, station: str) -> None:
     low = _find_datum(section, sheet)
     curves.draw(axes, section.surfaces, section.marks, low)
-    axes.axvline(0.0, color=curves.INK, linewidth=0.8, linestyle=(0, (8, 2, 1.5, 2)), zorder=3)
+    axes.axvline(0.0, color=INK, linewidth=0.8, linestyle=(0, (8, 2, 1.5, 2)), zorder=3)
     axes.set_xlim(*sheet.offsets)
     axes.set_ylim(low, low + sheet.span)
     first, last = math.ceil(low / sheet.step), math.floor((low + sheet.span) / sheet.step)
@@ -222,7 +222,7 @@ def _draw_section(axes: Any, section: _Section, sheet: _Sheet, *, station: str) 
     curves.draw_grid(axes, places, sheet.step)
     axes.set_xticks(choose_ticks(*sheet.offsets, count=6))
     axes.tick_params(labelsize=7.5)
-    how = {"fontsize": 9, "color": curves.INK, "parse_math": False, "pad": 4}
+    how = {"fontsize": 9, "color": INK, "parse_math": False, "pad": 4}
     axes.set_title(f"Station {section.station:,.2f} {station}".rstrip(), loc="left", **how)
     axes.set_title(_describe_middle(section), loc="right", **how | {"fontsize": 8})
 
@@ -250,8 +250,8 @@ def _describe_middle(section: _Section) -> str:
 
 
 def _label_axes(axes: Any, *, offset: str, elevation: str) -> None:
-    axes.set_xlabel(offset, color=curves.INK, fontsize=9)
-    axes.set_ylabel(elevation, color=curves.INK, fontsize=9)
+    axes.set_xlabel(offset, color=INK, fontsize=9)
+    axes.set_ylabel(elevation, color=INK, fontsize=9)
 
 
 def _write_legend(figure: Any, sections: list[_Section]) -> None:
