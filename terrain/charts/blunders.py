@@ -63,12 +63,10 @@ def blunder_map(tin: TIN, table: Table, *, title: str | None = None) -> Any:
 
     Examples
     --------
-    >>> import numpy as np
     >>> import tinsmith as ts
-    >>> x, y = np.divmod(np.arange(100.0), 10)
-    >>> z = 320 + 0.01 * x * y
-    >>> z[33] += 3.0
-    >>> tin = ts.triangulate(np.column_stack([x, y, z]))
+    >>> points = [[x, y, 0.01 * x * y] for x in range(10) for y in range(10)]
+    >>> points[33][2] += 3.0
+    >>> tin = ts.triangulate(points)
     >>> figure = ts.blunder_map(tin, ts.blunders(tin))
     >>> figure.axes[0].get_ylabel()
     'northing'

@@ -91,8 +91,8 @@ def section_picture(
         the sheet.
     title : str, optional
         Default "Cross sections".
-    crs : CRS, str, int or pyproj.CRS, optional
-        For the caption, and for the unit of elevations where it is not known.
+    crs
+        As of :func:`tinsmith.profile_picture`.
 
     Returns
     -------

@@ -73,10 +73,8 @@ def cross_sections(
 
     Parameters
     ----------
-    tin : TIN, sequence of TIN, or mapping of str to TIN
-        Surfaces; in a sequence they are called 1, 2, ...
-    centreline : (k, 2) array, Breakline, Features, geometry, or sequence of these
-        As the lines of :func:`tinsmith.profile`.
+    tin, centreline
+        Surfaces and polylines as of :func:`tinsmith.profile`.
     interval : float, optional
         A section at every station that is a multiple of it, and at both ends, CRS units.
     stations : (s,) array, optional
