@@ -74,16 +74,7 @@ def _fit_plane(points: Float64Array) -> Plane:
 def level_surface(tin: TIN, base: Any) -> TIN:
     """Return a level or a plane as a TIN of two triangles that covers another one.
 
-    Parameters
-    ----------
-    tin : TIN
-    base : float or (3, 3) array
-        As for :func:`tinsmith.volume`.
-
-    Raises
-    ------
-    OptionError
-        If the base is none.
+    The base is one as for :func:`tinsmith.volume`; OptionError if it is none.
 
     Examples
     --------

@@ -77,14 +77,10 @@ def make_drops(count: int) -> Drops:
 
 
 class Walker:
-    """Moves drops down a surface.
+    """Moves drops down a surface, on a filled one over its water.
 
-    Parameters
-    ----------
-    falls : Falls
-    filling : Filling, optional
-    vertices : (k,) int64 array, optional
-        Those that drops can leave; default all. What is on an edge goes where it likes.
+    ``vertices`` are those that drops can leave, by default all; what is on an edge goes where it
+    likes.
 
     Notes
     -----

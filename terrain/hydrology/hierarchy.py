@@ -51,15 +51,7 @@ class Hierarchy(NamedTuple):
 def build_hierarchy(tin: TIN, rank: Int64Array | None = None) -> Hierarchy:
     """Find the depressions of a surface from which water runs off freely at the boundary.
 
-    Parameters
-    ----------
-    tin : TIN
-    rank : (n,) int64 array, optional
-        Of the vertices, as :func:`rank_vertices` has it; default computed.
-
-    Returns
-    -------
-    Hierarchy
+    ``rank`` is the place of each vertex as :func:`rank_vertices` has it, by default computed.
 
     Notes
     -----

@@ -30,21 +30,10 @@ _SAMPLE = 20_000
 def describe_gaps(tin: TIN) -> list[str]:
     """Tell of triangles that span places without points.
 
-    Parameters
-    ----------
-    tin : TIN
-
-    Returns
-    -------
-    list of str
-        A sentence for long edges along the boundary, one for those inside, one for steep slivers
-        along the hull; none for edges of lines.
-
-    Notes
-    -----
-    Linear in the triangles. Long is an edge of more than five times the 95th percentile of edge
-    lengths, so that neither scan lines nor contour lines, whose points are dense along them alone,
-    are found to have gaps.
+    A sentence for long edges along the boundary, one for those inside, one for steep slivers along
+    the hull; none for edges of lines. Linear in the triangles. Long is an edge of more than five
+    times the 95th percentile of edge lengths, so that neither scan lines nor contour lines, whose
+    points are dense along them alone, are found to have gaps.
 
     Examples
     --------

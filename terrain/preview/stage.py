@@ -155,22 +155,9 @@ def _measure_relief_in(strips: Strips, tin: TIN, ground: Ground, view: View) -> 
 class Show:
     """A plotter with terrain, light, camera and annotations in place.
 
-    Parameters
-    ----------
-    stage : Stage
-    window : tuple of int
-        Width and height of the window, pixels.
-    off_screen : bool
-
-    Attributes
-    ----------
-    plotter : pyvista.Plotter
-    surfaces : list of pyvista.Actor
-        The surface, and what is draped over it.
-    overlay : Overlay
-        With the annotations.
-    after_update : callable or None
-        Called when annotations were drawn anew, which then cover what was drawn before.
+    The window is so many pixels wide and high. ``surfaces`` are the actors of the surface, and of
+    what is draped over it; ``overlay`` has the annotations. ``after_update`` is called when they
+    were drawn anew, which then cover what was drawn before.
     """
 
     def __init__(self, stage: Stage, window: tuple[int, int], *, off_screen: bool) -> None:

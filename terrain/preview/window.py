@@ -58,16 +58,7 @@ class Reading:
 
 
 class Window:
-    """A surface in a window that follows mouse and keys.
-
-    Parameters
-    ----------
-    tin : TIN
-    look : Look
-    ortho : Ortho, optional
-    off_screen : bool, optional
-        Draw where nobody sees it.
-    """
+    """A surface in a window that follows mouse and keys, or off screen, where nobody sees it."""
 
     def __init__(
         self, tin: TIN, look: Look, ortho: Ortho | None = None, *, off_screen: bool = False

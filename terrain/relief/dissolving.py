@@ -49,20 +49,8 @@ class Dissolved(NamedTuple):
 
 
 def dissolve(tin: Mesh, classes: Int64Array) -> Dissolved:
-    """Join the triangles of each class to polygons.
+    """Join the triangles of each class to polygons; those of a class below 0 are left out.
 
-    Parameters
-    ----------
-    tin : TIN or Mesh
-    classes : (m,) int array
-        Class of each triangle; below 0 it is left out.
-
-    Returns
-    -------
-    Dissolved
-
-    Notes
-    -----
     1. Two triangles of one class that share an edge belong to one polygon; those that only share a
        vertex do not, so that the inside of every polygon is connected.
     2. The boundary is walked with the inside on the left. A walk that comes to a vertex again is

@@ -109,15 +109,8 @@ def find_missing_letters(text: str) -> str:
 def fit_text(text: str, width: float, *, size: float, least: float, lines: int = 1) -> Lettering:
     """Return a text in at most so many lines, smaller if needed, cut where that is not enough.
 
-    Parameters
-    ----------
-    text : str
-        Clean.
-    width : float
-        Room for a line, millimetres.
-    size, least : float
-        Of letters: wanted, and the smallest that is read, millimetres.
-    lines : int
+    The text is clean; ``width`` is the room for a line, ``size`` that of letters if there is room,
+    and ``least`` the smallest that is read, millimetres.
 
     Examples
     --------

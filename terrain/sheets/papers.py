@@ -59,16 +59,8 @@ class Paper:
     def choices(cls, paper: PaperLike, orientation: str | None) -> tuple[Paper, ...]:
         """Return the papers that a name stands for: one, or landscape and portrait.
 
-        Parameters
-        ----------
-        paper : str or (float, float)
-            Name such as "A3" or "ARCH D", or width and height in millimetres.
-        orientation : {"landscape", "portrait"}, optional
-            Of a named paper; default both.
-
-        Raises
-        ------
-        OptionError
+        A name is one such as "A3" or "ARCH D", or width and height in millimetres, else an
+        OptionError; a named paper has both orientations if none is given.
 
         Examples
         --------
