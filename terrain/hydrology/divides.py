@@ -9,9 +9,9 @@ import numpy as np
 from ...tin import topology
 from .. import _kernel
 from ..earthwork.cells import fan_out
+from ..relief.dissolving import DividedMesh
 from .descent import interpolate_edges
 from .strips import SAME, Bases, follow
-from .water import Patches
 
 if TYPE_CHECKING:
     from ...arrays import Float64Array, Int32Array, Int64Array
@@ -42,7 +42,7 @@ class _Cuts(NamedTuple):
     """(t,): triangles with a place on an edge of theirs, beyond the cut ones."""
 
 
-def cut_at_divides(network: Network, labels: Int32Array, level: Int32Array) -> Patches:
+def cut_at_divides(network: Network, labels: Int32Array, level: Int32Array) -> DividedMesh:
     """Return triangles that share their vertices, each of one label.
 
     ``labels`` are those of the strips, (s,); ``level`` those of level triangles, (m,).
@@ -60,9 +60,8 @@ def cut_at_divides(network: Network, labels: Int32Array, level: Int32Array) -> P
     made, regions = _cut_triangles(network, cuts, np.flatnonzero(is_cut), whole)
     triangles = np.concatenate([falls.triangles[~is_cut], made])
     points = np.concatenate([falls.points[:, :2], cuts.places])
-    neighbors = topology.neighbors_of(triangles, len(points))
     patch_regions = np.append(whole[~is_cut], regions).astype(np.int64)
-    return Patches(points, triangles, neighbors, patch_regions)
+    return DividedMesh.of(points, triangles, patch_regions)
 
 
 def _place_cuts(

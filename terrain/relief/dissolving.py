@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from ...tin.topology import NO_NEIGHBOR, boundary_walks, gather
+from ...tin.topology import NO_NEIGHBOR, boundary_walks, gather, neighbors_of
 from ..results import Features
 
 if TYPE_CHECKING:
@@ -16,7 +16,15 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from ..results.columns import Units
 
-__all__ = ["Dissolved", "Mesh", "dissolve", "join_components", "make_polygons", "number_components"]
+__all__ = [
+    "Dissolved",
+    "DividedMesh",
+    "Mesh",
+    "dissolve",
+    "join_components",
+    "make_polygons",
+    "number_components",
+]
 
 
 class Mesh(Protocol):
@@ -33,6 +41,21 @@ class Mesh(Protocol):
     @property
     def neighbors(self) -> Int32Array:
         """Across each edge, -1 outside."""
+
+
+class DividedMesh(NamedTuple):
+    """Triangles that share their vertices, each a part of something: a triangle, a region."""
+
+    points: Float64Array
+    triangles: Int32Array
+    neighbors: Int32Array
+    owners: Int64Array
+    """(m,): what each triangle is a part of."""
+
+    @classmethod
+    def of(cls, points: Float64Array, triangles: Int32Array, owners: Int64Array) -> DividedMesh:
+        """Return triangles with their neighbours."""
+        return cls(points, triangles, neighbors_of(triangles, len(points)), owners)
 
 
 class Dissolved(NamedTuple):
