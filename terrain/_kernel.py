@@ -94,15 +94,15 @@ class OverlayMesh(NamedTuple):
     """The overlay of two surfaces: convex cells that share their vertices."""
 
     vertices: Float64Array
-    """(n, 3): easting, northing, elevation of the second surface above the first."""
+    """(n, 3), easting, northing, elevation of the second surface above the first."""
     origins: Int32Array
-    """(n, 2): the vertex of the first surface, and of the second, that it is; -1 for none."""
+    """(n, 2), the vertex of the first surface, and of the second, that it is; -1 for none."""
     offsets: Int64Array
     """(k + 1,)."""
     corners: Int32Array
-    """(c,): cell i has the vertices ``corners[offsets[i]:offsets[i + 1]]``, counter-clockwise."""
+    """(c,), cell i has the vertices ``corners[offsets[i]:offsets[i + 1]]``, counter-clockwise."""
     triangles: Int32Array
-    """(k, 2): of the first and of the second surface, that the cell is part of."""
+    """(k, 2), of the first and of the second surface, that the cell is part of."""
 
 
 def overlay(

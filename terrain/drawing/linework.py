@@ -47,9 +47,9 @@ class LineEdges(NamedTuple):
     """Edges of lines, each once, in the order of the lines."""
 
     pairs: Int32Array
-    """(k, 2): vertices, in the direction of the line."""
+    """(k, 2), vertices, in the direction of the line."""
     kinds: Int8Array
-    """(k,): indices into ``EDGE_KINDS``."""
+    """(k,), indices into ``EDGE_KINDS``."""
 
 
 def find_line_edges(tin: TIN, *, guess: bool = True) -> LineEdges:

@@ -46,7 +46,7 @@ class Surface:
     points: Float64Array
     """(n, 3)."""
     triangles: Int32Array
-    """(m, 3): counter-clockwise."""
+    """(m, 3), counter-clockwise."""
 
 
 def find_reference(tin: TIN, purpose: str) -> Reference:

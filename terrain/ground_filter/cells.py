@@ -27,9 +27,9 @@ class Cells:
     shape: tuple[int, int]
     """Columns from west to east, and rows from south to north."""
     number: Int64Array
-    """(n,): number of each point's cell, in the order of the points: ``column * rows + row``."""
+    """(n,), number of each point's cell, in the order of the points: ``column * rows + row``."""
     order: Int64Array
-    """(n,): rows of the points by cell and elevation; the same points have the same order however
+    """(n,), rows of the points by cell and elevation; the same points have the same order however
     they are given.
     """
 

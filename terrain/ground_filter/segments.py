@@ -51,9 +51,9 @@ class Links(NamedTuple):
     other: Int64Array
     """Both (n,)."""
     rise: Float64Array
-    """(n,): from one point to the other, metres."""
+    """(n,), from one point to the other, metres."""
     is_even: BoolArray
-    """(n,): whether the points differ by no more than noise and the terrain's slope allow."""
+    """(n,), whether the points differ by no more than noise and the terrain's slope allow."""
 
 
 def link(points: Float64Array, ring: Float64Array, parameters: Parameters) -> Links:

@@ -42,16 +42,16 @@ class Drops(NamedTuple):
     """Where drops are: at a vertex, or on an edge about to enter a triangle."""
 
     vertices: Int64Array
-    """(k,): ``NOWHERE`` for drops on an edge."""
+    """(k,), ``NOWHERE`` for drops on an edge."""
     triangles: Int64Array
     edges: Int64Array
-    """Both (k,): the triangle that is entered, and across which of its edges."""
+    """Both (k,), the triangle that is entered, and across which of its edges."""
     shares: Float64Array
-    """(k,): of that edge, from its start to the drop."""
+    """(k,), of that edge, from its start to the drop."""
     targets: Int64Array
-    """(k,): the lower end of an edge that is followed, else ``NOWHERE``."""
+    """(k,), the lower end of an edge that is followed, else ``NOWHERE``."""
     ends: Int8Array
-    """(k,): ``MOVING``, or how they ended; one that ended on an edge is in the triangle before."""
+    """(k,), ``MOVING``, or how they ended; one that ended on an edge is in the triangle before."""
 
     def choose(self, rows: Int64Array) -> Drops:
         """Return some of them."""

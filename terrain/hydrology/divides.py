@@ -30,16 +30,16 @@ class _Cuts(NamedTuple):
     """(k,)."""
     lower: Int64Array
     upper: Int64Array
-    """Both (k,): their ends, at the base and on other edges: vertices, or places from n on."""
+    """Both (k,), their ends, at the base and on other edges: vertices, or places from n on."""
     before: Int32Array
     beyond: Int32Array
-    """Both (k,): the labels on both sides."""
+    """Both (k,), the labels on both sides."""
     places: Float64Array
     """(p, 2)."""
     edges: Int64Array
-    """(p,): the edge of each place, ascending, and in an edge from its smaller vertex on."""
+    """(p,), the edge of each place, ascending, and in an edge from its smaller vertex on."""
     touched: Int32Array
-    """(t,): triangles with a place on an edge of theirs, beyond the cut ones."""
+    """(t,), triangles with a place on an edge of theirs, beyond the cut ones."""
 
 
 def cut_at_divides(network: Network, labels: Int32Array, level: Int32Array) -> DividedMesh:

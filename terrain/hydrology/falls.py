@@ -42,11 +42,11 @@ class Falls(NamedTuple):
     triangles: Int32Array
     neighbors: Int32Array
     signs: Int8Array
-    """(m, 3): +1 where water leaves the triangle across the edge, -1 where it enters, 0 where it
+    """(m, 3), +1 where water leaves the triangle across the edge, -1 where it enters, 0 where it
     runs along the edge; all 0 if the triangle is level.
     """
     values: Float64Array
-    """(m, 3): how much leaves, in proportion; the three of a triangle add up to 0."""
+    """(m, 3), how much leaves, in proportion; the three of a triangle add up to 0."""
 
     @property
     def is_level(self) -> BoolArray:

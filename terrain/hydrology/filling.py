@@ -24,17 +24,17 @@ class Filling(NamedTuple):
     hierarchy: Hierarchy
     """Its outermost depressions spill at the vertex where water leaves them here."""
     levels: Float64Array
-    """(n,): of the water at each vertex, of the ground where there is none."""
+    """(n,), of the water at each vertex, of the ground where there is none."""
     ponds: Int64Array
-    """(n,): the outermost depression under whose water each vertex is, ``NOWHERE`` for none."""
+    """(n,), the outermost depression under whose water each vertex is, ``NOWHERE`` for none."""
     nexts: Int64Array
-    """(n,): the next vertex on the way across water or level ground, ``NOWHERE`` where water
+    """(n,), the next vertex on the way across water or level ground, ``NOWHERE`` where water
     descends or leaves the surface.
     """
     steps: Int64Array
-    """(n,): how many edges that way has, under water to where the pond spills."""
+    """(n,), how many edges that way has, under water to where the pond spills."""
     ranks: Int64Array
-    """(n,): place of each vertex by elevation, easting, northing."""
+    """(n,), place of each vertex by elevation, easting, northing."""
 
     def choose_way(self, *vertices: Int64Array) -> Int64Array:
         """Return of vertices of one level that with the shortest way; under water if any is."""

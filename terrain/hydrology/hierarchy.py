@@ -20,13 +20,13 @@ class Hierarchy(NamedTuple):
     """Depressions, those that join before the one that they make."""
 
     pits: Int64Array
-    """(d,): lowest vertex of each."""
+    """(d,), lowest vertex of each."""
     spill_vertices: Int64Array
-    """(d,): where each is full: it joins another one, or runs over."""
+    """(d,), where each is full: it joins another one, or runs over."""
     parents: Int64Array
-    """(d,): the depression that it becomes a part of, ``NOWHERE`` for the outermost ones."""
+    """(d,), the depression that it becomes a part of, ``NOWHERE`` for the outermost ones."""
     basins: Int64Array
-    """(n,): for each vertex the smallest depression that its water is in once it is full,
+    """(n,), for each vertex the smallest depression that its water is in once it is full,
     ``NOWHERE`` if it leaves the surface; it need not be under water then.
     """
 

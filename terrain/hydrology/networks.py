@@ -33,17 +33,17 @@ class Network(NamedTuple):
     """Of the compiled core."""
     strips: Strips
     grounds: Int32Array
-    """(n,): the smallest vertex that each is connected to along level edges. Water that ends on
+    """(n,), the smallest vertex that each is connected to along level edges. Water that ends on
     level ground ends at that node of the last ones.
     """
     nexts: Int32Array
-    """(s + 2 * n + 1,): the node below; ends are below themselves, the last being the outside."""
+    """(s + 2 * n + 1,), the node below; ends are below themselves, the last being the outside."""
     uppers: Int32Array
-    """(s + n,): the upper end of the channel that water takes to a vertex, ``NOWHERE`` where it
+    """(s + n,), the upper end of the channel that water takes to a vertex, ``NOWHERE`` where it
     takes none.
     """
     areas: Float64Array
-    """(m,): of the triangles."""
+    """(m,), of the triangles."""
 
     @property
     def first_vertex(self) -> int:

@@ -28,26 +28,26 @@ class Trace(NamedTuple):
     coordinates: Float64Array
     """(n, 3)."""
     owners: Int64Array
-    """(n,): the drop of each."""
+    """(n,), the drop of each."""
     vertices: Int64Array
-    """(n,): ``NOWHERE`` for places on no vertex."""
+    """(n,), ``NOWHERE`` for places on no vertex."""
     is_level: BoolArray
-    """(n,): whether the way on from there runs over level ground that is filled."""
+    """(n,), whether the way on from there runs over level ground that is filled."""
     ends: Int8Array
-    """(k,): how each drop ended."""
+    """(k,), how each drop ended."""
 
 
 class Parts(NamedTuple):
     """Lines that a route is cut into, in its order."""
 
     coordinates: Float64Array
-    """(n, 3): on the filled surface."""
+    """(n, 3), on the filled surface."""
     offsets: Int64Array
     """(p + 1,)."""
     owners: Int64Array
     kinds: Int64Array
     ponds: Int64Array
-    """Each (p,): the drop; ``DESCENT``, ``POND`` or ``FLAT_GROUND``; the depression, ``NOWHERE``
+    """Each (p,), the drop; ``DESCENT``, ``POND`` or ``FLAT_GROUND``; the depression, ``NOWHERE``
     for none.
     """
 

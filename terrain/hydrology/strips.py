@@ -48,16 +48,16 @@ class Bases(NamedTuple):
     splits: Float64Array
     """(k,)."""
     drains: BoolArray
-    """(k,): whether water leaves across the base."""
+    """(k,), whether water leaves across the base."""
 
 
 class Strips(NamedTuple):
     """Parts of triangles between neighbouring cuts, by triangle and share of the base."""
 
     offsets: Int64Array
-    """(m + 1,): triangle t has strips ``offsets[t]`` to ``offsets[t + 1]``, a level one none."""
+    """(m + 1,), triangle t has strips ``offsets[t]`` to ``offsets[t + 1]``, a level one none."""
     starts: Float64Array
-    """(s,): shares of the base; each ends where the next of the triangle starts, the last at 1."""
+    """(s,), shares of the base; each ends where the next of the triangle starts, the last at 1."""
 
     def find_triangles(self, strips: Int64Array) -> Int64Array:
         """Return the triangles that strips are part of."""

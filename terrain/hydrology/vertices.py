@@ -29,13 +29,13 @@ class Exits(NamedTuple):
     """Steepest descent from vertices: to another one along an edge, or down a triangle."""
 
     vertices: Int64Array
-    """(k,): at the other end of the edge, else ``NOWHERE``."""
+    """(k,), at the other end of the edge, else ``NOWHERE``."""
     triangles: Int64Array
-    """(k,): through which the fall line runs, else ``NOWHERE``."""
+    """(k,), through which the fall line runs, else ``NOWHERE``."""
     slopes: Float64Array
-    """(k,): fall over run, elevations as they are; 0 where there is no descent."""
+    """(k,), fall over run, elevations as they are; 0 where there is no descent."""
     leaves: BoolArray
-    """(k,): whether water leaves the surface there."""
+    """(k,), whether water leaves the surface there."""
 
 
 class _Candidates(NamedTuple):

@@ -34,9 +34,9 @@ class Waters(NamedTuple):
     """Waters that stand in triangles, each with a level of its own."""
 
     triangles: Int64Array
-    """(k,): of the surface, with a corner under water."""
+    """(k,), of the surface, with a corner under water."""
     numbers: Int64Array
-    """(k,): the water in each."""
+    """(k,), the water in each."""
     levels: Float64Array
     """(w,)."""
 

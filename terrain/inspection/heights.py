@@ -40,11 +40,11 @@ class Heights(NamedTuple):
     vertices: Int32Array
     """(k,)."""
     residuals: Float64Array
-    """(k,): elevation above the surface without any of them."""
+    """(k,), elevation above the surface without any of them."""
     scales: Float64Array
-    """(k,): how large residuals are around each."""
+    """(k,), how large residuals are around each."""
     limits: Float64Array
-    """(k,): beyond which a residual is suspicious: more on a line and on the boundary."""
+    """(k,), beyond which a residual is suspicious: more on a line and on the boundary."""
 
 
 class Judgement(NamedTuple):
@@ -196,7 +196,7 @@ class _Reach(NamedTuple):
     size: int
     """Of those others."""
     owners: Int64Array
-    """(k,): their places, ascending."""
+    """(k,), their places, ascending."""
     vertices: Int32Array
     """(k,)."""
 

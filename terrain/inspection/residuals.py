@@ -27,11 +27,11 @@ class Residuals:
 
     surface: Triangulation
     xyz: Float64Array
-    """(n, 3): its points; elevations of blunders are replaced by those of the others' surface."""
+    """(n, 3), its points; elevations of blunders are replaced by those of the others' surface."""
     on_line: BoolArray
-    """(n,): whether edges of lines or of a boundary meet in the vertex."""
+    """(n,), whether edges of lines or of a boundary meet in the vertex."""
     chords: Int32Array
-    """(n, 2): the vertices before and behind it where exactly two such edges meet, else -1."""
+    """(n, 2), the vertices before and behind it where exactly two such edges meet, else -1."""
     _without: _kernel.LeaveOneOut = field(init=False)
 
     def __post_init__(self) -> None:

@@ -52,7 +52,7 @@ class Rows:
     """The rows of points of a TIN that have a vertex, each with its own elevation."""
 
     numbers: Int64Array
-    """(k,): the rows, ascending."""
+    """(k,), the rows, ascending."""
     vertices: Int32Array
     """(k,)."""
     xyz: Float64Array

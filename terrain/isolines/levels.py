@@ -34,7 +34,7 @@ class Levels:
     values: Float64Array
     """(k,)."""
     is_index: BoolArray
-    """(k,): whether contours there are index contours."""
+    """(k,), whether contours there are index contours."""
     notes: tuple[str, ...] = ()
     """What is to be told of them."""
 

@@ -31,7 +31,7 @@ class PolygonParts(NamedTuple):
     ring_offsets: Int64Array
     polygon_offsets: Int64Array
     band: Int32Array
-    """(k,): of each polygon."""
+    """(k,), of each polygon."""
 
 
 def mend_polygons(

@@ -27,15 +27,15 @@ class TracedLines(NamedTuple):
     """Lines as the kernel returns them."""
 
     coordinates: Float64Array
-    """(n, 3): of closed lines the first point is repeated."""
+    """(n, 3), of closed lines the first point is repeated."""
     offsets: Int64Array
     """(k + 1,)."""
     level: Int32Array
-    """(k,): place in the levels."""
+    """(k,), place in the levels."""
     is_closed: BoolArray
     """(k,)."""
     length: Float64Array
-    """(k,): in the plane of the coordinates."""
+    """(k,), in the plane of the coordinates."""
 
 
 def require_tolerance(option: str, value: Any) -> float:

@@ -27,7 +27,7 @@ class Aligned(NamedTuple):
     surfaces: dict[str, TIN]
     """In one CRS, elevations in one unit."""
     labelled: Float64Array | None
-    """(k, 3): the points of the survey, in that unit."""
+    """(k, 3), the points of the survey, in that unit."""
     notes: tuple[str, ...]
     """What had to be assumed or converted."""
 

@@ -52,10 +52,10 @@ class Strips(NamedTuple):
     """Pieces of a picture, from left to right, that are drawn one below the other."""
 
     edges: Float64Array
-    """(k + 1,): where they begin and end along the picture's first axis, lengths of the scene."""
+    """(k + 1,), where they begin and end along the picture's first axis, lengths of the scene."""
     lows: Float64Array
     highs: Float64Array
-    """Both (k,): their range along the second axis."""
+    """Both (k,), their range along the second axis."""
     scale: float
     """Design pixels for a length of 1."""
 

@@ -28,7 +28,7 @@ class ElevationRange(NamedTuple):
     high: float
     """Lowest and highest elevation but for those far off."""
     is_far_off: BoolArray
-    """(n,): which points are left out."""
+    """(n,), which points are left out."""
 
 
 def find_elevation_range(elevations: Float64Array, extent: float) -> ElevationRange:

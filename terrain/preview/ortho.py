@@ -47,7 +47,7 @@ class Ortho:
     transform: tuple[float, ...]
     """Affine, from columns and rows to eastings and northings: a, b, x, d, e, y."""
     opacity: UInt8Array | None = None
-    """(rows, columns): 0 where there is no picture; None where there is everywhere."""
+    """(rows, columns), 0 where there is no picture; None where there is everywhere."""
     gap: float = 0.0
     """Share of the vertices of the surfaces at which there is no picture."""
     told: tuple[str, ...] = ()

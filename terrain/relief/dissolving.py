@@ -50,7 +50,7 @@ class DividedMesh(NamedTuple):
     triangles: Int32Array
     neighbors: Int32Array
     owners: Int64Array
-    """(m,): what each triangle is a part of."""
+    """(m,), what each triangle is a part of."""
 
     @classmethod
     def of(cls, points: Float64Array, triangles: Int32Array, owners: Int64Array) -> DividedMesh:
@@ -62,13 +62,13 @@ class Dissolved(NamedTuple):
     """Polygons of vertices, as :meth:`Features.of_polygons` takes them."""
 
     vertices: Int64Array
-    """(n,): of all rings, each closed."""
+    """(n,), of all rings, each closed."""
     ring_offsets: Int64Array
     polygon_offsets: Int64Array
     feature_offsets: Int64Array
     """A feature has all polygons of a class."""
     classes: Int64Array
-    """(n_features,): those that have a triangle, ascending."""
+    """(n_features,), those that have a triangle, ascending."""
 
 
 def dissolve(tin: Mesh, classes: Int64Array) -> Dissolved:

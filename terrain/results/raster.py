@@ -45,7 +45,7 @@ class Raster(Frozen):
     units : mapping of str to Unit, str or None
         Of bands: a unit or its symbol, None if it is not known; a band without an entry has none.
     name, notes
-        As of :class:`Features`.
+        As of :class:`tinsmith.Features`.
 
     Raises
     ------

@@ -35,7 +35,7 @@ class Table(Frozen):
     units : mapping of str to Unit, str or None
         A unit or its symbol, None if it is not known; a column without an entry has no unit.
     name, notes
-        As of :class:`Features`.
+        As of :class:`tinsmith.Features`.
 
     Raises
     ------

@@ -26,22 +26,22 @@ class Breaks(NamedTuple):
     """Breaks along segments, those of each from its start to its end."""
 
     segments: Int64Array
-    """(n,): the segment of each."""
+    """(n,), the segment of each."""
     ratios: Float64Array
-    """(n,): share of the segment before it, 0 at the start and 1 at the end."""
+    """(n,), share of the segment before it, 0 at the start and 1 at the end."""
     xy: Float64Array
     """(n, 2)."""
     elevations: Float64Array
-    """(n,): NaN where there is no surface."""
+    """(n,), NaN where there is no surface."""
     crossed: Int8Array
-    """(n,): index into ``CROSSED``."""
+    """(n,), index into ``CROSSED``."""
     triangles: Int32Array
-    """(n,): through which, or along an edge of which, the segment goes on; -1 where there is no
+    """(n,), through which, or along an edge of which, the segment goes on; -1 where there is no
     surface.
     """
     vertices: Int32Array
     edges: Int32Array
-    """Both (n,): what lies there: a vertex of the TIN, or an edge as three times its triangle plus
+    """Both (n,), what lies there: a vertex of the TIN, or an edge as three times its triangle plus
     the corner opposite; -1 for none.
     """
 

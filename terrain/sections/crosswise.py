@@ -44,7 +44,7 @@ class _Axes(NamedTuple):
     segments: Segments
     """From left to right, their stations being offsets, their lines the sections."""
     lines: Int64Array
-    """(s,): the centreline of each section."""
+    """(s,), the centreline of each section."""
     stations: Float64Array
     """(s,)."""
 

@@ -39,13 +39,13 @@ class Rows(NamedTuple):
 
     places: Places
     is_last: BoolArray
-    """(n,): whether the row is the last of its line."""
+    """(n,), whether the row is the last of its line."""
     elevations: Float64Array
-    """(n, k): of each surface; NaN where it is not."""
+    """(n, k), of each surface; NaN where it is not."""
     crossed: StrArray
-    """(n, k): what each surface has there: a word of ``CROSSED``, "gap", or "" if nothing."""
+    """(n, k), what each surface has there: a word of ``CROSSED``, "gap", or "" if nothing."""
     triangles: Int32Array
-    """(n, k): of each surface, from here to the next row; -1 where there is none."""
+    """(n, k), of each surface, from here to the next row; -1 where there is none."""
 
     @property
     def is_gap(self) -> BoolArray:

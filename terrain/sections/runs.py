@@ -21,9 +21,9 @@ class Runs(NamedTuple):
     coordinates: Float64Array
     """(n, 3)."""
     offsets: Int64Array
-    """(r + 1,): run i is ``coordinates[offsets[i]:offsets[i + 1]]``."""
+    """(r + 1,), run i is ``coordinates[offsets[i]:offsets[i + 1]]``."""
     first_rows: Int64Array
-    """(r,): the row where each begins."""
+    """(r,), the row where each begins."""
 
 
 def find_runs(rows: Rows, k: int = 0) -> Runs:

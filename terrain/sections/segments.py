@@ -25,7 +25,7 @@ class Segments(NamedTuple):
     end_stations: Float64Array
     """Both (m,)."""
     lines: Int64Array
-    """(m,): the line that each belongs to, in ascending order."""
+    """(m,), the line that each belongs to, in ascending order."""
 
     @property
     def directions(self) -> Float64Array:

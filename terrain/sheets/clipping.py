@@ -24,9 +24,9 @@ class Paths(NamedTuple):
     coordinates: Float64Array
     """(n, 2)."""
     offsets: Int64Array
-    """(l + 1,): path k is ``coordinates[offsets[k]:offsets[k + 1]]``."""
+    """(l + 1,), path k is ``coordinates[offsets[k]:offsets[k + 1]]``."""
     sources: Int64Array
-    """(l,): the polyline that each path is a part of."""
+    """(l,), the polyline that each path is a part of."""
 
     @classmethod
     def whole(cls, coordinates: Float64Array, offsets: Int64Array) -> Paths:

@@ -30,13 +30,13 @@ class Pieces(NamedTuple):
     """A footprint in cells: what of it lies in each, of every polygon apart."""
 
     corners: Float64Array
-    """(n, 2): of the polygons, piece after piece."""
+    """(n, 2), of the polygons, piece after piece."""
     owners: Int64Array
-    """(n,): the piece that each is of."""
+    """(n,), the piece that each is of."""
     cells: Int64Array
-    """(k, 2): column and row of each piece."""
+    """(k, 2), column and row of each piece."""
     centers: Float64Array
-    """(k, 2): means of their corners."""
+    """(k, 2), means of their corners."""
 
 
 def find_footprint(tin: TIN) -> Footprint:

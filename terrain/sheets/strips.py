@@ -33,7 +33,7 @@ class Joint(NamedTuple):
     """Where one strip ends and the next begins."""
 
     place: Float64Array
-    """(2,): on the axis."""
+    """(2,), on the axis."""
     angle: float
     """Direction of the axis there, radians."""
 

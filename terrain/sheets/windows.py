@@ -18,7 +18,7 @@ class MatchLine(NamedTuple):
     """Where another sheet goes on."""
 
     ends: Float64Array
-    """(2, 2): on the ground."""
+    """(2, 2), on the ground."""
     window: int
     """Number of the other sheet's window, from 0."""
 

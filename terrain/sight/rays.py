@@ -42,13 +42,13 @@ class Blocks(NamedTuple):
     is_blocked: BoolArray
     """(k,)."""
     ratios: Float64Array
-    """(k,): share of the way after which the ray first goes into the ground; NaN if it does not."""
+    """(k,), share of the way after which the ray first goes into the ground; NaN if it does not."""
     clearances: Float64Array
-    """(k,): least height of the ray above ground between its ends, at edges and vertices; negative
+    """(k,), least height of the ray above ground between its ends, at edges and vertices; negative
     if it is blocked, NaN where it crosses none.
     """
     leaves: BoolArray
-    """(k,): whether it passes over places without surface."""
+    """(k,), whether it passes over places without surface."""
 
 
 def find_curvature(reference: Reference, curvature: Any, refraction: Any) -> float:

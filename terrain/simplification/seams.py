@@ -29,9 +29,9 @@ class Frame(NamedTuple):
     """The boundary of the surface of a raster, and the cells that must be vertices."""
 
     rings: list[Int64Array]
-    """(k,) each: cells along the boundary, the surface on their left."""
+    """(k,) each, cells along the boundary, the surface on their left."""
     required: Int64Array
-    """(r,): corners of boundaries and vertices on seams, ascending."""
+    """(r,), corners of boundaries and vertices on seams, ascending."""
     rounding: float
     """By how much elevations may differ because they are rounded."""
 

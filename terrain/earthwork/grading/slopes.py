@@ -30,9 +30,9 @@ class Slope(NamedTuple):
     surface: TIN
     """The difference to the ground, cut along all edges."""
     is_made: BoolArray
-    """(m,): its triangles that hang together with the pad."""
+    """(m,), its triangles that hang together with the pad."""
     elevations: Float64Array
-    """(n,): of the slope at its vertices."""
+    """(n,), of the slope at its vertices."""
 
     def find_rim(self, pad: Any, tolerance: float) -> list[Float64Array]:
         """Return the daylight lines, (k, 3) each."""

@@ -31,17 +31,17 @@ class Border(NamedTuple):
 
     triangles: Int64Array
     corners: Int64Array
-    """Both (k,): flat triangle, and its corner opposite the edge."""
+    """Both (k,), flat triangle, and its corner opposite the edge."""
     regions: Int64Array
     """(k,)."""
     is_contour: BoolArray
-    """(k,): whether the edge is one of a line; others are exits, or the end of the surface."""
+    """(k,), whether the edge is one of a line; others are exits, or the end of the surface."""
     is_exit: BoolArray
-    """(k,): whether a triangle beyond, with no line between, leads to another elevation."""
+    """(k,), whether a triangle beyond, with no line between, leads to another elevation."""
     rises: Float64Array
-    """(k,): height of the far corner of the triangle beyond, above the edge; 0 if there is none."""
+    """(k,), height of the far corner of the triangle beyond, above the edge; 0 if there is none."""
     runs: Float64Array
-    """(k,): its distance from the line through the edge, in CRS units."""
+    """(k,), its distance from the line through the edge, in CRS units."""
 
     def take(self, part: slice) -> Border:
         """Return some of the edges."""
@@ -60,19 +60,19 @@ class Regions(NamedTuple):
     """Flat triangles joined across edges that are not of a line."""
 
     region_of: Int64Array
-    """(m,): region of each triangle, -1 for those that are not flat."""
+    """(m,), region of each triangle, -1 for those that are not flat."""
     size: int
     """How many."""
     kinds: Int64Array
-    """(r,): indices into ``KINDS``."""
+    """(r,), indices into ``KINDS``."""
     elevations: Float64Array
     """(r,)."""
     rises: Float64Array
-    """(r,): from the region to the next contour that its triangles lead to; of caps, to what the
+    """(r,), from the region to the next contour that its triangles lead to; of caps, to what the
     next contour would be, inwards.
     """
     slopes: Float64Array
-    """(r,): of caps: rise over run outside, the median along the contour."""
+    """(r,), of caps: rise over run outside, the median along the contour."""
     border: Border
 
 

@@ -25,15 +25,15 @@ class Skeleton(NamedTuple):
     regions: Int64Array
     """(k,)."""
     radii: Float64Array
-    """(k,): distance from the nearest line around the region, or from the hull, CRS units."""
+    """(k,), distance from the nearest line around the region, or from the hull, CRS units."""
     widths: Float64Array
-    """(k,): length of the edge that it is the middle of."""
+    """(k,), length of the edge that it is the middle of."""
     exits: Float64Array
-    """(k,): of points on the border: distance of the corner that the triangle beyond leads to;
+    """(k,), of points on the border: distance of the corner that the triangle beyond leads to;
     infinity for others.
     """
     tips: Float64Array
-    """(k,): of points in a triangle with no other such edge: distance of the corner opposite; 0 for
+    """(k,), of points in a triangle with no other such edge: distance of the corner opposite; 0 for
     others.
     """
     arcs: list[list[tuple[int, float]]]
