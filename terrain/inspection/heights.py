@@ -74,22 +74,10 @@ def find_heights(
        was a blunder.
     4. So on with those that stand out then, until none does.
 
-    Parameters
-    ----------
-    tin : TIN
-    judged : (k,) int32 array
-        Vertices to judge.
-    wrong : (m,) int32 array
-        Those that are known to be wrong, whose elevations count for nothing.
-    sample : int, optional
-        Measure scales from so many of the vertices, and residuals against corrected elevations;
-        default scales from all of them, and residuals against the surface without those found.
-    progress : callable, optional
-        Told before the first round, and after each half of what is left.
-
-    Returns
-    -------
-    Judgement
+    Vertices are ``judged``, (k,); those known to be ``wrong``, (m,), count for nothing. With a
+    ``sample`` scales are measured from so many of the vertices, and residuals against corrected
+    elevations, else scales from all of them, and residuals against the surface without those found.
+    Progress is told before the first round, and after each half of what is left.
 
     References
     ----------

@@ -62,25 +62,10 @@ def smooth_lines(
     smooth: float,
     simplify: float,
 ) -> TracedLines:
-    """Round the corners of lines, then drop points of them.
+    """Round the corners of a TIN's contours, then drop points of them.
 
-    Parameters
-    ----------
-    tin : TIN
-    lines : TracedLines
-        Its contours.
-    levels : (k,) float64 array
-    smooth, simplify : float
-        How far the surface may be from the level along a line, for each of the two; 0 is neither.
-
-    Returns
-    -------
-    TracedLines
-
-    Raises
-    ------
-    OptionError
-        If there are more than :data:`MOST_POINTS` points.
+    ``smooth`` and ``simplify`` are how far the surface may be from the level along a line, for each
+    of the two; 0 is neither. Raises OptionError if there are more than :data:`MOST_POINTS` points.
 
     Notes
     -----
