@@ -91,26 +91,18 @@ stage_sums = _core.stage_sums
 
 
 class OverlayMesh(NamedTuple):
-    """The overlay of two surfaces: convex cells that share their vertices.
-
-    Attributes
-    ----------
-    vertices : (n, 3) float64 array
-        Easting, northing, elevation of the second surface above the first.
-    origins : (n, 2) int32 array
-        The vertex of the first surface, and of the second, that it is; -1 for none.
-    offsets : (k + 1,) int64 array
-    corners : (c,) int32 array
-        Cell i has the vertices ``corners[offsets[i]:offsets[i + 1]]``, counter-clockwise.
-    triangles : (k, 2) int32 array
-        Of the first and of the second surface, that the cell is part of.
-    """
+    """The overlay of two surfaces: convex cells that share their vertices."""
 
     vertices: Float64Array
+    """(n, 3), easting, northing, elevation of the second surface above the first."""
     origins: Int32Array
+    """(n, 2), the vertex of the first surface, and of the second, that it is; -1 for none."""
     offsets: Int64Array
+    """(k + 1,)."""
     corners: Int32Array
+    """(c,), cell i has the vertices ``corners[offsets[i]:offsets[i + 1]]``, counter-clockwise."""
     triangles: Int32Array
+    """(k, 2), of the first and of the second surface, that the cell is part of."""
 
 
 def overlay(

@@ -48,20 +48,8 @@ def require_features(
 ) -> None:
     """Refuse what is neither None nor features of a kind with some columns.
 
-    Parameters
-    ----------
-    option : str
-        Name of the parameter.
-    features : object
-    kind : {"points", "lines", "polygons"}
-    columns : iterable of str
-        Those that are drawn.
-    source : str
-        Function that returns such features, for the sentence.
-
-    Raises
-    ------
-    OptionError
+    ``option`` is the name of the parameter; ``source`` the function that returns such features, for
+    the sentence.
     """
     if features is None:
         return

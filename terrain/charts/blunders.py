@@ -13,7 +13,8 @@ from ...tin.validation.options import require_tin, require_type
 from ..inspection.findings import DROPPED
 from ..results import Table
 from .arguments import parse_title
-from .maps import INK, draw_shade, shade_for_map, start_map
+from .figures import INK
+from .maps import draw_shade, shade_for_map, start_map
 
 if TYPE_CHECKING:
     from ...tin import TIN
@@ -62,12 +63,10 @@ def blunder_map(tin: TIN, table: Table, *, title: str | None = None) -> Any:
 
     Examples
     --------
-    >>> import numpy as np
     >>> import tinsmith as ts
-    >>> x, y = np.divmod(np.arange(100.0), 10)
-    >>> z = 320 + 0.01 * x * y
-    >>> z[33] += 3.0
-    >>> tin = ts.triangulate(np.column_stack([x, y, z]))
+    >>> points = [[x, y, 0.01 * x * y] for x in range(10) for y in range(10)]
+    >>> points[33][2] += 3.0
+    >>> tin = ts.triangulate(points)
     >>> figure = ts.blunder_map(tin, ts.blunders(tin))
     >>> figure.axes[0].get_ylabel()
     'northing'
@@ -89,8 +88,7 @@ def blunder_map(tin: TIN, table: Table, *, title: str | None = None) -> Any:
     if len(ground.points) <= _MOST_DOTS:
         drawn.axes.plot(*ground.points[:, :2].T, ".", color=INK, markersize=1.2, zorder=2)
     _mark(drawn, table)
-    caption = _write_caption(drawn, table)
-    drawn.axes.set_title(caption, loc="left", fontsize=10, color=INK, parse_math=False)
+    drawn.write_caption(_write_caption(drawn, table), size=10)
     return drawn.figure
 
 

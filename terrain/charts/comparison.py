@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
 from ..._sentences import counted
 from ...tin.paper.comparison import Comparison
 from ...tin.validation.options import require_type
 from .arguments import parse_title
+from .figures import INK, start_panels
 
 if TYPE_CHECKING:
     from ...arrays import Float64Array, Int32Array
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 __all__ = ["comparison_picture"]
 
 _PURPOSE = "A picture of a comparison"
-_INK = "#333333"
 _EDGE = "#5b6670"
 _SOUND = "#ffffff"
 _GAP = "#c9d1d8"
@@ -52,7 +51,8 @@ def comparison_picture(comparison: Comparison, *, title: str | None = None) -> A
     Returns
     -------
     matplotlib.figure.Figure
-        Drawn without a screen; ``savefig`` writes it.
+        Drawn without a screen; ``savefig`` writes it. A panel for each algorithm marks triangles
+        with a point in their circle, overlapping ones, and what is not covered.
 
     Raises
     ------
@@ -73,17 +73,13 @@ def comparison_picture(comparison: Comparison, *, title: str | None = None) -> A
     xy = comparison.points[:, :2] - comparison.points[:, :2].min(axis=0)
     width, height = xy.max(axis=0)
     panel = _WIDTH / _COLUMNS * min(max(height / width, 0.3), 1.5)
-    size = (_WIDTH, 2 * panel + 2.0)
-    figure = _optional.load("matplotlib.figure", _PURPOSE).Figure(
-        figsize=size, layout="constrained"
-    )
+    figure = start_panels(_PURPOSE, _WIDTH, 2 * panel + 2.0, title=heading)
     figure.get_layout_engine().set(h_pad=_PADDING)
-    figure.suptitle(heading, fontsize=15, color=_INK, parse_math=False)
     *grid, last = figure.subplots(2, _COLUMNS).ravel()
     last.remove()
     for axes, outcome in zip(grid, comparison.outcomes, strict=True):
         _draw_outcome(axes, xy, comparison.hull, outcome)
-        axes.set_title(_describe_outcome(outcome, comparison.expected), fontsize=11, color=_INK)
+        axes.set_title(_describe_outcome(outcome, comparison.expected), fontsize=11, color=INK)
     _add_legend(figure)
     return figure
 
@@ -99,7 +95,7 @@ def _describe_outcome(outcome: Outcome, expected: int) -> str:
 def _draw_outcome(axes: Any, xy: Float64Array, hull: Int32Array, outcome: Outcome) -> None:
     is_crowded = len(xy) > _CROWD
     line = 0.35 if is_crowded else 0.8
-    axes.fill(*xy[hull].T, facecolor=_GAP, edgecolor=_INK, linewidth=line, zorder=1)
+    axes.fill(*xy[hull].T, facecolor=_GAP, edgecolor=INK, linewidth=line, zorder=1)
     for chosen, color, alpha in (
         (~outcome.violating, _SOUND, 1.0),
         (outcome.violating, _VIOLATING, 1.0),
@@ -112,7 +108,7 @@ def _draw_outcome(axes: Any, xy: Float64Array, hull: Int32Array, outcome: Outcom
     axes.add_collection(_make_line_collection(xy, _find_edges(outcome.triangles), _EDGE, line))
     axes.add_collection(_make_line_collection(xy, outcome.unextended, _UNEXTENDED, 3 * line))
     if not is_crowded:
-        axes.plot(*xy.T, ".", color=_INK, markersize=4, zorder=4)
+        axes.plot(*xy.T, ".", color=INK, markersize=4, zorder=4)
     axes.set_aspect("equal")
     axes.margins(0.03)
     axes.set_axis_off()

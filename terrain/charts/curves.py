@@ -9,26 +9,31 @@ import numpy as np
 
 from ...crs import CRS, Unit, assume_elevation_unit
 from ...errors import OptionError
-from ...tin.validation.options import is_finite_number
+from ...tin.validation.options import is_finite_number, is_whole_number
+from ..drawing.rounding import format_number, round_down
+from .figures import INK, color_frame
 
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array
     from ..results import Table
 
 __all__ = [
-    "INK",
+    "FAINT",
     "Curve",
     "Measure",
-    "as_factor",
-    "draw_curves",
-    "find_curves",
+    "choose_exaggeration",
+    "describe_drawing",
+    "draw",
+    "draw_grid",
+    "find",
     "find_marks",
     "find_ratio",
+    "find_rows",
     "read_units",
     "write_elevation",
 ]
 
-INK = "#333333"
+FAINT = "#d9d9d9"
 _COLORS = ("#7a5230", "#c0392b", "#1f618d", "#6c3483", "#117864")
 _GROUND = "#efe6da"
 _CUT, _FILL = "#eba694", "#9cc9e4"  # the hues of a map of cut and fill
@@ -62,7 +67,16 @@ class Measure:
         return f"{name}, {self.unit.symbol}{'' if self.is_known else ' assumed'}"
 
 
-def find_curves(table: Table, rows: BoolArray, along: str) -> list[Curve]:
+def find_rows(table: Table, line: Any) -> BoolArray:
+    """Return which rows of a table are of a line; refuse a line that it has not."""
+    if not is_whole_number(line) or not (table["line"] == line).any():
+        allowed = f"a whole number from 0 to {int(table['line'].max())}"
+        raise OptionError("line", line, allowed=allowed)
+    is_of_line: BoolArray = table["line"] == line
+    return is_of_line
+
+
+def find(table: Table, rows: BoolArray, along: str) -> list[Curve]:
     """Return the surfaces in some rows of a table, by a column that goes along the line."""
     measured = [name for name in table.columns if name.partition("_")[0] == "elevation"]
     places = table[along][rows]
@@ -98,19 +112,30 @@ def find_ratio(along: Measure, up: Measure) -> float:
     return 1.0 if lengths[0] is None or lengths[1] is None else lengths[0] / lengths[1]
 
 
-def as_factor(value: Any) -> float:
-    """Return an exaggeration.
-
-    Raises
-    ------
-    OptionError
-    """
-    if not is_finite_number(value) or not float(value) > 0.0:
-        raise OptionError("exaggeration", value, allowed="a finite number above 0")
-    return float(value)
+def choose_exaggeration(wanted: Any, *, usual: float) -> float:
+    """Return the exaggeration that is wanted, if it is one, or else the usual one rounded down."""
+    if wanted is None:
+        return round_down(usual)
+    if not is_finite_number(wanted) or not float(wanted) > 0.0:
+        raise OptionError("exaggeration", wanted, allowed="a finite number above 0")
+    return float(wanted)
 
 
-def draw_curves(axes: Any, curves: list[Curve], marks: Float64Array, floor: float) -> None:
+def describe_drawing(crs: CRS | None, exaggeration: float) -> str:
+    """Return a caption: the CRS, and how much larger elevations are drawn."""
+    where = "CRS not known" if crs is None else crs.caption
+    return f"{where}; vertical exaggeration {exaggeration:g}"
+
+
+def draw_grid(axes: Any, elevations: list[float], step: float) -> None:
+    """Draw the axes, with a grid behind the surfaces and some elevations a step apart."""
+    axes.set_yticks(elevations, [format_number(place, step=step) for place in elevations])
+    axes.grid(color=FAINT, linewidth=0.6)
+    axes.set_axisbelow(True)
+    color_frame(axes)
+
+
+def draw(axes: Any, curves: list[Curve], marks: Float64Array, floor: float) -> None:
     """Draw surfaces, the first one's breaklines, and what is cut and filled between two."""
     ground = curves[0]
     if len(curves) == 2:

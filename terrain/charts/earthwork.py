@@ -15,7 +15,8 @@ from ..gridding import rasterize
 from ..gridding.grids import cover
 from ..relief.shading import hillshade
 from .arguments import parse_title
-from .maps import INK, PIXELS, draw_scale, draw_shade, start_map
+from .figures import INK
+from .maps import PIXELS, draw_scale, draw_shade, start_map
 
 if TYPE_CHECKING:
     from ...arrays import Float64Array
@@ -93,8 +94,7 @@ def earthwork_map(
         draw_shade(axes, _shade_around(ground, axes), limits=_LIGHTS)
     _draw_difference(drawn, difference.tin)
     _draw_zero_line(axes, difference)
-    caption = _write_caption(difference)
-    axes.set_title(caption, loc="left", fontsize=10, color=INK, parse_math=False)
+    drawn.write_caption(_write_caption(difference), size=10)
     return drawn.figure
 
 

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
 from ..._sentences import counted
 from ...tin import Quality
 from ...tin.validation.options import require_type
 from ..drawing.rounding import choose_ticks
 from .arguments import parse_text, parse_title
+from .figures import INK, start_panels
 
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array
@@ -26,7 +26,6 @@ _SIZE = (11.0, 7.0)
 
 _BARS = 60
 _BAR = "#5f8f6b"
-_INK = "#333333"
 _MEDIAN = "#b3472d"
 _TAIL = 0.002
 """Share of values at each end that may lie outside a panel without ends of its own."""
@@ -62,7 +61,7 @@ def histogram(quality: Quality, *, title: str | None = None, unit: str = "") -> 
     Returns
     -------
     matplotlib.figure.Figure
-        Drawn without a screen; ``savefig`` writes it.
+        Drawn without a screen; ``savefig`` writes it. Four panels, each with its median.
 
     Raises
     ------
@@ -87,13 +86,10 @@ def histogram(quality: Quality, *, title: str | None = None, unit: str = "") -> 
     """
     require_type("quality", quality, Quality)
     heading, symbol = parse_title(title, "Triangle quality"), parse_text("unit", unit)
-    figure = _optional.load("matplotlib.figure", _PURPOSE).Figure(
-        figsize=_SIZE, layout="constrained"
-    )
-    figure.suptitle(heading, fontsize=15, color=_INK, parse_math=False)
+    figure = start_panels(_PURPOSE, *_SIZE, title=heading)
     where = "in space" if quality.space else "in the plane"
     figure.supxlabel(
-        f"{counted(len(quality), 'triangle')}, measured {where}", fontsize=10, color=_INK
+        f"{counted(len(quality), 'triangle')}, measured {where}", fontsize=10, color=INK
     )
     grid = figure.subplots(2, 2)
     for axes, panel in zip(grid.ravel(), _choose_panels(quality, symbol), strict=True):
@@ -152,10 +148,10 @@ def _describe_share(chosen: BoolArray, what: str) -> str:
 def _draw_panel(axes: Any, panel: _Panel) -> None:
     counts, edges = np.histogram(panel.values, panel.edges)
     axes.stairs(100 * counts / len(panel.values), edges, fill=True, color=_BAR)
-    axes.set_title(panel.title, loc="left", fontsize=12, color=_INK)
+    axes.set_title(panel.title, loc="left", fontsize=12, color=INK)
     low, high = _format_number(panel.values.min()), _format_number(panel.values.max())
     spread = f"{low} to {high}{panel.unit}" + (f", {panel.note}" if panel.note else "")
-    axes.set_title(spread, loc="right", fontsize=9, color=_INK)
+    axes.set_title(spread, loc="right", fontsize=9, color=INK)
     _label_axes(axes, panel)
     _mark_median(axes, panel)
 
@@ -188,10 +184,10 @@ def _label_axes(axes: Any, panel: _Panel) -> None:
     axes.set_xticks(places, [f"{place:g}{panel.unit}" for place in places])
     axes.set_xlim(low, high)
     axes.set_ylim(0, 1.14 * (axes.dataLim.ymax or 1.0))
-    axes.set_ylabel("share, %", color=_INK)
+    axes.set_ylabel("share, %", color=INK)
     axes.grid(axis="y", color="#dddddd", linewidth=0.6)
     axes.set_axisbelow(True)
-    axes.tick_params(colors=_INK)
+    axes.tick_params(colors=INK)
     axes.spines[["top", "right"]].set_visible(False)
 
 

@@ -11,7 +11,7 @@ from ...tin.validation.options import require_tin
 from ..isolines.labels import contour_labels
 from ..preview.tints import interpolate_tints
 from .arguments import parse_title, require_features
-from .maps import INK, draw_scale, draw_shade, find_paths, shade_for_map, start_map
+from .maps import draw_scale, draw_shade, find_paths, shade_for_map, start_map
 
 if TYPE_CHECKING:
     from ...arrays import Float64Array
@@ -55,7 +55,7 @@ def contour_map(
     Returns
     -------
     matplotlib.figure.Figure
-        Drawn without a screen; ``savefig`` writes it.
+        Drawn without a screen; ``savefig`` writes it. The caption tells the interval if it is one.
 
     Raises
     ------
@@ -92,8 +92,7 @@ def contour_map(
     if lines is not None and len(lines):
         _draw_lines(axes, lines)
         _draw_labels(axes, contour_labels(lines) if labels is None else labels)
-    caption = _write_caption(lines, drawn.ground)
-    axes.set_title(caption, loc="left", fontsize=9, color=INK, parse_math=False)
+    drawn.write_caption(_write_caption(lines, drawn.ground), size=9)
     return drawn.figure
 
 

@@ -12,6 +12,7 @@ from ... import _optional
 from ..drawing.rounding import choose_ticks
 from ..georeference.units import find_ground
 from ..relief.shading import hillshade
+from .figures import INK, color_frame, start_figure, write_title
 
 if TYPE_CHECKING:
     from ...tin import TIN
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from ..results import Features, Raster
 
 __all__ = [
-    "INK",
     "PIXELS",
     "Map",
     "draw_scale",
@@ -29,7 +29,6 @@ __all__ = [
     "start_map",
 ]
 
-INK = "#333333"
 PIXELS = 1400
 """Of shading, along the longer side."""
 
@@ -44,22 +43,20 @@ _SHADES = (1, 255)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Map:
-    """A figure with axes that are true to scale.
-
-    Attributes
-    ----------
-    figure : matplotlib.figure.Figure
-    axes : matplotlib.axes.Axes
-    ground : Ground
-        How the coordinates are measured.
-    beside : tuple of float
-        Left, bottom, width and height of the room on the right of the map, shares of the figure.
-    """
+    """A figure with axes that are true to scale."""
 
     figure: Any
+    """``matplotlib.figure.Figure``."""
     axes: Any
+    """``matplotlib.axes.Axes``."""
     ground: Ground
+    """How the coordinates are measured."""
     beside: tuple[float, float, float, float]
+    """Left, bottom, width and height of the room on the right of the map, shares of the figure."""
+
+    def write_caption(self, caption: str, *, size: int) -> None:
+        """Write what the map shows in a line between title and map."""
+        self.axes.set_title(caption, loc="left", fontsize=size, color=INK, parse_math=False)
 
 
 def start_map(
@@ -73,18 +70,9 @@ def start_map(
 ) -> Map:
     """Return a figure as tall as the map asks for, with a title and labelled axes.
 
-    Parameters
-    ----------
-    tin : TIN
-    title : str
-    purpose : str
-        What matplotlib is needed for.
-    pad : float
-        Of the ground around the TIN, as a share of its extent.
-    beside : float
-        Inches on the right of the map for a scale or a legend.
-    has_caption : bool
-        Whether there is a line between title and map.
+    ``purpose`` is what matplotlib is needed for; ``pad`` the ground around the TIN, as a share of
+    its extent; ``beside`` inches on the right of the map, for a scale or a legend; ``has_caption``
+    tells whether there is a line between title and map.
     """
     ground, bounds = find_ground(tin), tin.bounds
     east, north, _ = ground.scale
@@ -94,29 +82,16 @@ def start_map(
     top = _TOP + 0.12 * has_caption
     inner = _WIDTH - _LEFT - beside - _EDGE
     height = inner * tall + top + _BOTTOM
-    figure = _optional.load("matplotlib.figure", purpose).Figure(figsize=(_WIDTH, height))
+    figure = start_figure(purpose, _WIDTH, height)
     box = (_LEFT / _WIDTH, _BOTTOM / height, inner / _WIDTH, inner * tall / height)
     axes = figure.add_axes(box)
     axes.set_aspect(north / east, anchor="NW")
     axes.set_xlim(bounds.xmin - around, bounds.xmax + around)
     axes.set_ylim(bounds.ymin - around, bounds.ymax + around)
-    _write_title(figure, title)
+    write_title(figure, title, left=_LEFT, drop=0.18, va="top")
     _label_axes(axes, tin, ground)
     right = (box[0] + box[2] + 0.15 / _WIDTH, box[1], (beside - 0.15) / _WIDTH, box[3])
     return Map(figure, axes, ground, right)
-
-
-def _write_title(figure: Any, title: str) -> None:
-    height = figure.get_figheight()
-    figure.text(
-        _LEFT / _WIDTH,
-        1.0 - 0.18 / height,
-        title,
-        fontsize=15,
-        va="top",
-        color=INK,
-        parse_math=False,
-    )
 
 
 def _label_axes(axes: Any, tin: TIN, ground: Ground) -> None:
@@ -127,9 +102,8 @@ def _label_axes(axes: Any, tin: TIN, ground: Ground) -> None:
     axes.ticklabel_format(style="plain", useOffset=False)
     axes.set_xticks(choose_ticks(*axes.get_xlim(), count=5))
     axes.set_yticks(choose_ticks(*axes.get_ylim(), count=5))
-    axes.tick_params(colors=INK, labelsize=8)
-    for spine in axes.spines.values():
-        spine.set_color(INK)
+    axes.tick_params(labelsize=8)
+    color_frame(axes)
 
 
 def shade_for_map(tin: TIN, *, smooth: bool = True) -> Raster:

@@ -7,24 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
 from ...crs import CRS
 from ...errors import OptionError
-from ...tin.validation.options import is_whole_number
-from ..drawing.rounding import choose_ticks, format_number, round_down
+from ..drawing.rounding import choose_ticks, format_number
 from ..results import Table
+from . import curves
 from .arguments import parse_title
-from .curves import (
-    INK,
-    Curve,
-    as_factor,
-    draw_curves,
-    find_curves,
-    find_marks,
-    find_ratio,
-    read_units,
-    write_elevation,
-)
+from .figures import INK, color_frame, start_figure, write_title
 
 if TYPE_CHECKING:
     from ...arrays import Float64Array
@@ -33,7 +22,6 @@ if TYPE_CHECKING:
 __all__ = ["profile_picture"]
 
 _PURPOSE = "A picture of a profile"
-_FAINT = "#d9d9d9"
 _NAME_LETTERS = 20
 _LABELS = 8
 """About so many stations are labelled, twice as many at most."""
@@ -111,56 +99,45 @@ def profile_picture(
     2
     """
     heading = parse_title(title, "Profile")
-    curves, marks = _choose_curves(table, line)
+    surfaces, marks = _choose_curves(table, line)
     system = CRS.of(crs)
-    along, up = read_units(table, system)
-    scale = _choose_scale(curves, find_ratio(along, up), exaggeration)
-    rows = len(curves) + 1 + (len(curves) == 2)
+    along, up = curves.read_units(table, system)
+    scale = _choose_scale(surfaces, curves.find_ratio(along, up), exaggeration)
+    rows = len(surfaces) + 1 + (len(surfaces) == 2)
     figure, axes, band = _start_figure(scale, rows)
-    height = figure.get_figheight()
-    figure.text(
-        _LEFT / figure.get_figwidth(),
-        1 - 0.42 / height,
-        heading,
-        fontsize=15,
-        color=INK,
-        parse_math=False,
-    )
+    write_title(figure, heading, left=_LEFT, drop=0.42)
     _write_caption(figure, scale, system)
-    draw_curves(axes, curves, marks, scale.elevations[0])
+    curves.draw(axes, surfaces, marks, scale.elevations[0])
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=6, frameon=False, fontsize=9)
     _dress(axes, scale, up.caption("elevation"))
-    _fill_band(band, _list_band_lines(curves, scale, along.caption("station")), scale)
+    _fill_band(band, _list_band_lines(surfaces, scale, along.caption("station")), scale)
     return figure
 
 
 # ---------------------------------------------------------------- what is drawn
 
 
-def _choose_curves(table: Any, line: Any) -> tuple[list[Curve], Float64Array]:
+def _choose_curves(table: Any, line: Any) -> tuple[list[curves.Curve], Float64Array]:
     """Return the surfaces along one line, and the stations where breaklines are crossed."""
     names = set(table.columns) if isinstance(table, Table) else set()
     if not {"line", "station"} <= names or "offset" in names:
         raise OptionError("profile", table, allowed="a table that profile returned")
-    if not is_whole_number(line) or not (table["line"] == line).any():
-        allowed = f"a whole number from 0 to {int(table['line'].max())}"
-        raise OptionError("line", line, allowed=allowed)
-    own = table["line"] == line
-    curves = find_curves(table, own, "station")
-    if not any(np.isfinite(curve.elevations).any() for curve in curves):
+    own = curves.find_rows(table, line)
+    surfaces = curves.find(table, own, "station")
+    if not any(np.isfinite(curve.elevations).any() for curve in surfaces):
         raise OptionError("line", int(line), allowed="one that meets a surface")
-    return curves, find_marks(table, own, curves[0])
+    return surfaces, curves.find_marks(table, own, surfaces[0])
 
 
-def _choose_scale(curves: list[Curve], ratio: float, wanted: float | None) -> _Scale:
-    stations = curves[0].stations
+def _choose_scale(surfaces: list[curves.Curve], ratio: float, wanted: float | None) -> _Scale:
+    stations = surfaces[0].stations
     first, last = float(stations[0]), float(stations[-1])
-    heights = np.concatenate([curve.elevations for curve in curves])
+    heights = np.concatenate([curve.elevations for curve in surfaces])
     low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
     length = (last - first) or 1.0
     room = max(high - low, 1e-3 * length / ratio, 1e-9 * abs(high))
     inches = _PLOT_WIDTH * room * ratio / length
-    factor = round_down(0.8 * _MOST_HEIGHT / inches) if wanted is None else as_factor(wanted)
+    factor = curves.choose_exaggeration(wanted, usual=0.8 * _MOST_HEIGHT / inches)
     height = min(max(1.3 * inches * factor, _LEAST_HEIGHT), _MOST_HEIGHT)
     if wanted is not None:
         height = max(1.15 * inches * factor, _LEAST_HEIGHT)
@@ -180,7 +157,7 @@ def _start_figure(scale: _Scale, rows: int) -> tuple[Any, Any, Any]:
     width = _LEFT + _PLOT_WIDTH + _RIGHT
     band = rows * _BAND
     height = _ABOVE + scale.height + band + _BELOW
-    figure = _optional.load("matplotlib.figure", _PURPOSE).Figure(figsize=(width, height))
+    figure = start_figure(_PURPOSE, width, height)
     left, across = _LEFT / width, _PLOT_WIDTH / width
     axes = figure.add_axes((left, (_BELOW + band) / height, across, scale.height / height))
     below = figure.add_axes((left, _BELOW / height, across, band / height), sharex=axes)
@@ -188,10 +165,10 @@ def _start_figure(scale: _Scale, rows: int) -> tuple[Any, Any, Any]:
 
 
 def _write_caption(figure: Any, scale: _Scale, crs: CRS | None) -> None:
-    where = "CRS not known" if crs is None else crs.caption
-    text = f"{where}; vertical exaggeration {scale.exaggeration:g}"
+    text = curves.describe_drawing(crs, scale.exaggeration)
     width, height = figure.get_size_inches()
-    figure.text(_LEFT / width, 1 - 0.68 / height, text, fontsize=9, color=INK, parse_math=False)
+    how = {"fontsize": 9, "color": INK, "parse_math": False}
+    figure.text(_LEFT / width, 1 - 0.68 / height, text, **how)
 
 
 def _dress(axes: Any, scale: _Scale, label: str) -> None:
@@ -199,28 +176,23 @@ def _dress(axes: Any, scale: _Scale, label: str) -> None:
     axes.set_ylim(*scale.elevations)
     places = choose_ticks(*scale.elevations, count=max(3, round(scale.height * 2)))
     step = places[1] - places[0] if len(places) > 1 else 1.0
-    axes.set_yticks(places, [format_number(place, step=step) for place in places])
+    curves.draw_grid(axes, places, step)
     axes.set_ylabel(label, color=INK)
-    axes.grid(color=_FAINT, linewidth=0.6)
-    axes.set_axisbelow(True)
-    axes.tick_params(colors=INK)
     axes.tick_params(axis="x", length=0, labelbottom=False)
-    for spine in axes.spines.values():
-        spine.set_color(INK)
 
 
-def _list_band_lines(curves: list[Curve], scale: _Scale, station: str) -> list[_BandLine]:
+def _list_band_lines(surfaces: list[curves.Curve], scale: _Scale, station: str) -> list[_BandLine]:
     """Return what stands below the surfaces: stations, elevations, of two their difference."""
     places = choose_ticks(*scale.stations, count=_LABELS) or [scale.stations[0]]
     step = places[1] - places[0] if len(places) > 1 else 1.0
     at = np.array(places)
     lines = [_BandLine(station, [format_number(place, step=step) for place in places], INK)]
-    for curve in curves:
-        texts = [write_elevation(value) for value in curve.at(at).tolist()]
+    for curve in surfaces:
+        texts = [curves.write_elevation(value) for value in curve.at(at).tolist()]
         lines.append(_BandLine(curve.name or "elevation", texts, curve.color))
-    if len(curves) == 2:
-        differences = (curves[1].at(at) - curves[0].at(at)).tolist()
-        texts = [write_elevation(value, sign="+") for value in differences]
+    if len(surfaces) == 2:
+        differences = (surfaces[1].at(at) - surfaces[0].at(at)).tolist()
+        texts = [curves.write_elevation(value, sign="+") for value in differences]
         lines.append(_BandLine("difference", texts, INK))
     return lines
 
@@ -231,12 +203,12 @@ def _fill_band(band: Any, lines: list[_BandLine], scale: _Scale) -> None:
     band.set_xticks(places)
     band.set_ylim(len(lines), 0)
     band.set_yticks([])
-    band.tick_params(colors=INK, labelbottom=False, length=0)
+    band.tick_params(labelbottom=False, length=0)
     how = {"va": "center", "parse_math": False}
     for row, line in enumerate(lines):
         middle = row + 0.5
         if row:
-            band.axhline(row, color=_FAINT, linewidth=0.6)
+            band.axhline(row, color=curves.FAINT, linewidth=0.6)
         band.annotate(
             line.name[:_NAME_LETTERS],
             (0, middle),
@@ -260,8 +232,7 @@ def _fill_band(band: Any, lines: list[_BandLine], scale: _Scale) -> None:
                 color=line.color,
                 **how,
             )
-    for spine in band.spines.values():
-        spine.set_color(INK)
+    color_frame(band)
 
 
 def _find_side(place: float, scale: _Scale) -> tuple[float, str, int]:

@@ -46,7 +46,8 @@ def relief_map(
     Returns
     -------
     matplotlib.figure.Figure
-        Drawn without a screen; ``savefig`` writes it.
+        Drawn without a screen; ``savefig`` writes it. A legend tells each class's share of the
+        area.
 
     Raises
     ------

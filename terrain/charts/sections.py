@@ -8,24 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
 from ...crs import CRS
 from ...errors import OptionError
 from ...tin.validation.options import is_whole_number
-from ..drawing.rounding import choose_ticks, format_number, round_down
+from ..drawing.rounding import choose_ticks, round_down
 from ..results import Table
+from . import curves
 from .arguments import parse_title
-from .curves import (
-    INK,
-    Curve,
-    as_factor,
-    draw_curves,
-    find_curves,
-    find_marks,
-    find_ratio,
-    read_units,
-    write_elevation,
-)
+from .figures import INK, start_figure, write_title
 
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array
@@ -34,7 +24,6 @@ if TYPE_CHECKING:
 __all__ = ["section_picture"]
 
 _PURPOSE = "A picture of cross sections"
-_FAINT = "#d9d9d9"
 _MOST = 60
 """Sections on a sheet."""
 
@@ -50,40 +39,30 @@ class _Section:
     """One section: its station, and the surfaces along it."""
 
     station: float
-    curves: list[Curve]
+    surfaces: list[curves.Curve]
     marks: Float64Array
 
     @property
     def range(self) -> tuple[float, float]:
         """Lowest and highest elevation; NaN twice if no surface is there."""
-        heights = np.concatenate([curve.elevations for curve in self.curves])
+        heights = np.concatenate([curve.elevations for curve in self.surfaces])
         known = heights[np.isfinite(heights)]
         return (float(known.min()), float(known.max())) if len(known) else (math.nan, math.nan)
 
 
 @dataclass(frozen=True, slots=True)
 class _Sheet:
-    """How all sections are measured.
-
-    Attributes
-    ----------
-    offsets : tuple of float
-    span : float
-        Of elevations in each section.
-    step : float
-        Between lines of the grid of elevations.
-    exaggeration : float
-    width, height : float
-        Of a section, inches.
-    columns, rows : int
-    """
+    """How all sections are measured."""
 
     offsets: tuple[float, float]
     span: float
+    """Of elevations in each section."""
     step: float
+    """Between lines of the grid of elevations."""
     exaggeration: float
     width: float
     height: float
+    """Width and height of a section, inches."""
     columns: int
     rows: int
 
@@ -112,8 +91,8 @@ def section_picture(
         the sheet.
     title : str, optional
         Default "Cross sections".
-    crs : CRS, str, int or pyproj.CRS, optional
-        For the caption, and for the unit of elevations where it is not known.
+    crs
+        As of :func:`tinsmith.profile_picture`.
 
     Returns
     -------
@@ -141,8 +120,8 @@ def section_picture(
     heading = parse_title(title, "Cross sections")
     sections = _choose_sections(table, line)
     system = CRS.of(crs)
-    along, up = read_units(table, system)
-    sheet = _plan_sheet(sections, find_ratio(along, up), exaggeration, _as_columns(columns))
+    along, up = curves.read_units(table, system)
+    sheet = _plan_sheet(sections, curves.find_ratio(along, up), exaggeration, _as_columns(columns))
     figure = _start_figure(sheet)
     _write_heading(figure, heading, sheet, system)
     for number, section in enumerate(sections):
@@ -165,10 +144,7 @@ def _choose_sections(table: Any, line: Any) -> list[_Section]:
     names = set(table.columns) if isinstance(table, Table) else set()
     if not {"line", "section", "station", "offset"} <= names:
         raise OptionError("sections", table, allowed="a table that cross_sections returned")
-    if not is_whole_number(line) or not (table["line"] == line).any():
-        allowed = f"a whole number from 0 to {int(table['line'].max())}"
-        raise OptionError("line", line, allowed=allowed)
-    numbers = np.unique(table["section"][table["line"] == line])
+    numbers = np.unique(table["section"][curves.find_rows(table, line)])
     if len(numbers) > _MOST:
         raise OptionError("number of sections", len(numbers), allowed=f"at most {_MOST} on a sheet")
     found = [_find_section(table, table["section"] == number) for number in numbers]
@@ -178,9 +154,9 @@ def _choose_sections(table: Any, line: Any) -> list[_Section]:
 
 
 def _find_section(table: Table, rows: BoolArray) -> _Section:
-    curves = find_curves(table, rows, "offset")
-    marks = find_marks(table, rows, curves[0])
-    return _Section(float(table["station"][rows][0]), curves, marks)
+    surfaces = curves.find(table, rows, "offset")
+    marks = curves.find_marks(table, rows, surfaces[0])
+    return _Section(float(table["station"][rows][0]), surfaces, marks)
 
 
 def _as_columns(columns: Any) -> int:
@@ -193,13 +169,13 @@ def _plan_sheet(sections: list[_Section], ratio: float, wanted: Any, most: int) 
     """Choose one scale for all sections, for the tallest of them."""
     columns = min(most, len(sections))
     width = (_WIDTH - _LEFT - _RIGHT - (columns - 1) * _GAP) / columns
-    offsets = np.concatenate([one.curves[0].stations for one in sections])
+    offsets = np.concatenate([one.surfaces[0].stations for one in sections])
     left, right = float(offsets.min()), float(offsets.max())
     across = right - left
     ranges = np.array([one.range for one in sections])
     relief = max(float(np.nanmax(ranges[:, 1] - ranges[:, 0])), 1e-3 * across / ratio)
     inches = width * relief * ratio / across
-    factor = round_down(0.8 * _MOST_HEIGHT / inches) if wanted is None else as_factor(wanted)
+    factor = curves.choose_exaggeration(wanted, usual=0.8 * _MOST_HEIGHT / inches)
     height = max(1.25 * inches * factor, _LEAST_HEIGHT)
     rows = -(-len(sections) // columns)
     if rows * (height + _HEAD) > _TALLEST * columns:
@@ -215,7 +191,7 @@ def _plan_sheet(sections: list[_Section], ratio: float, wanted: Any, most: int) 
 
 def _start_figure(sheet: _Sheet) -> Any:
     height = _TOP + sheet.rows * (sheet.height + _HEAD) + _BOTTOM
-    return _optional.load("matplotlib.figure", _PURPOSE).Figure(figsize=(_WIDTH, height))
+    return start_figure(_PURPOSE, _WIDTH, height)
 
 
 def _find_box(figure: Any, sheet: _Sheet, number: int) -> tuple[float, float, float, float]:
@@ -229,28 +205,23 @@ def _find_box(figure: Any, sheet: _Sheet, number: int) -> tuple[float, float, fl
 
 def _write_heading(figure: Any, heading: str, sheet: _Sheet, crs: CRS | None) -> None:
     width, height = figure.get_size_inches()
-    how = {"color": INK, "parse_math": False, "va": "top"}
-    figure.text(_LEFT / width, 1 - 0.18 / height, heading, fontsize=15, **how)
-    where = "CRS not known" if crs is None else crs.caption
-    text = f"{where}; vertical exaggeration {sheet.exaggeration:g}; left is left of the centreline"
-    figure.text(_LEFT / width, 1 - 0.52 / height, text, fontsize=9, **how)
+    write_title(figure, heading, left=_LEFT, drop=0.18, va="top")
+    text = curves.describe_drawing(crs, sheet.exaggeration) + "; left is left of the centreline"
+    how = {"fontsize": 9, "color": INK, "parse_math": False, "va": "top"}
+    figure.text(_LEFT / width, 1 - 0.52 / height, text, **how)
 
 
 def _draw_section(axes: Any, section: _Section, sheet: _Sheet, *, station: str) -> None:
     low = _find_datum(section, sheet)
-    draw_curves(axes, section.curves, section.marks, low)
+    curves.draw(axes, section.surfaces, section.marks, low)
     axes.axvline(0.0, color=INK, linewidth=0.8, linestyle=(0, (8, 2, 1.5, 2)), zorder=3)
     axes.set_xlim(*sheet.offsets)
     axes.set_ylim(low, low + sheet.span)
     first, last = math.ceil(low / sheet.step), math.floor((low + sheet.span) / sheet.step)
     places = [k * sheet.step for k in range(first, last + 1)]
-    axes.set_yticks(places, [format_number(place, step=sheet.step) for place in places])
+    curves.draw_grid(axes, places, sheet.step)
     axes.set_xticks(choose_ticks(*sheet.offsets, count=6))
-    axes.grid(color=_FAINT, linewidth=0.6)
-    axes.set_axisbelow(True)
-    axes.tick_params(colors=INK, labelsize=7.5)
-    for spine in axes.spines.values():
-        spine.set_color(INK)
+    axes.tick_params(labelsize=7.5)
     how = {"fontsize": 9, "color": INK, "parse_math": False, "pad": 4}
     axes.set_title(f"Station {section.station:,.2f} {station}".rstrip(), loc="left", **how)
     axes.set_title(_describe_middle(section), loc="right", **how | {"fontsize": 8})
@@ -268,13 +239,13 @@ def _find_datum(section: _Section, sheet: _Sheet) -> float:
 
 def _describe_middle(section: _Section) -> str:
     """Return the elevations on the centreline, of two surfaces the difference, too."""
-    middle = [float(curve.at(np.zeros(1))[0]) for curve in section.curves]
+    middle = [float(curve.at(np.zeros(1))[0]) for curve in section.surfaces]
     texts = [
-        f"{curve.name} {write_elevation(value)}".strip()
-        for curve, value in zip(section.curves, middle, strict=True)
+        f"{curve.name} {curves.write_elevation(value)}".strip()
+        for curve, value in zip(section.surfaces, middle, strict=True)
     ]
     if len(middle) == 2 and np.isfinite(middle).all():
-        texts[1] += f" ({write_elevation(middle[1] - middle[0], sign='+')})"
+        texts[1] += f" ({curves.write_elevation(middle[1] - middle[0], sign='+')})"
     return ", ".join(texts)
 
 
@@ -290,7 +261,7 @@ def _write_legend(figure: Any, sections: list[_Section]) -> None:
         for axes in figure.axes
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
     }
-    if len(sections[0].curves) == 1 and not sections[0].curves[0].name:
+    if len(sections[0].surfaces) == 1 and not sections[0].surfaces[0].name:
         found.pop("surface", None)
     if found:
         width, height = figure.get_size_inches()

@@ -44,33 +44,20 @@ _NEARER = -4.0
 
 
 class LineEdges(NamedTuple):
-    """Edges of lines, each once, in the order of the lines.
-
-    Attributes
-    ----------
-    pairs : (k, 2) int32 array
-        Vertices, in the direction of the line.
-    kinds : (k,) int8 array
-        Indices into ``EDGE_KINDS``.
-    """
+    """Edges of lines, each once, in the order of the lines."""
 
     pairs: Int32Array
+    """(k, 2), vertices, in the direction of the line."""
     kinds: Int8Array
+    """(k,), indices into ``EDGE_KINDS``."""
 
 
 def find_line_edges(tin: TIN, *, guess: bool = True) -> LineEdges:
     """Return the edges of all lines of a TIN.
 
-    Parameters
-    ----------
-    tin : TIN
-    guess : bool
-        Take constrained edges of which no line is known, as in a TIN from a file, for hard
-        breaklines within the surface and for rings on its boundary; else leave them out.
-
-    Returns
-    -------
-    LineEdges
+    Constrained edges of which no line is known, as in a TIN from a file, are taken for hard
+    breaklines within the surface and for rings on its boundary if ``guess`` is True; else they are
+    left out.
     """
     lines = tin.lines
     ranks = np.array([EDGE_KINDS.index(kind) for kind in lines.kinds], np.int8)
@@ -99,19 +86,8 @@ def _find_constrained_edges(tin: TIN) -> LineEdges:
 def add_lines(plotter: Any, tin: TIN, points: Float64Array, *, factor: float = 1.0) -> list[Any]:
     """Draw the lines of a TIN: hard ones dark, soft ones dashed, rings brown, water blue.
 
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-    tin : TIN
-    points : (n, 3) float64 array
-        Its vertices as drawn.
-    factor : float, optional
-        Window pixels for one design pixel.
-
-    Returns
-    -------
-    list of pyvista.Actor
-        One for each kind there is.
+    ``points`` are its vertices as drawn, (n, 3); ``factor`` window pixels for one design pixel.
+    Returns an actor for each kind there is.
     """
     found = find_line_edges(tin)
     actors = []
@@ -130,17 +106,9 @@ def add_lines(plotter: Any, tin: TIN, points: Float64Array, *, factor: float = 1
 def cut_into_dashes(ends: Float64Array, pairs: Int32Array, length: float) -> Float64Array:
     """Cut edges into dashes that run on from one edge to the next of the same line.
 
-    Parameters
-    ----------
-    ends : (k, 2, 3) float64 array
-    pairs : (k, 2) int32 array
-        Vertices of the edges; an edge that begins where the one before ends goes on with it.
-    length : float
-        Of a dash, and of the gap after it.
-
-    Returns
-    -------
-    (d, 2, 3) float64 array
+    ``ends`` are (k, 2, 3); ``pairs`` their vertices, (k, 2): an edge that begins where the one
+    before ends goes on with it. A dash is as long as the gap after it. Returns the ends of dashes,
+    (d, 2, 3).
     """
     spans = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     along = np.concatenate([[0.0], np.cumsum(spans)[:-1]])
@@ -187,18 +155,9 @@ def add_polylines(
 ) -> Any:
     """Draw polylines over a surface.
 
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-    points : (n, 3) float64 array
-        Of all polylines, as drawn.
-    offsets : (k + 1,) int array
-        Where each begins and ends among the points.
-    chosen : int array
-        Polylines to draw.
-    color : tuple of int
-    width : float
-        Window pixels.
+    ``points`` are those of all polylines as drawn, (n, 3), line k being
+    ``points[offsets[k]:offsets[k + 1]]``; ``chosen`` tells which to draw, ``width`` is in window
+    pixels.
     """
     pv = _optional.load("pyvista", _PURPOSE)
 

@@ -91,17 +91,10 @@ def lift(
 
 
 def choose_origin(tin: TIN) -> Float64Array:
-    """Return the middle of a TIN, rounded to a tenth of its extent or finer.
+    """Return the middle of a TIN, rounded to a tenth of its extent or finer: (3,), CRS units.
 
-    Parameters
-    ----------
-    tin : TIN
-
-    Returns
-    -------
-    (3,) float64 array, CRS units
-        Multiples of a power of ten: short to write down, and no point is further away than the
-        extent.
+    Its numbers are multiples of a power of ten: short to write down, and no point is further away
+    than the extent.
     """
     low, high = tin.points.min(axis=0), tin.points.max(axis=0)
     extents = (max(high[0] - low[0], high[1] - low[1]), high[2] - low[2])

@@ -19,26 +19,17 @@ __all__ = ["Pieces", "cut_pieces", "fan_out", "turns"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pieces:
-    """The parts of a surface's triangles in some groups.
-
-    Attributes
-    ----------
-    surface : Surface
-    groups : (m,) int32 array
-    """
+    """The parts of a surface's triangles in some groups."""
 
     surface: Surface
     groups: Int32Array
+    """(m,)."""
 
 
 def fan_out(offsets: Int64Array, corners: Int32Array) -> tuple[Int32Array, Int64Array]:
     """Cut convex cells into triangles from their first corners.
 
-    Returns
-    -------
-    triangles : (m, 3) int32 array
-    cells : (m,) int64 array
-        The cell of each.
+    Returns the triangles, (m, 3), and the cell of each, (m,).
     """
     counts = np.diff(offsets) - 2
     cells = np.repeat(np.arange(len(counts)), counts)

@@ -77,17 +77,9 @@ def rebuild(
 ) -> Iterator[tuple[Float64Array, Int32Array]]:
     """Triangulate anew with all edges as lines, which are split where rounding lets them cross.
 
-    Parameters
-    ----------
-    points, triangles
-        As they are made, before rounding is looked at.
-    holds : function
-        Whether places, (k, 2), are inside: what is not is cut away.
-
-    Yields
-    ------
-    points, triangles
-        Sound ones: without snapping, then snapped.
+    Points and triangles are as they were made, before rounding is looked at; ``holds`` tells
+    whether places, (k, 2), are inside: what is not is cut away. Yields sound points and triangles:
+    without snapping, then snapped.
     """
     start, end = topology.directed_edges(triangles)
     once = np.unique(topology.edge_keys(np.stack([start, end], axis=-1), len(points)))
@@ -126,11 +118,7 @@ def _is_inside(tin: TIN, holds: Callable[[Any], Any]) -> BoolArray:
 def number_parts(neighbors: Int32Array, barrier: BoolArray) -> Int32Array:
     """Give the triangles of each part that no barrier divides one number.
 
-    Parameters
-    ----------
-    neighbors : (m, 3) int32 array
-    barrier : (m, 3) bool array
-        Whether an edge divides; those without a neighbour do anyway.
+    Both arrays are (m, 3); an edge without a neighbour divides anyway.
     """
     part = np.arange(len(neighbors))
     triangle, corner = np.nonzero(~barrier & (neighbors >= 0))

@@ -20,19 +20,13 @@ _ALLOWED = "a level, or three points (easting, northing, elevation) of a plane"
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """A plane through a point, with its rise in both directions.
-
-    Attributes
-    ----------
-    point : tuple of float
-        Easting, northing, elevation.
-    east, north : float
-        Rise for a unit of easting and of northing, in the unit of elevations.
-    """
+    """A plane through a point, with its rise in both directions."""
 
     point: tuple[float, float, float]
+    """Easting, northing, elevation."""
     east: float = 0.0
     north: float = 0.0
+    """Both the rise for a unit of easting and of northing, in the unit of elevations."""
 
     def heights_above(self, points: Float64Array) -> Float64Array:
         """Return how far the plane lies above (n, 3) points."""
@@ -80,16 +74,7 @@ def _fit_plane(points: Float64Array) -> Plane:
 def level_surface(tin: TIN, base: Any) -> TIN:
     """Return a level or a plane as a TIN of two triangles that covers another one.
 
-    Parameters
-    ----------
-    tin : TIN
-    base : float or (3, 3) array
-        As for :func:`tinsmith.volume`.
-
-    Raises
-    ------
-    OptionError
-        If the base is none.
+    The base is one as for :func:`tinsmith.volume`; OptionError if it is none.
 
     Examples
     --------

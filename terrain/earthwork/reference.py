@@ -23,23 +23,15 @@ __all__ = ["Reference", "Surface", "find_common_reference", "find_reference", "r
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """Units of what is measured on a surface.
-
-    Attributes
-    ----------
-    crs : CRS or None
-    elevation_unit : Unit or None
-        None if it is not known.
-    up : float
-        Factor from elevations to the unit of eastings.
-    notes : tuple of str
-        What is not known, was assumed or converted.
-    """
+    """Units of what is measured on a surface."""
 
     crs: CRS | None
     elevation_unit: Unit | None
+    """None if it is not known."""
     up: float
+    """Factor from elevations to the unit of eastings."""
     notes: tuple[str, ...]
+    """What is not known, was assumed or converted."""
 
     @property
     def units(self) -> PlaneUnits:
@@ -49,17 +41,12 @@ class Reference:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Surface:
-    """Triangles of a surface, or pieces of them.
-
-    Attributes
-    ----------
-    points : (n, 3) float64 array
-    triangles : (m, 3) int32 array
-        Counter-clockwise.
-    """
+    """Triangles of a surface, or pieces of them."""
 
     points: Float64Array
+    """(n, 3)."""
     triangles: Int32Array
+    """(m, 3), counter-clockwise."""
 
 
 def find_reference(tin: TIN, purpose: str) -> Reference:

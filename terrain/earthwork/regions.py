@@ -28,21 +28,12 @@ _NAMES = ("name", "region", "id", "label")
 def as_regions(regions: Any, crs: CRS | None) -> tuple[list[str], Pieces, tuple[str, ...]]:
     """Return the names of regions, their triangles at elevation 0, and what was assumed.
 
-    Parameters
-    ----------
-    regions : mapping of str to polygon, sequence of polygons, Features, or object with polygons
-        A polygon is a ring, a sequence of rings, or an object with a ``__geo_interface__``.
-    crs : CRS or None
-        That of the surfaces.
+    Regions are a mapping of names to polygons, a sequence of polygons, Features, or an object with
+    polygons; a polygon is a ring, a sequence of rings, or an object with a ``__geo_interface__``.
+    ``crs`` is that of the surfaces.
 
-    Raises
-    ------
-    CrsError
-        If the regions name another CRS, or that of the surfaces is not known.
-    LinesError
-        If one is no sound polygon.
-    OptionError
-        If there is none.
+    Raises CrsError if the regions name another CRS, or that of the surfaces is not known;
+    LinesError if one is no sound polygon; OptionError if there is none.
     """
     is_plain = not hasattr(regions, "crs")
     theirs = CRS.of(getattr(regions, "crs", None))

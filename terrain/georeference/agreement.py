@@ -47,23 +47,15 @@ class PlaneUnits(NamedTuple):
 
 
 class Agreement(NamedTuple):
-    """The one CRS and the one unit of several surfaces.
-
-    Attributes
-    ----------
-    crs : CRS or None
-    elevation_unit : Unit or None
-        The one that is known; None if none is.
-    factors : tuple of float
-        From the elevations of each to that unit.
-    notes : tuple of str
-        What is not known, was assumed or converted.
-    """
+    """The one CRS and the one unit of several surfaces."""
 
     crs: CRS | None
     elevation_unit: Unit | None
+    """The one that is known; None if none is."""
     factors: tuple[float, ...]
+    """From the elevations of each to that unit."""
     notes: tuple[str, ...]
+    """What is not known, was assumed or converted."""
 
 
 def find_plane_units(crs: CRS | None) -> PlaneUnits:
@@ -103,17 +95,8 @@ def describe_unknown(crs: CRS | None, elevation_unit: Unit | None) -> tuple[str,
 def agree(surfaces: Sequence[Referenced], names: Sequence[str]) -> Agreement:
     """Find the one CRS and the one unit of surfaces, which are those of the first.
 
-    Parameters
-    ----------
-    surfaces : sequence of TIN or Survey
-    names : sequence of str
-        What each is called in a sentence: "the ground".
-
-    Raises
-    ------
-    CrsError
-        If CRSs differ, or are known of some only; if it cannot be told whether elevations are in
-        one unit.
+    ``names`` are what each is called in a sentence: "the ground". Raises CrsError if CRSs differ,
+    or are known of some only; if it cannot be told whether elevations are in one unit.
     """
     for one, name in zip(surfaces, names, strict=True):
         _require_one_crs(surfaces[0], names[0], one, name)
@@ -228,20 +211,9 @@ def require_same_crs(
 ) -> tuple[str, ...]:
     """Refuse what is in another CRS than the surface, and tell what was assumed.
 
-    Parameters
-    ----------
-    theirs : CRS or None
-    crs : CRS or None
-        Of the surface.
-    what : str
-        What it is called in sentences: "the lines".
-    is_plain : bool
-        Plain coordinates cannot name a CRS: they are in that of the surface.
-
-    Raises
-    ------
-    CrsError
-        If they differ in the plane, or that of the surface is not known.
+    ``what`` is what it is called in sentences: "the lines". Plain coordinates cannot name a CRS:
+    they are in that of the surface. Raises CrsError if the CRSs differ in the plane, or that of the
+    surface is not known.
     """
     if theirs is None:
         if crs is None or is_plain:

@@ -27,18 +27,12 @@ _ORIGIN_METRES = 20_000.0
 
 @dataclass(frozen=True, slots=True)
 class AreaOfUse:
-    """The areas of use of the CRS of some coordinates, and of the one that they are moved to.
-
-    Attributes
-    ----------
-    source : CRS
-        CRS of the coordinates.
-    targets : tuple of CRS
-        CRSs whose areas count, without those whose area is not known.
-    """
+    """The areas of use of the CRS of some coordinates, and of the one that they are moved to."""
 
     source: CRS
+    """CRS of the coordinates."""
     targets: tuple[CRS, ...]
+    """CRSs whose areas count, without those whose area is not known."""
 
     @classmethod
     def of(cls, source: CRS | None, target: CRS | None) -> AreaOfUse | None:
@@ -61,15 +55,7 @@ class AreaOfUse:
         )
 
     def covers(self, xy: Float64Array, *, margin: float = _MARGIN_DEGREES) -> BoolArray:
-        """Whether each point lies in all areas, a margin around them included.
-
-        Parameters
-        ----------
-        xy : (n, 2) float64 array
-            Easting (longitude), northing (latitude).
-        margin : float
-            Degrees.
-        """
+        """Whether each point, (n, 2), lies in all areas, a margin of some degrees included."""
         longitude, latitude = _convert_to_degrees(self.source, xy)
         inside: BoolArray = np.isfinite(longitude) & np.isfinite(latitude)
         for crs in self.targets:

@@ -22,61 +22,39 @@ NOT_KNOWN = Unit("unit", "", None)
 
 
 class Scales(NamedTuple):
-    """Factors from easting, northing and elevation to one unit of length.
-
-    Attributes
-    ----------
-    east, north : float or (k,) float64 array
-        Arrays, one value a place, above longitude and latitude.
-    up : float
-    """
+    """Factors from easting, northing and elevation to one unit of length."""
 
     east: Any
     north: Any
+    """Both are (k,) arrays above longitude and latitude, one value a place."""
     up: float
 
 
 class Ellipsoid(NamedTuple):
-    """Shape of the earth under a geographic CRS.
-
-    Attributes
-    ----------
-    major : float
-        Half axis in the plane of the equator, metres.
-    squared : float
-        Squared eccentricity.
-    to_radians : float
-        Radians of a unit of the CRS.
-    """
+    """Shape of the earth under a geographic CRS."""
 
     major: float
+    """Half axis in the plane of the equator, metres."""
     squared: float
+    """Squared eccentricity."""
     to_radians: float
+    """Radians of a unit of the CRS."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ground:
-    """How a TIN's coordinates are drawn true to scale.
-
-    Attributes
-    ----------
-    crs_name : str
-        Name for a caption, for example "WGS 84 / UTM zone 16N (EPSG:32616)".
-    unit : Unit
-        Of horizontal lengths in the picture.
-    elevation_unit : Unit
-        The one that elevations are taken to have.
-    is_assumed : bool
-        Whether that unit is the usual one of the CRS, and not known.
-    scale : tuple of float
-        Factors from easting, northing and elevation to ``unit``.
-    """
+    """How a TIN's coordinates are drawn true to scale."""
 
     crs_name: str
+    """Name for a caption, for example "WGS 84 / UTM zone 16N (EPSG:32616)"."""
     unit: Unit
+    """Of horizontal lengths in the picture."""
     elevation_unit: Unit
+    """The one that elevations are taken to have."""
     is_assumed: bool
+    """Whether that unit is the usual one of the CRS, and not known."""
     scale: tuple[float, float, float]
+    """Factors from easting, northing and elevation to ``unit``."""
 
     @property
     def elevation_caption(self) -> str:
@@ -88,15 +66,8 @@ class Ground:
 def find_ground(tin: TIN) -> Ground:
     """Read the units of a TIN from its CRS and its unit of elevations.
 
-    Parameters
-    ----------
-    tin : TIN
-
-    Returns
-    -------
-    Ground
-        Degrees are drawn as metres along the ellipsoid at the middle of the TIN, which holds for
-        small areas.
+    Degrees are drawn as metres along the ellipsoid at the middle of the TIN, which holds for small
+    areas.
     """
     crs = tin.crs
     up = assume_elevation_unit(crs, tin.elevation_unit) or NOT_KNOWN
@@ -119,19 +90,10 @@ def _choose_drawn_unit(crs: CRS | None) -> Unit:
 def find_scales(crs: CRS | None, unit: Unit | None, northing: ArrayLike) -> Scales:
     """Return the factors that make all three coordinates lengths of one unit.
 
-    Parameters
-    ----------
-    crs : CRS or None
-    unit : Unit or None
-        Unit of elevations, if it is known; else the usual one of the CRS is taken.
-    northing : float or (k,) array
-        Where: the length of a degree of longitude depends on the latitude.
-
-    Returns
-    -------
-    Scales
-        To the unit of eastings, in a geographic CRS to metres along the ellipsoid. Where a unit is
-        not known it is taken to be the same as the other.
+    That is the unit of eastings, in a geographic CRS metres along the ellipsoid, for which
+    ``northing`` tells where: a number, or an array of k. If ``unit``, that of elevations, is not
+    known the usual one of the CRS is taken. Where a unit is not known it is taken to be the same as
+    the other.
     """
     if crs is None or not crs.is_geographic:
         return Scales(1.0, 1.0, scale_elevations(crs, unit))

@@ -31,18 +31,9 @@ _ALL = (slice(None), slice(None))
 class SurfaceBand:
     """Cells over a surface: ``band[rows, columns]`` computes a block of them.
 
-    Parameters
-    ----------
-    tin : TIN
-        As it is now; later edits do not count.
-    grid : Grid
-    values : (m,) float64 array or None
-        Of triangles; None for elevations.
-    method : InterpolationMethod
-        Of elevations.
-    is_mean : bool
-        Of cells, instead of the value at their centres.
-    threads : int or None
+    The surface is as it is now; later edits do not count. ``values`` are of triangles, (m,), None
+    for elevations, which ``method`` interpolates; with ``is_mean`` they are those of cells, and not
+    those at their centres.
     """
 
     dtype = np.dtype(np.float64)

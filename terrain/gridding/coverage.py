@@ -22,18 +22,9 @@ _BLOCK_CELLS = 1 << 22
 
 
 def require_covered(tin: TIN, grid: Grid, *, is_mean: bool = False) -> None:
-    """Refuse a raster no cell of which would have a value.
+    """Refuse, by a PointsError, a raster no cell of which would have a value.
 
-    Parameters
-    ----------
-    tin : TIN
-    grid : Grid
-    is_mean : bool
-        Whether a cell has a value if any part of it is covered, and not its centre.
-
-    Raises
-    ------
-    PointsError
+    With ``is_mean`` a cell has a value if any part of it is covered, else if its centre is.
     """
     if _sample_covers(tin, grid, is_mean):
         return

@@ -50,13 +50,7 @@ _FINEST = 2.0**9 * np.finfo(np.float64).eps
 
 
 class Cells(NamedTuple):
-    """A grid of another raster, with what is told of it.
-
-    Attributes
-    ----------
-    grid : Grid
-    crs : CRS or None
-    """
+    """A grid of another raster, with what is told of it."""
 
     grid: Grid
     crs: CRS | None
@@ -67,24 +61,13 @@ def as_grid(
 ) -> tuple[Grid, tuple[str, ...]]:
     """Return the one grid that was asked for, and what was assumed of it.
 
-    Parameters
-    ----------
-    tin : TIN
-    spacing : float or None
-        Cells aligned to its multiples, around the surface.
-    like : Raster, Cells, rasterio data set, object of xarray, or None
-    grid : Grid or None
-    in_memory : bool
-        Whether all cells are to be held at a time.
+    ``spacing`` stands for cells aligned to its multiples, around the surface; ``like`` is a Raster,
+    Cells, a rasterio data set or an object of xarray; ``in_memory`` tells whether all cells are to
+    be held at a time.
 
-    Raises
-    ------
-    OptionError
-        Unless exactly one is given, or if it has too many, too small or no square cells.
-    CrsError
-        If the other raster has another CRS.
-    PointsError
-        If the cells are not where the surface is.
+    Raises OptionError unless exactly one is given, or if it has too many, too small or no square
+    cells; CrsError if the other raster has another CRS; PointsError if the cells are not where the
+    surface is.
     """
     given = {"spacing": spacing, "like": like, "grid": grid}
     named = [name for name, value in given.items() if value is not None]
@@ -210,19 +193,9 @@ def as_cells(like: Any) -> Cells:
 def to_grid(transform: Sequence[float], shape: Sequence[int], what: Any = "raster") -> Grid:
     """Return the grid of a raster with six numbers of georeference, as rasterio has them.
 
-    Parameters
-    ----------
-    transform : (6,) sequence of float
-        Easting is ``a * column + b * row + c``, northing ``d * column + e * row + f``.
-    shape : (2,) sequence of int
-        Rows and columns.
-    what : object
-        What is refused if its cells are none.
-
-    Raises
-    ------
-    OptionError
-        If cells are turned, not square, or have no finite size.
+    Easting is ``a * column + b * row + c``, northing ``d * column + e * row + f``; ``shape`` is
+    rows and columns. Raises OptionError, of ``what``, if cells are turned, not square, or have no
+    finite size.
     """
     a, b, west, d, e, north = (float(number) for number in transform)
     rows, columns = (int(side) for side in shape)

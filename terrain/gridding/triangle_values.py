@@ -19,15 +19,7 @@ __all__ = ["measure_triangles"]
 
 
 def measure_triangles(tin: TIN, value: RasterValue, light: Light) -> Float64Array | None:
-    """Return the value of each triangle; None for elevations, which change within them.
-
-    Parameters
-    ----------
-    tin : TIN
-    value : RasterValue
-    light : Light
-        For hillshade.
-    """
+    """Return the value of each triangle, (m,); None for elevations, which change within them."""
     if value == "elevation":
         return None
     if value == "slope":

@@ -23,17 +23,10 @@ _CORNERS = ((0, 0), (0, 1), (1, 0), (1, 1))
 
 
 def trace_rings(valid: BoolArray) -> list[Int64Array]:
-    """Return the rings around the cells that have elevations.
+    """Return the rings around the cells that have elevations, where ``valid`` is True.
 
-    Parameters
-    ----------
-    valid : (rows, columns) bool array
-
-    Returns
-    -------
-    list of (k,) int64 arrays
-        Numbers of cells among the valid ones, in the order of rows; no cell twice in a ring. A
-        place is surface if an odd number of rings holds it.
+    Each is (k,): numbers of cells among the valid ones, in the order of rows; no cell twice in a
+    ring. A place is surface if an odd number of rings holds it.
 
     Examples
     --------
@@ -65,14 +58,8 @@ def find_surface(valid: BoolArray) -> BoolArray:
 def find_border(valid: BoolArray) -> tuple[Int64Array, Int64Array]:
     """Return the directed edges between cells that have surface on their left only.
 
-    Parameters
-    ----------
-    valid : (rows, columns) bool array
-
-    Returns
-    -------
-    start, end : (k,) int64 arrays
-        Cells, row by row.
+    ``valid`` tells of each cell whether it has an elevation. Returns start and end, (k,) each:
+    cells, row by row.
     """
     cells = np.arange(valid.size).reshape(valid.shape)
     a, b = cells[:-1, :-1], cells[:-1, 1:]  # northwest, northeast

@@ -22,22 +22,16 @@ _FEWEST = 4_000_000
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """Points in the order of their cells; in a cell from the lowest up, then by coordinates.
-
-    Attributes
-    ----------
-    shape : tuple of int
-        Columns from west to east, and rows from south to north.
-    number : (n,) int64 array
-        Number of each point's cell, in the order of the points: ``column * rows + row``.
-    order : (n,) int64 array
-        Rows of the points by cell and elevation; the same points have the same order however they
-        are given.
-    """
+    """Points in the order of their cells; in a cell from the lowest up, then by coordinates."""
 
     shape: tuple[int, int]
+    """Columns from west to east, and rows from south to north."""
     number: Int64Array
+    """(n,), number of each point's cell, in the order of the points: ``column * rows + row``."""
     order: Int64Array
+    """(n,), rows of the points by cell and elevation; the same points have the same order however
+    they are given.
+    """
 
     def find_lowest(self, is_taken: BoolArray) -> Int64Array:
         """Return the rows of the lowest of the points taken in each cell that has one."""

@@ -66,14 +66,9 @@ def split_columns(shape: tuple[int, int], halo: int) -> Iterator[tuple[slice, sl
 def open_grid(grid: Grid, window: int, is_covered: BoolArray | None = None) -> Grid:
     """Erode a grid, and dilate what is left: what is narrower than the window goes.
 
-    Parameters
-    ----------
-    grid : (m, n) float64 array
-    window : int
-        Half width in cells.
-    is_covered : (m, n) bool array, optional
-        Where windows may be centred: all with a value around by default. One beyond the border of
-        the data would touch nothing but a roof there, and leave it.
+    ``window`` is its half width in cells. Windows may be centred where ``is_covered`` is True, by
+    default where there is a value around: one beyond the border of the data would touch nothing but
+    a roof there, and leave it.
     """
     eroded = _filter(grid, window, np.minimum, np.inf)
     is_outside = np.isinf(eroded)
@@ -96,14 +91,9 @@ def find_covered(is_full: BoolArray, gap: int) -> BoolArray:
 def least_around(grid: Grid, core: int, reach: int, *, is_whole: bool = False) -> Grid:
     """Return the least value of the cells around each cell, infinity where there is none.
 
-    Parameters
-    ----------
-    grid : (m, n) float64 array
-    core, reach : int
-        Cells further than the first and no further than the second, in columns or rows. The width
-        of that frame is odd, and larger than twice the first.
-    is_whole : bool
-        Return infinity, too, where one of the eight squares of the frame is empty.
+    They are further than ``core`` and no further than ``reach``, in columns or rows. The width of
+    that frame is odd, and larger than twice the first. With ``is_whole`` infinity is returned, too,
+    where one of the eight squares of the frame is empty.
     """
     half, away = (reach - core - 1) // 2, (reach + core + 1) // 2
     padded = np.pad(grid, away + half, constant_values=np.inf)

@@ -45,33 +45,22 @@ _FEWEST = 2
 
 
 class Links(NamedTuple):
-    """Pairs of neighbouring points, each once.
-
-    Attributes
-    ----------
-    one, other : (n,) int64 arrays
-    rise : (n,) float64 array
-        From one point to the other, metres.
-    is_even : (n,) bool array
-        Whether the points differ by no more than noise and the terrain's slope allow.
-    """
+    """Pairs of neighbouring points, each once."""
 
     one: Int64Array
     other: Int64Array
+    """Both (n,)."""
     rise: Float64Array
+    """(n,), from one point to the other, metres."""
     is_even: BoolArray
+    """(n,), whether the points differ by no more than noise and the terrain's slope allow."""
 
 
 def link(points: Float64Array, ring: Float64Array, parameters: Parameters) -> Links:
     """Link points that are neighbours in their TIN, and no further apart than the edge length.
 
-    Parameters
-    ----------
-    points : (n, 3) float64 array
-        At different places, in metres.
-    ring : (k, 3) float64 array
-        Points around them, not all in line, that are linked with none.
-    parameters : Parameters
+    Points are (n, 3), at different places, in metres; those of the ring around them, (k, 3) and not
+    all in line, are linked with none.
     """
     edges = triangulate(np.concatenate([points, ring])).edges.astype(np.int64)
     one, other = edges[(edges < len(points)).all(axis=1)].T

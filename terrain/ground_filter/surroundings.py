@@ -35,12 +35,7 @@ class _Side(NamedTuple):
 def surround(points: Doubles, seeds: Doubles, margin: float) -> Doubles:
     """Return points around all others, on planes through the seeds that are nearest to them.
 
-    Parameters
-    ----------
-    points, seeds : (n, 3) float64 arrays
-        In metres.
-    margin : float
-        Between the outermost points and those that are made.
+    All are (n, 3), in metres; ``margin`` is between the outermost points and those that are made.
     """
     low, high = points[:, :2].min(axis=0) - margin, points[:, :2].max(axis=0) + margin
     sides = []

@@ -39,28 +39,19 @@ _CLOSE = 1e-9
 
 
 class Drops(NamedTuple):
-    """Where drops are: at a vertex, or on an edge about to enter a triangle.
-
-    Attributes
-    ----------
-    vertices : (k,) int64 array
-        ``NOWHERE`` for drops on an edge.
-    triangles, edges : (k,) int64 arrays
-        The triangle that is entered, and across which of its edges.
-    shares : (k,) float64 array
-        Of that edge, from its start to the drop.
-    targets : (k,) int64 array
-        The lower end of an edge that is followed, else ``NOWHERE``.
-    ends : (k,) int8 array
-        ``MOVING``, or how they ended; one that ended on an edge is still in the triangle before.
-    """
+    """Where drops are: at a vertex, or on an edge about to enter a triangle."""
 
     vertices: Int64Array
+    """(k,), ``NOWHERE`` for drops on an edge."""
     triangles: Int64Array
     edges: Int64Array
+    """Both (k,), the triangle that is entered, and across which of its edges."""
     shares: Float64Array
+    """(k,), of that edge, from its start to the drop."""
     targets: Int64Array
+    """(k,), the lower end of an edge that is followed, else ``NOWHERE``."""
     ends: Int8Array
+    """(k,), ``MOVING``, or how they ended; one that ended on an edge is in the triangle before."""
 
     def choose(self, rows: Int64Array) -> Drops:
         """Return some of them."""
@@ -86,14 +77,10 @@ def make_drops(count: int) -> Drops:
 
 
 class Walker:
-    """Moves drops down a surface.
+    """Moves drops down a surface, on a filled one over its water.
 
-    Parameters
-    ----------
-    falls : Falls
-    filling : Filling, optional
-    vertices : (k,) int64 array, optional
-        Those that drops can leave; default all. What is on an edge goes where it likes.
+    ``vertices`` are those that drops can leave, by default all; what is on an edge goes where it
+    likes.
 
     Notes
     -----

@@ -9,9 +9,9 @@ import numpy as np
 from ...tin import topology
 from .. import _kernel
 from ..earthwork.cells import fan_out
+from ..relief.dissolving import DividedMesh
 from .descent import interpolate_edges
 from .strips import SAME, Bases, follow
-from .water import Patches
 
 if TYPE_CHECKING:
     from ...arrays import Float64Array, Int32Array, Int64Array
@@ -24,42 +24,28 @@ _NEAR = 1e-10
 
 
 class _Cuts(NamedTuple):
-    """Fall lines across triangles, by triangle and share of the base.
-
-    Attributes
-    ----------
-    triangles : (k,) int64 array
-    lower, upper : (k,) int64 arrays
-        Their ends, at the base and on the other two edges: vertices, or places from n on.
-    before, beyond : (k,) int32 arrays
-        The labels on both sides.
-    places : (p, 2) float64 array
-    edges : (p,) int64 array
-        The edge that each place is on, ascending, and in an edge from its smaller vertex on.
-    touched : (t,) int32 array
-        Triangles with a place on an edge of theirs, beyond the cut ones.
-    """
+    """Fall lines across triangles, by triangle and share of the base."""
 
     triangles: Int64Array
+    """(k,)."""
     lower: Int64Array
     upper: Int64Array
+    """Both (k,), their ends, at the base and on other edges: vertices, or places from n on."""
     before: Int32Array
     beyond: Int32Array
+    """Both (k,), the labels on both sides."""
     places: Float64Array
+    """(p, 2)."""
     edges: Int64Array
+    """(p,), the edge of each place, ascending, and in an edge from its smaller vertex on."""
     touched: Int32Array
+    """(t,), triangles with a place on an edge of theirs, beyond the cut ones."""
 
 
-def cut_at_divides(network: Network, labels: Int32Array, level: Int32Array) -> Patches:
+def cut_at_divides(network: Network, labels: Int32Array, level: Int32Array) -> DividedMesh:
     """Return triangles that share their vertices, each of one label.
 
-    Parameters
-    ----------
-    network : Network
-    labels : (s,) int32 array
-        Of the strips.
-    level : (m,) int32 array
-        Of the triangles, for those that are level.
+    ``labels`` are those of the strips, (s,); ``level`` those of level triangles, (m,).
     """
     falls, offsets = network.walker.falls, network.strips.offsets
     whole = level.copy()
@@ -74,9 +60,8 @@ def cut_at_divides(network: Network, labels: Int32Array, level: Int32Array) -> P
     made, regions = _cut_triangles(network, cuts, np.flatnonzero(is_cut), whole)
     triangles = np.concatenate([falls.triangles[~is_cut], made])
     points = np.concatenate([falls.points[:, :2], cuts.places])
-    neighbors = topology.neighbors_of(triangles, len(points))
     patch_regions = np.append(whole[~is_cut], regions).astype(np.int64)
-    return Patches(points, triangles, neighbors, patch_regions)
+    return DividedMesh.of(points, triangles, patch_regions)
 
 
 def _place_cuts(

@@ -157,11 +157,8 @@ def flow_accumulation(
     tin : TIN
     min_area : float, optional
         Leave out channels through which less drains, in the square of CRS units.
-    fill_depressions : bool, optional
-        Depressions are full, so that water goes on from where they spill, as of :func:`flow_path`.
-    progress : callable, optional
-        Called with the fraction done, ascending to 1.0, between the stages. What it raises ends
-        the call.
+    fill_depressions, progress
+        As of :func:`catchments`.
 
     Returns
     -------

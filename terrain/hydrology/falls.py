@@ -27,30 +27,26 @@ _POOR = 1e-10
 
 
 class Falls(NamedTuple):
-    r"""How the triangles of a surface fall; edge k of a triangle lies opposite corner k.
+    r"""How the triangles of a TIN fall; edge k of a triangle lies opposite corner k.
 
-    Attributes
-    ----------
-    points, triangles, neighbors : arrays
-        As of a TIN.
-    signs : (m, 3) int8 array
-        +1 where water leaves the triangle across the edge, -1 where it enters, 0 where it runs
-        along the edge; all 0 if the triangle is level.
-    values : (m, 3) float64 array
-        How much leaves, in proportion; the three of a triangle add up to 0::
+    The fall line through a corner meets the edge opposite::
 
-                    corner k
-                    /      \\          the fall line through corner k meets edge k at the share
-                   /    |   \\         -values[k + 2] / values[k] of the way from a to b
-                  a ----|---- b
-                     edge k
+          corner k
+          /      \          at the share -values[k + 2] / values[k] of the way from a to b
+         /    |   \
+        a ----|---- b
+           edge k
     """
 
     points: Float64Array
     triangles: Int32Array
     neighbors: Int32Array
     signs: Int8Array
+    """(m, 3), +1 where water leaves the triangle across the edge, -1 where it enters, 0 where it
+    runs along the edge; all 0 if the triangle is level.
+    """
     values: Float64Array
+    """(m, 3), how much leaves, in proportion; the three of a triangle add up to 0."""
 
     @property
     def is_level(self) -> BoolArray:
@@ -101,21 +97,9 @@ def round_share(share: Any) -> Any:
 
 
 def find_falls(tin: TIN) -> Falls:
-    """Find how the triangles of a TIN fall.
+    """Find how the triangles of a TIN fall: signs are exact, values good to ten digits at least.
 
-    Parameters
-    ----------
-    tin : TIN
-
-    Returns
-    -------
-    Falls
-        Signs are exact; values are good to ten digits at least.
-
-    Raises
-    ------
-    PointsError
-        If elevations are of a magnitude at which signs are not exact.
+    Raises PointsError if elevations are of a magnitude at which signs are not exact.
     """
     surface = tin.triangulation
     require_exact_range(surface.points[:, 2:], "Elevations")

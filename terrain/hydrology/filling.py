@@ -19,31 +19,22 @@ __all__ = ["Filling", "fill"]
 
 
 class Filling(NamedTuple):
-    """A surface whose depressions are full, so that all water leaves it over the boundary.
-
-    Attributes
-    ----------
-    hierarchy : Hierarchy
-        Its outermost depressions spill at the vertex where water leaves them here.
-    levels : (n,) float64 array
-        Of the water at each vertex, of the ground where there is none.
-    ponds : (n,) int64 array
-        The outermost depression under whose water each vertex is, ``NOWHERE`` for none.
-    nexts : (n,) int64 array
-        The next vertex on the way across water or level ground, ``NOWHERE`` where water descends
-        or leaves the surface.
-    steps : (n,) int64 array
-        How many edges that way has, under water to where the pond spills.
-    ranks : (n,) int64 array
-        Place of each vertex by elevation, easting, northing.
-    """
+    """A surface whose depressions are full, so that all water leaves it over the boundary."""
 
     hierarchy: Hierarchy
+    """Its outermost depressions spill at the vertex where water leaves them here."""
     levels: Float64Array
+    """(n,), of the water at each vertex, of the ground where there is none."""
     ponds: Int64Array
+    """(n,), the outermost depression under whose water each vertex is, ``NOWHERE`` for none."""
     nexts: Int64Array
+    """(n,), the next vertex on the way across water or level ground, ``NOWHERE`` where water
+    descends or leaves the surface.
+    """
     steps: Int64Array
+    """(n,), how many edges that way has, under water to where the pond spills."""
     ranks: Int64Array
+    """(n,), place of each vertex by elevation, easting, northing."""
 
     def choose_way(self, *vertices: Int64Array) -> Int64Array:
         """Return of vertices of one level that with the shortest way; under water if any is."""
@@ -163,11 +154,8 @@ def _spread(
 ) -> tuple[Int64Array, Int64Array]:
     """Search breadth first from sources, against the direction of ways.
 
-    Returns
-    -------
-    chosen, steps : (count,) int64 arrays
-        The way to take from each node, of several the one of least rank, ``NOWHERE`` for none; and
-        how many there are to a source.
+    Returns, (count,) each, the way to take from each node, of several the one of least rank,
+    ``NOWHERE`` for none; and how many there are to a source.
     """
     order = np.argsort(ways.ends, kind="stable")
     starts, ranks = ways.starts[order], ranks[order]

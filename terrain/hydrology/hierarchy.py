@@ -17,25 +17,18 @@ __all__ = ["Hierarchy", "build_hierarchy", "rank_vertices"]
 
 
 class Hierarchy(NamedTuple):
-    """Depressions, those that join before the one that they make.
-
-    Attributes
-    ----------
-    pits : (d,) int64 array
-        Lowest vertex of each.
-    spill_vertices : (d,) int64 array
-        Where each is full: it joins another one, or runs over.
-    parents : (d,) int64 array
-        The depression that it becomes a part of, ``NOWHERE`` for the outermost ones.
-    basins : (n,) int64 array
-        For each vertex the smallest depression that its water is in once it is full, ``NOWHERE`` if
-        it leaves the surface; it need not be under water then.
-    """
+    """Depressions, those that join before the one that they make."""
 
     pits: Int64Array
+    """(d,), lowest vertex of each."""
     spill_vertices: Int64Array
+    """(d,), where each is full: it joins another one, or runs over."""
     parents: Int64Array
+    """(d,), the depression that it becomes a part of, ``NOWHERE`` for the outermost ones."""
     basins: Int64Array
+    """(n,), for each vertex the smallest depression that its water is in once it is full,
+    ``NOWHERE`` if it leaves the surface; it need not be under water then.
+    """
 
     def find_roots(self) -> Int64Array:
         """Return the outermost depression of each."""
@@ -58,15 +51,7 @@ class Hierarchy(NamedTuple):
 def build_hierarchy(tin: TIN, rank: Int64Array | None = None) -> Hierarchy:
     """Find the depressions of a surface from which water runs off freely at the boundary.
 
-    Parameters
-    ----------
-    tin : TIN
-    rank : (n,) int64 array, optional
-        Of the vertices, as :func:`rank_vertices` has it; default computed.
-
-    Returns
-    -------
-    Hierarchy
+    ``rank`` is the place of each vertex as :func:`rank_vertices` has it, by default computed.
 
     Notes
     -----
@@ -211,10 +196,7 @@ class _Joining:
 def _leave_out_shallow(found: _Joining, z: Float64Array) -> Int64Array:
     """Leave out nodes without depth, and those that are the only part of another one.
 
-    Returns
-    -------
-    (nodes,) int64 array
-        The node that stands for each, ``NOWHERE`` for none; parents are those that are left.
+    Returns the node that stands for each, ``NOWHERE`` for none; parents are those that are left.
     """
     parents = found.parents
     count = len(parents)

@@ -26,32 +26,24 @@ __all__ = ["Network", "accumulate", "build_network", "build_vertex_network", "fi
 
 
 class Network(NamedTuple):
-    """Nodes: the strips, then the vertices, then where water ends.
-
-    Attributes
-    ----------
-    walker : Walker
-    surface : FallingSurface
-        Of the compiled core.
-    strips : Strips
-    grounds : (n,) int32 array
-        The smallest vertex that each is connected to along level edges. Water that ends on level
-        ground ends at that node of the last ones.
-    nexts : (s + 2 * n + 1,) int32 array
-        The node below; ends are below themselves, the last of all being the outside.
-    uppers : (s + n,) int32 array
-        The upper end of the channel that water takes to a vertex, ``NOWHERE`` where it takes none.
-    areas : (m,) float64 array
-        Of the triangles.
-    """
+    """Nodes: the strips, then the vertices, then where water ends."""
 
     walker: Walker
     surface: _kernel.FallingSurface
+    """Of the compiled core."""
     strips: Strips
     grounds: Int32Array
+    """(n,), the smallest vertex that each is connected to along level edges. Water that ends on
+    level ground ends at that node of the last ones.
+    """
     nexts: Int32Array
+    """(s + 2 * n + 1,), the node below; ends are below themselves, the last being the outside."""
     uppers: Int32Array
+    """(s + n,), the upper end of the channel that water takes to a vertex, ``NOWHERE`` where it
+    takes none.
+    """
     areas: Float64Array
+    """(m,), of the triangles."""
 
     @property
     def first_vertex(self) -> int:

@@ -23,45 +23,33 @@ KINDS = np.array(["descent", "pond", "flat"], object)
 
 
 class Trace(NamedTuple):
-    """Places on the ways of drops, one way after the other.
-
-    Attributes
-    ----------
-    coordinates : (n, 3) float64 array
-    owners : (n,) int64 array
-        The drop of each.
-    vertices : (n,) int64 array
-        ``NOWHERE`` for places on no vertex.
-    is_level : (n,) bool array
-        Whether the way on from there runs over level ground that is filled.
-    ends : (k,) int8 array
-        How each drop ended.
-    """
+    """Places on the ways of drops, one way after the other."""
 
     coordinates: Float64Array
+    """(n, 3)."""
     owners: Int64Array
+    """(n,), the drop of each."""
     vertices: Int64Array
+    """(n,), ``NOWHERE`` for places on no vertex."""
     is_level: BoolArray
+    """(n,), whether the way on from there runs over level ground that is filled."""
     ends: Int8Array
+    """(k,), how each drop ended."""
 
 
 class Parts(NamedTuple):
-    """Lines that a route is cut into, in its order.
-
-    Attributes
-    ----------
-    coordinates : (n, 3) float64 array
-        On the filled surface.
-    offsets : (p + 1,) int64 array
-    owners, kinds, ponds : (p,) int64 arrays
-        The drop; ``DESCENT``, ``POND`` or ``FLAT_GROUND``; the depression, ``NOWHERE`` for none.
-    """
+    """Lines that a route is cut into, in its order."""
 
     coordinates: Float64Array
+    """(n, 3), on the filled surface."""
     offsets: Int64Array
+    """(p + 1,)."""
     owners: Int64Array
     kinds: Int64Array
     ponds: Int64Array
+    """Each (p,), the drop; ``DESCENT``, ``POND`` or ``FLAT_GROUND``; the depression, ``NOWHERE``
+    for none.
+    """
 
 
 def trace_down(walker: Walker, start: Float64Array, drops: Drops) -> Trace:

@@ -20,19 +20,9 @@ _Place: TypeAlias = tuple[Fraction, Fraction]
 
 
 def place_drops(tin: TIN, walker: Walker, xy: Float64Array) -> Drops:
-    """Return drops at the first edge or vertex that they come to.
+    """Return drops at the first edge or vertex that they come to from places, (k, 2), on a TIN.
 
-    Parameters
-    ----------
-    tin : TIN
-    walker : Walker
-    xy : (k, 2) float64 array
-        Places on the surface.
-
-    Returns
-    -------
-    Drops
-        What cannot move from where it is, on a level triangle or edge, has no triangle.
+    What cannot move from where it is, on a level triangle or edge, has no triangle.
     """
     drops = make_drops(len(xy))
     triangles = tin.locate(xy).tolist()

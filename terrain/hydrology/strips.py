@@ -41,33 +41,23 @@ class Bases(NamedTuple):
                  /  | \          share 0 at the start of the base, 1 at its end; the fall line
                 /   |  \         through the apex meets it at ``splits``
           start ----|--- end
-
-    Attributes
-    ----------
-    edges : (k,) int64 array
-    splits : (k,) float64 array
-    drains : (k,) bool array
-        Whether water leaves across the base.
     """
 
     edges: Int64Array
+    """(k,)."""
     splits: Float64Array
+    """(k,)."""
     drains: BoolArray
+    """(k,), whether water leaves across the base."""
 
 
 class Strips(NamedTuple):
-    """Parts of triangles between neighbouring cuts, by triangle and share of the base.
-
-    Attributes
-    ----------
-    offsets : (m + 1,) int64 array
-        Triangle t has the strips ``offsets[t]`` to ``offsets[t + 1]``, a level one none.
-    starts : (s,) float64 array
-        Shares of the base; each ends where the next one of the triangle starts, the last at 1.
-    """
+    """Parts of triangles between neighbouring cuts, by triangle and share of the base."""
 
     offsets: Int64Array
+    """(m + 1,), triangle t has strips ``offsets[t]`` to ``offsets[t + 1]``, a level one none."""
     starts: Float64Array
+    """(s,), shares of the base; each ends where the next of the triangle starts, the last at 1."""
 
     def find_triangles(self, strips: Int64Array) -> Int64Array:
         """Return the triangles that strips are part of."""
@@ -130,10 +120,7 @@ def leave_strips(
 def settle(walker: Walker, drops: Drops) -> tuple[Drops, Int64Array]:
     """Follow drops until each has come to a vertex or to an edge that is a channel, or has ended.
 
-    Returns
-    -------
-    Drops, and (k,) int64 array
-        The upper end of the edge along which each has left a vertex, -1 for others.
+    Returns them, and the upper end of the edge along which each has left a vertex, -1 for others.
     """
     found = make_drops(len(drops.vertices))
     upper = np.full(len(drops.vertices), -1)

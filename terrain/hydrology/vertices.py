@@ -26,24 +26,16 @@ _ROUNDING = 4 * 2.0**-53
 
 
 class Exits(NamedTuple):
-    """Steepest descent from vertices: to another one along an edge, or down a triangle.
-
-    Attributes
-    ----------
-    vertices : (k,) int64 array
-        At the other end of the edge, else ``NOWHERE``.
-    triangles : (k,) int64 array
-        Through which the fall line runs, else ``NOWHERE``.
-    slopes : (k,) float64 array
-        Fall over run, elevations as they are; 0 where there is no descent.
-    leaves : (k,) bool array
-        Whether water leaves the surface there.
-    """
+    """Steepest descent from vertices: to another one along an edge, or down a triangle."""
 
     vertices: Int64Array
+    """(k,), at the other end of the edge, else ``NOWHERE``."""
     triangles: Int64Array
+    """(k,), through which the fall line runs, else ``NOWHERE``."""
     slopes: Float64Array
+    """(k,), fall over run, elevations as they are; 0 where there is no descent."""
     leaves: BoolArray
+    """(k,), whether water leaves the surface there."""
 
 
 class _Candidates(NamedTuple):
@@ -62,25 +54,12 @@ def find_exits(
     is_boundary: BoolArray,
     levels: Float64Array | None = None,
 ) -> Exits:
-    """Find the steepest descent from vertices.
+    """Find the steepest descent from vertices, (k,).
 
-    Parameters
-    ----------
-    falls : Falls
-    half_edges : HalfEdges
-        Of the triangles at the vertices, others need not be there.
-    vertices : (k,) int64 array
-    is_boundary : (n,) bool array
-        Of all vertices.
-    levels : (n,) float64 array, optional
-        Of water at vertices: there is a descent only to where it stands lower.
+    The half-edges are those of the triangles at them, others need not be there; ``is_boundary``
+    tells of all vertices, (n,). Where water has levels there is a descent only to where it stands
+    lower.
 
-    Returns
-    -------
-    Exits
-
-    Notes
-    -----
     Candidates are the edges that descend, and the triangles whose fall line through the vertex lies
     inside them. Slopes are compared exactly where doubles cannot tell; of equal ones the direction
     with the smallest azimuth is taken. At the boundary water leaves where nothing descends, and

@@ -11,30 +11,12 @@ from .. import _kernel
 from ..earthwork.cells import fan_out
 from ..earthwork.reference import require_finite
 from ..isolines.mending import PolygonParts, mend_polygons
-from ..relief.dissolving import dissolve
+from ..relief.dissolving import DividedMesh, dissolve
 
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
-__all__ = ["Patches", "Polygons", "Waters", "cut_below", "gather_polygons", "measure_waters"]
-
-
-class Patches(NamedTuple):
-    """Triangles that share their vertices, each part of a region.
-
-    Has what :func:`tinsmith.terrain.relief.dissolving.dissolve` asks of a TIN.
-
-    Attributes
-    ----------
-    points : (n, 2) or (n, 3) float64 array
-    triangles, neighbors : (m, 3) int32 arrays
-    regions : (m,) int64 array
-    """
-
-    points: Float64Array
-    triangles: Int32Array
-    neighbors: Int32Array
-    regions: Int64Array
+__all__ = ["Polygons", "Waters", "cut_below", "gather_polygons", "measure_waters"]
 
 
 class Polygons(NamedTuple):
@@ -49,38 +31,23 @@ class Polygons(NamedTuple):
 
 
 class Waters(NamedTuple):
-    """Waters that stand in triangles, each with a level of its own.
-
-    Attributes
-    ----------
-    triangles : (k,) int64 array
-        Of the surface, with a corner under water.
-    numbers : (k,) int64 array
-        The water in each.
-    levels : (w,) float64 array
-    """
+    """Waters that stand in triangles, each with a level of its own."""
 
     triangles: Int64Array
+    """(k,), of the surface, with a corner under water."""
     numbers: Int64Array
+    """(k,), the water in each."""
     levels: Float64Array
+    """(w,)."""
 
 
 def measure_waters(
     points: Float64Array, triangles: Int32Array, waters: Waters, up: float
 ) -> tuple[Float64Array, Float64Array]:
-    """Measure areas and volumes of waters, exact but for rounding.
+    """Measure areas and volumes of waters, (w,) each, exact but for rounding.
 
-    Parameters
-    ----------
-    points, triangles : arrays
-        Of the surface.
-    waters : Waters
-    up : float
-        Factor from elevations to the unit of eastings.
-
-    Returns
-    -------
-    areas, volumes : (w,) float64 arrays
+    Points and triangles are those of the surface; ``up`` is the factor from elevations to the unit
+    of eastings.
     """
     corners = triangles[waters.triangles]
     depths = waters.levels[waters.numbers][:, None] - points[corners, 2]
@@ -94,7 +61,7 @@ def measure_waters(
     return sums[:, column("fill_area")], sums[:, column("fill")] * up
 
 
-def cut_below(points: Float64Array, triangles: Int32Array, waters: Waters) -> Patches:
+def cut_below(points: Float64Array, triangles: Int32Array, waters: Waters) -> DividedMesh:
     r"""Cut off what of triangles lies above the water in them.
 
     A corner at the level is dry. A place where the level crosses an edge is made once for both
@@ -125,8 +92,7 @@ def cut_below(points: Float64Array, triangles: Int32Array, waters: Waters) -> Pa
     made, cell = fan_out(offsets, slots[used].astype(np.int32))
     sound = (made != np.roll(made, 1, axis=1)).all(axis=1)
     triangles, cell = np.ascontiguousarray(made[sound]), cell[sound]
-    neighbors = topology.neighbors_of(triangles, len(shore.points))
-    return Patches(shore.points, triangles, neighbors, waters.numbers[cell])
+    return DividedMesh.of(shore.points, triangles, waters.numbers[cell])
 
 
 class _Shore(NamedTuple):
@@ -159,9 +125,9 @@ def _cross_edges(
     return _Shore(np.concatenate([points[:, :2], places]), vertices)
 
 
-def gather_polygons(patches: Patches) -> Polygons:
+def gather_polygons(patches: DividedMesh) -> Polygons:
     """Join the triangles of each region to polygons that are valid."""
-    found = dissolve(patches, patches.regions)
+    found = dissolve(patches, patches.owners)
     counts = np.diff(found.feature_offsets)
     parts, notes = mend_polygons(
         PolygonParts(

@@ -28,19 +28,9 @@ def list_wrong_rows(table: Table) -> Int64Array:
 def drop_blunders(tin: TIN, table: Table) -> Int64Array:
     """Remove the points from a TIN, in place, that look like blunders.
 
-    Those of low certainty stay, and those that only say that another row has the same number or
-    place; a vertex that stands for other rows, too; and one without which a line would vanish.
-
-    Parameters
-    ----------
-    tin : TIN
-    table : Table
-        Of :func:`tinsmith.blunders`.
-
-    Returns
-    -------
-    (k,) int64 array
-        The rows that were left out, ascending.
+    ``table`` is one of :func:`tinsmith.blunders`. Those of low certainty stay, and those that only
+    say that another row has the same number or place; a vertex that stands for other rows, too; and
+    one without which a line would vanish. Returns the rows that were left out, ascending.
     """
     rows = list_wrong_rows(table)
     vertex_of = tin.vertex_of

@@ -30,21 +30,10 @@ _SAMPLE = 20_000
 def describe_gaps(tin: TIN) -> list[str]:
     """Tell of triangles that span places without points.
 
-    Parameters
-    ----------
-    tin : TIN
-
-    Returns
-    -------
-    list of str
-        A sentence for long edges along the boundary, one for those inside, one for steep slivers
-        along the hull; none for edges of lines.
-
-    Notes
-    -----
-    Linear in the triangles. Long is an edge of more than five times the 95th percentile of edge
-    lengths, so that neither scan lines nor contour lines, whose points are dense along them alone,
-    are found to have gaps.
+    A sentence for long edges along the boundary, one for those inside, one for steep slivers along
+    the hull; none for edges of lines. Linear in the triangles. Long is an edge of more than five
+    times the 95th percentile of edge lengths, so that neither scan lines nor contour lines, whose
+    points are dense along them alone, are found to have gaps.
 
     Examples
     --------
@@ -63,8 +52,18 @@ def describe_gaps(tin: TIN) -> list[str]:
         stays = trim(surface, stays, limit, everywhere=False)
     unit = "units" if tin.crs is None else tin.crs.horizontal_unit.symbol
     return [
-        *_describe_outer(squares[~stays], limit, unit),
-        *_describe_inner(squares[is_long & stays], limit, unit),
+        *_describe_long(
+            squares[~stays],
+            unit,
+            "along the boundary",
+            f"far longer than usual: max_edge={limit:g} trims them.",
+        ),
+        *_describe_long(
+            squares[is_long & stays],
+            unit,
+            "inside",
+            f"as over a void: max_edge={limit:g} with trim='everywhere' leaves them out.",
+        ),
         *_describe_slivers(tin, squares, stays),
     ]
 
@@ -85,23 +84,12 @@ def _round_up(length: float) -> float:
     return float(f"{np.ceil(length / unit) * unit:.6g}")
 
 
-def _describe_outer(squares: Float64Array, limit: float, unit: str) -> list[str]:
+def _describe_long(squares: Float64Array, unit: str, where: str, what: str) -> list[str]:
+    """Tell of triangles with long edges, given as squares: where they are, and what to do."""
     if len(squares) == 0:
         return []
-    return [
-        f"{_count_triangles(len(squares))} along the boundary with edges of up to "
-        f"{np.sqrt(squares.max()):.6g} {unit}, far longer than usual: max_edge={limit:g} trims "
-        "them."
-    ]
-
-
-def _describe_inner(squares: Float64Array, limit: float, unit: str) -> list[str]:
-    if len(squares) == 0:
-        return []
-    return [
-        f"{_count_triangles(len(squares))} inside with edges of up to {np.sqrt(squares.max()):.6g} "
-        f"{unit}, as over a void: max_edge={limit:g} with trim='everywhere' leaves them out."
-    ]
+    longest = f"{np.sqrt(squares.max()):.6g} {unit}"
+    return [f"{_count_triangles(len(squares))} {where} with edges of up to {longest}, {what}"]
 
 
 def _describe_slivers(tin: TIN, squares: Float64Array, stays: BoolArray) -> list[str]:

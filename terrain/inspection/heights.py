@@ -35,37 +35,24 @@ _MOST_REMOVED = 20_000
 
 
 class Heights(NamedTuple):
-    """Vertices that are too high or too low.
-
-    Attributes
-    ----------
-    vertices : (k,) int32 array
-    residuals : (k,) float64 array
-        Elevation above the surface without any of them.
-    scales : (k,) float64 array
-        How large residuals are around each.
-    limits : (k,) float64 array
-        Beyond which a residual is suspicious: more on a line and on the boundary.
-    """
+    """Vertices that are too high or too low."""
 
     vertices: Int32Array
+    """(k,)."""
     residuals: Float64Array
+    """(k,), elevation above the surface without any of them."""
     scales: Float64Array
+    """(k,), how large residuals are around each."""
     limits: Float64Array
+    """(k,), beyond which a residual is suspicious: more on a line and on the boundary."""
 
 
 class Judgement(NamedTuple):
-    """What was found, and how large residuals are in the middle.
-
-    Attributes
-    ----------
-    found : Heights
-    scale : float
-        Median of the scales of all vertices.
-    """
+    """What was found, and how large residuals are in the middle."""
 
     found: Heights
     scale: float
+    """Median of the scales of all vertices."""
 
 
 def find_heights(
@@ -87,22 +74,10 @@ def find_heights(
        was a blunder.
     4. So on with those that stand out then, until none does.
 
-    Parameters
-    ----------
-    tin : TIN
-    judged : (k,) int32 array
-        Vertices to judge.
-    wrong : (m,) int32 array
-        Those that are known to be wrong, whose elevations count for nothing.
-    sample : int, optional
-        Measure scales from so many of the vertices, and residuals against corrected elevations;
-        default scales from all of them, and residuals against the surface without those found.
-    progress : callable, optional
-        Told before the first round, and after each half of what is left.
-
-    Returns
-    -------
-    Judgement
+    Vertices are ``judged``, (k,); those known to be ``wrong``, (m,), count for nothing. With a
+    ``sample`` scales are measured from so many of the vertices, and residuals against corrected
+    elevations, else scales from all of them, and residuals against the surface without those found.
+    Progress is told before the first round, and after each half of what is left.
 
     References
     ----------
@@ -204,20 +179,14 @@ class _Search:
 
 
 class _Reach(NamedTuple):
-    """The vertices within two edges of each of some others, as pairs.
-
-    Attributes
-    ----------
-    size : int
-        Of those others.
-    owners : (k,) int64 array
-        Their places, ascending.
-    vertices : (k,) int32 array
-    """
+    """The vertices within two edges of each of some others, as pairs."""
 
     size: int
+    """Of those others."""
     owners: Int64Array
+    """(k,), their places, ascending."""
     vertices: Int32Array
+    """(k,)."""
 
     @classmethod
     def of(

@@ -64,24 +64,13 @@ class SuspectElevation:
 
 
 def find_suspect_elevations(z: Float64Array) -> list[SuspectElevation]:
-    """Find elevations that may stand for "no data".
+    """Find at most three elevations that may stand for "no data", the outermost first.
 
-    Parameters
-    ----------
-    z : (n,) float64 array
-        Finite elevations.
-
-    Returns
-    -------
-    list of SuspectElevation
-        At most three, the outermost first; ``lowest`` and ``highest`` are of the others.
-
-    Notes
-    -----
     From the outside inwards the lowest or highest value is suspected if a gap parts it from all
     others: one that programs write for no data by a gap wider than the range of the others, any
-    value that three points or more share by ten times this range, and any beyond the earth's.
-    Zero among elevations around the sea lies in no gap, and is left alone.
+    value that three points or more share by ten times this range, and any beyond the earth's. Zero
+    among elevations around the sea lies in no gap, and is left alone. Elevations are finite;
+    ``lowest`` and ``highest`` of a result are of the others.
 
     Examples
     --------
@@ -156,14 +145,7 @@ def describe_suspects(suspects: Iterable[SuspectElevation], what: str = "point")
 
 
 def describe_elevations(z: Float64Array, what: str = "point") -> list[str]:
-    """Say which elevations may stand for no data, or that all of them may.
-
-    Parameters
-    ----------
-    z : (n,) float64 array
-        Finite elevations.
-    what : str, optional
-        What has them.
+    """Say which finite elevations may stand for no data, or that all of them may.
 
     Examples
     --------

@@ -23,23 +23,15 @@ _TERMS = 3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Residuals:
-    """What measures residuals of a surface, whose elevations may be corrected meanwhile.
-
-    Attributes
-    ----------
-    surface : Triangulation
-    xyz : (n, 3) float64 array
-        Its points; elevations of blunders are replaced by those of the others' surface.
-    on_line : (n,) bool array
-        Whether edges of lines or of a boundary meet in the vertex.
-    chords : (n, 2) int32 array
-        The vertices before and behind it where exactly two such edges meet, else -1.
-    """
+    """What measures residuals of a surface, whose elevations may be corrected meanwhile."""
 
     surface: Triangulation
     xyz: Float64Array
+    """(n, 3), its points; elevations of blunders are replaced by those of the others' surface."""
     on_line: BoolArray
+    """(n,), whether edges of lines or of a boundary meet in the vertex."""
     chords: Int32Array
+    """(n, 2), the vertices before and behind it where exactly two such edges meet, else -1."""
     _without: _kernel.LeaveOneOut = field(init=False)
 
     def __post_init__(self) -> None:
@@ -122,13 +114,9 @@ class Residuals:
 
 
 def fit_plane(points: Float64Array, place: Float64Array) -> tuple[float, Float64Array]:
-    """Return the elevation at a place of the plane that fits points best, and how far they are.
+    """Return the elevation at a place of the plane that fits points best.
 
-    Returns
-    -------
-    elevation : float
-    left : (k,) float64 array
-        Elevations of the points above the plane.
+    The second array are the elevations of the points, (k,), above the plane.
     """
     xy = points[:, :2] - place[:2]
     size = np.abs(xy).max()

@@ -37,19 +37,9 @@ def measure_scales(
     so that it matters less where borders of blocks lie. A residual over a wider gap than is usual
     in its block has a larger scale, in proportion to how much wider it is.
 
-    Parameters
-    ----------
-    xy : (n, 2) float64 array
-    residuals : (n,) float64 array
-        NaN for those that say nothing.
-    moments : (n,) float64 array
-        Mean square of the distances to the points that each was measured from.
-    least : float
-        No scale is smaller.
-
-    Returns
-    -------
-    (n,) float64 array, unit of the residuals
+    Residuals are NaN for those that say nothing; ``moments`` are the mean squares of the distances
+    to the points that each was measured from; no scale is smaller than ``least``. All are (n,),
+    scales in the unit of the residuals.
 
     References
     ----------

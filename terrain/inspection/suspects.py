@@ -30,44 +30,33 @@ REASONS = (
 
 
 class Suspect(NamedTuple):
-    """One row that is suspicious, or a place without a row where lines cross.
-
-    Attributes
-    ----------
-    row : int
-        Of the points, counted from 0; -1 for none.
-    place : tuple of float
-        Easting, northing, elevation.
-    residual, scale : float
-        NaN where no height is told.
-    reason, explanation, certainty : str
-        One of ``REASONS``, a sentence, one of ``CERTAINTIES``.
-    """
+    """One row that is suspicious, or a place without a row where lines cross."""
 
     row: int
+    """Of the points, counted from 0; -1 for none."""
     place: tuple[float, ...]
+    """Easting, northing, elevation."""
     reason: str
+    """One of ``REASONS``."""
     explanation: str
+    """A sentence."""
     certainty: str
+    """One of ``CERTAINTIES``."""
     residual: float = np.nan
     scale: float = np.nan
+    """Both NaN where no height is told."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rows:
-    """The rows of points of a TIN that have a vertex, each with its own elevation.
-
-    Attributes
-    ----------
-    numbers : (k,) int64 array
-        The rows, ascending.
-    vertices : (k,) int32 array
-    xyz : (k, 3) float64 array
-    """
+    """The rows of points of a TIN that have a vertex, each with its own elevation."""
 
     numbers: Int64Array
+    """(k,), the rows, ascending."""
     vertices: Int32Array
+    """(k,)."""
     xyz: Float64Array
+    """(k, 3)."""
 
     @classmethod
     def of(cls, tin: TIN) -> Rows:

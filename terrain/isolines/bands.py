@@ -37,12 +37,8 @@ def contour_bands(
     Parameters
     ----------
     tin : TIN
-    interval : float, optional
-        Between levels, in the unit of elevations.
-    levels : (k,) array, optional
-        Explicit levels instead of an interval.
-    base : float, optional
-        One of the levels, from which the others are counted; may lie outside the surface.
+    interval, levels, base
+        As of :func:`tinsmith.contours`.
 
     Returns
     -------

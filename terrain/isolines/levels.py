@@ -29,20 +29,14 @@ MOST_CROSSINGS = 2**31 - 1
 
 @dataclass(frozen=True, eq=False)
 class Levels:
-    """Elevations in ascending order.
-
-    Attributes
-    ----------
-    values : (k,) float64 array
-    is_index : (k,) bool array
-        Whether contours there are index contours.
-    notes : tuple of str
-        What is to be told of them.
-    """
+    """Elevations in ascending order."""
 
     values: Float64Array
+    """(k,)."""
     is_index: BoolArray
+    """(k,), whether contours there are index contours."""
     notes: tuple[str, ...] = ()
+    """What is to be told of them."""
 
 
 @dataclass(frozen=True)

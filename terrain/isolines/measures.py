@@ -18,20 +18,10 @@ __all__ = ["measure_lengths", "measure_ring_areas", "sum_parts"]
 def measure_lengths(
     crs: CRS | None, coordinates: Float64Array, offsets: Int64Array
 ) -> Float64Array:
-    """Measure lines in the plane.
+    """Measure lines of two points or more in the plane.
 
-    Parameters
-    ----------
-    crs : CRS or None
-    coordinates : (n, 2) or (n, 3) float64 array
-    offsets : (k + 1,) int64 array
-        Of lines, two points or more each.
-
-    Returns
-    -------
-    (k,) float64 array
-        CRS units; metres along the ellipsoid in a geographic CRS, which holds for segments of some
-        kilometres.
+    In CRS units; in a geographic CRS in metres along the ellipsoid, which holds for segments of
+    some kilometres.
     """
     run, rise = np.diff(coordinates[:, 0]), np.diff(coordinates[:, 1])
     if crs is not None and crs.is_geographic:
@@ -46,20 +36,10 @@ def measure_lengths(
 def measure_ring_areas(
     crs: CRS | None, coordinates: Float64Array, offsets: Int64Array
 ) -> Float64Array:
-    """Measure the areas inside closed rings.
+    """Measure the areas inside closed rings, the first point of each repeated.
 
-    Parameters
-    ----------
-    crs : CRS or None
-    coordinates : (n, 2) float64 array
-    offsets : (k + 1,) int64 array
-        Of rings, the first point of each repeated.
-
-    Returns
-    -------
-    (k,) float64 array
-        CRS units squared, square metres in a geographic CRS; positive where the ring runs
-        counter-clockwise.
+    In CRS units squared, in a geographic CRS square metres; positive where the ring runs
+    counter-clockwise.
     """
     origin = np.repeat(coordinates[offsets[:-1]], np.diff(offsets), axis=0)
     x, y = (coordinates - origin).T

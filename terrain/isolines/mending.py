@@ -24,20 +24,14 @@ _SHARE = 1e-9
 
 
 class PolygonParts(NamedTuple):
-    """Polygons as the kernel returns them, by band.
-
-    Attributes
-    ----------
-    points : (n, 2) float64 array
-    ring_offsets, polygon_offsets : int64 arrays
-    band : (k,) int32 array
-        Of each polygon.
-    """
+    """Polygons as the kernel returns them, by band."""
 
     points: Float64Array
+    """(n, 2)."""
     ring_offsets: Int64Array
     polygon_offsets: Int64Array
     band: Int32Array
+    """(k,), of each polygon."""
 
 
 def mend_polygons(

@@ -29,18 +29,10 @@ def rebuild_wrong_bands(
 ) -> tuple[PolygonParts, tuple[str, ...]]:
     """Build the bands anew whose area is not what lies between their levels, and say so.
 
-    Parameters
-    ----------
-    tin : TIN
-    levels : (k,) float64 array
-    parts : PolygonParts
-        Of k + 1 bands.
-
-    Notes
-    -----
-    Where a triangle is thinner than the rounding of its coordinates the segments around a band can
-    cross, and no ring goes through them in the right order. The part of each triangle in a band
-    is convex, and GEOS joins these to valid polygons.
+    ``parts`` are of one band more than there are levels. Where a triangle is thinner than the
+    rounding of its coordinates the segments around a band can cross, and no ring goes through them
+    in the right order. The part of each triangle in a band is convex, and GEOS joins these to valid
+    polygons.
     """
     wrong = np.flatnonzero(_find_wrong(tin, levels, parts))
     if len(wrong) == 0:

@@ -24,25 +24,18 @@ _ROUNDS = 3
 
 
 class TracedLines(NamedTuple):
-    """Lines as the kernel returns them.
-
-    Attributes
-    ----------
-    coordinates : (n, 3) float64 array
-        Of closed lines the first point is repeated.
-    offsets : (k + 1,) int64 array
-    level : (k,) int32 array
-        Place in the levels.
-    is_closed : (k,) bool array
-    length : (k,) float64 array
-        In the plane of the coordinates.
-    """
+    """Lines as the kernel returns them."""
 
     coordinates: Float64Array
+    """(n, 3), of closed lines the first point is repeated."""
     offsets: Int64Array
+    """(k + 1,)."""
     level: Int32Array
+    """(k,), place in the levels."""
     is_closed: BoolArray
+    """(k,)."""
     length: Float64Array
+    """(k,), in the plane of the coordinates."""
 
 
 def require_tolerance(option: str, value: Any) -> float:
@@ -69,25 +62,10 @@ def smooth_lines(
     smooth: float,
     simplify: float,
 ) -> TracedLines:
-    """Round the corners of lines, then drop points of them.
+    """Round the corners of a TIN's contours, then drop points of them.
 
-    Parameters
-    ----------
-    tin : TIN
-    lines : TracedLines
-        Its contours.
-    levels : (k,) float64 array
-    smooth, simplify : float
-        How far the surface may be from the level along a line, for each of the two; 0 is neither.
-
-    Returns
-    -------
-    TracedLines
-
-    Raises
-    ------
-    OptionError
-        If there are more than :data:`MOST_POINTS` points.
+    ``smooth`` and ``simplify`` are how far the surface may be from the level along a line, for each
+    of the two; 0 is neither. Raises OptionError if there are more than :data:`MOST_POINTS` points.
 
     Notes
     -----

@@ -22,21 +22,14 @@ _ALONE = "Surface"
 
 
 class Aligned(NamedTuple):
-    """What is shown together.
-
-    Attributes
-    ----------
-    surfaces : dict of str to TIN
-        In one CRS, elevations in one unit.
-    labelled : (k, 3) float64 array or None
-        The points of the survey, in that unit.
-    notes : tuple of str
-        What had to be assumed or converted.
-    """
+    """What is shown together."""
 
     surfaces: dict[str, TIN]
+    """In one CRS, elevations in one unit."""
     labelled: Float64Array | None
+    """(k, 3), the points of the survey, in that unit."""
     notes: tuple[str, ...]
+    """What had to be assumed or converted."""
 
 
 def align(given: TIN | Mapping[str, TIN], survey: Survey | None) -> Aligned:

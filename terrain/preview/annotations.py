@@ -37,12 +37,7 @@ _LEAST_FORESHORTENING = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """The picture's layout, in design pixels from the lower left.
-
-    Attributes
-    ----------
-    width, height : float
-    """
+    """The picture's layout, in design pixels from the lower left."""
 
     width: float
     height: float
@@ -55,52 +50,32 @@ class Sheet:
 
 @dataclass(frozen=True, slots=True)
 class Caption:
-    """The words and numbers of the annotations.
-
-    Attributes
-    ----------
-    title, subtitle : str
-    exaggeration : float
-    elevations : tuple of float
-        Lowest and highest.
-    elevation_caption : str
-        Their unit, as it stands behind "Elevation"; "" if it is not known.
-    unit : Unit
-        Of lengths in the scene.
-    sun : Light
-        Where the light comes from.
-    warning : str
-        What a reader must know of the elevations; "" for nothing.
-    palette : Palette
-    legend : Legend or None
-        Of the colours; default that of the elevations.
-    has_tints : bool
-        Whether colours that tell something are seen anywhere.
-    """
+    """The words and numbers of the annotations."""
 
     title: str
     subtitle: str
     exaggeration: float
     elevations: tuple[float, float]
+    """Lowest and highest."""
     elevation_caption: str
+    """Their unit, as it stands behind "Elevation"; "" if it is not known."""
     unit: Unit
+    """Of lengths in the scene."""
     sun: Light = NORTHWEST
+    """Where the light comes from."""
     warning: str = ""
+    """What a reader must know of the elevations; "" for nothing."""
     palette: Palette = Palette()  # noqa: RUF009 - colours that are never changed
     legend: Legend | None = None
+    """Of the colours; default that of the elevations."""
     has_tints: bool = True
+    """Whether colours that tell something are seen anywhere."""
 
 
 def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> None:
     """Draw all annotations for the present camera, in place of earlier ones.
 
-    Parameters
-    ----------
-    overlay : Overlay
-    sheet : Sheet
-    caption : Caption
-    camera : pyvista.Camera
-        In parallel projection.
+    The camera is one in parallel projection.
     """
     overlay.clear()
     palette = caption.palette
@@ -114,23 +89,10 @@ def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> N
 
 
 def scale_bar_length(unit: Unit, pixels: float) -> tuple[float, float, str]:
-    """Choose the length of the scale bar.
+    """Choose the length of the scale bar, where a length of 1 has so many design pixels.
 
-    Parameters
-    ----------
-    unit : Unit
-        Of lengths in the scene.
-    pixels : float
-        Design pixels for a length of 1.
-
-    Returns
-    -------
-    length : float
-        In ``unit``.
-    shown : float
-        The number to write for it.
-    symbol : str
-        The unit to write behind it.
+    Returns the length in ``unit``, that of the scene; the number to write for it, and the symbol to
+    write behind it.
     """
     length = round_down(_BAR_WIDTH / pixels)
     if unit.symbol == "m" and length >= 1000:

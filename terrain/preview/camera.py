@@ -48,18 +48,12 @@ _POINTS = (
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """A direction to look from.
-
-    Attributes
-    ----------
-    azimuth : float
-        Where the viewer stands, degrees clockwise from north.
-    height : float
-        Of the viewer above the horizon, degrees.
-    """
+    """A direction to look from."""
 
     azimuth: float
+    """Where the viewer stands, degrees clockwise from north."""
     height: float
+    """Of the viewer above the horizon, degrees."""
 
     @classmethod
     def of(cls, camera: Any) -> View:
@@ -123,17 +117,8 @@ def aim(
 ) -> None:
     """Point a camera so that all points just fit into a frame of the window.
 
-    Parallel projection: one scale holds all over the picture.
-
-    Parameters
-    ----------
-    camera : pyvista.Camera
-    points : (n, 3) float64 array
-    view : View
-    frame : Bounds
-        Part of the window for the points, pixels from the lower left.
-    size : tuple of int
-        Width and height of the window, pixels.
+    Parallel projection: one scale holds all over the picture. ``frame`` is in pixels from the lower
+    left; ``size`` the width and height of the window in pixels.
     """
     right, up, _ = view.axes
     across, along = points @ right, points @ up
@@ -162,16 +147,8 @@ def place_camera(
 ) -> None:
     """Place a camera so that a place across and along the picture is in its middle.
 
-    Parameters
-    ----------
-    camera : pyvista.Camera
-    points : (n, 3) float64 array
-        What must lie in front of it.
-    view : View
-    middle : tuple of float
-        Lengths along the view's first two axes.
-    height : float
-        Of the window, in lengths of the scene.
+    ``points`` must lie in front of it; ``middle`` are lengths along the view's first two axes;
+    ``height`` is that of the window, in lengths of the scene.
     """
     right, up, toward = view.axes
     depth = points @ toward

@@ -33,15 +33,8 @@ _STEEPEST = 1e6
 def make_card(tin: TIN) -> str:
     """Return the HTML of a card: counts, CRS, units, bounds, and a map with hillshade.
 
-    Parameters
-    ----------
-    tin : TIN
-
-    Returns
-    -------
-    str
-        Of one element, with the map as a PNG within; nothing is asked for. Colours of words are
-        those of the notebook's theme.
+    It is of one element, with the map as a PNG within; nothing is asked for. Colours of words are
+    those of the notebook's theme.
     """
     picture = draw_map(tin)
     return write_card("TIN", _describe(tin), picture=picture, alt="Map of the surface, north up")
@@ -61,16 +54,8 @@ def _describe(tin: TIN) -> Iterator[tuple[str, str]]:
 def draw_map(tin: TIN, *, size: tuple[int, int] = SIZE) -> UInt8Array:
     """Draw a surface from above, north up, with hypsometric tints and hillshade.
 
-    Parameters
-    ----------
-    tin : TIN
-    size : tuple of int, optional
-        Greatest width and height, pixels.
-
-    Returns
-    -------
-    (height, width, 4) uint8 array
-        Red, green, blue and opacity, row 0 north; clear where there is no surface.
+    ``size`` is the greatest width and height, pixels. Returns (height, width, 4): red, green, blue
+    and opacity, row 0 north; clear where there is no surface.
     """
     with np.errstate(over="ignore", invalid="ignore"):  # outside, and beyond all real elevations
         return _draw(tin, size)

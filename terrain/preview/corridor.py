@@ -33,19 +33,13 @@ _LEAST_PITCH = 1.5 * STRIP_GAP
 
 
 class Corridor(NamedTuple):
-    """A surface within a long and narrow rectangle.
-
-    Attributes
-    ----------
-    azimuth : float
-        Of its axis, degrees clockwise from north, 0 to 180.
-    length, width : float
-        Of the rectangle, on the ground.
-    """
+    """A surface within a long and narrow rectangle."""
 
     azimuth: float
+    """Of its axis, degrees clockwise from north, 0 to 180."""
     length: float
     width: float
+    """Length and width of the rectangle, on the ground."""
 
     def find_side(self, azimuth: float) -> float:
         """Return the azimuth to look from at its long side, the nearer one to an azimuth."""
@@ -55,22 +49,15 @@ class Corridor(NamedTuple):
 
 
 class Strips(NamedTuple):
-    """Pieces of a picture, from left to right, that are drawn one below the other.
-
-    Attributes
-    ----------
-    edges : (k + 1,) float64 array
-        Where they begin and end along the picture's first axis, in lengths of the scene.
-    lows, highs : (k,) float64 array
-        Their range along the second axis.
-    scale : float
-        Design pixels for a length of 1.
-    """
+    """Pieces of a picture, from left to right, that are drawn one below the other."""
 
     edges: Float64Array
+    """(k + 1,), where they begin and end along the picture's first axis, lengths of the scene."""
     lows: Float64Array
     highs: Float64Array
+    """Both (k,), their range along the second axis."""
     scale: float
+    """Design pixels for a length of 1."""
 
     @property
     def length(self) -> float:
@@ -81,13 +68,6 @@ class Strips(NamedTuple):
 def find_corridor(tin: TIN, ground: Ground) -> Corridor | None:
     """Return the corridor that a surface is, None if it is none.
 
-    Parameters
-    ----------
-    tin : TIN
-    ground : Ground
-
-    Notes
-    -----
     The rectangle of least width around the convex hull is found by comparing directions, ever
     nearer to the best.
     """
@@ -116,22 +96,10 @@ def measure_mean_width(tin: TIN, ground: Ground) -> float:
 
 
 def cut_into_strips(points: Float64Array, edges: Int32Array, view: View, frame: Bounds) -> Strips:
-    """Cut a picture into as many strips as make it largest.
+    """Cut a picture into as many strips as make it largest; one alone if more would not.
 
-    Parameters
-    ----------
-    points : (n, 3) float64 array
-        Vertices as drawn.
-    edges : (k, 2) int32 array
-        All edges of the surface.
-    view : View
-    frame : Bounds
-        Design pixels for the terrain.
-
-    Returns
-    -------
-    Strips
-        One alone if more would not make it larger.
+    ``points`` are vertices as drawn, (n, 3), and ``edges`` all edges of the surface, (k, 2);
+    ``frame`` is the room for the terrain in design pixels.
     """
     right, up, _ = view.axes
     across, along = points @ right, points @ up

@@ -22,37 +22,22 @@ _GAP = 4.0
 
 
 class ElevationRange(NamedTuple):
-    """The range of elevations that a picture shows.
-
-    Attributes
-    ----------
-    low, high : float
-        Lowest and highest elevation but for those far off.
-    is_far_off : (n,) bool array
-        Which points are left out.
-    """
+    """The range of elevations that a picture shows."""
 
     low: float
     high: float
+    """Lowest and highest elevation but for those far off."""
     is_far_off: BoolArray
+    """(n,), which points are left out."""
 
 
 def find_elevation_range(elevations: Float64Array, extent: float) -> ElevationRange:
     """Find the range of elevations, without a blunder that would hide all relief.
 
-    Parameters
-    ----------
-    elevations : (n,) float64 array
-        At least one.
-    extent : float
-        Greatest extent in the plane, in the unit of the elevations: how far off a point is if all
-        others are level.
-
-    Returns
-    -------
-    ElevationRange
-        Left out are at most one point in a hundred at either end (one of 20 to 100 points), if
-        they lie further beyond the next one than four times the range of all between the ends.
+    Left out are at most one point in a hundred at either end (one of 20 to 100 points), if they lie
+    further beyond the next one than four times the range of all between the ends. ``extent`` is the
+    greatest in the plane, in the unit of the elevations: how far off a point is if all others are
+    level.
 
     Examples
     --------

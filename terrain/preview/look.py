@@ -45,44 +45,28 @@ class LookOptions(TypedDict, total=False):
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """How a surface is shown: the options of :func:`tinsmith.preview`, checked.
-
-    Attributes
-    ----------
-    exaggeration : float or None
-    edges, lines : bool
-    size : tuple of int
-        Width and height, pixels.
-    title : str
-    view : str
-        A key of ``VIEWS``.
-    azimuth, tilt : float or None
-        In place of those of the view.
-    sun : Light
-    palette : Palette
-    dpi : float or None
-    elevations : tuple of float or None
-        The lowest and the highest tint.
-    tint : Tint
-        What colours tell.
-    contours : float or None
-        Their interval.
-    """
+    """How a surface is shown: the options of :func:`tinsmith.preview`, checked."""
 
     exaggeration: float | None = None
     edges: bool = False
     lines: bool = True
     size: tuple[int, int] = _SIZE
+    """Width and height, pixels."""
     title: str = "Terrain surface"
     view: str = "oblique"
+    """A key of ``VIEWS``."""
     azimuth: float | None = None
     tilt: float | None = None
+    """Azimuth and tilt in place of those of the view."""
     sun: Light = NORTHWEST
     palette: Palette = Palette()  # noqa: RUF009 - colours that are never changed
     dpi: float | None = None
     elevations: tuple[float, float] | None = None
+    """The lowest and the highest tint."""
     tint: Tint = "elevation"
+    """What colours tell."""
     contours: float | None = None
+    """Their interval."""
 
     @property
     def seen_from(self) -> View:

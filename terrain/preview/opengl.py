@@ -67,15 +67,7 @@ def require_window() -> None:
 def require_on_screen(kind: str) -> None:
     """Make sure that a window can be seen: VTK draws elsewhere if it cannot reach the display.
 
-    Parameters
-    ----------
-    kind : str
-        Name of VTK's window class.
-
-    Raises
-    ------
-    RenderError
-        If it is one that nobody sees.
+    ``kind`` is the name of VTK's window class. Raises RenderError if it is one that nobody sees.
     """
     if any(name in kind for name in _OFF_SCREEN_WINDOWS):
         raise RenderError(_NO_DISPLAY)

@@ -34,35 +34,24 @@ _OUTSIDE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Ortho:
-    """A picture with its place on the ground.
-
-    Attributes
-    ----------
-    path : Path
-        Where it was read.
-    content : bytes
-        A file that browsers and graphics libraries read.
-    kind : {"jpeg", "png", "webp"}
-    shape : tuple of int
-        Rows and columns.
-    transform : tuple of float
-        Affine, from columns and rows to eastings and northings: a, b, x, d, e, y.
-    opacity : (rows, columns) uint8 array or None
-        0 where there is no picture; None where there is everywhere.
-    gap : float
-        Share of the vertices of the surfaces at which there is no picture.
-    told : tuple of str
-        What was done to it, or taken for granted.
-    """
+    """A picture with its place on the ground."""
 
     path: Path
+    """Where it was read."""
     content: bytes
+    """A file that browsers and graphics libraries read."""
     kind: str
+    """One of "jpeg", "png", "webp"."""
     shape: tuple[int, int]
+    """Rows and columns."""
     transform: tuple[float, ...]
+    """Affine, from columns and rows to eastings and northings: a, b, x, d, e, y."""
     opacity: UInt8Array | None = None
+    """(rows, columns), 0 where there is no picture; None where there is everywhere."""
     gap: float = 0.0
+    """Share of the vertices of the surfaces at which there is no picture."""
     told: tuple[str, ...] = ()
+    """What was done to it, or taken for granted."""
 
     def __post_init__(self) -> None:
         a, b, _, d, e, _ = self.transform
@@ -81,13 +70,7 @@ class Ortho:
         return np.asarray(matrix / np.array(self.shape)[::-1, None])
 
     def place(self, points: Float64Array) -> Float64Array:
-        """Return where in the picture points lie, (n, 2): from the left and from the top, 0 to 1.
-
-        Parameters
-        ----------
-        points : (n, 2) or (n, 3) float64 array
-            Eastings and northings.
-        """
+        """Return where in the picture points lie, (n, 2): from the left and the top, 0 to 1."""
         a, b, x, d, e, y = self.transform
         along, up = points[:, 0] - x, points[:, 1] - y
         area = a * e - b * d
@@ -146,20 +129,10 @@ def _cross(a: Float64Array, b: Float64Array) -> Float64Array:
 def read_ortho(
     source: str | os.PathLike[str], tins: Sequence[TIN], *, stacklevel: int = 3
 ) -> Ortho:
-    """Read the picture to drape over surfaces of one CRS.
+    """Read the picture to drape over surfaces of one CRS: any that GDAL places, as a GeoTIFF.
 
-    Parameters
-    ----------
-    source : path-like
-        A GeoTIFF, or another picture that GDAL places.
-    tins : sequence of TIN
-    stacklevel : int
-        Of the caller who is told of what was done to it.
-
-    Raises
-    ------
-    OptionError, ReadError, CrsError, MissingExtraError
-        As :func:`tinsmith.io.raster.ortho.read_ortho` tells.
+    ``stacklevel`` is that of the caller who is told of what was done to it. Raises what
+    :func:`tinsmith.io.raster.ortho.read_ortho` does.
     """
     reader = import_module(_READER)
     ortho: Ortho = reader.read_ortho(

@@ -31,13 +31,9 @@ _RESOLUTION = 72
 
 
 class Overlay:
-    """Draws over one renderer; lengths are in design pixels, times ``factor``.
+    """Draws over one renderer of pyvista; lengths are in design pixels, times ``factor``.
 
-    Parameters
-    ----------
-    renderer : pyvista.Renderer
-    factor : float, optional
-        Window pixels for one design pixel; may be set anew before drawing.
+    The factor is window pixels for one design pixel; it may be set anew before drawing.
     """
 
     def __init__(self, renderer: Any, *, factor: float = 1.0) -> None:

@@ -22,22 +22,15 @@ _GREY_SHARE = 0.34
 
 
 class Palette(NamedTuple):
-    """Colours of annotations.
-
-    Attributes
-    ----------
-    ink, grey : Color
-        Of words and shapes, and of those that matter less.
-    paper : Color
-        The background.
-    warning : Color
-        Of what a reader must not miss.
-    """
+    """Colours of annotations."""
 
     ink: Color = (28, 34, 40)
     grey: Color = (96, 106, 114)
+    """Of words and shapes, and of those that matter less."""
     paper: Color = (255, 255, 255)
+    """The background."""
     warning: Color = (150, 58, 34)
+    """Of what a reader must not miss."""
 
 
 def choose_palette(background: Color) -> Palette:

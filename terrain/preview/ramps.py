@@ -24,33 +24,19 @@ _CIRCLE = tuple((0.72, 0.11, float(hue)) for hue in range(250, 250 + 361, 20))
 
 
 class Legend(NamedTuple):
-    """What a ramp of colours tells.
-
-    Attributes
-    ----------
-    name : str
-    colors : (k, 3) uint8 array
-    ends : tuple of float
-        Values of the first and the last colour.
-    ticks : tuple of (float, str)
-        Values and words below the ramp; none for round numbers.
-    """
+    """What a ramp of colours tells."""
 
     name: str
     colors: UInt8Array
+    """(k, 3)."""
     ends: tuple[float, float]
+    """Values of the first and the last colour."""
     ticks: tuple[tuple[float, str], ...] = ()
+    """Values and words below the ramp; none for round numbers."""
 
 
 def choose_ramp(tint: Tint, count: int) -> UInt8Array:
-    """Return a ramp of colours, (count, 3).
-
-    Parameters
-    ----------
-    tint : {"elevation", "slope", "aspect"}
-    count : int
-        Number of colours, at least 2.
-    """
+    """Return a ramp of two colours or more, (count, 3)."""
     if tint == "slope":
         return mix_tints(_SLOPE, count)
     return mix_tints(_CIRCLE, count) if tint == "aspect" else interpolate_tints(count)
@@ -59,24 +45,11 @@ def choose_ramp(tint: Tint, count: int) -> UInt8Array:
 def measure_tint(
     tin: TIN, tint: Tint, elevations: tuple[float, float], unit: str
 ) -> tuple[Float64Array | None, Legend | None]:
-    """Return what is to be coloured, and its legend.
+    """Return what is to be coloured, and its legend; None both for a plain surface.
 
-    Parameters
-    ----------
-    tin : TIN
-    tint : Tint
-    elevations : tuple of float
-        Of the lowest and the highest tint.
-    unit : str
-        Of elevations, as it stands behind their name; "" if it is not known.
-
-    Returns
-    -------
-    values : (n,) or (m,) float64 array or None
-        Elevations of vertices, or slopes or aspects of triangles, degrees, NaN where level; None
-        for a plain surface.
-    legend : Legend or None
-        None for a plain surface.
+    Coloured are elevations of vertices, (n,), or slopes or aspects of triangles, (m,), in degrees,
+    NaN where level. ``elevations`` are those of the lowest and the highest tint; ``unit`` is
+    theirs, as it stands behind their name, "" if it is not known.
     """
     if tint == "plain":
         return None, None

@@ -73,19 +73,9 @@ level ground is always that of the legend."""
 def choose_exaggeration(tin: TIN, ground: Ground, shown: ElevationRange) -> float:
     """Choose a round vertical exaggeration that shows the relief.
 
-    Parameters
-    ----------
-    tin : TIN
-    ground : Ground
-    shown : ElevationRange
-        By :func:`measure_relief`.
-
-    Returns
-    -------
-    float
-        The smallest of 1, 1.5, 2, 3, 5, 10, 15, ... 100 that lifts the relief to a tenth of the
-        extent (and so to at most a fifth, if 1 is not enough); 1 for level ground. Elevations far
-        off the others do not count.
+    It is the smallest of 1, 1.5, 2, 3, 5, 10, 15, ... 100 that lifts the relief to a tenth of the
+    extent (and so to at most a fifth, if 1 is not enough); 1 for level ground. Elevations far off
+    the others do not count.
     """
     relief = (shown.high - shown.low) * ground.scale[2]
     return round_exaggeration(RELIEF_SHARE * measure_extent(tin, ground), relief)
@@ -127,31 +117,11 @@ def add_terrain(
     is_far_off: BoolArray | None = None,
     has_block: bool = True,
 ) -> tuple[Any, Float64Array]:
-    """Add the surface and its block to a plotter.
+    """Add the surface and its block to a plotter; return its actor, and points that must be seen.
 
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-    tin : TIN
-    points : (n, 3) float64 array
-        Its vertices as drawn.
-    edges : bool
-        Whether to draw the triangles' edges.
-    elevations : tuple of float, optional
-        Of the lowest and the highest tint; default those of the TIN.
-    tint : {"elevation", "slope", "aspect", "plain"}, optional
-        What colours tell.
-    is_far_off : (n,) bool array, optional
-        Vertices that need not be in the picture, however high or low they are; default none.
-    has_block : bool, optional
-        Whether the surface stands on a block.
-
-    Returns
-    -------
-    actor : pyvista.Actor
-        The surface.
-    seen : (k, 3) float64 array
-        All points that must be in the picture.
+    ``points`` are its vertices as drawn, (n, 3); ``elevations`` those of the lowest and the highest
+    tint, by default of the TIN; the vertices ``is_far_off``, (n,), need not be in the picture,
+    however high or low they are. What must be seen is (k, 3).
     """
     pv = _optional.load("pyvista", _PURPOSE)
 
@@ -184,15 +154,7 @@ def _without(points: Float64Array, kept: Float64Array) -> Float64Array:
 def add_ortho(plotter: Any, tin: TIN, points: Float64Array, ortho: Ortho, surface: Any) -> Any:
     """Lay a picture over the surface, and return its actor; where it has none, the tints are seen.
 
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-    tin : TIN
-    points : (n, 3) float64 array
-        Its vertices as drawn.
-    ortho : Ortho
-    surface : pyvista.Actor
-        The surface, which is moved back a little.
+    ``points`` are the vertices as drawn, (n, 3); the surface is moved back a little.
     """
     pv = _optional.load("pyvista", _PURPOSE)
 
@@ -218,16 +180,9 @@ def add_ortho(plotter: Any, tin: TIN, points: Float64Array, ortho: Ortho, surfac
 
 
 def fade_edges(actor: Any, tin: TIN, ground: Ground, pixels: float) -> None:
-    """Draw the edges fainter where triangles are small, or they would hide the tints.
+    """Draw the edges of a surface fainter where triangles are small, or they would hide the tints.
 
-    Parameters
-    ----------
-    actor : pyvista.Actor
-        The surface.
-    tin : TIN
-    ground : Ground
-    pixels : float
-        Design pixels for a length of 1 in the scene.
+    A length of 1 in the scene has so many design pixels.
     """
     area = tin.area * ground.scale[0] * ground.scale[1] / len(tin.triangles)
     side = math.sqrt(2 * area) * pixels

@@ -74,33 +74,20 @@ behind its own wall."""
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """What is to be drawn, and how.
-
-    Attributes
-    ----------
-    tin : TIN
-    ground : Ground
-    look : Look
-    view : View
-    shown : ElevationRange
-        Elevations that must be in the picture.
-    caption : Caption
-    has_block : bool
-    strips : Strips or None
-        Pieces of a corridor.
-    ortho : Ortho or None
-        Picture draped over the surface.
-    """
+    """What is to be drawn, and how."""
 
     tin: TIN
     ground: Ground
     look: Look
     view: View
     shown: ElevationRange
+    """Elevations that must be in the picture."""
     caption: Caption
     has_block: bool
     strips: Strips | None
+    """Pieces of a corridor."""
     ortho: Ortho | None = None
+    """Picture draped over the surface."""
 
     @property
     def exaggeration(self) -> float:
@@ -118,13 +105,7 @@ def make_stage(
 ) -> Stage:
     """Choose all that the caller left open.
 
-    Parameters
-    ----------
-    tin : TIN
-    look : Look
-    ortho : Ortho, optional
-    has_strips : bool, optional
-        Cut a corridor into strips, if nobody chose where to look from.
+    With ``has_strips`` a corridor is cut into strips, if nobody chose where to look from.
     """
     _optional.load("pyvista", _PURPOSE)
     ground = find_ground(tin)
@@ -174,22 +155,9 @@ def _measure_relief_in(strips: Strips, tin: TIN, ground: Ground, view: View) -> 
 class Show:
     """A plotter with terrain, light, camera and annotations in place.
 
-    Parameters
-    ----------
-    stage : Stage
-    window : tuple of int
-        Width and height of the window, pixels.
-    off_screen : bool
-
-    Attributes
-    ----------
-    plotter : pyvista.Plotter
-    surfaces : list of pyvista.Actor
-        The surface, and what is draped over it.
-    overlay : Overlay
-        With the annotations.
-    after_update : callable or None
-        Called when annotations were drawn anew, which then cover what was drawn before.
+    The window is so many pixels wide and high. ``surfaces`` are the actors of the surface, and of
+    what is draped over it; ``overlay`` has the annotations. ``after_update`` is called when they
+    were drawn anew, which then cover what was drawn before.
     """
 
     def __init__(self, stage: Stage, window: tuple[int, int], *, off_screen: bool) -> None:
@@ -260,12 +228,7 @@ def open_plotter(stage: Stage, window: tuple[int, int], *, off_screen: bool) -> 
 def add_stage(plotter: Any, stage: Stage, factor: float) -> tuple[list[Any], Float64Array]:
     """Add terrain and lines to a plotter; return actors with edges, and what must be seen.
 
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-    stage : Stage
-    factor : float
-        Window pixels for one design pixel.
+    ``factor`` is window pixels for one design pixel.
     """
     points = stage.points
     surface, seen = add_terrain(
@@ -362,13 +325,7 @@ def _warn(tin: TIN, look: Look, shown: ElevationRange) -> str:
 
 
 def describe_far_off(tin: TIN, shown: ElevationRange) -> str:
-    """Return how many elevations are far off all others, and the farthest; "" if none.
-
-    Parameters
-    ----------
-    tin : TIN
-    shown : ElevationRange
-    """
+    """Return how many elevations are far off all others, and the farthest; "" if none."""
     far = tin.points[shown.is_far_off, 2]
     if len(far) == 0:
         return ""

@@ -36,13 +36,7 @@ class _Place(NamedTuple):
 
 
 def place_strips(strips: Strips, sheet: Sheet) -> list[_Place]:
-    """Return where each strip stands on a sheet, the first at the top.
-
-    Parameters
-    ----------
-    strips : Strips
-    sheet : Sheet
-    """
+    """Return where each strip stands on a sheet, the first at the top."""
     frame = sheet.frame
     heights = (strips.highs - strips.lows) * strips.scale
     left = frame.xmin + (frame.width - strips.length * strips.scale) / 2
@@ -69,11 +63,7 @@ def label_strips(show: Show) -> None:
 def paste_strips(pixels: UInt8Array, stage: Stage) -> None:
     """Draw the strips of a corridor into a picture that has all but the terrain.
 
-    Parameters
-    ----------
-    pixels : (height, width, 3) uint8 array
-    stage : Stage
-        Of a surface that is no corridor nothing is drawn.
+    Of a surface that is no corridor nothing is drawn.
     """
     if stage.strips is None:
         return

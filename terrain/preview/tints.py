@@ -38,37 +38,19 @@ _CONES_TO_LINEAR = np.array(
 
 
 def interpolate_tints(count: int = 256) -> UInt8Array:
-    """Return the ramp of hypsometric tints, low to high.
+    """Return a ramp of two hypsometric tints or more, low to high: (count, 3), sRGB.
 
-    Parameters
-    ----------
-    count : int, optional
-        Number of colours, at least 2.
-
-    Returns
-    -------
-    (count, 3) uint8 array
-        sRGB. Perceived lightness (Oklab L) rises evenly, so that equal steps of elevation look
-        equal, also in grey and to colour-blind eyes.
+    Perceived lightness (Oklab L) rises evenly, so that equal steps of elevation look equal, also in
+    grey and to colour-blind eyes.
     """
     lightness = np.linspace(*_LIGHTNESS, len(_HUES))
     return mix_tints(list(zip(lightness, _CHROMAS, _HUES, strict=True)), count)
 
 
 def mix_tints(rungs: Sequence[tuple[float, float, float]], count: int) -> UInt8Array:
-    """Return a ramp of colours between rungs at even distances.
+    """Return a ramp of two colours or more between rungs at even distances: (count, 3), sRGB.
 
-    Parameters
-    ----------
-    rungs : sequence of (lightness, chroma, hue)
-        In Oklch, hues in degrees.
-    count : int
-        Number of colours, at least 2.
-
-    Returns
-    -------
-    (count, 3) uint8 array
-        sRGB.
+    Rungs are lightness, chroma and hue in Oklch, hues in degrees.
     """
     position = np.linspace(0.0, 1.0, count)
     at = np.linspace(0.0, 1.0, len(rungs))

@@ -24,40 +24,22 @@ _ELLIPSIS = "..."
 
 
 class Title(NamedTuple):
-    """A title as it is written.
-
-    Attributes
-    ----------
-    lines : tuple of str
-    size : float
-        Of the letters, design pixels.
-    drops : tuple of float
-        How far below the upper edge each line stands.
-    next_drop : float
-        How far the line below the title stands.
-    """
+    """A title as it is written."""
 
     lines: tuple[str, ...]
     size: float
+    """Of the letters, design pixels."""
     drops: tuple[float, ...]
+    """How far below the upper edge each line stands."""
     next_drop: float
+    """How far the line below the title stands."""
 
 
 def fit_title(overlay: Overlay, words: str, room: float) -> Title:
     """Write a title in one line, or in up to three of smaller letters.
 
-    Parameters
-    ----------
-    overlay : Overlay
-        Which measures words.
-    words : str
-    room : float
-        Width for it, design pixels.
-
-    Returns
-    -------
-    Title
-        Cut, which three dots at its end show, if it is too long for three lines.
+    The overlay measures words; ``room`` is the width for it, design pixels. A title that is too
+    long for three lines is cut, which three dots at its end show.
     """
     kept = words[:_MOST_LETTERS]
     for sizes, drops, next_drop in _LAYOUTS:

@@ -47,33 +47,18 @@ _HELP = (
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What the surface is at a place, in the units of the TIN.
-
-    Attributes
-    ----------
-    easting, northing, elevation : float
-        Elevation as :meth:`tinsmith.TIN.interpolate` gives it.
-    slope : float
-        Of the triangle there, degrees.
-    """
+    """What the surface is at a place, in the units of the TIN."""
 
     easting: float
     northing: float
     elevation: float
+    """As :meth:`tinsmith.TIN.interpolate` gives it."""
     slope: float
+    """Of the triangle there, degrees."""
 
 
 class Window:
-    """A surface in a window that follows mouse and keys.
-
-    Parameters
-    ----------
-    tin : TIN
-    look : Look
-    ortho : Ortho, optional
-    off_screen : bool, optional
-        Draw where nobody sees it.
-    """
+    """A surface in a window that follows mouse and keys, or off screen, where nobody sees it."""
 
     def __init__(
         self, tin: TIN, look: Look, ortho: Ortho | None = None, *, off_screen: bool = False
@@ -134,17 +119,9 @@ class Window:
     # ------------------------------------------------------------------ reading
 
     def pick(self, x: float, y: float) -> Reading | None:
-        """Read the surface at a place of the window.
+        """Read the surface at a place of the window, in pixels from the lower left.
 
-        Parameters
-        ----------
-        x, y : float
-            Pixels from the lower left.
-
-        Returns
-        -------
-        Reading or None
-            None where there is no surface; the last two readings are kept for a section.
+        None where there is no surface; the last two readings are kept for a section.
         """
         from vtkmodules.vtkRenderingCore import vtkCellPicker
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from ...tin.topology import NO_NEIGHBOR, boundary_walks, gather
+from ...tin.topology import NO_NEIGHBOR, boundary_walks, gather, neighbors_of
 from ..results import Features
 
 if TYPE_CHECKING:
@@ -16,7 +16,15 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from ..results.columns import Units
 
-__all__ = ["Dissolved", "Mesh", "dissolve", "join_components", "make_polygons", "number_components"]
+__all__ = [
+    "Dissolved",
+    "DividedMesh",
+    "Mesh",
+    "dissolve",
+    "join_components",
+    "make_polygons",
+    "number_components",
+]
 
 
 class Mesh(Protocol):
@@ -35,41 +43,37 @@ class Mesh(Protocol):
         """Across each edge, -1 outside."""
 
 
-class Dissolved(NamedTuple):
-    """Polygons of vertices, as :meth:`Features.of_polygons` takes them.
+class DividedMesh(NamedTuple):
+    """Triangles that share their vertices, each a part of something: a triangle, a region."""
 
-    Attributes
-    ----------
-    vertices : (n,) int64 array
-        Of all rings, each closed.
-    ring_offsets, polygon_offsets, feature_offsets : int64 arrays
-        A feature has all polygons of a class.
-    classes : (n_features,) int64 array
-        Those that have a triangle, ascending.
-    """
+    points: Float64Array
+    triangles: Int32Array
+    neighbors: Int32Array
+    owners: Int64Array
+    """(m,), what each triangle is a part of."""
+
+    @classmethod
+    def of(cls, points: Float64Array, triangles: Int32Array, owners: Int64Array) -> DividedMesh:
+        """Return triangles with their neighbours."""
+        return cls(points, triangles, neighbors_of(triangles, len(points)), owners)
+
+
+class Dissolved(NamedTuple):
+    """Polygons of vertices, as :meth:`Features.of_polygons` takes them."""
 
     vertices: Int64Array
+    """(n,), of all rings, each closed."""
     ring_offsets: Int64Array
     polygon_offsets: Int64Array
     feature_offsets: Int64Array
+    """A feature has all polygons of a class."""
     classes: Int64Array
+    """(n_features,), those that have a triangle, ascending."""
 
 
 def dissolve(tin: Mesh, classes: Int64Array) -> Dissolved:
-    """Join the triangles of each class to polygons.
+    """Join the triangles of each class to polygons; those of a class below 0 are left out.
 
-    Parameters
-    ----------
-    tin : TIN or Mesh
-    classes : (m,) int array
-        Class of each triangle; below 0 it is left out.
-
-    Returns
-    -------
-    Dissolved
-
-    Notes
-    -----
     1. Two triangles of one class that share an edge belong to one polygon; those that only share a
        vertex do not, so that the inside of every polygon is connected.
     2. The boundary is walked with the inside on the left. A walk that comes to a vertex again is

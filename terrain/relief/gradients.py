@@ -123,16 +123,10 @@ def aspect(tin: TIN, *, per: SurfacePart = "triangle") -> Float64Array:
 
 
 def measure_plane_areas(tin: TIN) -> Float64Array:
-    """Measure the area of each triangle in the plane, in the units of `find_plane_units`.
+    """Return the area of each triangle in the plane, (m,), in the units of `find_plane_units`.
 
-    Parameters
-    ----------
-    tin : TIN
-
-    Returns
-    -------
-    (m,) float64 array
-        In CRS units squared, as all products have it; above longitude and latitude square metres.
+    That is in CRS units squared, as all products have it; above longitude and latitude square
+    metres.
     """
     scales = find_scales(tin.crs, None, _average_northings(tin))
     measured: Float64Array = tin.triangle_areas * scales.east * scales.north
@@ -140,16 +134,9 @@ def measure_plane_areas(tin: TIN) -> Float64Array:
 
 
 def measure_areas(tin: TIN) -> Float64Array:
-    """Measure the area of each triangle in the plane in square metres, as GeoJSON tells it.
+    """Return the area of each triangle in the plane, (m,), in square metres, as GeoJSON tells it.
 
-    Parameters
-    ----------
-    tin : TIN
-
-    Returns
-    -------
-    (m,) float64 array
-        In square metres; in CRS units squared where those are not known.
+    In CRS units squared where those are not known.
     """
     measured: Float64Array = tin.triangle_areas * find_area_scale(tin.crs, _average_northings(tin))
     return measured
@@ -158,16 +145,8 @@ def measure_areas(tin: TIN) -> Float64Array:
 def measure_ring_area(crs: CRS | None, ring: Float64Array) -> float:
     """Measure the area inside a ring in the plane on the ground, as :func:`measure_areas` does.
 
-    Parameters
-    ----------
-    crs : CRS or None
-    ring : (k, 2) or (k, 3) float64 array
-        Corners in order, the first not repeated.
-
-    Returns
-    -------
-    float
-        Positive if the ring runs counter-clockwise.
+    Corners, (k, 2) or (k, 3), are in order, the first not repeated. Positive if the ring runs
+    counter-clockwise.
     """
     x, y = (ring[:, :2] - ring[0, :2]).T
     steps = x * np.roll(y, -1) - np.roll(x, -1) * y
@@ -185,15 +164,8 @@ def find_area_scale(crs: CRS | None, northing: ArrayLike) -> Any:
 def compute_normals(tin: TIN) -> Float64Array:
     """Return the upward normal of each triangle, its length twice the triangle's area in space.
 
-    Parameters
-    ----------
-    tin : TIN
-
-    Returns
-    -------
-    (m, 3) float64 array
-        Of the true surface, as in :func:`slope`: in CRS units squared, in a geographic CRS square
-        metres. Its horizontal part points downhill; the vertical part is positive.
+    They are (m, 3), of the true surface, as in :func:`slope`: in CRS units squared, in a geographic
+    CRS square metres. The horizontal part points downhill; the vertical part is positive.
     """
     require_tin(tin)
     surface = tin.triangulation

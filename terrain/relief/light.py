@@ -21,18 +21,12 @@ DARKEST, BRIGHTEST = 1, 255
 
 
 class Light(NamedTuple):
-    """Where the light comes from, degrees.
-
-    Attributes
-    ----------
-    azimuth : float
-        Clockwise from north.
-    altitude : float
-        Above the horizon.
-    """
+    """Where the light comes from, degrees."""
 
     azimuth: float
+    """Clockwise from north."""
     altitude: float
+    """Above the horizon."""
 
 
 def as_light(azimuth: Any, altitude: Any) -> Light:

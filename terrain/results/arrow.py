@@ -38,16 +38,8 @@ _LARGEST_OFFSET = 2**31 - 1
 def build_table(features: FeatureParts) -> Any:
     """Return a ``pyarrow.Table`` of the columns, and of the geometries in column ``geometry``.
 
-    Parameters
-    ----------
-    features : Features
-
-    Raises
-    ------
-    MissingExtraError
-        If pyarrow is not installed.
-    OptionError
-        If a column is called ``geometry``.
+    Raises MissingExtraError if pyarrow is not installed, OptionError if a column is called
+    ``geometry``.
     """
     pa = _optional.load("pyarrow", "Handing features over as Arrow")
     if _GEOMETRY in features.columns:

@@ -70,21 +70,10 @@ def frozen_copy(values: AnyArray) -> AnyArray:
 
 
 def as_columns(columns: Any, count: int | None, what: str) -> FrozenMapping[AnyArray]:
-    """Return named columns of equal length.
+    """Return named columns of equal length: of numbers, truth values or texts (None for no text).
 
-    Parameters
-    ----------
-    columns : mapping of str to (n,) array-like
-        Numbers, truth values or texts (None where there is none).
-    count : int or None
-        Length that every column must have; None takes that of the first.
-    what : str
-        What a row is: "feature", "row".
-
-    Raises
-    ------
-    OptionError
-        If a name is empty, lengths differ, or values are of another kind.
+    The length is ``count``, or else that of the first; ``what`` is what a row is: "feature", "row".
+    Raises OptionError if a name is empty, lengths differ, or values are of another kind.
     """
     items = named_items("columns", columns)
     arrays = {name: _as_column(name, values) for name, values in items}
@@ -144,19 +133,9 @@ def _is_missing(value: Any) -> bool:
 
 
 def as_units(units: Any, names: Iterable[str]) -> FrozenMapping[Unit | str | None]:
-    """Return the units of columns.
+    """Return the units of columns: None for one that is not known; those not named have no unit.
 
-    Parameters
-    ----------
-    units : mapping of str to Unit, str or None
-        None is a unit that is not known; a column that is not named has no unit.
-    names : iterable of str
-        Of the columns.
-
-    Raises
-    ------
-    OptionError
-        If there is no such column, or a unit is neither Unit, text nor None.
+    Raises OptionError if there is no such column, or a unit is neither Unit, text nor None.
     """
     known = list(names)
     items = dict(named_items("units", units))

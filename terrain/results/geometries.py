@@ -18,12 +18,7 @@ __all__ = ["build_collection", "build_frame", "build_geometries"]
 
 
 def build_geometries(features: FeatureParts) -> ObjectArray:
-    """Return the geometries of shapely, one a feature.
-
-    Parameters
-    ----------
-    features : Features
-    """
+    """Return the geometries of shapely, one a feature."""
     shapely = _optional.load("shapely")
     kind = shapely.GeometryType[features.geometry_type.upper()]
     levels: Any = features.offsets or None

@@ -22,13 +22,7 @@ _MAPPING = "spatial_ref"
 def locate_centers(
     grid: Grid, rows: slice | None = None, columns: slice | None = None
 ) -> tuple[Float64Array, Float64Array]:
-    """Return the eastings of columns and the northings of rows, at the cell centres.
-
-    Parameters
-    ----------
-    grid : Grid
-    rows, columns : slice, optional
-        From start to stop; default all.
+    """Return the eastings of columns and the northings of rows, at the centres of cells.
 
     Examples
     --------

@@ -44,10 +44,8 @@ class Raster(Frozen):
         Value of cells without surface; NaN by default.
     units : mapping of str to Unit, str or None
         Of bands: a unit or its symbol, None if it is not known; a band without an entry has none.
-    name : str
-        Of the product, for captions.
-    notes : tuple of str
-        What was assumed or left out, in sentences.
+    name, notes
+        As of :class:`tinsmith.Features`.
 
     Raises
     ------

@@ -34,10 +34,8 @@ class Table(Frozen):
         Numbers, truth values or texts (None where there is none).
     units : mapping of str to Unit, str or None
         A unit or its symbol, None if it is not known; a column without an entry has no unit.
-    name : str
-        Of the product, for captions.
-    notes : tuple of str
-        What was assumed or left out, in sentences.
+    name, notes
+        As of :class:`tinsmith.Features`.
 
     Raises
     ------

@@ -23,54 +23,38 @@ _LINE, _VERTEX, _EDGE, _BREAKLINE, _BOUNDARY = range(len(CROSSED))
 
 
 class Breaks(NamedTuple):
-    """Breaks along segments, those of each from its start to its end.
-
-    Attributes
-    ----------
-    segments : (n,) int64 array
-        The segment of each.
-    ratios : (n,) float64 array
-        Share of the segment before it, 0 at the start and 1 at the end.
-    xy : (n, 2) float64 array
-    elevations : (n,) float64 array
-        NaN where there is no surface.
-    crossed : (n,) int8 array
-        Index into ``CROSSED``.
-    triangles : (n,) int32 array
-        Through which, or along an edge of which, the segment goes on; -1 where there is no surface.
-    vertices, edges : (n,) int32 arrays
-        What lies there: a vertex of the TIN, or an edge as three times its triangle plus the corner
-        opposite; -1 for none.
-    """
+    """Breaks along segments, those of each from its start to its end."""
 
     segments: Int64Array
+    """(n,), the segment of each."""
     ratios: Float64Array
+    """(n,), share of the segment before it, 0 at the start and 1 at the end."""
     xy: Float64Array
+    """(n, 2)."""
     elevations: Float64Array
+    """(n,), NaN where there is no surface."""
     crossed: Int8Array
+    """(n,), index into ``CROSSED``."""
     triangles: Int32Array
+    """(n,), through which, or along an edge of which, the segment goes on; -1 where there is no
+    surface.
+    """
     vertices: Int32Array
     edges: Int32Array
+    """Both (n,), what lies there: a vertex of the TIN, or an edge as three times its triangle plus
+    the corner opposite; -1 for none.
+    """
 
     def scale_elevations(self, factor: float) -> Breaks:
         """Return the breaks with elevations times a factor."""
         return self if factor == 1.0 else self._replace(elevations=self.elevations * factor)
 
     def interpolate_after(self, breaks: Int64Array, xy: Float64Array) -> Float64Array:
-        """Interpolate elevations between breaks and those that follow them.
+        """Interpolate elevations at places, (k, 2), between breaks, (k,), and those that follow.
 
-        Parameters
-        ----------
-        breaks : (k,) int64 array
-            Number of the break before each place; none is the last of its segment.
-        xy : (k, 2) float64 array
-            Places on the segments.
-
-        Returns
-        -------
-        (k,) float64 array
-            NaN where there is no surface. Counted from the nearer break, of two the same distance
-            away from the western one, so that it is the same for the line in reverse.
+        None of the breaks is the last of its segment. NaN where there is no surface. Counted from
+        the nearer break, of two the same distance away from the western one, so that it is the same
+        for the line in reverse.
         """
         before, after = self.xy[breaks], self.xy[breaks + 1]
         low, high = self.elevations[breaks], self.elevations[breaks + 1]
@@ -91,22 +75,10 @@ class Breaks(NamedTuple):
 def trace_breaks(tin: TIN, segments: Segments) -> Breaks:
     """Follow segments over a TIN.
 
-    Parameters
-    ----------
-    tin : TIN
-    segments : Segments
-
-    Returns
-    -------
-    Breaks
-        At each segment's ends, where it crosses an edge, passes a vertex, or enters or leaves the
-        surface; decided by exact predicates. Places and elevations of crossings are the true ones
-        rounded once, so they are the same for the reversed segment.
-
-    Raises
-    ------
-    LinesError
-        If a segment meets triangles that lie over each other.
+    Breaks are at each segment's ends, where it crosses an edge, passes a vertex, or enters or
+    leaves the surface; decided by exact predicates. Places and elevations of crossings are the true
+    ones rounded once, so they are the same for the reversed segment. Raises LinesError if a segment
+    meets triangles that lie over each other.
     """
     surface = tin.triangulation
     traced = surface.locator.trace(

@@ -39,20 +39,14 @@ __all__ = ["cross_sections", "section_lines"]
 
 
 class _Axes(NamedTuple):
-    """Cross sections in the plane.
-
-    Attributes
-    ----------
-    segments : Segments
-        From left to right, their stations being offsets, their lines the sections.
-    lines : (s,) int64 array
-        The centreline of each section.
-    stations : (s,) float64 array
-    """
+    """Cross sections in the plane."""
 
     segments: Segments
+    """From left to right, their stations being offsets, their lines the sections."""
     lines: Int64Array
+    """(s,), the centreline of each section."""
     stations: Float64Array
+    """(s,)."""
 
 
 class _Cut(NamedTuple):
@@ -79,10 +73,8 @@ def cross_sections(
 
     Parameters
     ----------
-    tin : TIN, sequence of TIN, or mapping of str to TIN
-        Surfaces; in a sequence they are called 1, 2, ...
-    centreline : (k, 2) array, Breakline, Features, geometry, or sequence of these
-        As the lines of :func:`tinsmith.profile`.
+    tin, centreline
+        Surfaces and polylines as of :func:`tinsmith.profile`.
     interval : float, optional
         A section at every station that is a multiple of it, and at both ends, CRS units.
     stations : (s,) array, optional

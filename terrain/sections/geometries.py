@@ -40,20 +40,12 @@ class _Item(NamedTuple):
 def as_features(given: Any, what: str = "line") -> Features:
     """Return geometries as features of one kind.
 
-    Parameters
-    ----------
-    given : Features, Breakline, (k, 2) or (k, 3) array, geometry, or sequence of these
-        A geometry is one of shapely, a GeoDataFrame, or whatever has a ``__geo_interface__``; an
-        array is a polyline.
-    what : str
-        What one of them is called in sentences.
+    They are Features, a Breakline, a (k, 2) or (k, 3) array, which is a polyline, a geometry of
+    shapely, a GeoDataFrame, or whatever has a ``__geo_interface__``, or a sequence of these.
+    ``what`` is what one of them is called in sentences.
 
-    Raises
-    ------
-    LinesError
-        If it is something else, of several kinds, empty, or has coordinates that are not finite.
-    CrsError
-        If the CRS that it names is unknown.
+    Raises LinesError if it is something else, of several kinds, empty, or has coordinates that are
+    not finite; CrsError if the CRS that it names is unknown.
     """
     if isinstance(given, Features):
         features = given

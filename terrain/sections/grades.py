@@ -22,17 +22,11 @@ _SPLITTER = 2.0**27 + 1
 
 
 def measure_grades(surfaces: Surfaces, segments: Segments, rows: Rows) -> Float64Array:
-    """Measure the slope of each surface along the line from each row to the next one.
+    """Measure the slope of each surface along the line from each row to the next one, (n, k).
 
-    Returns
-    -------
-    (n, k) float64 array
-        Rise over run, elevations not converted to the unit of eastings: NaN in gaps and at ends.
-
-    Notes
-    -----
-    Taken from the plane of the triangle, or from the two rows where rounding harms that less: the
-    one where they are close to each other, the other where the triangle is a sliver.
+    Rise over run, elevations not converted to the unit of eastings: NaN in gaps and at ends. Taken
+    from the plane of the triangle, or from the two rows where rounding harms that less: the one
+    where they are close to each other, the other where the triangle is a sliver.
     """
     directions = segments.directions[rows.places.segments]
     grades = np.full(rows.elevations.shape, np.nan)

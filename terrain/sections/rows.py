@@ -24,41 +24,28 @@ _FIRST, _LAST = -1, np.iinfo(np.int64).max
 
 
 class Places(NamedTuple):
-    """Places on segments.
-
-    Attributes
-    ----------
-    segments : (n,) int64 array
-    stations : (n,) float64 array
-    xy : (n, 2) float64 array
-    """
+    """Places on segments."""
 
     segments: Int64Array
+    """(n,)."""
     stations: Float64Array
+    """(n,)."""
     xy: Float64Array
+    """(n, 2)."""
 
 
 class Rows(NamedTuple):
-    """Rows along lines; a kink, where two segments of a line meet, is one row.
-
-    Attributes
-    ----------
-    places : Places
-    is_last : (n,) bool array
-        Whether the row is the last of its line.
-    elevations : (n, k) float64 array
-        Of each surface; NaN where it is not.
-    crossed : (n, k) array of str
-        What each surface has there: a word of ``CROSSED``, "gap", or "" if nothing.
-    triangles : (n, k) int32 array
-        Of each surface, from here to the next row; -1 where there is none.
-    """
+    """Rows along lines; a kink, where two segments of a line meet, is one row."""
 
     places: Places
     is_last: BoolArray
+    """(n,), whether the row is the last of its line."""
     elevations: Float64Array
+    """(n, k), of each surface; NaN where it is not."""
     crossed: StrArray
+    """(n, k), what each surface has there: a word of ``CROSSED``, "gap", or "" if nothing."""
     triangles: Int32Array
+    """(n, k), of each surface, from here to the next row; -1 where there is none."""
 
     @property
     def is_gap(self) -> BoolArray:
@@ -74,21 +61,11 @@ class Rows(NamedTuple):
 
 
 def cut_rows(surfaces: Surfaces, segments: Segments, extra: Places | None = None) -> Rows:
-    """Follow segments over surfaces.
+    """Follow segments over surfaces, with rows at further places within segments.
 
-    Parameters
-    ----------
-    surfaces : Surfaces
-    segments : Segments
-    extra : Places, optional
-        Further places within segments that get a row.
-
-    Returns
-    -------
-    Rows
-        Wherever any surface has a break. Between two rows in a row of a line that both have an
-        elevation of a surface, the surface is the straight line between them: a gap from one break
-        to the next gets a row in its middle.
+    There is a row wherever any surface has a break. Between two rows in a row of a line that both
+    have an elevation of a surface, the surface is the straight line between them: a gap from one
+    break to the next gets a row in its middle.
     """
     traced = [
         trace_breaks(tin, segments).scale_elevations(factor)
@@ -140,16 +117,10 @@ def _merge(
 ) -> tuple[Places, list[Int64Array]]:
     """Sort places along their segments, those of several sources together.
 
-    Returns
-    -------
-    places : Places
-    own : list of (n,) int64 array
-        For each source, the number that each place has in it; -1 if it is none of its own.
-
-    Notes
-    -----
-    Rounding keeps the order of a station, of an easting and of a northing along a segment, but may
-    make them equal: they are compared one after the other, and only what is equal in all is one.
+    Returns them, and for each source the number that each place has in it; -1 if it is none of its
+    own. Rounding keeps the order of a station, of an easting and of a northing along a segment, but
+    may make them equal: they are compared one after the other, and only what is equal in all is
+    one.
     """
     if len(sources) == 1:
         return sources[0], [np.arange(len(sources[0].xy))]

@@ -16,20 +16,14 @@ __all__ = ["Runs", "find_runs"]
 
 
 class Runs(NamedTuple):
-    """Lines without gaps.
-
-    Attributes
-    ----------
-    coordinates : (n, 3) float64 array
-    offsets : (r + 1,) int64 array
-        Run i is ``coordinates[offsets[i]:offsets[i + 1]]``.
-    first_rows : (r,) int64 array
-        The row where each begins.
-    """
+    """Lines without gaps."""
 
     coordinates: Float64Array
+    """(n, 3)."""
     offsets: Int64Array
+    """(r + 1,), run i is ``coordinates[offsets[i]:offsets[i + 1]]``."""
     first_rows: Int64Array
+    """(r,), the row where each begins."""
 
 
 def find_runs(rows: Rows, k: int = 0) -> Runs:

@@ -16,21 +16,16 @@ __all__ = ["Segments", "as_segments"]
 
 
 class Segments(NamedTuple):
-    """Straight pieces, line after line; those of one line follow each other.
-
-    Attributes
-    ----------
-    starts, ends : (m, 2) float64 array
-    start_stations, end_stations : (m,) float64 array
-    lines : (m,) int64 array
-        The line that each belongs to, in ascending order.
-    """
+    """Straight pieces, line after line; those of one line follow each other."""
 
     starts: Float64Array
     ends: Float64Array
+    """Both (m, 2)."""
     start_stations: Float64Array
     end_stations: Float64Array
+    """Both (m,)."""
     lines: Int64Array
+    """(m,), the line that each belongs to, in ascending order."""
 
     @property
     def directions(self) -> Float64Array:
@@ -58,25 +53,10 @@ def as_segments(
 ) -> Segments:
     """Return the segments of polylines, each line's stations counted from its first vertex.
 
-    Parameters
-    ----------
-    xy : (n, 2) float64 array
-    offsets : (l + 1,) int64 array
-        Line k is ``xy[offsets[k]:offsets[k + 1]]``.
-    start : float
-        Station of each line's first vertex.
-    what : str
-        What a line is called in sentences.
-
-    Raises
-    ------
-    LinesError
-        If a line has no length, or one that is too long for a number.
-
-    Notes
-    -----
-    A vertex that repeats the one before it is passed over. Stations are the sums of the lengths of
-    the segments, added one after the other, each rounded.
+    Line k is ``xy[offsets[k]:offsets[k + 1]]``, its first vertex has the station ``start``, and a
+    line is called ``what`` in sentences. A vertex that repeats the one before it is passed over.
+    Stations are the sums of the lengths of the segments, added one after the other, each rounded.
+    Raises LinesError if a line has no length, or one that is too long for a number.
     """
     lines = find_owners(offsets)
     is_step = (lines[1:] == lines[:-1]) & (xy[1:] != xy[:-1]).any(axis=1)

@@ -19,27 +19,17 @@ _ALLOWED = "a TIN, a sequence of TINs, or a mapping of names to TINs"
 
 
 class Surfaces(NamedTuple):
-    """TINs with names, and how their elevations become those of one unit.
-
-    Attributes
-    ----------
-    names : tuple of str
-        The one name of a TIN given by itself is empty.
-    tins : tuple of TIN
-    factors : tuple of float
-        From each TIN's elevations to ``elevation_unit``.
-    crs : CRS or None
-    elevation_unit : Unit or None
-    notes : tuple of str
-        What had to be assumed or converted.
-    """
+    """TINs with names, and how their elevations become those of one unit."""
 
     names: tuple[str, ...]
+    """The one name of a TIN given by itself is empty."""
     tins: tuple[TIN, ...]
     factors: tuple[float, ...]
+    """From each TIN's elevations to ``elevation_unit``."""
     crs: CRS | None
     elevation_unit: Unit | None
     notes: tuple[str, ...]
+    """What had to be assumed or converted."""
 
     def column(self, name: str, k: int) -> str:
         """Return what the column of surface ``k`` is called."""
@@ -49,19 +39,9 @@ class Surfaces(NamedTuple):
 def as_surfaces(given: Any) -> Surfaces:
     """Return one TIN or several as surfaces of one CRS and one unit of elevations.
 
-    Parameters
-    ----------
-    given : TIN, sequence of TIN, or mapping of str to TIN
-        In a sequence they are called 1, 2, ...
-
-    Raises
-    ------
-    OptionError
-        If there is none, or a name is no printable text.
-    PointsError
-        If one is no TIN.
-    CrsError
-        As :func:`tinsmith.terrain.georeference.agree` says.
+    Without names, in a sequence, they are called 1, 2, ... Raises OptionError if there is none, or
+    a name is no printable text; PointsError if one is no TIN; CrsError as
+    :func:`tinsmith.terrain.georeference.agree` does.
     """
     names, tins = _name_tins(given)
     for tin in tins:

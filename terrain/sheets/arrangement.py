@@ -35,19 +35,12 @@ _AIR = 2.0
 
 
 class Ground(NamedTuple):
-    """What is to be shown.
-
-    Attributes
-    ----------
-    bounds : Bounds
-    footprint : Footprint
-    unit : Unit
-        Of the coordinates.
-    """
+    """What is to be shown."""
 
     bounds: Bounds
     footprint: Footprint
     unit: Unit
+    """Of the coordinates."""
 
 
 def choose_single(
@@ -55,20 +48,9 @@ def choose_single(
 ) -> tuple[Layout, Scale, Window]:
     """Return the window that shows all of the ground, north up.
 
-    Parameters
-    ----------
-    ground : Ground
-    layouts : sequence of Layout
-        Of which the one with the largest scale is taken, and of several the first.
-    scale : Scale or None
-        Default the largest of the usual ones that fits.
-    air : float
-        Millimetres between the ground and the frame.
-
-    Raises
-    ------
-    OptionError
-        If the scale is too large.
+    Of the layouts the one with the largest scale is taken, and of several the first; the scale is
+    by default the largest of the usual ones that fits, with ``air`` millimetres between the ground
+    and the frame. Raises OptionError if the scale is too large.
     """
     fits = [find_fitting(ground.bounds, one, ground.unit, air) for one in layouts]
     best = int(np.argmin([fit.denominator for fit in fits]))

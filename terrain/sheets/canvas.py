@@ -64,12 +64,7 @@ def drawing_rules() -> Iterator[None]:
 
 
 class Canvas:
-    """A sheet of paper; the origin is its lower left corner. Used within :func:`drawing_rules`.
-
-    Parameters
-    ----------
-    paper : Paper
-    """
+    """A sheet of paper; the origin is its lower left corner. Used within :func:`drawing_rules`."""
 
     def __init__(self, paper: Paper) -> None:
         size = paper.width / MM_PER_INCH, paper.height / MM_PER_INCH

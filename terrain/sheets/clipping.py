@@ -19,20 +19,14 @@ __all__ = ["Paths", "clip_paths", "join_paths"]
 
 
 class Paths(NamedTuple):
-    """Polylines in the plane.
-
-    Attributes
-    ----------
-    coordinates : (n, 2) float64 array
-    offsets : (l + 1,) int64 array
-        Path k is ``coordinates[offsets[k]:offsets[k + 1]]``.
-    sources : (l,) int64 array
-        The polyline that each path is a part of.
-    """
+    """Polylines in the plane."""
 
     coordinates: Float64Array
+    """(n, 2)."""
     offsets: Int64Array
+    """(l + 1,), path k is ``coordinates[offsets[k]:offsets[k + 1]]``."""
     sources: Int64Array
+    """(l,), the polyline that each path is a part of."""
 
     @classmethod
     def whole(cls, coordinates: Float64Array, offsets: Int64Array) -> Paths:

@@ -44,42 +44,26 @@ _MOST_DECIMALS = 3
 
 
 class Marks(NamedTuple):
-    """Points to be drawn.
-
-    Attributes
-    ----------
-    places : (n, 2) float64 array
-    numbers, elevations : list of str
-        What stands beside each; empty if nothing does.
-    """
+    """Points to be drawn."""
 
     places: Float64Array
+    """(n, 2)."""
     numbers: list[str]
     elevations: list[str]
+    """What stands beside each; both empty if nothing does."""
 
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """What is drawn.
-
-    Attributes
-    ----------
-    contours : Features
-    interval : float
-        Between them.
-    linework : dict of str to Paths
-        Lines by their kinds, those of ``EDGE_KINDS``.
-    outline : Paths
-        The boundary of the surface where no line runs along it.
-    footprint : Footprint
-    marks : Marks or None
-    notes : tuple of str
-    """
+    """What is drawn."""
 
     contours: Features
     interval: float
+    """Between them."""
     linework: dict[str, Paths]
+    """Lines by their kinds, those of ``EDGE_KINDS``."""
     outline: Paths
+    """The boundary of the surface where no line runs along it."""
     footprint: Footprint
     marks: Marks | None
     notes: tuple[str, ...]

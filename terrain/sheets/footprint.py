@@ -18,37 +18,25 @@ __all__ = ["Footprint", "Pieces", "cut_into_pieces", "find_footprint"]
 
 
 class Footprint(NamedTuple):
-    """Polygons that tile a surface.
-
-    Attributes
-    ----------
-    faces : array of shapely.Polygon
-    is_water : (k,) bool array
-    """
+    """Polygons that tile a surface."""
 
     faces: AnyArray
+    """Of ``shapely.Polygon``."""
     is_water: BoolArray
+    """(k,)."""
 
 
 class Pieces(NamedTuple):
-    """A footprint in cells: what of it lies in each, of every polygon apart.
-
-    Attributes
-    ----------
-    corners : (n, 2) float64 array
-        Of the polygons, piece after piece.
-    owners : (n,) int64 array
-        The piece that each is of.
-    cells : (k, 2) int64 array
-        Column and row of each piece.
-    centers : (k, 2) float64 array
-        Means of their corners.
-    """
+    """A footprint in cells: what of it lies in each, of every polygon apart."""
 
     corners: Float64Array
+    """(n, 2), of the polygons, piece after piece."""
     owners: Int64Array
+    """(n,), the piece that each is of."""
     cells: Int64Array
+    """(k, 2), column and row of each piece."""
     centers: Float64Array
+    """(k, 2), means of their corners."""
 
 
 def find_footprint(tin: TIN) -> Footprint:
@@ -106,16 +94,8 @@ def _list_water_rings(tin: TIN) -> AnyArray:
 
 
 def cut_into_pieces(faces: AnyArray, side: float) -> Pieces:
-    """Cut polygons into what lies in each cell of a square grid.
+    """Cut polygons into what lies in each cell of a square grid, of a side in CRS units.
 
-    Parameters
-    ----------
-    faces : array of shapely.Polygon
-    side : float
-        Of a cell, CRS units.
-
-    Notes
-    -----
     Halved again and again, so that the time is in proportion to the corners and the logarithm of
     the number of cells.
     """

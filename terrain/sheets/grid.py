@@ -34,19 +34,12 @@ _GAP = 2.0
 
 
 class Label(NamedTuple):
-    """What is written where a line of the grid meets the frame.
-
-    Attributes
-    ----------
-    place : tuple of float
-        On the frame.
-    side : str
-        "bottom", "right", "top" or "left" of the map.
-    text : str
-    """
+    """What is written where a line of the grid meets the frame."""
 
     place: tuple[float, float]
+    """On the frame."""
     side: str
+    """Of the map: "bottom", "right", "top" or "left"."""
     text: str
 
 

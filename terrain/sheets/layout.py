@@ -24,27 +24,18 @@ _A4 = 210.0 * 297.0
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Rectangles of a sheet.
-
-    Attributes
-    ----------
-    paper : Paper
-    factor : float
-        By which title block and letters in it are larger than on A4.
-    border : Bounds
-    frame : Bounds
-        Of the map.
-    legend, scales, title : Bounds
-        Cells of the title block.
-    """
+    """Rectangles of a sheet."""
 
     paper: Paper
     factor: float
+    """By which title block and letters in it are larger than on A4."""
     border: Bounds
     frame: Bounds
+    """Of the map."""
     legend: Bounds
     scales: Bounds
     title: Bounds
+    """All three are cells of the title block."""
 
 
 def arrange_sheet(paper: Paper) -> Layout:

@@ -30,20 +30,13 @@ _SMALLER = 0.94
 
 
 class Lettering(NamedTuple):
-    """A text in lines, as it fits.
-
-    Attributes
-    ----------
-    lines : tuple of str
-    size : float
-        Of the letters, millimetres.
-    is_cut : bool
-        Whether the end is left out.
-    """
+    """A text in lines, as it fits."""
 
     lines: tuple[str, ...]
     size: float
+    """Of the letters, millimetres."""
     is_cut: bool
+    """Whether the end is left out."""
 
 
 def clean_text(text: str) -> str:
@@ -116,15 +109,8 @@ def find_missing_letters(text: str) -> str:
 def fit_text(text: str, width: float, *, size: float, least: float, lines: int = 1) -> Lettering:
     """Return a text in at most so many lines, smaller if needed, cut where that is not enough.
 
-    Parameters
-    ----------
-    text : str
-        Clean.
-    width : float
-        Room for a line, millimetres.
-    size, least : float
-        Of letters: wanted, and the smallest that is read, millimetres.
-    lines : int
+    The text is clean; ``width`` is the room for a line, ``size`` that of letters if there is room,
+    and ``least`` the smallest that is read, millimetres.
 
     Examples
     --------

@@ -62,21 +62,16 @@ _MOST_MARK_LABELS = 20_000
 
 @dataclass(eq=False)
 class Drawn:
-    """What was drawn on a sheet, for its legend and the notes.
-
-    Attributes
-    ----------
-    kinds : set of str
-        "contour", "index contour", kinds of lines, "water area", "outline", "point", "match line".
-    labels : int
-        Elevations that were written on contours.
-    crowded : int
-        Points whose labels had no room.
-    """
+    """What was drawn on a sheet, for its legend and the notes."""
 
     kinds: set[str]
+    """Of "contour", "index contour", "water area", "outline", "point", "match line", and kinds of
+    lines.
+    """
     labels: int = 0
+    """Elevations that were written on contours."""
     crowded: int = 0
+    """Points whose labels had no room."""
 
 
 class _Text(NamedTuple):
@@ -98,15 +93,8 @@ def draw_map(
 ) -> Drawn:
     """Draw the ground of a window: water, contours, lines, points, grid, match lines, frame.
 
-    Parameters
-    ----------
-    canvas : Canvas
-    window : Window
-    contents : Contents
-    labeling : {"index", "all", "none"}
-    grid : {"crosses", "lines", "none"}
-    numbers : tuple of int
-        Of the sheet of each window, as match lines name them.
+    ``labeling`` is "index", "all" or "none", ``grid`` "crosses", "lines" or "none"; ``numbers`` are
+    those of the sheet of each window, as match lines name them.
     """
     drawn, room = Drawn(set()), Room(window.frame)
     _fill_water(canvas, window, contents, drawn)

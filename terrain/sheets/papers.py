@@ -47,34 +47,20 @@ _LEAST, _MOST = 190.0, 5000.0
 
 @dataclass(frozen=True, slots=True)
 class Paper:
-    """A sheet of paper.
-
-    Attributes
-    ----------
-    name : str
-        "A3 landscape", or the size of one that has no name.
-    width, height : float
-        Millimetres.
-    """
+    """A sheet of paper."""
 
     name: str
+    """Such as "A3 landscape", or the size of one that has no name."""
     width: float
     height: float
+    """Width and height are millimetres."""
 
     @classmethod
     def choices(cls, paper: PaperLike, orientation: str | None) -> tuple[Paper, ...]:
         """Return the papers that a name stands for: one, or landscape and portrait.
 
-        Parameters
-        ----------
-        paper : str or (float, float)
-            Name such as "A3" or "ARCH D", or width and height in millimetres.
-        orientation : {"landscape", "portrait"}, optional
-            Of a named paper; default both.
-
-        Raises
-        ------
-        OptionError
+        A name is one such as "A3" or "ARCH D", or width and height in millimetres, else an
+        OptionError; a named paper has both orientations if none is given.
 
         Examples
         --------

@@ -28,12 +28,7 @@ def outline_text(
 
 
 class Room:
-    """What is left of a frame for texts.
-
-    Parameters
-    ----------
-    frame : Bounds
-    """
+    """What is left of a frame for texts."""
 
     def __init__(self, frame: Bounds) -> None:
         self._frame = frame

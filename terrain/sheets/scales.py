@@ -38,13 +38,6 @@ _LARGEST_ERROR = 0.01
 class Scale:
     r"""How many times smaller paper is than ground.
 
-    Attributes
-    ----------
-    denominator : float
-        500 of 1:500.
-    text : str
-        As it stands on the sheet.
-
     Examples
     --------
     >>> from tinsmith.crs import FOOT, METRE
@@ -55,7 +48,9 @@ class Scale:
     """
 
     denominator: float
+    """500 of 1:500."""
     text: str
+    """As it stands on the sheet."""
 
     @classmethod
     def of(cls, value: Any, unit: Unit) -> Scale:
@@ -127,20 +122,10 @@ def _write(number: float) -> str:
 
 
 def find_ground_unit(crs: CRS | None, declared: UnitLike | None) -> Unit:
-    """Return the unit of eastings and northings.
+    """Return the unit of eastings and northings, declared where no CRS tells it.
 
-    Parameters
-    ----------
-    crs : CRS or None
-    declared : Unit or str, optional
-        What the caller says, where no CRS tells it.
-
-    Raises
-    ------
-    CrsError
-        If coordinates are angles, or nothing tells what they are.
-    OptionError
-        If the unit is none, or another than the CRS's.
+    Raises CrsError if coordinates are angles, or nothing tells what they are; OptionError if the
+    unit is none, or another than the CRS's.
     """
     unit = _parse_unit(declared)
     if crs is not None and crs.is_geographic:

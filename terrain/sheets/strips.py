@@ -30,35 +30,22 @@ _AROUND = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
 
 
 class Joint(NamedTuple):
-    """Where one strip ends and the next begins.
-
-    Attributes
-    ----------
-    place : (2,) float64 array
-        On the axis.
-    angle : float
-        Direction of the axis there, radians.
-    """
+    """Where one strip ends and the next begins."""
 
     place: Float64Array
+    """(2,), on the axis."""
     angle: float
+    """Direction of the axis there, radians."""
 
 
 class Strip(NamedTuple):
-    """A rectangle of ground.
-
-    Attributes
-    ----------
-    center : tuple of float
-    angle : float
-        Of its longer side, in the direction of the axis, degrees counter-clockwise from east.
-    end : Joint
-        To the next strip.
-    """
+    """A rectangle of ground."""
 
     center: tuple[float, float]
     angle: float
+    """Of its longer side, in the direction of the axis, degrees counter-clockwise from east."""
     end: Joint
+    """To the next strip."""
 
 
 def cut_strips(
@@ -67,25 +54,12 @@ def cut_strips(
     room: tuple[float, float],
     axis: Float64Array | None,
 ) -> list[Strip] | None:
-    """Cover a footprint with rectangles along an axis.
+    """Cover a footprint with rectangles along an axis, (k, 2), by default its own.
 
-    Parameters
-    ----------
-    footprint : Footprint
-    step : float
-        Of the axis from one strip to the next at most, CRS units.
-    room : tuple of float
-        Width, along the axis, and height of a rectangle.
-    axis : (k, 2) float64 array or None
-        Default that of the footprint.
+    ``step`` is that of the axis from one strip to the next at most, CRS units; ``room`` the width,
+    along the axis, and the height of a rectangle. None if somewhere the footprint is too wide for
+    the rectangles, or turns too fast.
 
-    Returns
-    -------
-    list of Strip or None
-        None if somewhere the footprint is too wide for the rectangles, or turns too fast.
-
-    Notes
-    -----
     The footprint is cut into small cells, every piece goes to the strip that has the station of its
     middle on the axis, and a strip is as long as all of its pieces, whole, lie in the rectangle. So
     no place of the surface is left out, whatever the axis is.
@@ -189,25 +163,11 @@ class _Walk:
 
 
 def find_axis(footprint: Footprint, pieces: Pieces, height: float) -> Float64Array:
-    """Return a line along a footprint, from west to east.
+    """Return a line along a footprint, (k, 2), from west to east.
 
-    Parameters
-    ----------
-    footprint : Footprint
-    pieces : Pieces
-        The same in cells.
-    height : float
-        Of a strip, CRS units.
-
-    Returns
-    -------
-    (k, 2) float64 array
-
-    Notes
-    -----
-    If all fits a straight strip it is the middle line of the smallest rectangle around the
-    footprint. Else it runs through the middles of bands at equal distances, along the surface, from
-    the one of its places that is farthest from the others.
+    If all fits a straight strip of a height in CRS units it is the middle line of the smallest
+    rectangle around the footprint. Else it runs through the middles of bands at equal distances,
+    along the surface, from the one of its places that is farthest from the others.
     """
     straight, is_enough = _find_straight_axis(footprint, height)
     if is_enough:

@@ -54,27 +54,17 @@ _PENS = {
 
 
 class Caption(NamedTuple):
-    """What a title block says.
-
-    Attributes
-    ----------
-    title : str
-    facts : tuple of str
-        CRS, elevations, contours, points: a line each.
-    scale : str
-    sheet : str
-        "Sheet 1 of 3".
-    date : str
-    unit : Unit
-        Of the coordinates.
-    """
+    """What a title block says."""
 
     title: str
     facts: tuple[str, ...]
+    """CRS, elevations, contours, points: a line each."""
     scale: str
     sheet: str
+    """Such as "Sheet 1 of 3"."""
     date: str
     unit: Unit
+    """Of the coordinates."""
 
 
 def draw_title_block(
@@ -82,14 +72,7 @@ def draw_title_block(
 ) -> bool:
     """Draw border and title block; tell whether all of its texts had room.
 
-    Parameters
-    ----------
-    canvas : Canvas
-    layout : Layout
-    window : Window
-    caption : Caption
-    kinds : sequence of str
-        What the legend explains.
+    The legend explains ``kinds``.
     """
     border = list_corners(layout.border)
     canvas.draw_paths([border[[0, 1, 2, 3, 0]]], _BORDER, "border")

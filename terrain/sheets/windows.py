@@ -15,41 +15,26 @@ __all__ = ["MatchLine", "Window", "list_corners", "turn"]
 
 
 class MatchLine(NamedTuple):
-    """Where another sheet goes on.
-
-    Attributes
-    ----------
-    ends : (2, 2) float64 array
-        On the ground.
-    window : int
-        Number of the other sheet's window, from 0.
-    """
+    """Where another sheet goes on."""
 
     ends: Float64Array
+    """(2, 2), on the ground."""
     window: int
+    """Number of the other sheet's window, from 0."""
 
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """A rectangle of ground on a sheet.
-
-    Attributes
-    ----------
-    center : tuple of float
-        Easting and northing in the middle of the frame.
-    angle : float
-        Direction that is to the right on the sheet, degrees counter-clockwise from east.
-    mm_per_unit : float
-        Length of a unit of the coordinates on paper.
-    frame : Bounds
-        Of the map on paper, millimetres from the lower left corner of the sheet.
-    matches : tuple of MatchLine
-    """
+    """A rectangle of ground on a sheet."""
 
     center: tuple[float, float]
+    """Easting and northing in the middle of the frame."""
     angle: float
+    """Direction that is to the right on the sheet, degrees counter-clockwise from east."""
     mm_per_unit: float
+    """Length of a unit of the coordinates on paper."""
     frame: Bounds
+    """Of the map on paper, millimetres from the lower left corner of the sheet."""
     matches: tuple[MatchLine, ...] = field(default=())
 
     def to_paper(self, xy: Float64Array) -> Float64Array:

@@ -6,39 +6,21 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...tin.topology import find_offsets, neighbors_of
+from ...tin.topology import find_offsets
 from .. import _kernel
+from ..relief.dissolving import DividedMesh
 
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array, UInt8Array
     from ...tin import TIN
     from .eyes import View
 
-__all__ = ["DividedMesh", "divide"]
+__all__ = ["divide"]
 
 _SEEN, _DIVIDED = 1, 2
 """What the kernel says of a triangle."""
 _THINNEST = 1e-10
 """Area of a triangle, by the square of its longest side, below which its parts are rounding."""
-
-
-class DividedMesh(NamedTuple):
-    """Triangles that share their vertices, of which a view sees each as a whole or not at all.
-
-    Attributes
-    ----------
-    points : (n, 2) float64 array
-    triangles, neighbors : (m, 3) int32 arrays
-    is_seen : (m,) bool array
-    owners : (m,) int64 array
-        The triangle of the TIN that each is a part of.
-    """
-
-    points: Float64Array
-    triangles: Int32Array
-    neighbors: Int32Array
-    is_seen: BoolArray
-    owners: Int64Array
 
 
 class _Cells(NamedTuple):
@@ -51,14 +33,13 @@ class _Cells(NamedTuple):
     lines: Int64Array
 
 
-def divide(tin: TIN, view: View) -> DividedMesh:
+def divide(tin: TIN, view: View) -> tuple[DividedMesh, BoolArray]:
     """Divide the triangles of a surface into what a view sees and what is hidden.
 
-    Notes
-    -----
-    Cells come from the kernel. Their sides lie on edges of the TIN and on rays from the eye, along
-    which neighbours may have other corners: each side gets all that lie on it, so that the cells
-    share their vertices, and then is joined with the middle of its cell.
+    Returns parts of triangles, and whether each is seen. Cells come from the kernel. Their sides
+    lie on edges of the TIN and on rays from the eye, along which neighbours may have other corners:
+    each side gets all that lie on it, so that the cells share their vertices, and then is joined
+    with the middle of its cell.
     """
     parts, offsets, owners, is_seen, corners, lines = _kernel.find_seen_parts(
         tin.points, tin.triangles, tin.neighbors, view.eye, view.target_height
@@ -72,13 +53,8 @@ def divide(tin: TIN, view: View) -> DividedMesh:
     kept = np.flatnonzero(~is_cut)
     points, fans, cell = _fan_out(cells, points)
     triangles = np.concatenate([tin.triangles[kept], fans])
-    return DividedMesh(
-        points,
-        triangles,
-        neighbors_of(triangles, len(points)),
-        np.concatenate([parts[kept] == _SEEN, cells.is_seen[cell]]),
-        np.concatenate([kept, cells.owners[cell]]),
-    )
+    mesh = DividedMesh.of(points, triangles, np.concatenate([kept, cells.owners[cell]]))
+    return mesh, np.concatenate([parts[kept] == _SEEN, cells.is_seen[cell]])
 
 
 def _number_corners(tin: TIN, corners: Float64Array) -> tuple[Float64Array, Int64Array]:

@@ -37,24 +37,18 @@ class Rays(NamedTuple):
 
 
 class Blocks(NamedTuple):
-    """What stands in the way of rays.
-
-    Attributes
-    ----------
-    is_blocked : (k,) bool array
-    ratios : (k,) float64 array
-        Share of the way after which the ray first goes into the ground; NaN if it does not.
-    clearances : (k,) float64 array
-        Least height of the ray above ground between its ends, at edges and vertices; negative if it
-        is blocked, NaN where it crosses none.
-    leaves : (k,) bool array
-        Whether it passes over places without surface.
-    """
+    """What stands in the way of rays."""
 
     is_blocked: BoolArray
+    """(k,)."""
     ratios: Float64Array
+    """(k,), share of the way after which the ray first goes into the ground; NaN if it does not."""
     clearances: Float64Array
+    """(k,), least height of the ray above ground between its ends, at edges and vertices; negative
+    if it is blocked, NaN where it crosses none.
+    """
     leaves: BoolArray
+    """(k,), whether it passes over places without surface."""
 
 
 def find_curvature(reference: Reference, curvature: Any, refraction: Any) -> float:
@@ -85,23 +79,11 @@ def find_curvature(reference: Reference, curvature: Any, refraction: Any) -> flo
 def find_blocks(tin: TIN, rays: Rays, fall: float) -> Blocks:
     """Find where the ground is above rays.
 
-    Parameters
-    ----------
-    tin : TIN
-    rays : Rays
-    fall : float
-        Of the earth at a distance of 1, 0 for a plane.
-
-    Returns
-    -------
-    Blocks
-
-    Notes
-    -----
-    Between two edges the ground is straight, and so is the ray: it is enough to compare them where
-    it crosses edges and vertices. Where doubles cannot tell, fractions do; what only touches the
-    ray does not block it. Over a curved earth the ground bulges between edges, too: the highest
-    place of each bulge is found in closed form, in doubles.
+    ``fall`` is that of the earth at a distance of 1, 0 for a plane. Between two edges the ground is
+    straight, and so is the ray: it is enough to compare them where it crosses edges and vertices.
+    Where doubles cannot tell, fractions do; what only touches the ray does not block it. Over a
+    curved earth the ground bulges between edges, too: the highest place of each bulge is found in
+    closed form, in doubles.
     """
     breaks = _trace(tin, rays)
     owner = breaks.segments

@@ -121,8 +121,8 @@ def _judge_triangles(tin: TIN, view: View) -> tuple[Mesh, _Numbers, _Numbers]:
 
 def _divide(tin: TIN, view: View) -> tuple[Mesh, _Numbers, _Numbers]:
     """Return parts of triangles, the class of each, and the triangle that it is a part of."""
-    parts = divide(tin, view)
-    return parts, np.where(parts.is_seen, 0, 2), parts.owners
+    parts, is_seen = divide(tin, view)
+    return parts, np.where(is_seen, 0, 2), parts.owners
 
 
 def _faces_away(tin: TIN, eye: Float64Array) -> BoolArray:

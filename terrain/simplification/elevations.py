@@ -24,12 +24,7 @@ _LARGEST = 2**31 - 8
 
 
 class Block(NamedTuple):
-    """A part of a raster; neighbours share a row or a column of cells.
-
-    Attributes
-    ----------
-    rows, columns : slice
-    """
+    """A part of a raster; neighbours share a row or a column of cells."""
 
     rows: slice
     columns: slice
@@ -81,13 +76,7 @@ class Block(NamedTuple):
 class Elevations:
     """The elevations of a raster: row 0 is the northernmost, NaN where there is none.
 
-    Attributes
-    ----------
-    shape : tuple of int
-    x, y : float64 arrays
-        Centres of columns and rows.
-    unit : Unit or None
-    spacing : float
+    ``x`` and ``y`` are the centres of columns and rows.
     """
 
     def __init__(self, raster: Raster) -> None:
@@ -137,13 +126,7 @@ class Elevations:
 
 
 class Heights:
-    """Elevations of some cells.
-
-    Attributes
-    ----------
-    cells : (k,) int64 array
-        Ascending, each once.
-    """
+    """Elevations of some cells, (k,) in ``cells``: ascending, each once."""
 
     def __init__(self, cells: Int64Array, z: Float64Array) -> None:
         self.cells, first = np.unique(cells, return_index=True)

@@ -26,21 +26,14 @@ __all__ = ["Frame", "choose_vertices", "find_frame", "trace_block"]
 
 
 class Frame(NamedTuple):
-    """The boundary of the surface of a raster, and the cells that must be vertices.
-
-    Attributes
-    ----------
-    rings : list of (k,) int64 arrays
-        Cells along the boundary, the surface on their left.
-    required : (r,) int64 array
-        Corners of boundaries and vertices on seams, ascending.
-    rounding : float
-        By how much elevations may differ because they are rounded.
-    """
+    """The boundary of the surface of a raster, and the cells that must be vertices."""
 
     rings: list[Int64Array]
+    """(k,) each, cells along the boundary, the surface on their left."""
     required: Int64Array
+    """(r,), corners of boundaries and vertices on seams, ascending."""
     rounding: float
+    """By how much elevations may differ because they are rounded."""
 
 
 def trace_block(valid: BoolArray) -> list[Int64Array]:
@@ -62,17 +55,8 @@ def trace_block(valid: BoolArray) -> list[Int64Array]:
 def find_frame(elevations: Elevations, blocks: Sequence[Block], goal: Goal) -> Frame:
     """Read a raster once: find its boundary, and choose the vertices on seams.
 
-    Parameters
-    ----------
-    elevations : Elevations
-    blocks : sequence of Block
-    goal : Goal
-        Cells on seams are within its tolerance of the line between the vertices.
-
-    Raises
-    ------
-    PointsError
-        If the raster has no surface.
+    Cells on seams are within the goal's tolerance of the line between the vertices. Raises
+    PointsError if the raster has no surface.
     """
     rings, corners, heights, rounding = [], [], [], 0.0
     for block in blocks:

@@ -41,12 +41,8 @@ class Canvas:
     def around(cls, xy: Float64Array, crs: CRS | None) -> Canvas:
         """Return a clear canvas that holds some places, as square on the ground as they are.
 
-        Parameters
-        ----------
-        xy : (n, 2) array
-            At least one place.
-        crs : CRS or None
-            Above longitude and latitude a degree of longitude is drawn as long as it is there.
+        ``xy`` is (n, 2), at least one place. Above longitude and latitude a degree of longitude is
+        drawn as long as it is there.
         """
         low, high = xy.min(axis=0), xy.max(axis=0)
         middle = math.radians(float(np.clip((low[1] + high[1]) / 2, -89, 89)))
@@ -98,10 +94,7 @@ class Canvas:
 def draw_cells(values: Float64Array) -> UInt8Array:
     """Draw the cells of a band, row 0 north, from the darkest tint to the lightest; NaN is clear.
 
-    Parameters
-    ----------
-    values : (rows, columns) array
-        Drawn with as many pixels as fit; of a larger band every n-th row and column is taken.
+    The picture has as many pixels as fit; of a larger band every n-th row and column is taken.
     """
     picture = np.zeros((*values.shape, 4), np.uint8)
     is_known = np.isfinite(values)

@@ -55,21 +55,9 @@ def write_card(
 ) -> str:
     """Return the HTML of a card, of one element that asks for nothing.
 
-    Parameters
-    ----------
-    title : str
-    rows : iterable of (str, str)
-        Names and values; any letters.
-    picture : (height, width, 4) uint8 array, optional
-    alt : str, optional
-        What the picture shows.
-    below : str, optional
-        HTML that follows the rows.
-
-    Returns
-    -------
-    str
-        Colours of words are those of the notebook's theme.
+    ``rows`` are names and values, of any letters; the picture is (height, width, 4), and ``alt``
+    what it shows; ``below`` is HTML that follows the rows. Colours of words are those of the
+    notebook's theme.
     """
     image = "" if picture is None else _write_image(picture, alt)
     written = "".join(
@@ -165,12 +153,9 @@ def _write_number(value: float, span: float) -> str:
 
 
 def encode_png(picture: UInt8Array) -> bytes:
-    """Return a PNG of an (height, width, 4) picture: each byte as its step from the pixel before.
+    """Return a PNG of a (height, width, 4) picture: each byte as its step from the pixel before.
 
-    Parameters
-    ----------
-    picture : (height, width, 4) uint8 array
-        Red, green, blue and opacity.
+    Bands are red, green, blue and opacity.
     """
     height, width, _ = picture.shape
     steps = picture.copy()

@@ -21,19 +21,10 @@ _MOST_RINGS = 64
 
 
 def measure_distances(pad: Any, reach: float) -> TIN:
-    """Return the distance from a polygon around it, as elevations.
+    """Return the distance from a polygon without holes around it, as elevations.
 
-    Parameters
-    ----------
-    pad : shapely.Polygon
-        Without holes.
-    reach : float
-
-    Returns
-    -------
-    TIN
-        Exact at its vertices: those of the polygon, and of lines of equal distance, as many as it
-        takes to be exact within 0.0005 of ``reach`` in the middles of triangles, at most 64.
+    They are exact at the vertices: those of the polygon, and of lines of equal distance, as many as
+    it takes to be exact within 0.0005 of ``reach`` in the middles of triangles, at most 64.
     """
     import shapely
 

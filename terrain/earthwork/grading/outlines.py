@@ -52,11 +52,7 @@ def arrange_rings(
 ) -> dict[str, list[Any]]:
     """Return boundary and holes of an area, in which islands stay, for a triangulation.
 
-    Parameters
-    ----------
-    area : shapely.Polygon or shapely.MultiPolygon
-    elevations : mapping
-        Of its vertices, by their places.
+    ``elevations`` are those of its vertices, by their places.
     """
     import shapely
 

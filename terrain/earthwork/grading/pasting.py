@@ -107,17 +107,8 @@ def join_surfaces(
 ) -> TIN:
     """Paste a surface into another one, name the seam, and extend the base where it is told to.
 
-    Parameters
-    ----------
-    base, patch : TIN
-    agreed : Agreement
-        Their CRS and units.
-    area : geometry of shapely
-        What the base covers.
-    name : str
-    extend : bool
-        Whether the patch may reach beyond the base.
-    progress : callable, optional
+    ``agreed`` are their CRS and units, ``area`` is what the base covers; with ``extend`` the patch
+    may reach beyond it.
     """
     done = Progress(progress)
     ground, insert = (

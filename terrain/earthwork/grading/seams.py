@@ -41,20 +41,9 @@ def find_sides(triangles: Int32Array, n_vertices: int) -> Int64Array:
 class Seam:
     """The closed rings of a patch's boundary, (k, 3) each, to which places are added.
 
-    Parameters
-    ----------
-    patch : TIN
-    points : (n, 3) float64 array
-        Its vertices, in the unit of the other surface.
-    tolerance : float
-
-    Attributes
-    ----------
-    rings : list of (k, 3) float64 array
-    area : shapely.Polygon or shapely.MultiPolygon
-        That the patch covers.
-    rounding : float
-        Area that the roundings of the boundary can take away or add.
+    ``points`` are the patch's vertices, (n, 3), in the unit of the other surface. ``area`` is what
+    the patch covers, a polygon of shapely or several; ``rounding`` the area that the roundings of
+    the boundary can take away or add.
     """
 
     def __init__(self, patch: TIN, points: Float64Array, tolerance: float) -> None:

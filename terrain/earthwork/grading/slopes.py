@@ -25,21 +25,14 @@ _PLANE = 1e-6
 
 
 class Slope(NamedTuple):
-    """One of the slopes where it is made: cut or filled.
-
-    Attributes
-    ----------
-    surface : TIN
-        The difference to the ground, cut along all edges.
-    is_made : (m,) bool array
-        Its triangles that hang together with the pad.
-    elevations : (n,) float64 array
-        Of the slope at its vertices.
-    """
+    """One of the slopes where it is made: cut or filled."""
 
     surface: TIN
+    """The difference to the ground, cut along all edges."""
     is_made: BoolArray
+    """(m,), its triangles that hang together with the pad."""
     elevations: Float64Array
+    """(n,), of the slope at its vertices."""
 
     def find_rim(self, pad: Any, tolerance: float) -> list[Float64Array]:
         """Return the daylight lines, (k, 3) each."""
@@ -78,24 +71,9 @@ class Slope(NamedTuple):
 def find_slope(tin: TIN, area: Any, pad: Any, level: float, rate: float, reach: float) -> Slope:
     """Follow a slope from the pad until daylight, at most as far as the ground's relief needs.
 
-    Parameters
-    ----------
-    tin : TIN
-        The ground, without a CRS.
-    area : geometry of shapely
-        What it covers.
-    pad : shapely.Polygon
-    level : float
-        Of the pad.
-    rate : float
-        Rise of the slope for a unit along, negative over a fill.
-    reach : float
-        How far it can go on the highest, or lowest, of the ground.
-
-    Raises
-    ------
-    PointsError
-        If the ground ends before.
+    ``tin`` is the ground, without a CRS, and ``area`` what it covers; ``level`` is that of the pad,
+    ``rate`` the rise of the slope for a unit along, negative over a fill, and ``reach`` how far it
+    can go on the highest, or lowest, of the ground. Raises PointsError if the ground ends before.
     """
     far: float = min(reach, _estimate_reach(tin, pad, level, rate))
     tolerance = measure_tolerance(tin.points)

@@ -84,17 +84,7 @@ def flats(tin: TIN) -> Features:
 
 
 def describe_flats(tin: TIN) -> list[str]:
-    """Tell of flat triangles in a sentence, if the points look like contours.
-
-    Parameters
-    ----------
-    tin : TIN
-
-    Returns
-    -------
-    list of str
-        A sentence, or none.
-    """
+    """Tell of flat triangles in a sentence, if the points look like contours; else return none."""
     z = tin.points[tin.triangles, 2]
     is_flat = (z == z[:, :1]).all(axis=1)
     if is_flat.mean() < _FEWEST_FLAT or not _look_like_contours(tin):

@@ -27,30 +27,21 @@ CAPS = (KINDS.index("peak"), KINDS.index("pit"))
 
 
 class Border(NamedTuple):
-    """Edges of flat triangles with no flat one beyond, or with a line between.
-
-    Attributes
-    ----------
-    triangles, corners : (k,) int64 arrays
-        Flat triangle, and its corner opposite the edge.
-    regions : (k,) int64 array
-    is_contour : (k,) bool array
-        Whether the edge is one of a line; others are exits, or the end of the surface.
-    is_exit : (k,) bool array
-        Whether a triangle beyond, with no line between, leads to another elevation.
-    rises : (k,) float64 array
-        Elevation of the far corner of the triangle beyond, above the edge; 0 if there is none.
-    runs : (k,) float64 array
-        Its distance from the line through the edge, in CRS units.
-    """
+    """Edges of flat triangles with no flat one beyond, or with a line between."""
 
     triangles: Int64Array
     corners: Int64Array
+    """Both (k,), flat triangle, and its corner opposite the edge."""
     regions: Int64Array
+    """(k,)."""
     is_contour: BoolArray
+    """(k,), whether the edge is one of a line; others are exits, or the end of the surface."""
     is_exit: BoolArray
+    """(k,), whether a triangle beyond, with no line between, leads to another elevation."""
     rises: Float64Array
+    """(k,), height of the far corner of the triangle beyond, above the edge; 0 if there is none."""
     runs: Float64Array
+    """(k,), its distance from the line through the edge, in CRS units."""
 
     def take(self, part: slice) -> Border:
         """Return some of the edges."""
@@ -66,31 +57,22 @@ class Border(NamedTuple):
 
 
 class Regions(NamedTuple):
-    """Flat triangles joined across edges that are not of a line.
-
-    Attributes
-    ----------
-    region_of : (m,) int64 array
-        Region of each triangle, -1 for those that are not flat.
-    size : int
-        How many.
-    kinds : (r,) int64 array
-        Indices into ``KINDS``.
-    elevations : (r,) float64 array
-    rises : (r,) float64 array
-        From the region to the next contour that its triangles lead to; of caps, to what the next
-        contour would be, inwards.
-    slopes : (r,) float64 array
-        Of caps: rise over run outside, the median along the contour.
-    border : Border
-    """
+    """Flat triangles joined across edges that are not of a line."""
 
     region_of: Int64Array
+    """(m,), region of each triangle, -1 for those that are not flat."""
     size: int
+    """How many."""
     kinds: Int64Array
+    """(r,), indices into ``KINDS``."""
     elevations: Float64Array
+    """(r,)."""
     rises: Float64Array
+    """(r,), from the region to the next contour that its triangles lead to; of caps, to what the
+    next contour would be, inwards.
+    """
     slopes: Float64Array
+    """(r,), of caps: rise over run outside, the median along the contour."""
     border: Border
 
 

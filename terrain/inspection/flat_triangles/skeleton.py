@@ -18,33 +18,26 @@ __all__ = ["Skeleton", "find_shares", "trace_skeleton"]
 
 
 class Skeleton(NamedTuple):
-    """Points of skeletons; each is the middle of an edge across its region.
-
-    Attributes
-    ----------
-    xy : (k, 2) float64 array
-    regions : (k,) int64 array
-    radii : (k,) float64 array
-        Distance from the nearest line around the region, or from the hull, CRS units.
-    widths : (k,) float64 array
-        Length of the edge that it is the middle of.
-    exits : (k,) float64 array
-        Of points on the border: distance of the corner that the triangle beyond leads to; infinity
-        for others.
-    tips : (k,) float64 array
-        Of points in a triangle with no other such edge: distance of the corner opposite; 0 for
-        others.
-    arcs : list of list of (int, float)
-        Points in the same triangles, and how far they are.
-    """
+    """Points of skeletons; each is the middle of an edge across its region."""
 
     xy: Float64Array
+    """(k, 2)."""
     regions: Int64Array
+    """(k,)."""
     radii: Float64Array
+    """(k,), distance from the nearest line around the region, or from the hull, CRS units."""
     widths: Float64Array
+    """(k,), length of the edge that it is the middle of."""
     exits: Float64Array
+    """(k,), of points on the border: distance of the corner that the triangle beyond leads to;
+    infinity for others.
+    """
     tips: Float64Array
+    """(k,), of points in a triangle with no other such edge: distance of the corner opposite; 0 for
+    others.
+    """
     arcs: list[list[tuple[int, float]]]
+    """Points in the same triangles, and how far they are."""
 
 
 def trace_skeleton(tin: TIN, regions: Regions) -> Skeleton:

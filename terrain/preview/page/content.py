@@ -60,25 +60,16 @@ class Labels(NamedTuple):
 
 
 class Start(NamedTuple):
-    """How a page looks when it is opened.
-
-    Attributes
-    ----------
-    exaggeration : float
-    elevations : tuple of float
-        Lowest and highest of the tints.
-    relief : tuple of float
-        Lowest and highest but for those far off all others.
-    tint : {"elevation", "slope", "aspect", "plain"}
-    interval : float
-        Of contours, 0 for none.
-    """
+    """How a page looks when it is opened."""
 
     exaggeration: float
     elevations: tuple[float, float]
+    """Lowest and highest of the tints."""
     relief: tuple[float, float]
+    """Lowest and highest but for those far off all others."""
     tint: Tint
     interval: float
+    """Of contours, 0 for none."""
 
 
 class _Steps(NamedTuple):
@@ -110,20 +101,8 @@ def describe_page(
 ) -> dict[str, Any]:
     """Return what a page needs, ready for JSON.
 
-    Parameters
-    ----------
-    surfaces : mapping of str to TIN
-        By name, all in one CRS; at least one.
-    ground : Ground
-    title : str
-    start : Start
-    changes : mapping of str to (n,) float64 array
-        Cut and fill at the vertices of surfaces.
-    labels : Labels or None
-    notes : sequence of str
-        What had to be assumed.
-    ortho : Ortho, optional
-        Picture draped over all surfaces.
+    Surfaces are named, all in one CRS, at least one; ``changes`` are cut and fill at the vertices
+    of some of them, (n,); ``notes`` tell what had to be assumed; the ortho is draped over all.
     """
     steps = _choose_steps(list(surfaces.values()), ground)
     described = [
@@ -161,16 +140,8 @@ def describe_page(
 def find_labels(points: Float64Array, survey: Survey) -> Labels | None:
     """Return the points of a survey with their numbers, or their elevations if they have none.
 
-    Parameters
-    ----------
-    points : (k, 3) float64 array
-        Of the survey, elevations in the unit of the page.
-    survey : Survey
-
-    Returns
-    -------
-    Labels or None
-        None where there are more than can be read.
+    ``points`` are (k, 3), elevations in the unit of the page. None where there are more than can be
+    read.
     """
     if not 0 < len(points) <= _MOST_LABELS:
         return None

@@ -14,18 +14,11 @@ __all__ = ["make_document"]
 
 
 def make_document(content: Mapping[str, Any]) -> str:
-    """Return the HTML of a page.
+    """Return the HTML of a page of what :func:`.content.describe_page` gives.
 
-    Parameters
-    ----------
-    content : mapping
-        As :func:`.content.describe_page` gives it.
-
-    Notes
-    -----
     Data cannot end its own element or begin another: "<" is written as an escape of JSON, and the
-    words of the title as character references. A content security policy in the page forbids
-    every request.
+    words of the title as character references. A content security policy in the page forbids every
+    request.
     """
     folder = files(__package__)
     parts = {

@@ -28,13 +28,7 @@ _BITS = 16
 
 
 def pack_rows(rows: Int64Array) -> dict[str, Any]:
-    """Pack a (k, c) array, each row as its difference from the row before.
-
-    Parameters
-    ----------
-    rows : (k, c) int64 array
-        Of numbers and differences that 32 bits hold.
-    """
+    """Pack a (k, c) array, each row as its difference from the row before, in 32 bits."""
     return _pack(np.diff(rows, axis=0, prepend=np.zeros_like(rows[:1])))
 
 
