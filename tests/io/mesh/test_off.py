@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from support.mesh_files import assert_same_mesh, read_text
 from support.surfaces import hills
 
 import tinsmith as ts
@@ -14,16 +15,13 @@ BODY = "4 2 0\n0 0 5\n4 0 6\n4 3 7\n0 3 8\n3 0 1 2\n3 0 2 3\n"
 
 
 def read(tmp_path, text):
-    path = tmp_path / "a.off"
-    path.write_text(text)
-    return ts.read(path)
+    return read_text(tmp_path / "a.off", text)
 
 
 def test_a_tin_comes_back(tmp_path):
     tin = hills()
     back = ts.read(ts.write(tin, tmp_path / "a.off"))
-    assert np.array_equal(back.points, tin.points)
-    assert np.array_equal(back.triangles, tin.triangles)
+    assert_same_mesh(back, tin)
     assert (back.crs, back.elevation_unit) == (tin.crs, tin.elevation_unit)
 
 
