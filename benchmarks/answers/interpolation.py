@@ -16,7 +16,16 @@ from tinsmith.arrays import AnyArray, Float64Array
 from tinsmith.tin import TIN
 
 from ..measure import OURS, Outcome
-from ..peers.place_tools import SIZE, Answer, Tool, ask_tools, make_tin, use_scipy, use_startinpy
+from ..peers.place_tools import (
+    SIZE,
+    Answer,
+    Asked,
+    Tool,
+    ask_tools,
+    make_tin,
+    use_scipy,
+    use_startinpy,
+)
 
 __all__ = ["run"]
 
@@ -39,31 +48,26 @@ def run(n_points: int, *, repeats: int = 3) -> Outcome:
     middles = rng.permutation(middles[np.abs(middles / SIZE - 0.5).max(axis=1) < 0.4])[:n_points]
     side = int(np.sqrt(CELLS_PER_POINT * n_points))
     cells = ts.Grid(ts.Bounds(0.0, 0.0, SIZE, SIZE), shape=(side, side), spacing=SIZE / side)
+    tasks = [
+        (f"interpolate: {task}", tools, middles if task.startswith("c1") else inner)
+        for task, tools in TASKS.items()
+    ]
+    tasks.append(("raster: linear", _raster_tools(cells), _centers(cells)))
     outcome = Outcome()
-    for task, tools in TASKS.items():
-        places = middles if task.startswith("c1") else inner
-        _measure(f"interpolate: {task}", tin, places, tools, repeats, outcome)
-    _measure("raster: linear", tin, _centers(cells), _raster_tools(cells), repeats, outcome)
+    for task, tools, places in tasks:
+        asked = ask_tools(tools, tin, places, repeats, outcome)
+        _require_same(asked, tools)
+        outcome.results += [one.make_result(SECTION, task, name) for name, one in asked.items()]
     return outcome
 
 
-def _measure(
-    task: str,
-    tin: TIN,
-    xy: Float64Array,
-    tools: dict[str, Tool],
-    repeats: int,
-    outcome: Outcome,
-) -> None:
-    present = outcome.present({name: tool.module for name, tool in tools.items()})
-    asked = ask_tools({name: tools[name] for name in present}, tin, xy, repeats)
+def _require_same(asked: dict[str, Asked], tools: dict[str, Tool]) -> None:
     for name, one in asked.items():
         wanted = asked[OURS].answers[: len(one.answers)]
         both = np.isfinite(one.answers) & np.isfinite(wanted)
         assert both.mean() > 0.95, f"{name} has other places inside"
         rounding = tools[name].rounding
         np.testing.assert_allclose(one.answers[both], wanted[both], rtol=0, atol=rounding)
-        outcome.results.append(one.make_result(SECTION, task, name))
 
 
 def _centers(grid: ts.Grid) -> Float64Array:

@@ -16,7 +16,7 @@ from tinsmith import triangulate
 from tinsmith.arrays import AnyArray, Float64Array
 from tinsmith.tin import TIN
 
-from ..measure import Result, alternate, find_median
+from ..measure import Outcome, Result, alternate, find_median
 
 __all__ = ["SIZE", "Answer", "Asked", "Tool", "ask_tools", "make_tin", "use_scipy", "use_startinpy"]
 
@@ -55,16 +55,20 @@ def make_tin(n_points: int, rng: np.random.Generator) -> TIN:
 
 
 def ask_tools(
-    tools: Mapping[str, Tool], tin: TIN, xy: Float64Array, repeats: int
+    tools: Mapping[str, Tool], tin: TIN, xy: Float64Array, repeats: int, outcome: Outcome
 ) -> dict[str, Asked]:
-    """Prepare the tools, and have them answer the places, or as many as they get, in turn."""
-    prepared = {name: _prepare(tool, tin, xy[:1]) for name, tool in tools.items()}
+    """Prepare the tools, and have them answer the places, or as many as they get, in turn.
+
+    Those that are not here are noted in the outcome.
+    """
+    present = outcome.present({name: tool.module for name, tool in tools.items()})
+    prepared = {name: _prepare(tools[name], tin, xy[:1]) for name in present}
     calls = {
         name: _prepare_call(answer, xy[: tools[name].most])
         for name, (answer, _) in prepared.items()
     }
     answers, runs = alternate(calls, repeats)
-    return {name: Asked(answers[name], runs[name], prepared[name][1]) for name in tools}
+    return {name: Asked(answers[name], runs[name], prepared[name][1]) for name in present}
 
 
 def _prepare(tool: Tool, tin: TIN, place: Float64Array) -> tuple[Answer, float]:

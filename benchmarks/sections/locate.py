@@ -10,10 +10,9 @@ import sys
 import numpy as np
 
 import tinsmith as ts
-from tinsmith.arrays import Float64Array
 from tinsmith.tin import TIN
 
-from ..measure import OURS, Outcome, Result
+from ..measure import OURS, Outcome
 from ..peers.place_tools import SIZE, Answer, Tool, ask_tools, make_tin, use_scipy, use_startinpy
 
 __all__ = ["SECTION", "run"]
@@ -35,21 +34,12 @@ def run(n_points: int = 50_000, n_queries: int = 50_000, *, repeats: int = 3) ->
     outcome = Outcome()
     for task, tools in TASKS.items():
         print(f"locate: {task}, {n_queries:,} places", file=sys.stderr, flush=True)
-        present = outcome.present({name: tool.module for name, tool in tools.items()})
-        outcome.results += _measure_queries(
-            task, {name: tools[name] for name in present}, tin, xy, repeats
-        )
+        asked = ask_tools(tools, tin, xy, repeats, outcome)
+        for one in asked.values():
+            wanted = asked[OURS].answers[: len(one.answers)]
+            np.testing.assert_allclose(one.answers, wanted, rtol=0, atol=1e-6)
+        outcome.results += [one.make_result(SECTION, task, name) for name, one in asked.items()]
     return outcome
-
-
-def _measure_queries(
-    task: str, tools: dict[str, Tool], tin: TIN, xy: Float64Array, repeats: int
-) -> list[Result]:
-    asked = ask_tools(tools, tin, xy, repeats)
-    for one in asked.values():
-        wanted = asked[OURS].answers[: len(one.answers)]
-        np.testing.assert_allclose(one.answers, wanted, rtol=0, atol=1e-6)
-    return [one.make_result(SECTION, task, name) for name, one in asked.items()]
 
 
 def _locate_with_tinsmith(tin: TIN) -> Answer:

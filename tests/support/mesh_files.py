@@ -1,4 +1,4 @@
-"""Mesh files of tests: read what a text says, and whether a mesh came back."""
+"""Mesh files of tests: what a text says, and whether a mesh comes back."""
 
 from __future__ import annotations
 
@@ -11,6 +11,13 @@ def read_text(path, text):
     """Write a text to a file and read that."""
     path.write_text(text)
     return ts.read(path)
+
+
+def write_and_read(tin, path):
+    """Write a TIN and read the file, which must have the same mesh."""
+    back = ts.read(ts.write(tin, path))
+    assert_same_mesh(back, tin)
+    return back
 
 
 def assert_same_mesh(found, wanted):
