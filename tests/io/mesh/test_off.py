@@ -14,10 +14,6 @@ import tinsmith as ts
 BODY = "4 2 0\n0 0 5\n4 0 6\n4 3 7\n0 3 8\n3 0 1 2\n3 0 2 3\n"
 
 
-def read(tmp_path, text):
-    return read_text(tmp_path / "a.off", text)
-
-
 def test_a_tin_comes_back(tmp_path):
     tin = hills()
     back = write_and_read(tin, tmp_path / "a.off")
@@ -43,7 +39,7 @@ def test_trimesh_reads_our_off(tmp_path):
     ],
 )
 def test_forms_of_the_file(tmp_path, text):
-    tin = read(tmp_path, text)
+    tin = read_text(tmp_path / "a.off", text)
     assert tin.area == 12
     assert float(tin.interpolate([4, 0])) == 6
 
@@ -65,4 +61,4 @@ def test_forms_of_the_file(tmp_path, text):
 )
 def test_damaged_files(tmp_path, text, sentence):
     with pytest.raises(ts.ReadError, match=re.escape(sentence)):
-        read(tmp_path, text)
+        read_text(tmp_path / "a.off", text)
