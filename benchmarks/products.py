@@ -31,16 +31,10 @@ WARM_UP_POINTS = 200
 
 
 class Product(NamedTuple):
-    """A function of a surface, and what must hold of its answer.
+    """A function of a surface, its input, and what must hold of its answer.
 
-    Attributes
-    ----------
-    prepare : callable
-        From the number of points to the input.
-    run : callable
-        From the input to the answer.
-    check : callable
-        Of input and answer; returns how much was found.
+    ``prepare`` makes the input from the number of points, ``run`` the answer from the input;
+    ``check`` looks at both and tells how much was found.
     """
 
     prepare: Callable[[int], Any]

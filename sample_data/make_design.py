@@ -9,12 +9,12 @@ outwards until it meets the TIN of the survey, which is where the design ends (d
 
 from __future__ import annotations
 
-import csv
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from make_site_survey import EASTING, HERE, NORTHING, write_rows
 
 import tinsmith as ts
 
@@ -25,10 +25,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-HERE = Path(__file__).parent
-HEADER = ("Point", "Northing", "Easting", "Elevation", "Description")
-EASTING, NORTHING = 752_640.0, 4_024_180.0
-"""South-west corner of the site, EPSG:32616."""
 CENTER, SIZE, BEARING = np.array([158.0, 118.0]), np.array([54.0, 28.0]), 6.0
 """Of the pad: local metres, and degrees clockwise from north of its short sides."""
 LEVEL, FALL = 325.77, 0.01
@@ -120,12 +116,7 @@ def records() -> list[list[str]]:
 
 def main(path: Path = HERE / "design_pad.csv") -> None:
     """Make the file."""
-    rows = records()
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(HEADER)
-        writer.writerows(rows)
-    print(f"{path}: {len(rows):,} points")
+    write_rows(path, records())
 
 
 if __name__ == "__main__":

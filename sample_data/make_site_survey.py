@@ -336,14 +336,18 @@ def with_duplicates(rows: list[list[str]]) -> list[list[str]]:
     return [*rows[: twice + 1], rows[twice], *rows[twice + 1 :], reshot]
 
 
-def main(path: Path = HERE / "site_survey.csv") -> None:
-    """Make the file."""
-    rows = records(np.random.default_rng(SEED))
+def write_rows(path: Path, rows: list[list[str]]) -> None:
+    """Write the rows of a survey."""
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(HEADER)
         writer.writerows(rows)
     print(f"{path}: {len(rows):,} points")
+
+
+def main(path: Path = HERE / "site_survey.csv") -> None:
+    """Make the file."""
+    write_rows(path, records(np.random.default_rng(SEED)))
 
 
 if __name__ == "__main__":

@@ -539,12 +539,15 @@ def test_lines_on_the_command_line_declare_their_unit(kerb, summit, tmp_path):
 
 def test_the_legend_says_what_is_known_of_the_unit():
     captions = {name: find_ground(steep(name)).elevation_caption for name in GROUNDS}
-    assert captions["metres"] == "m"
-    assert captions["metres, not told"] == "m assumed"
-    assert captions["US survey feet, not told"] == "US ft assumed"
-    assert captions["feet up from metres"] == "ft"
-    assert captions["nothing known"] == ""
-    assert captions["feet up from nothing known"] == "ft"
+    expected = {
+        "metres": "m",
+        "metres, not told": "m assumed",
+        "US survey feet, not told": "US ft assumed",
+        "feet up from metres": "ft",
+        "nothing known": "",
+        "feet up from nothing known": "ft",
+    }
+    assert {name: captions[name] for name in expected} == expected
 
 
 def test_the_examples_of_the_page_run(capsys):

@@ -73,18 +73,9 @@ def blocks(count: int) -> Iterator[slice]:
 
 
 def orientation(xy: Columns, a: AnyArray, b: AnyArray, c: AnyArray) -> Int8Array:
-    """Tell on which side of the line from ``a`` to ``b`` every ``c`` lies.
+    """Tell on which side of the line from ``a`` to ``b`` every ``c`` lies, all by vertex numbers.
 
-    Parameters
-    ----------
-    xy : Columns
-    a, b, c : (k,) int arrays
-        Vertex numbers.
-
-    Returns
-    -------
-    (k,) int8 array
-        +1 left, -1 right, 0 on the line.
+    Returns (k,) int8 signs: +1 left, -1 right, 0 on the line.
     """
     signs = np.empty(len(a), np.int8)
     for block in blocks(len(a)):
@@ -102,16 +93,7 @@ def orientation(xy: Columns, a: AnyArray, b: AnyArray, c: AnyArray) -> Int8Array
 def in_circle(xy: Columns, a: AnyArray, b: AnyArray, c: AnyArray, d: AnyArray) -> Int8Array:
     """Tell whether every ``d`` lies in the circle through counter-clockwise ``a``, ``b``, ``c``.
 
-    Parameters
-    ----------
-    xy : Columns
-    a, b, c, d : (k,) int arrays
-        Vertex numbers.
-
-    Returns
-    -------
-    (k,) int8 array
-        +1 inside, -1 outside, 0 on the circle.
+    Returns (k,) int8 signs: +1 inside, -1 outside, 0 on the circle.
     """
     signs = np.empty(len(a), np.int8)
     for block in blocks(len(a)):

@@ -67,15 +67,7 @@ class LineTask(NamedTuple):
 
 
 def make_lines(name: str, n: int) -> LineTask:
-    """Make a data set.
-
-    Parameters
-    ----------
-    name : str
-        A key of ``LINE_DATASETS``.
-    n : int
-        Number of points wanted, at least ``LEAST_POINTS``.
-    """
+    """Make the data set of that name in ``LINE_DATASETS``, of about n points."""
     return LINE_DATASETS[name](n, np.random.default_rng(SEED))
 
 

@@ -21,14 +21,9 @@ SEED = 20_261
 
 
 def make_points(name: str, n: int) -> Float64Array:
-    """Make a data set: (about n, 3) float64 easting, northing, elevation, metres.
+    """Make the data set of that name in ``DATASETS``: (about n, 3) float64 array, metres.
 
-    Parameters
-    ----------
-    name : str
-        A key of ``DATASETS``.
-    n : int
-        Number of points wanted, at least 200.
+    At least 200 points can be wanted.
     """
     rng = np.random.default_rng(SEED)
     return lift_to_ground(DATASETS[name](n, rng))

@@ -47,18 +47,10 @@ class Verdict(NamedTuple):
 def judge_answer(
     tin: TIN, answer: AnyArray, wanted: Triangles, *, steps: Triangles | None = None
 ) -> Verdict:
-    """Judge an answer.
+    """Judge an answer by our TIN, which has been checked, and its ranked triangles, ``wanted``.
 
-    Parameters
-    ----------
-    tin : TIN
-        Ours, checked.
-    answer : (m, 3) int array or (m, 3, 2) float array
-        Vertex numbers in the order of ``tin.points``, or coordinates.
-    wanted : (k, 3) int array
-        ``ranked(tin.triangles)``.
-    steps : (s, 2) int array, optional
-        Vertices of ``tin`` that lines join.
+    The answer is (m, 3) vertex numbers in the order of ``tin.points``, or (m, 3, 2) coordinates;
+    ``steps`` are the (s, 2) vertices of the TIN that lines join.
     """
     triangles = answer.astype(np.int64) if answer.ndim == 2 else number_corners(answer, tin.points)
     if triangles.size and triangles.min() < 0:

@@ -15,18 +15,9 @@ FLOAT32_STEP = 0.5
 
 
 class MeshPeer(NamedTuple):
-    """A library that reads and writes meshes.
+    """A library that reads points and triangles from a file, and writes a TIN.
 
-    Attributes
-    ----------
-    module : str
-        What must be installed.
-    read : callable
-        Path to points and triangles.
-    write : callable
-        Writes a TIN to a path.
-    read_step, write_step : float
-        How far coordinates may be off after reading and writing.
+    The steps are how far coordinates may be off after reading, and after writing.
     """
 
     module: str

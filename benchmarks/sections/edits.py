@@ -23,8 +23,7 @@ from ..peers.answers import Verdict, judge_answer, number_corners, rank_triangle
 from ..peers.edit_tools import ALL_EDIT_TOOLS, BUILD, EDIT_TOOLS, OPENED
 from ..peers.tool_process import ToolProcess, make_task_command
 from ..peers.triangulators import CGAL, is_cgal
-from .kernel import run_tools
-from .lines import find_line_tools
+from .kernel import find_tools, run_tools
 
 __all__ = ["SECTION", "run"]
 
@@ -50,7 +49,7 @@ def run(
     An AssertionError says that the answer of an exact tool is wrong.
     """
     outcome = Outcome()
-    present = find_line_tools(tools, EDIT_TOOLS, "edits", outcome)
+    present = find_tools(tools, EDIT_TOOLS, "edits", outcome)
     for name in (*EDIT_TASKS, BATCH):
         print(f"edits: {name}, {n:,} points", file=sys.stderr, flush=True)
         fitting = [tool for tool in present if _takes_part(tool, name)]

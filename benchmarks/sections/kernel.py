@@ -24,7 +24,7 @@ from ..datasets.points import DATASETS, make_points
 from ..measure import OURS, SLOW_SECONDS, Outcome, Result, find_median
 from ..peers.answers import Verdict, judge_answer, make_counting_judge, rank_triangles
 from ..peers.tool_process import ToolFailedError, ToolProcess
-from ..peers.triangulators import ALL_CORES, CGAL, KERNEL, KERNEL_ALL_CORES, TOOLS
+from ..peers.triangulators import ALL_CORES, CGAL, KERNEL, KERNEL_ALL_CORES, TOOLS, is_cgal
 
 __all__ = [
     "ALL_TOOLS",
@@ -77,23 +77,25 @@ def run(
     An AssertionError says that our answer, or that of an exact peer, is wrong.
     """
     outcome = Outcome()
-    present = find_tools(tools, outcome)
+    present = find_tools(tools, TOOLS, "delaunay", outcome)
     for name, n in cases:
         print(f"kernel: {name}, {n:,} points", file=sys.stderr, flush=True)
         outcome.results += _measure_case(Case(name, n), present, repeats, limit)
     return outcome
 
 
-def find_tools(tools: Sequence[str], outcome: Outcome) -> list[str]:
-    """Return the tools that are here; note the others."""
-    present = outcome.present({tool: TOOLS[tool].module for tool in tools if tool != CGAL})
-    if CGAL in tools:
+def find_tools(
+    tools: Sequence[str], modules: Mapping[str, Any], program: str, outcome: Outcome
+) -> list[str]:
+    """Return the tools that are here, CGAL by one of its programs; note the others."""
+    here = outcome.present({tool: modules[tool].module for tool in tools if not is_cgal(tool)})
+    if any(map(is_cgal, tools)):
         try:
-            build_harness()
-            present.append(CGAL)
+            build_harness(program)
+            here += filter(is_cgal, tools)
         except CgalMissingError as error:
-            outcome.skip({CGAL: str(error)})
-    return [tool for tool in tools if tool in present]
+            outcome.skip({tool: str(error) for tool in filter(is_cgal, tools)})
+    return [tool for tool in tools if tool in here]
 
 
 def _measure_case(case: Case, tools: list[str], repeats: int, limit: float) -> Iterator[Result]:

@@ -7,9 +7,9 @@ checked by ``ts.check``, and its lines against edges found in whole numbers.
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,16 +17,16 @@ import tinsmith as ts
 from tinsmith.arrays import Int64Array
 from tinsmith.tin import TIN
 
-from ..cgal import CgalMissingError, build_harness
+from ..cgal import build_harness
 from ..datasets.lines import LEAST_POINTS, LINE_DATASETS, LineTask, make_lines
 from ..measure import Outcome, Result
 from ..peers.answers import Verdict, encode_edges, judge_answer, number_corners, rank_triangles
 from ..peers.line_tools import ALL_LINE_TOOLS, CGAL_INDICES, LINE_TOOLS
 from ..peers.tool_process import ToolFailedError, ToolProcess, make_task_command
 from ..peers.triangulators import is_cgal
-from .kernel import make_result, run_tools
+from .kernel import find_tools, make_result, run_tools
 
-__all__ = ["SECTION", "find_line_tools", "run"]
+__all__ = ["SECTION", "run"]
 
 SECTION = "lines"
 
@@ -39,43 +39,14 @@ def run(
     repeats: int = 5,
     limit: float = 60.0,
 ) -> Outcome:
-    """Measure tools on points with lines.
-
-    Parameters
-    ----------
-    n : int
-        Number of points; at least ``LEAST_POINTS`` are taken.
-    names : iterable of str
-        Data sets.
-    tools : sequence of str
-    repeats : int
-        Rounds; in each every tool triangulates once.
-    limit : float
-        Seconds that a tool may take for one run.
-
-    An AssertionError says that our answer, or that of an exact peer, is wrong.
-    """
+    """Measure tools on ``n`` points, or ``LEAST_POINTS``, with lines; else as ``kernel.run``."""
     outcome = Outcome()
-    present = find_line_tools(tools, LINE_TOOLS, "constrained", outcome)
+    present = find_tools(tools, LINE_TOOLS, "constrained", outcome)
     for name in names:
         print(f"lines: {name}, {n:,} points", file=sys.stderr, flush=True)
         task = make_lines(name, max(n, LEAST_POINTS))
         outcome.results += _measure_lines(name, task, present, repeats, limit)
     return outcome
-
-
-def find_line_tools(
-    tools: Sequence[str], modules: Mapping[str, Any], program: str, outcome: Outcome
-) -> list[str]:
-    """Return the tools that are here, CGAL by one of its programs; note the others."""
-    here = outcome.present({x: modules[x].module for x in tools if not is_cgal(x)})
-    if any(map(is_cgal, tools)):
-        try:
-            build_harness(program)
-            here += filter(is_cgal, tools)
-        except CgalMissingError as error:
-            outcome.skip({tool: str(error) for tool in filter(is_cgal, tools)})
-    return [tool for tool in tools if tool in here]
 
 
 class LineProcess(ToolProcess):

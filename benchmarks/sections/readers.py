@@ -60,36 +60,43 @@ def run(n: int, *, repeats: int = 3) -> Outcome:
         folder = Path(name)
         for task in _TASKS:
             print(f"readers: {task.__name__[1:]}, {n:,}", file=sys.stderr, flush=True)
-            task(folder, n, repeats, outcome)
+            task(Trial(folder, n, repeats, outcome))
     return outcome
 
 
-def _measure_readers(
-    task: str,
-    path: Path,
-    count: int,
-    peers: dict[str, Reader],
-    repeats: int,
-    outcome: Outcome,
-    require: Callable[[Any, Any, str], None],
-    **options: Any,
-) -> None:
-    """Time tinsmith and the peers on one file; ``require(ours, theirs, tool)`` compares.
+class Trial(NamedTuple):
+    """A folder of files of about ``n`` rows, cells or points, and what becomes of reading them."""
 
-    ``options`` are those of ``ts.read``.
-    """
-    present = outcome.present({tool: peer.module for tool, peer in peers.items()})
-    calls: dict[str, Callable[[], Any]] = {OURS: lambda: ts.read(path, **options)}
-    calls |= {tool: _prepare_reading(peers[tool], path) for tool in present}
-    for call in calls.values():
-        call()  # imports, file cache
-    answers, runs = alternate(calls, repeats)
-    for tool in calls:
-        if tool in present:
-            require(answers[OURS], answers[tool], tool)
-        note = peers[tool].note if tool in peers else OUR_NOTES[task]
-        seconds = find_median(runs[tool])
-        outcome.results.append(Result(SECTION, task, tool, count, seconds, tuple(runs[tool]), note))
+    folder: Path
+    n: int
+    repeats: int
+    outcome: Outcome
+
+    def measure(
+        self,
+        task: str,
+        path: Path,
+        count: int,
+        peers: dict[str, Reader],
+        require: Callable[[Any, Any, str], None],
+        **options: Any,
+    ) -> None:
+        """Time tinsmith and the peers on one file; ``require(ours, theirs, tool)`` compares.
+
+        ``options`` are those of ``ts.read``.
+        """
+        present = self.outcome.present({tool: peer.module for tool, peer in peers.items()})
+        calls: dict[str, Callable[[], Any]] = {OURS: lambda: ts.read(path, **options)}
+        calls |= {tool: _prepare_reading(peers[tool], path) for tool in present}
+        for call in calls.values():
+            call()  # imports, file cache
+        answers, runs = alternate(calls, self.repeats)
+        for tool in calls:
+            if tool in present:
+                require(answers[OURS], answers[tool], tool)
+            note = peers[tool].note if tool in peers else OUR_NOTES[task]
+            seconds, times = find_median(runs[tool]), tuple(runs[tool])
+            self.outcome.results.append(Result(SECTION, task, tool, count, seconds, times, note))
 
 
 def _prepare_reading(peer: Reader, path: Path) -> Callable[[], Any]:
@@ -99,9 +106,9 @@ def _prepare_reading(peer: Reader, path: Path) -> Callable[[], Any]:
 # ------------------------------------------------------------------------ survey
 
 
-def _measure_survey(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
-    points = np.round(make_points("uniform", n), 3)
-    path = folder / "survey.csv"
+def _measure_survey(trial: Trial) -> None:
+    points = np.round(make_points("uniform", trial.n), 3)
+    path = trial.folder / "survey.csv"
     _write_pnezd(points, path)
     peers = {
         "pandas.read_csv": Reader(
@@ -115,7 +122,7 @@ def _measure_survey(folder: Path, n: int, repeats: int, outcome: Outcome) -> Non
         tolerance = 1e-15 if tool == "pandas.read_csv" else 0.0
         np.testing.assert_allclose(_swap_axes(ours.points), theirs, rtol=tolerance, atol=0)
 
-    _measure_readers(SURVEY, path, n, peers, repeats, outcome, require, columns="PNEZD")
+    trial.measure(SURVEY, path, trial.n, peers, require, columns="PNEZD")
 
 
 def _write_pnezd(points: Float64Array, path: Path) -> None:
@@ -144,13 +151,13 @@ def _read_with_numpy(path: Path) -> Float64Array:
 # ------------------------------------------------------------------------ raster
 
 
-def _measure_raster(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
+def _measure_raster(trial: Trial) -> None:
     if not is_installed("rasterio"):
-        outcome.skipped.append("GeoTIFF: skipped, rasterio is not installed.")
+        trial.outcome.skipped.append("GeoTIFF: skipped, rasterio is not installed.")
         return
-    points = make_points("raster", n)
+    points = make_points("raster", trial.n)
     heights = points[:, 2].astype(np.float32)
-    path = folder / "heights.tif"
+    path = trial.folder / "heights.tif"
     _write_geotiff(points, heights, path)
     peers = {
         "rasterio": Reader("rasterio", _read_with_rasterio, "the band alone, no points, no mask")
@@ -160,7 +167,7 @@ def _measure_raster(folder: Path, n: int, repeats: int, outcome: Outcome) -> Non
         np.testing.assert_array_equal(ours.points, np.column_stack([points[:, :2], heights]))
         np.testing.assert_array_equal(ours.points[:, 2], theirs.ravel())
 
-    _measure_readers(RASTER, path, len(points), peers, repeats, outcome, require)
+    trial.measure(RASTER, path, len(points), peers, require)
 
 
 def _write_geotiff(points: Float64Array, heights: Float32Array, path: Path) -> None:
@@ -193,9 +200,9 @@ def _read_with_rasterio(path: Path) -> Float32Array:
 # -------------------------------------------------------------------------- mesh
 
 
-def _measure_mesh(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
-    tin = ts.triangulate(make_points("uniform", n), crs=CRS)
-    path = ts.write(tin, folder / "surface.ply")
+def _measure_mesh(trial: Trial) -> None:
+    tin = ts.triangulate(make_points("uniform", trial.n), crs=CRS)
+    path = ts.write(tin, trial.folder / "surface.ply")
     peers = {
         tool: Reader(peer.module, peer.read, "coordinates become float32" * bool(peer.read_step))
         for tool, peer in MESH_PEERS.items()
@@ -208,12 +215,12 @@ def _measure_mesh(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
         np.testing.assert_allclose(theirs[0], ours.points, rtol=0, atol=step)
         np.testing.assert_array_equal(theirs[1], ours.triangles)
 
-    _measure_readers(MESH, path, n, peers, repeats, outcome, require)
+    trial.measure(MESH, path, trial.n, peers, require)
 
 
-def _measure_landxml(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
-    tin = ts.triangulate(make_points("uniform", n), crs=CRS, z_unit="m")
-    path = ts.write(tin, folder / "surface.xml")
+def _measure_landxml(trial: Trial) -> None:
+    tin = ts.triangulate(make_points("uniform", trial.n), crs=CRS, z_unit="m")
+    path = ts.write(tin, trial.folder / "surface.xml")
     peers = {"xml.etree": Reader("xml", read_with_etree, "the numbers only")}
 
     def require(ours: TIN, theirs: tuple[Float64Array, Any], _: str) -> None:
@@ -221,18 +228,18 @@ def _measure_landxml(folder: Path, n: int, repeats: int, outcome: Outcome) -> No
         np.testing.assert_array_equal(theirs[0], ours.points)
         np.testing.assert_array_equal(theirs[1], ours.triangles)
 
-    _measure_readers(LANDXML, path, n, peers, repeats, outcome, require)
+    trial.measure(LANDXML, path, trial.n, peers, require)
 
 
 # -------------------------------------------------------------------------- lidar, layers
 
 
-def _measure_lidar(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
+def _measure_lidar(trial: Trial) -> None:
     if not is_installed("laspy"):
-        outcome.skipped.append("LAZ: skipped, laspy is not installed.")
+        trial.outcome.skipped.append("LAZ: skipped, laspy is not installed.")
         return
-    points = np.round(make_points("uniform", n), 3)
-    path = folder / "cloud.laz"
+    points = np.round(make_points("uniform", trial.n), 3)
+    path = trial.folder / "cloud.laz"
     write_cloud_with_laspy(points, path)
     peers = {"laspy": Reader("laspy", read_cloud_with_laspy, "every attribute")}
 
@@ -240,15 +247,15 @@ def _measure_lidar(folder: Path, n: int, repeats: int, outcome: Outcome) -> None
         np.testing.assert_array_equal(ours.points, theirs)
         np.testing.assert_allclose(ours.points, points, rtol=0, atol=1e-6)
 
-    _measure_readers(LIDAR, path, n, peers, repeats, outcome, require)
+    trial.measure(LIDAR, path, trial.n, peers, require)
 
 
-def _measure_layer(folder: Path, n: int, repeats: int, outcome: Outcome) -> None:
+def _measure_layer(trial: Trial) -> None:
     if not is_installed("pyogrio"):
-        outcome.skipped.append("FlatGeobuf: skipped, pyogrio is not installed.")
+        trial.outcome.skipped.append("FlatGeobuf: skipped, pyogrio is not installed.")
         return
-    tin = ts.triangulate(make_points("uniform", n // 2), crs=CRS)
-    path = folder / "triangles.fgb"
+    tin = ts.triangulate(make_points("uniform", trial.n // 2), crs=CRS)
+    path = trial.folder / "triangles.fgb"
     write_triangles_with_pyogrio(tin, path)
     peers = {"pyogrio, shapely": Reader("pyogrio", read_triangles, "corners alone")}
 
@@ -258,7 +265,7 @@ def _measure_layer(folder: Path, n: int, repeats: int, outcome: Outcome) -> None
             np.sort(ours.points[ours.triangles], axis=1), np.sort(theirs, axis=1)
         )
 
-    _measure_readers(LAYER, path, len(tin.triangles), peers, repeats, outcome, require)
+    trial.measure(LAYER, path, len(tin.triangles), peers, require)
 
 
 _TASKS = (

@@ -64,34 +64,35 @@ def run(n_triangles: int, *, repeats: int = 3) -> Outcome:
     with tempfile.TemporaryDirectory() as name:
         for task in _TASKS:
             print(f"writers: {task.__name__[1:]}, {n_triangles:,}", file=sys.stderr, flush=True)
-            task(Path(name), tin, repeats, outcome)
+            task(Trial(Path(name), tin, repeats, outcome))
     return outcome
 
 
-def _measure_writers(
-    task: str,
-    suffix: str,
-    folder: Path,
-    tin: TIN,
-    peers: dict[str, Writer],
-    repeats: int,
-    outcome: Outcome,
-) -> dict[str, Path]:
-    """Time tinsmith and the peers that are installed; return the files."""
-    present = outcome.present({tool: peer.module for tool, peer in peers.items()})
-    paths = {tool: folder / f"{tool.replace(' ', '_')}{suffix}" for tool in (OURS, *present)}
-    _warm_up(folder / f"small{suffix}", [peers[tool] for tool in present])
-    calls: dict[str, Callable[[], Any]] = {OURS: lambda: ts.write(tin, paths[OURS])}
-    calls |= {tool: _prepare_writing(peers[tool], tin, paths[tool]) for tool in present}
-    _, runs = alternate(calls, repeats)
-    for tool in calls:
-        note = peers[tool].note if tool in peers else ""
-        count, seconds = len(tin.triangles), find_median(runs[tool])
-        size = {"bytes": paths[tool].stat().st_size}
-        outcome.results.append(
-            Result(SECTION, task, tool, count, seconds, tuple(runs[tool]), note, size)
-        )
-    return paths
+class Trial(NamedTuple):
+    """A TIN that is written to a folder in several formats, and what becomes of it."""
+
+    folder: Path
+    tin: TIN
+    repeats: int
+    outcome: Outcome
+
+    def measure(self, task: str, suffix: str, peers: dict[str, Writer]) -> dict[str, Path]:
+        """Time tinsmith and the peers that are installed; return the files."""
+        tin, folder = self.tin, self.folder
+        present = self.outcome.present({tool: peer.module for tool, peer in peers.items()})
+        paths = {tool: folder / f"{tool.replace(' ', '_')}{suffix}" for tool in (OURS, *present)}
+        _warm_up(folder / f"small{suffix}", [peers[tool] for tool in present])
+        calls: dict[str, Callable[[], Any]] = {OURS: lambda: ts.write(tin, paths[OURS])}
+        calls |= {tool: _prepare_writing(peers[tool], tin, paths[tool]) for tool in present}
+        _, runs = alternate(calls, self.repeats)
+        for tool in calls:
+            note = peers[tool].note if tool in peers else ""
+            count, seconds = len(tin.triangles), find_median(runs[tool])
+            size = {"bytes": paths[tool].stat().st_size}
+            self.outcome.results.append(
+                Result(SECTION, task, tool, count, seconds, tuple(runs[tool]), note, size)
+            )
+        return paths
 
 
 def _warm_up(path: Path, peers: list[Writer]) -> None:
@@ -116,7 +117,7 @@ class Feature(NamedTuple):
     properties: dict[str, float | int | None]
 
 
-def _measure_geojson(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None:
+def _measure_geojson(trial: Trial) -> None:
     peers = {
         "pyogrio (GDAL)": Writer(
             "pyogrio", _write_with_pyogrio, "36.146000007 becomes 36.146", step=DIGIT_STEP
@@ -124,9 +125,9 @@ def _measure_geojson(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> 
         "json.dump": Writer("json", _write_with_json),
     }
     task = "triangles, GeoJSON (RFC 7946)"
-    paths = _measure_writers(task, ".geojson", folder, tin, peers, repeats, outcome)
+    paths = trial.measure(task, ".geojson", peers)
     ours = _parse_features(paths.pop(OURS))
-    assert len(ours[0]) == len(tin.triangles)
+    assert len(ours[0]) == len(trial.tin.triangles)
     for tool, path in paths.items():
         _require_same(ours, _parse_features(path), peers[tool].step)
 
@@ -200,50 +201,52 @@ def _iterate_features(tin: TIN) -> Iterator[dict[str, Any]]:
 # --------------------------------------------------------------------------- PLY
 
 
-def _measure_ply(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None:
+def _measure_ply(trial: Trial) -> None:
     peers = {
         tool: Writer(peer.module, peer.write, "coordinates become float32" * bool(peer.write_step))
         for tool, peer in MESH_PEERS.items()
     }
-    paths = _measure_writers("surface, binary PLY", ".ply", folder, tin, peers, repeats, outcome)
+    paths = trial.measure("surface, binary PLY", ".ply", peers)
     written = ts.read(paths.pop(OURS))
-    np.testing.assert_array_equal(written.points, tin.points)
-    np.testing.assert_array_equal(written.triangles, tin.triangles)
-    assert written.crs == tin.crs
+    np.testing.assert_array_equal(written.points, trial.tin.points)
+    np.testing.assert_array_equal(written.triangles, trial.tin.triangles)
+    assert written.crs == trial.tin.crs
     # Each is read by itself: with float32 coordinates triangles collapse, which is no TIN.
     for tool, path in paths.items():
         points, triangles = MESH_PEERS[tool].read(path)
-        np.testing.assert_allclose(points, tin.points, rtol=0, atol=MESH_PEERS[tool].write_step)
-        np.testing.assert_array_equal(triangles, tin.triangles)
+        np.testing.assert_allclose(
+            points, trial.tin.points, rtol=0, atol=MESH_PEERS[tool].write_step
+        )
+        np.testing.assert_array_equal(triangles, trial.tin.triangles)
 
 
 # ----------------------------------------------------------------------- LandXML
 
 
-def _measure_landxml(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None:
+def _measure_landxml(trial: Trial) -> None:
     peers = {"xml.etree": Writer("xml", write_with_etree, "no CRS")}
-    paths = _measure_writers("surface, LandXML", ".xml", folder, tin, peers, repeats, outcome)
+    paths = trial.measure("surface, LandXML", ".xml", peers)
     for path in paths.values():
         points, triangles = read_with_etree(path)
-        np.testing.assert_array_equal(points, tin.points)
-        np.testing.assert_array_equal(triangles, tin.triangles)
+        np.testing.assert_array_equal(points, trial.tin.points)
+        np.testing.assert_array_equal(triangles, trial.tin.triangles)
 
 
 # ---------------------------------------------------------------------------- layers
 
 
-def _measure_layers(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None:
+def _measure_layers(trial: Trial) -> None:
     """Write triangles as layers; a GeoPackage of ours holds the whole TIN."""
     through = Writer("pyogrio", write_triangles_with_pyogrio, "polygons with a number")
     arrow = Writer("geopandas", write_triangles_with_arrow, "polygons with a number")
-    wanted = _sort_triangles(tin.points[tin.triangles])
+    wanted = _sort_triangles(trial.tin.points[trial.tin.triangles])
     for task, suffix, tool, peer in (
         ("whole TIN, GeoPackage", ".gpkg", "pyogrio, shapely", through),
         ("triangles, FlatGeobuf", ".fgb", "pyogrio, shapely", through),
         ("triangles, shapefile", ".shp", "pyogrio, shapely", through),
         ("triangles, GeoParquet", ".parquet", "geopandas", arrow),
     ):
-        paths = _measure_writers(task, suffix, folder, tin, {tool: peer}, repeats, outcome)
+        paths = trial.measure(task, suffix, {tool: peer})
         for path in paths.values():
             np.testing.assert_array_equal(_sort_triangles(read_triangles(path)), wanted)
 
@@ -259,24 +262,24 @@ def _sort_triangles(corners: Float64Array) -> Float64Array:
 # ------------------------------------------------------------------ drawings and meshes
 
 
-def _measure_drawing(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None:
+def _measure_drawing(trial: Trial) -> None:
     peers = {"ezdxf": Writer("ezdxf", write_drawing_with_ezdxf, "no CRS, no layers")}
-    paths = _measure_writers("3DFACEs, DXF R2010", ".dxf", folder, tin, peers, repeats, outcome)
-    wanted = _sort_triangles(tin.points[tin.triangles])
+    paths = trial.measure("3DFACEs, DXF R2010", ".dxf", peers)
+    wanted = _sort_triangles(trial.tin.points[trial.tin.triangles])
     for path in paths.values():
         found = ts.read(path, crs=CRS)
         np.testing.assert_array_equal(_sort_triangles(found.points[found.triangles]), wanted)
 
 
-def _measure_meshes(folder: Path, tin: TIN, repeats: int, outcome: Outcome) -> None:
+def _measure_meshes(trial: Trial) -> None:
     """Write meshes that few programs write: each is read back, GLB by trimesh."""
     viewer = {"trimesh": Writer("trimesh", write_with_trimesh, "no normals, colours, CRS")}
-    paths = _measure_writers("surface, GLB", ".glb", folder, tin, viewer, repeats, outcome)
+    paths = trial.measure("surface, GLB", ".glb", viewer)
     for path in paths.values():
-        assert _count_faces(path) == len(tin.triangles)
+        assert _count_faces(path) == len(trial.tin.triangles)
     for task, suffix in (("surface, 2DM", ".2dm"), ("surface, UGRID", ".nc")):
-        (path,) = _measure_writers(task, suffix, folder, tin, {}, repeats, outcome).values()
-        np.testing.assert_array_equal(ts.read(path).triangles, tin.triangles)
+        (path,) = trial.measure(task, suffix, {}).values()
+        np.testing.assert_array_equal(ts.read(path).triangles, trial.tin.triangles)
 
 
 def _count_faces(path: Path) -> int:

@@ -23,14 +23,7 @@ _PATIENCE = 120
 
 @dataclass(frozen=True)
 class Command:
-    """A command ``tinsmith`` that is there.
-
-    Attributes
-    ----------
-    path : str
-    origin : str
-        How it was found, in words.
-    """
+    """A command ``tinsmith`` that is there, and how it was found, in words."""
 
     path: str
     origin: str

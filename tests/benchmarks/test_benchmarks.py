@@ -189,7 +189,7 @@ def test_a_wrong_answer_of_an_exact_tool_is_a_failure():
 def test_every_tool_triangulates():
     outcome = kernel.run([("raster", 300)], repeats=2)
     found = {result.tool: result for result in outcome.results}
-    present = kernel.find_tools(kernel.ALL_TOOLS, Outcome())
+    present = kernel.find_tools(kernel.ALL_TOOLS, TOOLS, "delaunay", Outcome())
     assert list(found) == [*present, kernel.WORK]
     assert {OURS, KERNEL} <= set(present)
     assert found[OURS].note == found[KERNEL].note == EQUAL
@@ -223,13 +223,13 @@ def test_a_missing_cgal_is_said(monkeypatch, tmp_path):
     with pytest.raises(CgalMissingError, match=r"g\+\+ is not installed"):
         build_harness()
     outcome = Outcome()
-    assert kernel.find_tools([OURS, CGAL], outcome) == [OURS]
+    assert kernel.find_tools([OURS, CGAL], TOOLS, "delaunay", outcome) == [OURS]
     assert outcome.skipped == ["CGAL: skipped, g++ is not installed."]
 
 
 def test_every_tool_is_either_here_or_named():
     outcome = Outcome()
-    present = kernel.find_tools(kernel.ALL_TOOLS, outcome)
+    present = kernel.find_tools(kernel.ALL_TOOLS, TOOLS, "delaunay", outcome)
     assert len(present) + len(outcome.skipped) == len(kernel.ALL_TOOLS) == len(TOOLS) + 1
 
 

@@ -1,8 +1,10 @@
-// The kernels of terrain without Python: contours, bands, volumes, the overlay and rasters of planes,
-// whose answers are known. Prints what is wrong and returns 1, or prints "sound".
+// The kernels of terrain without Python: contours, bands, volumes, the overlay, rasters and the water
+// of planes, whose answers are known. Prints what is wrong and returns 1, or prints "sound".
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <numeric>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -14,6 +16,9 @@
 #include "expectations.hpp"
 #include "gridding/centers.hpp"
 #include "gridding/means.hpp"
+#include "hydrology/cells.hpp"
+#include "hydrology/channels.hpp"
+#include "hydrology/network.hpp"
 #include "isolines/band_filling.hpp"
 #include "isolines/line_arrays.hpp"
 #include "isolines/line_smoothing.hpp"
@@ -28,17 +33,18 @@ namespace {
 
 bool is_close(double value, double wanted) { return std::fabs(value - wanted) < 1e-7; }
 
-// A square of 100 by 100 with points inside, on the plane base + slope * x.
+// A square of 100 by 100 with points inside, on the plane base + slope * x + north * y.
 struct Plane {
   std::vector<double> xyz;
   Triangulation made;
 
-  Plane(double base, double slope, unsigned seed) {
+  Plane(double base, double slope, unsigned seed, double north = 0.0) {
     std::mt19937 rng(seed);
     std::uniform_real_distribution<double> unit(0.0, 100.0);
     std::vector<Point> points{{0, 0}, {100, 0}, {100, 100}, {0, 100}};
     for (int i = 0; i < 500; ++i) points.push_back({unit(rng), unit(rng)});
-    for (const Point p : points) xyz.insert(xyz.end(), {p.x, p.y, base + slope * p.x});
+    for (const Point p : points)
+      xyz.insert(xyz.end(), {p.x, p.y, base + slope * p.x + north * p.y});
     const PointRows rows{xyz.data(), static_cast<std::int64_t>(points.size()), 3};
     made = Triangulator(rows, Options{}, keep_going).run();
   }
@@ -193,6 +199,93 @@ void draw_raster() {
   }
 }
 
+// How the triangles of a plane fall: to the west, and a little to the south.
+struct FallingPlane {
+  static constexpr double kEast = 0.1, kNorth = 0.03;
+
+  Plane plane{0.0, kEast, 6, kNorth};
+  std::vector<std::int8_t> signs;
+  std::vector<double> values, areas;
+  hydrology::FallingSurface falls{plane.surface(), nullptr, nullptr};
+  std::vector<hydrology::Base> bases;
+
+  FallingPlane() {
+    for (const Triangle t : Ids<Triangle>(falls.surface.triangle_count)) {
+      for (const HalfEdge e : half_edges(t)) {
+        const Point start = falls.surface.point(falls.start(e));
+        const Point end = falls.surface.point(falls.end(e));
+        const double across = kEast * (start.y - end.y) - kNorth * (start.x - end.x);
+        signs.push_back(static_cast<std::int8_t>((across > 0.0) - (across < 0.0)));
+        values.push_back(across);
+      }
+      const Point a = falls.surface.point(falls.surface.vertex(t, 0));
+      const Point b = falls.surface.point(falls.surface.vertex(t, 1));
+      const Point c = falls.surface.point(falls.surface.vertex(t, 2));
+      areas.push_back(0.5 * ((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)));
+    }
+    falls.signs = signs.data();
+    falls.values = values.data();
+    for (const Triangle t : Ids<Triangle>(falls.surface.triangle_count)) {
+      bases.push_back(falls.base(t));
+    }
+  }
+};
+
+// The water of the whole square leaves it.
+void drain() {
+  const FallingPlane plane;
+  const std::int32_t vertex_count = plane.falls.surface.point_count;
+  const std::uint32_t triangle_count = plane.falls.surface.triangle_count;
+  const hydrology::Filling filling;
+  Team team(1, keep_going);
+  Pulse pulse(team);
+  std::vector<std::int64_t> offsets(std::size_t{triangle_count} + 1);
+  hydrology::StripCutter cutter(plane.falls, plane.bases.data(), pulse);
+  cutter.cut(1'000'000, offsets.data());
+  const auto strip_count = static_cast<std::int32_t>(cutter.size());
+  const StreamedArray<double> starts = cutter.take_starts();
+  const hydrology::Strips strips{offsets.data(), starts.get()};
+  std::vector<std::int32_t> grounds(vertex_count);
+  std::iota(grounds.begin(), grounds.end(), 0);
+  const hydrology::Nodes nodes{strip_count, vertex_count, grounds.data()};
+  std::vector<std::int32_t> nexts(nodes.count()), uppers(nodes.count()), ends(nodes.count());
+  std::iota(nexts.begin(), nexts.end(), 0);
+  hydrology::StripLinks(plane.falls, plane.bases.data(), filling, strips, nodes)
+      .run(nexts.data(), uppers.data(), pulse);
+  const auto is_boundary = std::make_unique<bool[]>(vertex_count);
+  std::fill_n(is_boundary.get(), 4, true);  // the corners of the square come first
+  const hydrology::ExitTable exits(plane.falls, filling, is_boundary.get(), pulse);
+  const auto undecided =
+      hydrology::VertexLinks(plane.falls, plane.bases.data(), filling, exits, nodes)
+          .run(nexts.data() + strip_count, uppers.data() + strip_count, pulse);
+  expect(undecided.empty(), "on a plane doubles decide where water goes");
+  if (!undecided.empty()) return;
+  hydrology::find_ends(nexts.data(), nodes.count(), ends.data(), pulse);
+  std::vector<double> totals(nodes.count());
+  hydrology::measure_strips(strips, plane.bases.data(), plane.areas.data(), triangle_count,
+                            totals.data());
+  hydrology::accumulate(nexts.data(), nodes.count(), totals.data(), pulse);
+  for (std::int32_t i = 0; i < nodes.first_vertex + vertex_count; ++i) {
+    expect(ends[i] == nodes.outside(), "all water leaves a plane");
+  }
+  expect(is_close(totals[nodes.outside()], 10000.0), "that of the whole square");
+}
+
+// Two strips and their vertex run down one edge; a triangle is cut from the middle of its base.
+void cut_ground() {
+  const std::vector<std::int32_t> uppers{0, 0, 0, -1}, nexts{3, 3, 3, 3};
+  const std::vector<double> totals{5.0, 2.0, 1.0, 8.0};
+  const auto channels =
+      hydrology::ChannelSums(uppers.data(), nexts.data(), 4, 2, 2).sum(totals.data(), 2);
+  expect(channels.size() == 1 && channels[0].area == 8.0, "one channel has the water of all");
+  const std::vector<std::int32_t> corners{0, 1, 2}, lower{3}, upper{2};
+  const std::vector<std::int64_t> ranges{0, 1, 0, 0, 0, 0}, offsets{0, 1};
+  const hydrology::CutTriangles given{
+      1, corners.data(), ranges.data(), 3, offsets.data(), lower.data(), upper.data()};
+  const hydrology::CutCells cells = hydrology::CellCutter(given).run();
+  expect(cells.offsets == std::vector<std::int64_t>{0, 3, 6}, "a cut makes two cells");
+}
+
 }  // namespace
 
 int main() {
@@ -203,5 +296,7 @@ int main() {
   simplify();
   measure_earthwork();
   draw_raster();
+  drain();
+  cut_ground();
   return tell_faults();
 }

@@ -20,28 +20,29 @@ class Change(NamedTuple):
         return text[: self.start] + self.new + text[self.stop :]
 
 
-COMPARISONS = {
-    ast.Lt: ("<", "<="),
-    ast.LtE: ("<=", "<"),
-    ast.Gt: (">", ">="),
-    ast.GtE: (">=", ">"),
-    ast.Eq: ("==", "!="),
-    ast.NotEq: ("!=", "=="),
-    ast.In: ("in", "not in"),
-    ast.NotIn: ("not in", "in"),
-    ast.Is: ("is", "is not"),
-    ast.IsNot: ("is not", "is"),
+OPERATORS = {
+    "<": "<=",
+    "<=": "<",
+    ">": ">=",
+    ">=": ">",
+    "==": "!=",
+    "!=": "==",
+    "in": "not in",
+    "not in": "in",
+    "is": "is not",
+    "is not": "is",
+    "and": "or",
+    "or": "and",
+    "+": "-",
+    "-": "+",
+    "*": "/",
+    "/": "*",
+    "//": "*",
+    "%": "*",
+    "&": "|",
+    "|": "&",
 }
-ARITHMETIC = {
-    ast.Add: ("+", "-"),
-    ast.Sub: ("-", "+"),
-    ast.Mult: ("*", "/"),
-    ast.Div: ("/", "*"),
-    ast.FloorDiv: ("//", "*"),
-    ast.Mod: ("%", "*"),
-    ast.BitAnd: ("&", "|"),
-    ast.BitOr: ("|", "&"),
-}
+"""What each operator of Python becomes."""
 
 SYMMETRIC = {"max", "min", "maximum", "minimum", "hypot", "gcd"}
 """Functions to which it is the same which argument comes first."""
@@ -111,12 +112,11 @@ class _Python:
 
     def _of(self, node: ast.AST) -> Iterator[Change]:
         if isinstance(node, ast.Compare) and len(node.ops) == 1:
-            yield from self._operator(node.left, node.comparators[0], COMPARISONS, node.ops[0])
+            yield from self._operator(node.left, node.comparators[0])
         elif isinstance(node, ast.BinOp):
-            yield from self._operator(node.left, node.right, ARITHMETIC, node.op)
+            yield from self._operator(node.left, node.right)
         elif isinstance(node, ast.BoolOp):
-            swap = {ast.And: ("and", "or"), ast.Or: ("or", "and")}
-            yield from self._operator(node.values[0], node.values[1], swap, node.op)
+            yield from self._operator(node.values[0], node.values[1])
         elif isinstance(node, (ast.If, ast.While, ast.IfExp)):
             start, stop = self.span(node.test)
             yield Change(start, stop, f"(not ({self.text[start:stop]}))", "condition negated")
@@ -136,12 +136,12 @@ class _Python:
             if self.text[start:stop] not in ("None", "False"):  # as false as None
                 yield Change(start, stop, "None", "returns None")
 
-    def _operator(self, left, right, table, operator) -> Iterator[Change]:  # type: ignore[no-untyped-def]
-        old, new = table.get(type(operator), ("", ""))
+    def _operator(self, left: ast.expr, right: ast.expr) -> Iterator[Change]:
         start, stop = self.span(left)[1], self.span(right)[0]
-        at = self.text.find(old, start, stop) if old else -1
-        if at >= 0:
-            yield Change(at, at + len(old), new, f"{old} becomes {new}")
+        old = self.text[start:stop].strip(" ()\n")
+        if old in OPERATORS:
+            at = self.text.index(old, start, stop)
+            yield Change(at, at + len(old), OPERATORS[old], f"{old} becomes {OPERATORS[old]}")
 
     def _constant(self, node: ast.Constant) -> Iterator[Change]:
         start, stop = self.span(node)

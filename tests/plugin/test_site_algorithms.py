@@ -4,17 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from support.qgis_jobs import (
-    UTM,
-    assert_same_tin,
-    job,
-    make_inputs,
-    make_layer,
-    read_layer,
-    read_survey,
-    require_done,
-    write_wkt,
-)
+from support import qgis_jobs as qgis
 from support.qgis_plugin import drive
 
 import tinsmith as ts
@@ -28,16 +18,17 @@ PATCH = [[752700.0, 4024240.0, 330.0], [752720.0, 4024240.0, 330.0], [752710.0, 
 
 def make_site(folder):
     """Return the TIN of the sample, and layers: its own, a pad, places, a cloud with a building."""
-    tin, layers = make_inputs(folder, read_survey())
-    ts.write(ts.triangulate(PATCH, crs=UTM), folder / "patch.ply")
+    tin, layers = qgis.make_inputs(folder, qgis.read_survey())
+    ts.write(ts.triangulate(PATCH, crs=qgis.UTM), folder / "patch.ply")
     ts.write(make_cloud(), folder / "cloud.gpkg")
-    around = ts.reproject(ts.Survey(points=np.pad(PLACES, [(0, 0), (0, 1)]), crs=UTM), "EPSG:4326")
-    degrees = [[write_wkt("Point", [row[:2]]), []] for row in around.points]
+    places = ts.Survey(points=np.pad(PLACES, [(0, 0), (0, 1)]), crs=qgis.UTM)
+    around = ts.reproject(places, "EPSG:4326")
+    degrees = [[qgis.write_wkt("Point", [row[:2]]), []] for row in around.points]
     return tin, layers | {
-        "pad": make_layer("Polygon", [[write_wkt("Polygon", [*PAD, PAD[0]]), []]]),
+        "pad": qgis.make_layer("Polygon", [[qgis.write_wkt("Polygon", [*PAD, PAD[0]]), []]]),
         "patch": {"kind": "mesh", "path": str(folder / "patch.ply")},
         "cloud": {"kind": "vector", "path": str(folder / "cloud.gpkg")},
-        "places": make_layer("Point", degrees, crs="EPSG:4326"),
+        "places": qgis.make_layer("Point", degrees, crs="EPSG:4326"),
     }
 
 
@@ -47,7 +38,7 @@ def make_cloud():
     xy = rng.random((1500, 2)) * 60
     z = 0.05 * xy[:, 0] + np.where((np.abs(xy - 30) < 5).all(axis=1), 6.0, 0.0)
     z[0] += 40.0
-    return ts.Survey(points=np.column_stack([np.add(xy, ORIGIN), z]), crs=UTM)
+    return ts.Survey(points=np.column_stack([np.add(xy, ORIGIN), z]), crs=qgis.UTM)
 
 
 @pytest.mark.slow
@@ -57,29 +48,32 @@ def test_results_are_those_of_the_package(tmp_path):
     at = ",".join(map(str, EYE))
     slopes = {"ELEVATION": 327, "CUT_SLOPE": 2, "FILL_SLOPE": 3}
     jobs = {
-        "hollows": job("flow", INPUT="ground", MIN_DEPTH=0.2, OUTPUT=tmp_path / "hollows.gpkg"),
-        "drops": job("flow", INPUT="ground", FIND="paths", PLACES="places",
-                     OUTPUT=tmp_path / "drops.gpkg"),
-        "channels": job("flow", INPUT="ground", FIND="accumulation", MIN_AREA=200,
-                        OUTPUT=tmp_path / "channels.gpkg"),
-        "catchments": job("flow", INPUT="ground", FIND="catchments",
-                          OUTPUT=tmp_path / "catchments.gpkg"),
-        "seen": job("sight", INPUT="ground", EYE=f"{at} [{UTM}]", EYE_HEIGHT=1.7,
-                    OUTPUT=tmp_path / "seen.gpkg"),
-        "lines": job("sight", INPUT="ground", EYE=at, EYE_HEIGHT=1.7,
-                     TARGETS={"selected": "flat"}, OUTPUT=tmp_path / "lines.gpkg"),
-        "low": job("ground", INPUT="cloud", BUILDING=20, CLASSIFIED=tmp_path / "all.las",
-                   OUTPUT=tmp_path / "low.gpkg"),
-        "graded": job("grade", INPUT="ground", PAD="pad", OUTPUT=tmp_path / "graded.ply", **slopes),
-        "pasted": job("paste", BASE="ground", PATCH="patch", OUTPUT=tmp_path / "pasted.nc"),
-        "suspects": job("inspect", INPUT="cloud", OUTPUT=tmp_path / "suspects.gpkg"),
-        "alone": job("paste", BASE="ground", OUTPUT=tmp_path / "no.ply"),
-        "outside": job("sight", INPUT="ground", EYE=f"0,0 [{UTM}]", OUTPUT=tmp_path / "no.gpkg"),
+        "hollows": qgis.job("flow", INPUT="ground", MIN_DEPTH=0.2,
+                            OUTPUT=tmp_path / "hollows.gpkg"),
+        "drops": qgis.job("flow", INPUT="ground", FIND="paths", PLACES="places",
+                          OUTPUT=tmp_path / "drops.gpkg"),
+        "channels": qgis.job("flow", INPUT="ground", FIND="accumulation", MIN_AREA=200,
+                             OUTPUT=tmp_path / "channels.gpkg"),
+        "catchments": qgis.job("flow", INPUT="ground", FIND="catchments",
+                               OUTPUT=tmp_path / "catchments.gpkg"),
+        "seen": qgis.job("sight", INPUT="ground", EYE=f"{at} [{qgis.UTM}]", EYE_HEIGHT=1.7,
+                         OUTPUT=tmp_path / "seen.gpkg"),
+        "lines": qgis.job("sight", INPUT="ground", EYE=at, EYE_HEIGHT=1.7,
+                          TARGETS={"selected": "flat"}, OUTPUT=tmp_path / "lines.gpkg"),
+        "low": qgis.job("ground", INPUT="cloud", BUILDING=20, CLASSIFIED=tmp_path / "all.las",
+                        OUTPUT=tmp_path / "low.gpkg"),
+        "graded": qgis.job("grade", INPUT="ground", PAD="pad",
+                           OUTPUT=tmp_path / "graded.ply", **slopes),
+        "pasted": qgis.job("paste", BASE="ground", PATCH="patch", OUTPUT=tmp_path / "pasted.nc"),
+        "suspects": qgis.job("inspect", INPUT="cloud", OUTPUT=tmp_path / "suspects.gpkg"),
+        "alone": qgis.job("paste", BASE="ground", OUTPUT=tmp_path / "no.ply"),
+        "outside": qgis.job("sight", INPUT="ground", EYE=f"0,0 [{qgis.UTM}]",
+                            OUTPUT=tmp_path / "no.gpkg"),
     }  # fmt: skip
     told = drive(tmp_path, layers, jobs)
     assert "Patch: choose a layer or a file" in told.pop("alone")["error"]
     assert "outside the surface" in told.pop("outside")["error"]
-    require_done(told)
+    qgis.require_done(told)
     check_flow(told, tin, tmp_path)
     check_sight(told, tin, tmp_path)
     check_points(told, tmp_path)
@@ -94,30 +88,31 @@ def check_flow(told, tin, folder):
     }
     for name, wanted in found.items():
         again = ts.write(wanted, folder / "wanted.gpkg")
-        assert read_layer(folder / f"{name}.gpkg") == read_layer(again), name
+        assert qgis.read_layer(folder / f"{name}.gpkg") == qgis.read_layer(again), name
         layer = told[name]["layers"]["Flow"]
-        assert (layer["count"], layer["crs"]) == (len(wanted), UTM)
+        assert (layer["count"], layer["crs"]) == (len(wanted), qgis.UTM)
         assert len(layer["properties"]) == (name != "hollows")
     drops = ts.flow_path(tin, PLACES)
-    _, _, (_, ends, lengths, _) = read_layer(folder / "drops.gpkg")
+    _, _, (_, ends, lengths, _) = qgis.read_layer(folder / "drops.gpkg")
     assert ends == drops.columns["end"].tolist()
     assert lengths == pytest.approx(drops.columns["length"], abs=1e-4)
 
 
 def check_sight(told, tin, folder):
     seen = ts.viewshed(tin, EYE, eye_height=1.7)
-    assert read_layer(folder / "seen.gpkg") == read_layer(ts.write(seen, folder / "wanted.gpkg"))
+    wanted = ts.write(seen, folder / "wanted.gpkg")
+    assert qgis.read_layer(folder / "seen.gpkg") == qgis.read_layer(wanted)
     layer = told["seen"]["layers"]["Sight"]
     assert layer["legend"] == seen.columns["class"].tolist()
     assert layer["colors"] == seen.columns["color"].tolist()
     assert layer["unclassified"] == 0
-    targets = read_survey().points[:300, :2]
+    targets = qgis.read_survey().points[:300, :2]
     lines = ts.line_of_sight(tin, EYE, targets, eye_height=1.7)
     layer = told["lines"]["layers"]["Sight"]
     assert (layer["count"], layer["legend"]) == (300, ["visible", "blocked"])
     assert layer["unclassified"] == 0
-    _, shapes, columns = read_layer(folder / "lines.gpkg")
-    _, wanted, values = read_layer(ts.write(lines, folder / "wanted.gpkg"))
+    _, shapes, columns = qgis.read_layer(folder / "lines.gpkg")
+    _, wanted, values = qgis.read_layer(ts.write(lines, folder / "wanted.gpkg"))
     assert shapes == wanted
     np.testing.assert_array_equal(columns, values)
 
@@ -142,13 +137,13 @@ def check_points(told, folder):
 
 def check_earthwork(told, tin, folder):
     graded = ts.grade(tin, PAD, 327, cut_slope=2, fill_slope=3)
-    assert_same_tin(ts.read(folder / "graded.ply"), graded)
+    qgis.assert_same_tin(ts.read(folder / "graded.ply"), graded)
     table = ts.volume(tin, graded)
     outputs = told["graded"]["outputs"]
     assert outputs["CUT"] == pytest.approx(table["cut"][0], rel=1e-12)
     assert outputs["FILL"] == pytest.approx(table["fill"][0], rel=1e-12)
-    pasted = ts.paste(tin, ts.triangulate(PATCH, crs=UTM))
-    assert_same_tin(ts.read(folder / "pasted.nc"), pasted)
+    pasted = ts.paste(tin, ts.triangulate(PATCH, crs=qgis.UTM))
+    qgis.assert_same_tin(ts.read(folder / "pasted.nc"), pasted)
     assert told["pasted"]["layers"]["Pasted TIN"]["faces"] == len(pasted.triangles)
     assert told["pasted"]["outputs"]["TRIANGLES"] == len(pasted.triangles)
     said = [text for kind, text in told["pasted"]["log"] if kind == "info"]

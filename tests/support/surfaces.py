@@ -62,6 +62,29 @@ def with_pond(points):
     return ts.triangulate(points, water=[ts.Water(ring, 301.0)])
 
 
+def scatter(n):
+    """Return n points of a site of 100 by 80 m."""
+    rng = np.random.default_rng(3)
+    return rng.random((n, 3)) * [100, 80, 5] + [500_000.1, 4_000_000.2, 300]
+
+
+def survey_site(points, breaklines, attributes, *, pond=""):
+    """Return a survey of that site, with a boundary, a hole and a pond."""
+    ring = [[500_005, 4_000_005], [500_090, 4_000_005], [500_090, 4_000_070], [500_005, 4_000_070]]
+    hole = [[500_050, 4_000_030], [500_060, 4_000_030], [500_055, 4_000_040]]
+    shore = [[500_020, 4_000_020], [500_030, 4_000_020], [500_025, 4_000_030]]
+    return ts.Survey(
+        points=points,
+        breaklines=breaklines,
+        boundary=[ring],
+        holes=[hole],
+        water=[ts.Water(shore, 301.5, name=pond)],
+        attributes=attributes,
+        crs="EPSG:32616",
+        elevation_unit="m",
+    )
+
+
 def triangulate_whole_numbers(side, relief, rng):
     """Make a TIN of a square grid with whole elevations: flats, pits and equal slopes."""
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side)))

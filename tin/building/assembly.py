@@ -29,19 +29,10 @@ __all__ = ["Built", "assemble"]
 
 
 class Built(NamedTuple):
-    """What a build gives.
+    """What a build gives; ``vertex_of`` has the vertex of each row, -1 for none.
 
-    Attributes
-    ----------
-    surface : Surface
-    vertex_of : (n,) int32 array
-        The vertex of each row, -1 for none.
-    lines : Lines
-    report : Report
-    line_xy : (k, 2) float64 array
-        Vertices of the lines as they were merged with the rows: draped ones laid on the surface.
-    line_vertices : (k,) int32 array
-        The vertex of each, -1 for none.
+    ``line_xy`` has the vertices of the lines as they were merged with the rows, (k, 2), draped ones
+    laid on the surface; ``line_vertices`` the vertex of each, -1 for none.
     """
 
     surface: Surface

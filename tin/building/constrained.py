@@ -261,21 +261,11 @@ def _add_touches(points: Float64Array, noded: Noded, overruled: Overruled) -> Ov
 def _leave_out_water(
     points: Float64Array, polylines: Polylines, lines: LineSet, overruled: Overruled
 ) -> tuple[Polylines, BoolArray, Overruled]:
-    """Put shores at the elevation of their water, and leave out what is in it.
+    """Put shores at the elevation of their water, in place, and leave out what is in it.
 
-    Parameters
-    ----------
-    points : (n, 3) float64 array
-        Changed in place.
-
-    Returns
-    -------
-    polylines : Polylines
-        Without the segments in water, but for those of boundaries and holes, which lie on it.
-    wet : (n,) bool array
-        Which vertices are in water, and go.
-    overruled : Overruled
-        With the elevations that the water overrules.
+    Returns the polylines without the segments in water, but for those of boundaries and holes,
+    which lie on it; (n,) flags of the vertices in water, which go; and what is overruled, with the
+    elevations that the water overrules.
     """
     wet = np.zeros(len(points), np.bool_)
     if not (lines.priorities == ABOVE_ALL).any():

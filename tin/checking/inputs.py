@@ -73,13 +73,8 @@ def check_rows(tin: TIN, rows: Float64Array, found: Findings) -> None:
 def check_given_lines(tin: TIN, given: LineSet, found: Findings) -> None:
     """Check that every line is there as chains of its source, vertices in order, parts in place.
 
-    Parameters
-    ----------
-    tin : TIN
-        Chains and boundary sound.
-    given : LineSet
-        Lines as the caller gave them, draped ones without elevations. Chains of further lines are
-        not looked at.
+    Chains and boundary of the TIN are sound; lines are as the caller gave them, draped ones without
+    elevations. Chains of further lines are not looked at.
     """
     xy, snap = tin.points[:, :2], tin.report.snap
     unit = _measure_unit(tin, given.xy)

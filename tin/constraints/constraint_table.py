@@ -18,13 +18,7 @@ __all__ = ["ConstraintTable"]
 class ConstraintTable(NamedTuple):
     """A row for each line, in columns.
 
-    Attributes
-    ----------
-    kinds : tuple of LineKind
-    sources : (l,) int32 array
-        The caller's number within breaklines, boundary, holes or water; -1 for none.
-    priorities : (l,) float64 array
-    names : tuple of str
+    A source is the caller's number within breaklines, boundary, holes or water; -1 for none.
     """
 
     kinds: tuple[LineKind, ...]

@@ -21,16 +21,7 @@ __all__ = ["Version"]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Version(Frozen):
-    """An immutable state of a TIN.
-
-    Attributes
-    ----------
-    triangulation : Triangulation
-    vertex_of : (n_input,) int32 array
-        The vertex that stands for each input row, -1 for none.
-    lines : Lines
-    report : Report
-    """
+    """An immutable state of a TIN; ``vertex_of`` has a vertex for each input row, -1 for none."""
 
     triangulation: Triangulation
     vertex_of: Int32Array

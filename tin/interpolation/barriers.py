@@ -17,18 +17,10 @@ __all__ = ["find_barriers"]
 
 
 def find_barriers(surface: Triangulation, lines: Lines) -> BoolArray:
-    """Tell which edges are breaks of slope.
+    """Tell which edges are breaks of slope, (m, 3) flags of the edge opposite each corner.
 
-    Parameters
-    ----------
-    surface : Triangulation
-    lines : Lines
-
-    Returns
-    -------
-    (m, 3) bool array
-        Of the edge opposite each corner: all that are constrained, but those of soft breaklines
-        alone. Constrained edges of no line that is known count as hard.
+    All that are constrained are, but those of soft breaklines alone. Constrained edges of no line
+    that is known count as hard.
     """
     if "soft" not in lines.kinds:
         return surface.constrained

@@ -297,16 +297,9 @@ class _Goal(NamedTuple):
 
 
 class _Found(NamedTuple):
-    """What the core found.
+    """What the core found: new points, (k, 2), and where they split segments.
 
-    Attributes
-    ----------
-    xy : (k, 2) float64 array
-        New points.
-    splits : _Splits
-    left : (l, 4) int32 array
-        Triangles that miss the goal, corners and why.
-    n_triangles : int
+    ``left`` has a row for each triangle that misses the goal, (l, 4): its corners, and why.
     """
 
     xy: Float64Array

@@ -24,14 +24,8 @@ class Triangulation(Frozen):
 
     Attributes
     ----------
-    points : (n, 3) float64 array
-        Easting, northing, elevation of the vertices.
-    triangles : (m, 3) int32 array
-        Vertices of each triangle, counter-clockwise seen from above.
-    neighbors : (m, 3) int32 array
-        The triangle across the edge opposite each corner; -1 outside.
-    constrained : (m, 3) bool array
-        Whether that edge is a breakline, boundary or hole.
+    points, triangles, neighbors, constrained : arrays
+        As those of :class:`.TIN`.
     """
 
     points: Float64Array

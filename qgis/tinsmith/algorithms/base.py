@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 import tempfile
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,7 @@ from ..icons import load_icon
 from ..inputs import Files, Found, Lines, Place, Surface
 from ..options import Option, describe
 from ..process import Failed, Speaker, run_program
-from ..results import load_file
+from ..results import load_file, style_on_loading
 
 EXTRA = "EXTRA"
 LOAD = "LOAD"
@@ -315,10 +316,31 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
         if self.parameterAsBool(run.parameters, LOAD, run.context):
             self._to_load.append((path, name, "OUTPUT"))
 
+    def run_command(
+        self, run: Run, *outputs: str, chosen: Sequence[str] = ()
+    ) -> tuple[dict[str, str], dict[str, Any]]:
+        """Run the command with all inputs, and options that are ``chosen`` for the user.
+
+        Returns the paths of the outputs that are wanted, and the result of the command.
+        """
+        paths, named = run.list_outputs(*outputs)
+        return paths, run.run([*self.list_inputs(run), *chosen, *named])
+
+    def make_layer(
+        self,
+        run: Run,
+        style: Callable[[Any], None],
+        *tables: str,
+        chosen: Sequence[str] = (),
+    ) -> dict[str, Any]:
+        """Run a command that makes a layer, styled once it is loaded, and tables; return these."""
+        paths, _ = self.run_command(run, "OUTPUT", *tables, chosen=chosen)
+        style_on_loading(paths["OUTPUT"], style, run.context)
+        return dict(paths)
+
     def make_mesh(self, run: Run, name: str, volumes: tuple[str, ...] = ()) -> dict[str, Any]:
         """Run a command that makes a TIN; return the output, its counts and some volumes."""
-        paths, named = run.list_outputs("OUTPUT")
-        told = run.run([*self.list_inputs(run), *named])
+        paths, told = self.run_command(run, "OUTPUT")
         self.load_later(run, paths["OUTPUT"], name)
         counts = {one.upper(): told["tin"][one] for one in ("vertices", "triangles")}
         return {**paths, **counts, **{one.upper(): told["volume"][one] for one in volumes}}

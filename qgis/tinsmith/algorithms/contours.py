@@ -8,7 +8,6 @@ from qgis.core import QgsProcessing, QgsProcessingParameterEnum
 
 from ..inputs import Surface
 from ..options import describe, number, text
-from ..results import style_on_loading
 from ..styles import style_bands, style_contours, style_labels
 from .base import CommandAlgorithm, Run
 
@@ -71,7 +70,4 @@ class ContoursAlgorithm(CommandAlgorithm):
         """Trace."""
         product = self.parameterAsEnumString(run.parameters, "PRODUCT", run.context) or "lines"
         chosen = [] if product == "lines" else [f"--{product}"]
-        paths, named = run.list_outputs("OUTPUT")
-        run.run([*self.list_inputs(run), *chosen, *named])
-        style_on_loading(paths["OUTPUT"], _PRODUCTS[product], run.context)
-        return dict(paths)
+        return self.make_layer(run, _PRODUCTS[product], chosen=chosen)

@@ -35,7 +35,6 @@ class ConvertAlgorithm(CommandAlgorithm):
 
     def make(self, run: Run) -> dict[str, Any]:
         """Convert."""
-        paths, named = run.list_outputs("OUTPUT")
-        run.run([*self.list_inputs(run), *named])
+        paths, _ = self.run_command(run, "OUTPUT")
         self.load_later(run, paths["OUTPUT"], "Converted")
         return dict(paths)

@@ -8,7 +8,6 @@ from qgis.core import QgsProcessing
 
 from ..inputs import POINTS, Lines, Surface
 from ..options import choice, number, switch
-from ..results import style_on_loading
 from ..styles import (
     style_catchments,
     style_channels,
@@ -75,7 +74,4 @@ class FlowAlgorithm(CommandAlgorithm):
     def make(self, run: Run) -> dict[str, Any]:
         """Find."""
         product = self.parameterAsEnumString(run.parameters, "FIND", run.context) or "depressions"
-        paths, named = run.list_outputs("OUTPUT", "TABLE")
-        run.run([*self.list_inputs(run), *named])
-        style_on_loading(paths["OUTPUT"], _PRODUCTS[product], run.context)
-        return dict(paths)
+        return self.make_layer(run, _PRODUCTS[product], "TABLE")

@@ -44,7 +44,6 @@ class InspectAlgorithm(CommandAlgorithm):
 
     def make(self, run: Run) -> dict[str, Any]:
         """Check."""
-        paths, named = run.list_outputs("OUTPUT", "TABLE", "PICTURE")
-        found = run.run([*self.list_inputs(run), *named])["blunders"]
+        paths, told = self.run_command(run, "OUTPUT", "TABLE", "PICTURE")
         style_on_loading(paths["OUTPUT"], style_suspects, run.context)
-        return {**paths, "SUSPECTS": len(found)}
+        return {**paths, "SUSPECTS": len(told["blunders"])}

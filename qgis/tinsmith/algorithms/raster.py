@@ -8,7 +8,6 @@ from qgis.core import QgsProcessingParameterRasterDestination, QgsProcessingPara
 
 from ..inputs import Surface, find_raster
 from ..options import choice, describe, number
-from ..results import style_on_loading
 from ..styles import style_hillshade, style_raster
 from .base import CommandAlgorithm, Run
 
@@ -69,10 +68,5 @@ class RasterAlgorithm(CommandAlgorithm):
     def make(self, run: Run) -> dict[str, Any]:
         """Rasterize."""
         like = [f"--like={self._like}"] if self._like else []
-        paths, named = run.list_outputs("OUTPUT")
-        run.run([*self.list_inputs(run), *like, *named])
         is_light = self.parameterAsEnumString(run.parameters, "VALUE", run.context) == "hillshade"
-        style_on_loading(
-            paths["OUTPUT"], style_hillshade if is_light else style_raster, run.context
-        )
-        return dict(paths)
+        return self.make_layer(run, style_hillshade if is_light else style_raster, chosen=like)

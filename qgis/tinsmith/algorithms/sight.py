@@ -8,7 +8,6 @@ from qgis.core import QgsProcessing
 
 from ..inputs import POINTS, Lines, Place, Surface
 from ..options import number, switch
-from ..results import style_on_loading
 from ..styles import style_sight_lines, style_viewshed
 from .base import TABLE_FILES, CommandAlgorithm, Run
 
@@ -66,8 +65,5 @@ class SightAlgorithm(CommandAlgorithm):
 
     def make(self, run: Run) -> dict[str, Any]:
         """Look."""
-        paths, named = run.list_outputs("OUTPUT", "TABLE")
-        run.run([*self.list_inputs(run), *named])
         style = style_sight_lines if run.parameters.get("TARGETS") else style_viewshed
-        style_on_loading(paths["OUTPUT"], style, run.context)
-        return dict(paths)
+        return self.make_layer(run, style, "TABLE")

@@ -8,7 +8,6 @@ from qgis.core import QgsProcessing
 
 from ..inputs import Surface
 from ..options import choice, switch, text
-from ..results import style_on_loading
 from ..styles import style_classes
 from .base import TABLE_FILES, CommandAlgorithm, Run
 
@@ -47,7 +46,4 @@ class SlopeAlgorithm(CommandAlgorithm):
 
     def make(self, run: Run) -> dict[str, Any]:
         """Classify."""
-        paths, named = run.list_outputs("OUTPUT", "TABLE")
-        run.run([*self.list_inputs(run), *named])
-        style_on_loading(paths["OUTPUT"], style_classes, run.context)
-        return dict(paths)
+        return self.make_layer(run, style_classes, "TABLE")

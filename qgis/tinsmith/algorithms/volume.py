@@ -90,7 +90,6 @@ class StorageAlgorithm(CommandAlgorithm):
 
     def make(self, run: Run) -> dict[str, Any]:
         """Tabulate."""
-        paths, named = run.list_outputs("OUTPUT")
-        run.run([*self.list_inputs(run), "--stage-storage", *named])
+        paths, _ = self.run_command(run, "OUTPUT", chosen=["--stage-storage"])
         self.load_later(run, paths["OUTPUT"], "Stages")
         return dict(paths)

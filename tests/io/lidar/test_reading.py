@@ -372,20 +372,16 @@ def test_keys_that_contradict_themselves_are_refused_until_told(tmp_path):
     assert any("not used" in note for note in survey.notes)
 
 
-def test_a_vertical_crs_in_another_unit_gives_the_unit_that_is_named(tmp_path):
-    path = with_keys(tmp_path / "keys.las", (3072, 32616), (4096, 5773), (4099, 9002))
+@pytest.mark.parametrize(
+    ("vertical", "unit", "name"), [(5773, 9002, "foot"), (32001, 9003, "US survey foot")]
+)
+def test_a_vertical_crs_in_another_unit_or_not_known_is_told(tmp_path, vertical, unit, name):
+    """The unit that is named counts."""
+    path = with_keys(tmp_path / "keys.las", (3072, 32616), (4096, vertical), (4099, unit))
     survey = read(path)
     assert survey.crs == "EPSG:32616"
-    assert survey.elevation_unit.name == "foot"
-    assert any("5773" in note for note in survey.notes)
-
-
-def test_a_vertical_crs_that_is_not_known_is_left_aside_and_told(tmp_path):
-    path = with_keys(tmp_path / "keys.las", (3072, 32616), (4096, 32001), (4099, 9003))
-    survey = read(path)
-    assert survey.crs == "EPSG:32616"
-    assert survey.elevation_unit.name == "US survey foot"
-    assert any("32001" in note for note in survey.notes)
+    assert survey.elevation_unit.name == name
+    assert any(str(vertical) in note for note in survey.notes)
 
 
 def test_an_own_projection_in_keys_is_understood_by_gdal(tmp_path):

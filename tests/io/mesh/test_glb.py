@@ -7,6 +7,7 @@ import struct
 
 import numpy as np
 import pytest
+from support.mesh_files import assert_same_mesh
 from support.surfaces import hills
 
 import tinsmith as ts
@@ -195,8 +196,7 @@ def test_an_obj_with_a_texture_has_its_material_beside_it(tmp_path):
     v = 1 - (4_033_300 - tin.points[:, 1]) / 300
     assert np.abs(mesh.visual.uv - np.column_stack([u, v])).max() < 1e-6
     back = ts.read(path)
-    assert np.array_equal(back.points, tin.points)
-    assert np.array_equal(back.triangles, tin.triangles)
+    assert_same_mesh(back, tin)
 
 
 def test_the_texture_is_never_written_over(tmp_path):

@@ -35,6 +35,15 @@ def same_mesh(tin, points, triangles):
     assert [sorted(t) for t in tin.triangles.tolist()] == [sorted(t) for t in triangles]
 
 
+def require_refusal(read, path, words):
+    """Require that a file is refused in one line that has such words; return the error."""
+    with pytest.raises(ReadError, match=words) as caught:
+        read(path)
+    assert caught.value.path == path
+    assert "\n" not in str(caught.value)
+    return caught.value
+
+
 # ------------------------------------------------------------------ what others read
 
 
@@ -284,10 +293,7 @@ GOOD_TEXT = ply_text(CORNERS + "3 0 1 2\n3 0 2 3\n")
 def test_damaged_text_ply(tmp_path, text, words):
     path = tmp_path / "a.ply"
     path.write_text(text)
-    with pytest.raises(ReadError, match=words) as caught:
-        ply.read(path)
-    assert caught.value.path == path
-    assert "\n" not in str(caught.value)
+    require_refusal(ply.read, path, words)
 
 
 @pytest.mark.parametrize("order", ["<", ">"])
@@ -394,10 +400,7 @@ def test_obj_without_faces_is_a_survey(tmp_path):
 def test_damaged_obj(tmp_path, text, words, line):
     path = tmp_path / "a.obj"
     path.write_text(text)
-    with pytest.raises(ReadError, match=words) as caught:
-        obj.read(path)
-    assert caught.value.line == line
-    assert caught.value.path == path
+    assert require_refusal(obj.read, path, words).line == line
 
 
 # ----------------------------------------------------------------------- foreign STL
@@ -456,9 +459,7 @@ GOOD_STL = binary_stl([SQUARE[HALVES[0]], SQUARE[HALVES[1]]])
 def test_damaged_stl(tmp_path, content, words):
     path = tmp_path / "a.stl"
     path.write_bytes(content)
-    with pytest.raises(ReadError, match=words) as caught:
-        stl.read(path)
-    assert caught.value.path == path
+    require_refusal(stl.read, path, words)
 
 
 # ----------------------------------------------------------------------- foreign VTK

@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from support.mesh_files import read_text, write_and_read
 from support.surfaces import hills
 
 import tinsmith as ts
@@ -13,17 +14,9 @@ import tinsmith as ts
 BODY = "4 2 0\n0 0 5\n4 0 6\n4 3 7\n0 3 8\n3 0 1 2\n3 0 2 3\n"
 
 
-def read(tmp_path, text):
-    path = tmp_path / "a.off"
-    path.write_text(text)
-    return ts.read(path)
-
-
 def test_a_tin_comes_back(tmp_path):
     tin = hills()
-    back = ts.read(ts.write(tin, tmp_path / "a.off"))
-    assert np.array_equal(back.points, tin.points)
-    assert np.array_equal(back.triangles, tin.triangles)
+    back = write_and_read(tin, tmp_path / "a.off")
     assert (back.crs, back.elevation_unit) == (tin.crs, tin.elevation_unit)
 
 
@@ -46,7 +39,7 @@ def test_trimesh_reads_our_off(tmp_path):
     ],
 )
 def test_forms_of_the_file(tmp_path, text):
-    tin = read(tmp_path, text)
+    tin = read_text(tmp_path / "a.off", text)
     assert tin.area == 12
     assert float(tin.interpolate([4, 0])) == 6
 
@@ -68,4 +61,4 @@ def test_forms_of_the_file(tmp_path, text):
 )
 def test_damaged_files(tmp_path, text, sentence):
     with pytest.raises(ts.ReadError, match=re.escape(sentence)):
-        read(tmp_path, text)
+        read_text(tmp_path / "a.off", text)

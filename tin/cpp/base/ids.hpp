@@ -77,33 +77,7 @@ constexpr HalfEdge half_edge_at(std::size_t entry) {
                    static_cast<std::uint32_t>(entry % 3));
 }
 
-// for (const HalfEdge e : half_edges(triangle))
-class HalfEdges {
- public:
-  class Iterator {
-   public:
-    constexpr explicit Iterator(std::uint32_t edge) : edge_(edge) {}
-    constexpr HalfEdge operator*() const { return HalfEdge{edge_}; }
-    constexpr Iterator& operator++() {
-      ++edge_;
-      return *this;
-    }
-    constexpr bool operator!=(Iterator other) const { return edge_ != other.edge_; }
-
-   private:
-    std::uint32_t edge_;
-  };
-
-  constexpr explicit HalfEdges(Triangle triangle) : first_(4 * number(triangle)) {}
-  constexpr Iterator begin() const { return Iterator(first_); }
-  constexpr Iterator end() const { return Iterator(first_ + 3); }
-
- private:
-  std::uint32_t first_;
-};
-constexpr HalfEdges half_edges(Triangle triangle) { return HalfEdges(triangle); }
-
-// for (const Id id : Ids<Id>(count)), from 0 on
+// for (const Id id : Ids<Id>(count)), from 0 on, or from `first` up to but without `beyond`
 template <typename Id>
 class Ids {
  public:
@@ -123,12 +97,19 @@ class Ids {
     Number at_;
   };
 
-  constexpr explicit Ids(Number count) : count_(count) {}
-  constexpr Iterator begin() const { return Iterator(0); }
-  constexpr Iterator end() const { return Iterator(count_); }
+  constexpr explicit Ids(Number count) : Ids(0, count) {}
+  constexpr Ids(Number first, Number beyond) : first_(first), beyond_(beyond) {}
+  constexpr Iterator begin() const { return Iterator(first_); }
+  constexpr Iterator end() const { return Iterator(beyond_); }
 
  private:
-  Number count_;
+  Number first_, beyond_;
 };
+
+// for (const HalfEdge e : half_edges(triangle))
+constexpr Ids<HalfEdge> half_edges(Triangle triangle) {
+  const std::uint32_t first = 4 * number(triangle);
+  return {first, first + 3};
+}
 
 }  // namespace tinsmith

@@ -51,9 +51,9 @@ inline void require_finite(const GivenXy& xy) {
   throw std::invalid_argument("every coordinate must be finite");
 }
 
-// decide(a, b, ...) for every row.
-template <typename Decide, typename... More>
-Signs signs(Decide decide, const GivenXy& a, const More&... more) {
+// A predicate for every row: predicate(a, b, ...).
+template <auto predicate, typename... More>
+Signs signs_of(const GivenXy& a, const More&... more) {
   const std::size_t n = a.shape(0);
   if (((more.shape(0) != n) || ...)) {
     throw std::invalid_argument("the arrays must have the same number of rows");
@@ -62,7 +62,7 @@ Signs signs(Decide decide, const GivenXy& a, const More&... more) {
   (require_finite(more), ...);
   auto result = streamed_array<std::int8_t>(n);
   for (std::size_t i = 0; i < n; ++i) {
-    result[i] = static_cast<std::int8_t>(decide(points_of(a)[i], points_of(more)[i]...));
+    result[i] = static_cast<std::int8_t>(predicate(points_of(a)[i], points_of(more)[i]...));
   }
   return hand_over<Signs>(std::move(result), {n});
 }
@@ -76,26 +76,15 @@ inline void bind_points(nb::module_& m) {
         "Whether predicates are exact for every coordinate but those that are not a number.");
   m.def("snap", &snap, "points"_a.noconvert(), "distance"_a,
         "For each row the row that it is merged into.");
+  m.def("orientation", &signs_of<orientation, GivenXy, GivenXy>, "a"_a.noconvert(),
+        "b"_a.noconvert(), "c"_a.noconvert(),
+        "+1 where c lies left of the line from a to b, -1 right, 0 on it.");
+  m.def("compare_distances", &signs_of<compare_distances, GivenXy, GivenXy>, "v"_a.noconvert(),
+        "p"_a.noconvert(), "q"_a.noconvert(),
+        "+1 where p is further from v than q is, -1 nearer, 0 equally far.");
   m.def(
-      "orientation",
-      [](const GivenXy& a, const GivenXy& b, const GivenXy& c) {
-        return signs(orientation, a, b, c);
-      },
-      "a"_a.noconvert(), "b"_a.noconvert(), "c"_a.noconvert(),
-      "+1 where c lies left of the line from a to b, -1 right, 0 on it.");
-  m.def(
-      "compare_distances",
-      [](const GivenXy& v, const GivenXy& p, const GivenXy& q) {
-        return signs(compare_distances, v, p, q);
-      },
-      "v"_a.noconvert(), "p"_a.noconvert(), "q"_a.noconvert(),
-      "+1 where p is further from v than q is, -1 nearer, 0 equally far.");
-  m.def(
-      "in_circle",
-      [](const GivenXy& a, const GivenXy& b, const GivenXy& c, const GivenXy& d) {
-        return signs(in_circle, a, b, c, d);
-      },
-      "a"_a.noconvert(), "b"_a.noconvert(), "c"_a.noconvert(), "d"_a.noconvert(),
+      "in_circle", &signs_of<in_circle, GivenXy, GivenXy, GivenXy>, "a"_a.noconvert(),
+      "b"_a.noconvert(), "c"_a.noconvert(), "d"_a.noconvert(),
       "+1 where d lies inside the circle through counter-clockwise a, b, c, -1 outside, 0 on it.");
 }
 

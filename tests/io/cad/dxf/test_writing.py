@@ -7,28 +7,20 @@ import numpy as np
 import pyogrio
 import pytest
 import shapely
+from support.surfaces import scatter, survey_site
 
 import tinsmith as ts
 
 
 @pytest.fixture
 def survey():
-    rng = np.random.default_rng(3)
-    points = rng.random((200, 3)) * [100, 80, 5] + [500_000.1, 4_000_000.2, 300]
-    return ts.Survey(
-        points=points,
-        breaklines=[
-            ts.Breakline(points[[3, 9, 20]] + [0.5, 0.5, 0], name="Bordstein, höher"),
-            ts.Breakline(points[[5, 40]], kind="soft"),
-        ],
-        boundary=[[[500_005, 4_000_005], [500_090, 4_000_005], [500_090, 4_000_070],
-                   [500_005, 4_000_070]]],
-        holes=[[[500_050, 4_000_030], [500_060, 4_000_030], [500_055, 4_000_040]]],
-        water=[ts.Water([[500_020, 4_000_020], [500_030, 4_000_020], [500_025, 4_000_030]], 301.5)],
-        attributes={"number": np.arange(1, 201), "description": np.array(["Zaun"] * 200)},
-        crs="EPSG:32616",
-        elevation_unit="m",
-    )  # fmt: skip
+    points = scatter(200)
+    lines = [
+        ts.Breakline(points[[3, 9, 20]] + [0.5, 0.5, 0], name="Bordstein, höher"),
+        ts.Breakline(points[[5, 40]], kind="soft"),
+    ]
+    columns = {"number": np.arange(1, 201), "description": np.array(["Zaun"] * 200)}
+    return survey_site(points, lines, columns)
 
 
 def corners_of(tin):

@@ -4,6 +4,7 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
+from support.surfaces import scatter, survey_site
 
 import tinsmith as ts
 
@@ -12,25 +13,18 @@ SPACE = "{http://www.landxml.org/schema/LandXML-1.2}"
 
 @pytest.fixture
 def survey():
-    rng = np.random.default_rng(3)
-    points = rng.random((400, 3)) * [100, 80, 5] + [500_000.1, 4_000_000.2, 300]
-    return ts.Survey(
-        points=points,
-        breaklines=[
-            ts.Breakline(points[[3, 9, 20]] + [0.5, 0.5, 0], name='the "wall" & <kerb>'),
-            ts.Breakline(points[[5, 40]], kind="soft", priority=2),
-            ts.Breakline(points[[7, 30], :2]),
-        ],
-        boundary=[[[500_005, 4_000_005], [500_090, 4_000_005], [500_090, 4_000_070],
-                   [500_005, 4_000_070]]],
-        holes=[[[500_050, 4_000_030], [500_060, 4_000_030], [500_055, 4_000_040]]],
-        water=[ts.Water([[500_020, 4_000_020], [500_030, 4_000_020], [500_025, 4_000_030]], 301.5,
-                        name="pond")],
-        attributes={"number": np.arange(1, 401), "description": np.array(["a<b"] * 400),
-                    "code": np.array(["EP1", ""] * 200)},
-        crs="EPSG:32616",
-        elevation_unit="m",
-    )  # fmt: skip
+    points = scatter(400)
+    lines = [
+        ts.Breakline(points[[3, 9, 20]] + [0.5, 0.5, 0], name='the "wall" & <kerb>'),
+        ts.Breakline(points[[5, 40]], kind="soft", priority=2),
+        ts.Breakline(points[[7, 30], :2]),
+    ]
+    columns = {
+        "number": np.arange(1, 401),
+        "description": np.array(["a<b"] * 400),
+        "code": np.array(["EP1", ""] * 200),
+    }
+    return survey_site(points, lines, columns, pond="pond")
 
 
 def test_a_tin_comes_back_bit_by_bit_with_its_lines(survey, tmp_path):
