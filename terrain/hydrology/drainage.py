@@ -72,10 +72,8 @@ def catchments(
 
     Raises
     ------
-    CrsError
-        If coordinates are degrees, or the CRS of the outlets is another one.
-    OptionError
-        If ``fill_depressions`` is neither True nor False.
+    CrsError, OptionError
+        As of :func:`flow_path`, of the outlets.
     PointsError
         If an outlet lies outside the surface, its water comes to no vertex, two come to the same,
         or fall lines cross too many triangles.
