@@ -8,12 +8,12 @@ from ..registry.format import Format
 __all__ = ["FORMATS"]
 
 
-def _make(name: str, description: str, function: str) -> Format:
-    """Describe a kind of GeoTIFF that is written."""
-    write = f"{__package__}.geotiff:{function}"
-    kinds: dict[str, Any] = {"suffixes": (".tif", ".tiff"), "writes": ("Raster",)}
-    kinds["precision"] = "Every cell comes back bit for bit."
-    return Format(name=name, description=description, write=write, **kinds)
+def _make(name: str, description: str, writer: str, **more: Any) -> Format:
+    """Describe a format that rasters are written in, GeoTIFF if nothing is said."""
+    usual: dict[str, Any] = {"suffixes": (".tif", ".tiff"), "writes": ("Raster",)}
+    usual["precision"] = "Every cell comes back bit for bit."
+    write = f"{__package__}.{writer}"
+    return Format(name=name, description=description, write=write, **(usual | more))
 
 
 FORMATS = (
@@ -28,14 +28,11 @@ FORMATS = (
         read="tinsmith.io.raster.dem:read",
         sniff=signatures.is_raster,
     ),
-    _make("geotiff", "GeoTIFF", "write"),
-    _make("cog", "Cloud optimized GeoTIFF", "write_cog"),
-    Format(
-        name="asc",
-        description="Esri ASCII grid, one band as text",
+    _make("geotiff", "GeoTIFF", "geotiff:write"),
+    _make("cog", "Cloud optimized GeoTIFF", "geotiff:write_cog"),
+    _make(
+        *("asc", "Esri ASCII grid, one band as text", "ascii_grid:write"),
         suffixes=(".asc",),
-        write="tinsmith.io.raster.ascii_grid:write",
-        writes=("Raster",),
         precision="Every number is the same double.",
         losses="Units and notes; all bands but one.",
     ),

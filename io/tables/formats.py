@@ -4,23 +4,27 @@ from ..registry.format import Format
 
 __all__ = ["FORMATS"]
 
-FORMATS = (
-    Format(
-        name="csv",
-        description="CSV (RFC 4180) with units in the header",
-        suffixes=(".csv", ".tsv", ".txt"),
-        write="tinsmith.io.tables.csv_tables:write",
-        writes=("Table", "Features"),
+
+def _make(
+    name: str, description: str, *suffixes: str, writes: tuple[str, ...] = ("Table",), losses: str
+) -> Format:
+    """Describe a format that tables are written in, with every number."""
+    return Format(
+        name=name,
+        description=description,
+        suffixes=suffixes,
+        write=f"{__package__}.{name}_tables:write",
+        writes=writes,
         precision="Every number comes back bit for bit.",
+        losses=losses,
+    )
+
+
+FORMATS = (
+    _make(
+        *("csv", "CSV (RFC 4180) with units in the header", ".csv", ".tsv", ".txt"),
+        writes=("Table", "Features"),
         losses="Notes and the CRS.",
     ),
-    Format(
-        name="json",
-        description="JSON with units",
-        suffixes=(".json",),
-        write="tinsmith.io.tables.json_tables:write",
-        writes=("Table",),
-        precision="Every number comes back bit for bit.",
-        losses="",
-    ),
+    _make("json", "JSON with units", ".json", losses=""),
 )
