@@ -287,7 +287,7 @@ def test_tasks_survive_their_file(tmp_path):
 @pytest.mark.slow
 def test_every_tool_holds_the_lines():
     outcome = lines.run(1_000, names=["raster lines", "nested rings"], repeats=1)
-    present = lines.find_line_tools(ALL_LINE_TOOLS, LINE_TOOLS, "constrained", Outcome())
+    present = kernel.find_tools(ALL_LINE_TOOLS, LINE_TOOLS, "constrained", Outcome())
     assert [r.tool for r in outcome.results] == 2 * present
     assert {OURS} <= set(present)
     for result in outcome.results:
@@ -345,7 +345,7 @@ def test_batch_is_as_many_points_again():
 @pytest.mark.slow
 def test_every_tool_edits():
     outcome = edits.run(400, repeats=1)
-    present = lines.find_line_tools(ALL_EDIT_TOOLS, EDIT_TOOLS, "edits", Outcome())
+    present = kernel.find_tools(ALL_EDIT_TOOLS, EDIT_TOOLS, "edits", Outcome())
     assert {OURS, OPENED, WITH_ARRAYS, BUILD} <= set(present)
     assert {r.tool for r in outcome.results} == set(present)
     assert len({r.task for r in outcome.results}) == len(EDIT_TASKS) + 1

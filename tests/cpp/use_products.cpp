@@ -1,5 +1,6 @@
 // The kernels of terrain without Python: contours, bands, volumes, the overlay, rasters and the water
 // of planes, whose answers are known. Prints what is wrong and returns 1, or prints "sound".
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -210,78 +211,130 @@ struct FallingPlane {
   std::vector<hydrology::Base> bases;
 
   FallingPlane() {
-    for (const Triangle t : Ids<Triangle>(falls.surface.triangle_count)) {
-      for (const HalfEdge e : half_edges(t)) {
-        const Point start = falls.surface.point(falls.start(e));
-        const Point end = falls.surface.point(falls.end(e));
-        const double across = kEast * (start.y - end.y) - kNorth * (start.x - end.x);
-        signs.push_back(static_cast<std::int8_t>((across > 0.0) - (across < 0.0)));
-        values.push_back(across);
-      }
-      const Point a = falls.surface.point(falls.surface.vertex(t, 0));
-      const Point b = falls.surface.point(falls.surface.vertex(t, 1));
-      const Point c = falls.surface.point(falls.surface.vertex(t, 2));
-      areas.push_back(0.5 * ((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)));
+    const Ids<Triangle> triangles(falls.surface.triangle_count);
+    for (const Triangle t : triangles) {
+      for (const HalfEdge e : half_edges(t)) values.push_back(measure_fall(e));
+      areas.push_back(measure_area(t));
     }
+    for (const double fall : values) signs.push_back(fall > 0.0 ? 1 : fall < 0.0 ? -1 : 0);
     falls.signs = signs.data();
     falls.values = values.data();
-    for (const Triangle t : Ids<Triangle>(falls.surface.triangle_count)) {
-      bases.push_back(falls.base(t));
-    }
+    for (const Triangle t : triangles) bases.push_back(falls.base(t));
   }
+
+ private:
+  // Out of the triangle across an edge, in proportion.
+  double measure_fall(HalfEdge e) const {
+    const Point start = falls.surface.point(falls.start(e));
+    const Point end = falls.surface.point(falls.end(e));
+    return kEast * (start.y - end.y) - kNorth * (start.x - end.x);
+  }
+
+  double measure_area(Triangle t) const {
+    Point corner[3];
+    for (int k = 0; k < 3; ++k) corner[k] = falls.surface.point(falls.surface.vertex(t, k));
+    const auto [a, b, c] = corner;
+    return 0.5 * ((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y));
+  }
+};
+
+std::vector<std::int32_t> count_up(std::int32_t count) {
+  std::vector<std::int32_t> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), 0);
+  return numbers;
+}
+
+// The water of a plane, from strips and vertices down.
+class Drainage {
+ public:
+  Drainage() {
+    hydrology::StripCutter cutter(plane_.falls, plane_.bases.data(), pulse_);
+    cutter.cut(1'000'000, offsets_.data());
+    strip_count_ = static_cast<std::int32_t>(cutter.size());
+    starts_ = cutter.take_starts();
+    nexts_ = count_up(nodes().count());
+    uppers_ = nexts_;
+    link_strips();
+    link_vertices();
+  }
+
+  hydrology::Nodes nodes() const { return {strip_count_, vertex_count(), grounds_.data()}; }
+  std::size_t undecided_count() const { return undecided_.size(); }
+
+  std::vector<std::int32_t> find_ends() {
+    std::vector<std::int32_t> ends(nexts_.size());
+    hydrology::find_ends(nexts_.data(), nodes().count(), ends.data(), pulse_);
+    return ends;
+  }
+
+  std::vector<double> sum_areas() {
+    std::vector<double> totals(nexts_.size());
+    hydrology::measure_strips(strips(), plane_.bases.data(), plane_.areas.data(),
+                              plane_.falls.surface.triangle_count, totals.data());
+    hydrology::accumulate(nexts_.data(), nodes().count(), totals.data(), pulse_);
+    return totals;
+  }
+
+ private:
+  std::int32_t vertex_count() const { return plane_.falls.surface.point_count; }
+  hydrology::Strips strips() const { return {offsets_.data(), starts_.get()}; }
+
+  void link_strips() {
+    const hydrology::Strips cut = strips();
+    const hydrology::Nodes all = nodes();
+    hydrology::StripLinks(plane_.falls, plane_.bases.data(), filling_, cut, all)
+        .run(nexts_.data(), uppers_.data(), pulse_);
+  }
+
+  void link_vertices() {
+    const auto is_boundary = std::make_unique<bool[]>(vertex_count());
+    std::fill_n(is_boundary.get(), 4, true);  // the corners of the square come first
+    const hydrology::ExitTable exits(plane_.falls, filling_, is_boundary.get(), pulse_);
+    const hydrology::Nodes all = nodes();
+    undecided_ = hydrology::VertexLinks(plane_.falls, plane_.bases.data(), filling_, exits, all)
+                     .run(&nexts_[strip_count_], &uppers_[strip_count_], pulse_);
+  }
+
+  const FallingPlane plane_;
+  const hydrology::Filling filling_;
+  const std::vector<std::int32_t> grounds_ = count_up(vertex_count());
+  Team team_{1, keep_going};
+  Pulse pulse_{team_};
+  std::vector<std::int64_t> offsets_ =
+      std::vector<std::int64_t>(std::size_t{plane_.falls.surface.triangle_count} + 1);
+  StreamedArray<double> starts_;
+  std::int32_t strip_count_ = 0;
+  std::vector<std::int32_t> nexts_, uppers_;
+  std::vector<Vertex> undecided_;
 };
 
 // The water of the whole square leaves it.
 void drain() {
-  const FallingPlane plane;
-  const std::int32_t vertex_count = plane.falls.surface.point_count;
-  const std::uint32_t triangle_count = plane.falls.surface.triangle_count;
-  const hydrology::Filling filling;
-  Team team(1, keep_going);
-  Pulse pulse(team);
-  std::vector<std::int64_t> offsets(std::size_t{triangle_count} + 1);
-  hydrology::StripCutter cutter(plane.falls, plane.bases.data(), pulse);
-  cutter.cut(1'000'000, offsets.data());
-  const auto strip_count = static_cast<std::int32_t>(cutter.size());
-  const StreamedArray<double> starts = cutter.take_starts();
-  const hydrology::Strips strips{offsets.data(), starts.get()};
-  std::vector<std::int32_t> grounds(vertex_count);
-  std::iota(grounds.begin(), grounds.end(), 0);
-  const hydrology::Nodes nodes{strip_count, vertex_count, grounds.data()};
-  std::vector<std::int32_t> nexts(nodes.count()), uppers(nodes.count()), ends(nodes.count());
-  std::iota(nexts.begin(), nexts.end(), 0);
-  hydrology::StripLinks(plane.falls, plane.bases.data(), filling, strips, nodes)
-      .run(nexts.data(), uppers.data(), pulse);
-  const auto is_boundary = std::make_unique<bool[]>(vertex_count);
-  std::fill_n(is_boundary.get(), 4, true);  // the corners of the square come first
-  const hydrology::ExitTable exits(plane.falls, filling, is_boundary.get(), pulse);
-  const auto undecided =
-      hydrology::VertexLinks(plane.falls, plane.bases.data(), filling, exits, nodes)
-          .run(nexts.data() + strip_count, uppers.data() + strip_count, pulse);
-  expect(undecided.empty(), "on a plane doubles decide where water goes");
-  if (!undecided.empty()) return;
-  hydrology::find_ends(nexts.data(), nodes.count(), ends.data(), pulse);
-  std::vector<double> totals(nodes.count());
-  hydrology::measure_strips(strips, plane.bases.data(), plane.areas.data(), triangle_count,
-                            totals.data());
-  hydrology::accumulate(nexts.data(), nodes.count(), totals.data(), pulse);
-  for (std::int32_t i = 0; i < nodes.first_vertex + vertex_count; ++i) {
+  Drainage drainage;
+  const hydrology::Nodes nodes = drainage.nodes();
+  expect(drainage.undecided_count() == 0, "on a plane doubles decide where water goes");
+  if (drainage.undecided_count() > 0) return;
+  const std::vector<std::int32_t> ends = drainage.find_ends();
+  for (std::int32_t i = 0; i < nodes.first_vertex + nodes.vertex_count; ++i) {
     expect(ends[i] == nodes.outside(), "all water leaves a plane");
   }
-  expect(is_close(totals[nodes.outside()], 10000.0), "that of the whole square");
+  expect(is_close(drainage.sum_areas()[nodes.outside()], 10000.0), "that of the whole square");
 }
 
-// Two strips and their vertex run down one edge; a triangle is cut from the middle of its base.
-void cut_ground() {
+// Two strips and their vertex run down one edge.
+void follow_channels() {
   const std::vector<std::int32_t> uppers{0, 0, 0, -1}, nexts{3, 3, 3, 3};
   const std::vector<double> totals{5.0, 2.0, 1.0, 8.0};
-  const auto channels =
-      hydrology::ChannelSums(uppers.data(), nexts.data(), 4, 2, 2).sum(totals.data(), 2);
+  const hydrology::ChannelSums sums(uppers.data(), nexts.data(), 4, 2, 2);
+  const auto channels = sums.sum(totals.data(), 2);
   expect(channels.size() == 1 && channels[0].area == 8.0, "one channel has the water of all");
-  const std::vector<std::int32_t> corners{0, 1, 2}, lower{3}, upper{2};
-  const std::vector<std::int64_t> ranges{0, 1, 0, 0, 0, 0}, offsets{0, 1};
-  const hydrology::CutTriangles given{
-      1, corners.data(), ranges.data(), 3, offsets.data(), lower.data(), upper.data()};
+}
+
+// From the middle of its base to its apex.
+void cut_triangle() {
+  const std::int32_t corners[3] = {0, 1, 2}, lower = 3, upper = 2;
+  const std::int64_t ranges[6] = {0, 1, 0, 0, 0, 0}, offsets[2] = {0, 1};
+  const hydrology::CutTriangles given{1, corners, ranges, 3, offsets, &lower, &upper};
   const hydrology::CutCells cells = hydrology::CellCutter(given).run();
   expect(cells.offsets == std::vector<std::int64_t>{0, 3, 6}, "a cut makes two cells");
 }
@@ -297,6 +350,7 @@ int main() {
   measure_earthwork();
   draw_raster();
   drain();
-  cut_ground();
+  follow_channels();
+  cut_triangle();
   return tell_faults();
 }

@@ -32,20 +32,10 @@ class Cover(NamedTuple):
 
 
 def cover(points: Float64Array, triangles: Int32Array, hull: Int32Array) -> Cover:
-    """Measure overlaps and gaps of triangles in a hull.
+    """Measure overlaps and gaps of counter-clockwise triangles in a hull.
 
-    Parameters
-    ----------
-    points : (n, 3) float64 array
-    triangles : (m, 3) int32 array
-        Counter-clockwise.
-    hull : (h,) int32 array
-        Vertices of the hull, counter-clockwise, those within its edges too.
-
-    Returns
-    -------
-    Cover
-        Exactly zero where there are none; otherwise exact but for rounding where no edges cross.
+    The hull is its vertices, counter-clockwise, those within its edges too. Areas are exactly zero
+    where there are none; otherwise exact but for rounding where no edges cross.
     """
     edges, weights = _find_left_over(len(points), triangles, hull)
     level = points[edges[:, 0], 1] == points[edges[:, 1], 1]

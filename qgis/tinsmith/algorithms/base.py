@@ -229,6 +229,10 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
         )
         self.addParameter(describe(made, help_text))
 
+    def add_table_output(self, help_text: str, words: str = "Table") -> None:
+        """Add a table as an output that is not written unless it is named."""
+        self.add_file_output("TABLE", words, TABLE_FILES, help_text, optional=True)
+
     def add_layer_output(self, words: str, kind: Any) -> None:
         """Add a vector layer as the output."""
         made = QgsProcessingParameterVectorDestination("OUTPUT", words, kind)

@@ -16,7 +16,7 @@ from ..styles import (
     style_ridges,
     style_water,
 )
-from .base import TABLE_FILES, CommandAlgorithm, Run
+from .base import CommandAlgorithm, Run
 
 _PRODUCTS = {
     "depressions": style_water,
@@ -69,7 +69,7 @@ class FlowAlgorithm(CommandAlgorithm):
     def add_outputs(self) -> None:
         """Add the layer and the table."""
         self.add_layer_output("Flow", QgsProcessing.TypeVectorAnyGeometry)
-        self.add_file_output("TABLE", "Table", TABLE_FILES, "A row a feature.", optional=True)
+        self.add_table_output("A row a feature.")
 
     def make(self, run: Run) -> dict[str, Any]:
         """Find."""

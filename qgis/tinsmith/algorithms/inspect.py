@@ -9,7 +9,7 @@ from qgis.core import QgsProcessing
 from ..inputs import Lines, Surface
 from ..results import style_on_loading
 from ..styles import style_suspects
-from .base import PICTURES, TABLE_FILES, CommandAlgorithm, Run
+from .base import PICTURES, CommandAlgorithm, Run
 
 
 class InspectAlgorithm(CommandAlgorithm):
@@ -38,7 +38,7 @@ class InspectAlgorithm(CommandAlgorithm):
     def add_outputs(self) -> None:
         """Add the layer, the table, the map, and the number of findings."""
         self.add_layer_output("Suspects", QgsProcessing.TypeVectorPoint)
-        self.add_file_output("TABLE", "Table", TABLE_FILES, "A row a finding.", optional=True)
+        self.add_table_output("A row a finding.")
         self.add_file_output("PICTURE", "Map", PICTURES, "The points drawn.", optional=True)
         self.add_numbers({"SUSPECTS": "Findings"})
 

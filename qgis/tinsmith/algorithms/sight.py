@@ -9,7 +9,7 @@ from qgis.core import QgsProcessing
 from ..inputs import POINTS, Lines, Place, Surface
 from ..options import number, switch
 from ..styles import style_sight_lines, style_viewshed
-from .base import TABLE_FILES, CommandAlgorithm, Run
+from .base import CommandAlgorithm, Run
 
 _UP = "Above the ground, in the unit of elevations."
 
@@ -59,9 +59,7 @@ class SightAlgorithm(CommandAlgorithm):
     def add_outputs(self) -> None:
         """Add the layer and the table."""
         self.add_layer_output("Sight", QgsProcessing.TypeVectorAnyGeometry)
-        self.add_file_output(
-            "TABLE", "Table", TABLE_FILES, "A row a class, or a target.", optional=True
-        )
+        self.add_table_output("A row a class, or a target.")
 
     def make(self, run: Run) -> dict[str, Any]:
         """Look."""

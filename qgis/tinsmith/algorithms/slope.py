@@ -9,7 +9,7 @@ from qgis.core import QgsProcessing
 from ..inputs import Surface
 from ..options import choice, switch, text
 from ..styles import style_classes
-from .base import TABLE_FILES, CommandAlgorithm, Run
+from .base import CommandAlgorithm, Run
 
 
 class SlopeAlgorithm(CommandAlgorithm):
@@ -40,9 +40,7 @@ class SlopeAlgorithm(CommandAlgorithm):
     def add_outputs(self) -> None:
         """Add the polygons and the table."""
         self.add_layer_output("Slope classes", QgsProcessing.TypeVectorPolygon)
-        self.add_file_output(
-            "TABLE", "Table of areas", TABLE_FILES, "A row a class.", optional=True
-        )
+        self.add_table_output("A row a class.", "Table of areas")
 
     def make(self, run: Run) -> dict[str, Any]:
         """Classify."""
