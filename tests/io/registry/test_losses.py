@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.io.registry import known_formats
+from tinsmith.io.registry.lookup import known_formats
 
 ATTRIBUTES = {
     "number": np.array(["1", "2", "A3"]),
