@@ -12,14 +12,15 @@
 #include "bind_sight.hpp"
 
 NB_MODULE(_core, m) {
+  using namespace tinsmith::python;
   m.doc() = "Compiled core of tinsmith.terrain: what is derived from a TIN.";
-  tinsmith::python::bind_isolines(m);
-  tinsmith::python::bind_gridding(m);
-  tinsmith::python::bind_earthwork(m);
-  tinsmith::python::bind_relief(m);
-  tinsmith::python::bind_hydrology(m);
-  tinsmith::python::bind_inspection(m);
-  tinsmith::python::bind_ground(m);
-  tinsmith::python::bind_raster_simplification(m);
-  tinsmith::python::bind_sight(m);
+  bind_isolines(m);
+  bind_gridding(m);
+  bind_earthwork(m);
+  bind_relief(m);
+  bind_hydrology(m);
+  bind_inspection(m);
+  bind_ground(m);
+  bind_raster_simplification(m);
+  bind_sight(m);
 }

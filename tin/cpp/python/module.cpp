@@ -11,13 +11,14 @@
 #include "bind_triangulation.hpp"
 
 NB_MODULE(_core, m) {
+  using namespace tinsmith::python;
   m.doc() = "Compiled core of tinsmith.tin: exact predicates, growth, point location.";
-  tinsmith::python::bind_points(m);
-  tinsmith::python::bind_triangulation(m);
-  tinsmith::python::bind_location(m);
-  tinsmith::python::bind_interpolation(m);
-  tinsmith::python::bind_constraints(m);
-  tinsmith::python::bind_mesh(m);
-  tinsmith::python::bind_refinement(m);
-  tinsmith::python::bind_simplification(m);
+  bind_points(m);
+  bind_triangulation(m);
+  bind_location(m);
+  bind_interpolation(m);
+  bind_constraints(m);
+  bind_mesh(m);
+  bind_refinement(m);
+  bind_simplification(m);
 }
