@@ -119,7 +119,7 @@ def _summarise_crossings(report: Report, survey: Survey) -> list[Row]:
     if len(crossings.vertices) == 0:
         return []
     places = f"at {counted(len(crossings.vertices), 'place')}"
-    apart = np.abs(np.diff(crossings.heights, axis=1)[:, 0])
+    apart = np.abs(np.diff(crossings.elevations, axis=1)[:, 0])
     worst = int(np.argmax(apart))
     if apart[worst] == 0:
         return [("Crossings", f"{places}, at equal elevations")]
@@ -127,19 +127,22 @@ def _summarise_crossings(report: Report, survey: Survey) -> list[Row]:
     one, other = (
         f"{report.line_labels[line]} at {height:.3f}"
         for line, height in zip(
-            crossings.lines[worst].tolist(), crossings.heights[worst].tolist(), strict=True
+            crossings.lines[worst].tolist(), crossings.elevations[worst].tolist(), strict=True
         )
     )
     x, y = crossings.xy[worst].tolist()
     return [
         ("Crossings", f"{places}, elevations differ most by {apart[worst]:.3f}{up}"),
-        ("", f"at x {x:.3f}, y {y:.3f}: {one}, {other}, taken {crossings.taken[worst]:.3f}"),
+        (
+            "",
+            f"at x {x:.3f}, y {y:.3f}: {one}, {other}, taken {crossings.vertex_elevations[worst]:.3f}",
+        ),
     ]
 
 
 def _describe_overruled(report: Report, survey: Survey) -> str:
     overruled = report.overruled
-    most = float(np.abs(overruled.heights - overruled.taken).max())
+    most = float(np.abs(overruled.elevations - overruled.vertex_elevations).max())
     number, up = len(overruled.vertices), find_elevation_symbol(survey)
     return f"{number:,} overruled by lines of more weight, the most by {most:.3f}{up}"
 
