@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+from support.surfaces import stretch_triangles
 
 import tinsmith as ts
 
@@ -43,6 +44,7 @@ def generate(rng: np.random.Generator) -> Case:
         "cut": float(rng.choice([0.5, 1, 2])),
         "fill": float(rng.choice([0.5, 1, 2])),
         "places": rng.uniform(0, 1, (40, 2)).tolist(),
+        "stretch": float(rng.choice([0.0, 0.0, 4.0, 0.3])),
         "holes": _draw_hole(rng, base, origin),
         "patch_holes": _draw_hole(rng, patch, origin),
     }
@@ -69,6 +71,8 @@ def examine(case: Case) -> str:
         patch = ts.triangulate(case["patch"], holes=_list_holes(case, "patch_"))
     except ts.TinsmithError:
         return "refused: TIN"
+    if case.get("stretch"):
+        base, patch = (stretch_triangles(one, (1.0, case["stretch"])) for one in (base, patch))
     try:
         pasted = ts.paste(base, patch)
     except ts.PointsError as error:

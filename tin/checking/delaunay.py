@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ..surface import TIN
     from .findings import Findings
 
-__all__ = ["check_delaunay"]
+__all__ = ["check_delaunay", "mark_illegal_edges"]
 
 
 def check_delaunay(tin: TIN, found: Findings, *, conforming: bool = False) -> None:
@@ -46,6 +46,34 @@ def check_delaunay(tin: TIN, found: Findings, *, conforming: bool = False) -> No
     )
     found.counts["ties"] = n_ties
     found.counts["ties_against_rule"] = sum(len(triangles) for triangles in against_rule)
+
+
+def mark_illegal_edges(tin: TIN) -> BoolArray:
+    """Mark the edges that triangulating the vertices and lines of a surface anew would not make.
+
+    Parameters
+    ----------
+    tin : TIN
+        Of any triangles, as files have them.
+
+    Returns
+    -------
+    (m, 3) bool array
+        Of the edge opposite each corner: inner ones that are not constrained, and not Delaunay or
+        the other diagonal of four cocircular points. Each is marked in one of its two triangles. A
+        triangulation with these edges constrained, too, is that of ``tin``.
+    """
+    xy = columns(tin.points)
+    marks = np.zeros((len(tin.triangles), 3), np.bool_)
+    for block in blocks(len(tin.triangles)):
+        triangle, *quad = _gather_quadrilaterals(tin, block, conforming=False)
+        side = in_circle(xy, *quad)
+        is_illegal = side > 0
+        tied = np.flatnonzero(side == 0)
+        is_illegal[tied] = _is_against_rule(xy, *(corner[tied] for corner in quad))
+        own, opposite = triangle[is_illegal], quad[0][is_illegal]
+        marks[own, np.argmax(tin.triangles[own] == opposite[:, None], axis=1)] = True
+    return marks
 
 
 def _gather_quadrilaterals(tin: TIN, block: slice, conforming: bool) -> tuple[Int64Array, ...]:

@@ -12,6 +12,7 @@ from ...._progress import Progress
 from ....errors import PointsError
 from ....tin import Breakline, Survey, triangulate
 from ....tin.building.attributes import join_columns
+from ....tin.checking.delaunay import mark_illegal_edges
 from ....tin.constraints.clipping import in_rings
 from ....tin.topology import edge_keys
 from ....tin.validation.options import require_tin
@@ -72,9 +73,10 @@ def paste(base: TIN, patch: TIN, *, progress: Callable[[float], None] | None = N
     -----
     Along the seam elevations are those of the patch, to which the triangles of the base that are
     cut by it are joined. So the surface is that of the base but in these triangles, and there as
-    well if the patch meets the base. Edges that they are cut at are soft breaklines named "joint".
-    Vertices keep their attributes; those made along the seam have none, nor have those of the patch
-    in columns of the base alone, and the other way round.
+    well if the patch meets the base. Edges that they are cut at, and those of both surfaces that
+    are not Delaunay, are soft breaklines named "joint". Vertices keep their attributes; those made
+    along the seam have none, nor have those of the patch in columns of the base alone, and the
+    other way round.
 
     Examples
     --------
@@ -289,7 +291,10 @@ class _Base:
                 yield from self._find_parts(a, b)
 
     def list_joints(self) -> Iterator[Breakline]:
-        """Yield the edges of the triangles that the seam cuts, and constrained ones in no line."""
+        """Yield edges without which the triangles would change, but for those in lines.
+
+        Those of triangles that the seam cuts, constrained ones, and those that are not Delaunay.
+        """
         n = len(self._points)
         mesh = self._tin.triangulation
         keys = find_sides(mesh.triangles, n)
@@ -298,6 +303,7 @@ class _Base:
         touched[inside[inside >= 0]] = True
         own = edge_keys(self._tin.lines.segments().reshape(-1, 2), n)
         wanted = touched[:, None] | (mesh.constrained & (mesh.neighbors >= 0))
+        wanted |= mark_illegal_edges(self._tin)
         for key in np.setdiff1d(keys[wanted], own).tolist():
             for part in self._find_parts(*divmod(key, n)):
                 yield Breakline(part, kind="soft", name="joint")
