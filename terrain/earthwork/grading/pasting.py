@@ -12,8 +12,8 @@ from ...._progress import Progress
 from ....errors import PointsError
 from ....tin import Breakline, Survey, triangulate
 from ....tin.building.attributes import join_columns
-from ....tin.checking.delaunay import mark_illegal_edges
 from ....tin.constraints.clipping import in_rings
+from ....tin.illegal_edges import mark_illegal_edges
 from ....tin.topology import edge_keys
 from ....tin.validation.options import require_tin
 from ...georeference import agree, find_plane_units
@@ -303,7 +303,7 @@ class _Base:
         touched[inside[inside >= 0]] = True
         own = edge_keys(self._tin.lines.segments().reshape(-1, 2), n)
         wanted = touched[:, None] | (mesh.constrained & (mesh.neighbors >= 0))
-        wanted |= mark_illegal_edges(self._tin)
+        wanted |= mark_illegal_edges(mesh)
         for key in np.setdiff1d(keys[wanted], own).tolist():
             for part in self._find_parts(*divmod(key, n)):
                 yield Breakline(part, kind="soft", name="joint")

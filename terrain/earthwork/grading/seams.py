@@ -8,7 +8,7 @@ import numpy as np
 
 from ...._progress import Progress
 from ....tin import Breakline
-from ....tin.checking.delaunay import mark_illegal_edges
+from ....tin.illegal_edges import mark_illegal_edges
 from ....tin.topology import edge_keys
 from .outlines import build_area
 
@@ -185,5 +185,5 @@ class Seam:
         keys = find_sides(mesh.triangles, len(self._points))
         cut = edge_keys(self._pairs[sorted(self._cuts)].reshape(-1, 2), len(self._points))
         wanted = np.asarray(mesh.constrained | np.isin(keys, cut).any(axis=1, keepdims=True))
-        wanted |= mark_illegal_edges(self._patch)
+        wanted |= mark_illegal_edges(mesh)
         return set(keys[wanted].tolist())
