@@ -8,7 +8,7 @@ from support.surfaces import stretch_triangles
 
 import tinsmith as ts
 from tinsmith.tin import topology
-from tinsmith.tin.illegal_edges import mark_illegal_edges
+from tinsmith.tin.triangulation.illegal_edges import mark_illegal_edges
 
 LATTICE = np.column_stack([*np.indices((6, 6)).reshape(2, -1), np.arange(36)]).astype(float)
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..illegal_edges import gather_quadrilaterals, is_against_rule
 from ..predicates import blocks, columns, in_circle
+from ..triangulation.illegal_edges import gather_quadrilaterals, is_against_rule
 
 if TYPE_CHECKING:
     from ..surface import TIN

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..._sentences import counted
-from ..illegal_edges import mark_illegal_edges
+from ..triangulation.illegal_edges import mark_illegal_edges
 
 if TYPE_CHECKING:
     from ..surface import TIN
@@ -26,6 +26,7 @@ def describe_flips(tin: TIN) -> tuple[str, ...]:
         return ()
     are, them = ("is", "it") if count == 1 else ("are", "them")
     return (
-        f"{counted(count, 'edge')} of the given triangles {are} not Delaunay: triangles around "
-        f"{them} were made anew, so that the surface between the vertices is another one there.",
+        f"{counted(count, 'edge')} of the given triangles {are} not in the Delaunay triangulation: "
+        f"triangles around {them} were made anew, so that the surface between the vertices is "
+        "another one there.",
     )

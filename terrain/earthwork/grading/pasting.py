@@ -13,8 +13,8 @@ from ....errors import PointsError
 from ....tin import Breakline, Survey, triangulate
 from ....tin.building.attributes import join_columns
 from ....tin.constraints.clipping import in_rings
-from ....tin.illegal_edges import mark_illegal_edges
 from ....tin.topology import edge_keys
+from ....tin.triangulation.illegal_edges import mark_illegal_edges
 from ....tin.validation.options import require_tin
 from ...georeference import agree, find_plane_units
 from .outlines import arrange_rings, fills_hull, find_area

@@ -8,8 +8,8 @@ import numpy as np
 
 from ...._progress import Progress
 from ....tin import Breakline
-from ....tin.illegal_edges import mark_illegal_edges
 from ....tin.topology import edge_keys
+from ....tin.triangulation.illegal_edges import mark_illegal_edges
 from .outlines import build_area
 
 if TYPE_CHECKING:
