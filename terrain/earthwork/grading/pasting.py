@@ -128,6 +128,7 @@ def join_surfaces(
     )
     seam = Seam(patch, insert, measure_tolerance(ground, insert))
     cut = _Base(base, ground, seam, done.stage(0.1, 0.6))
+    is_inserted = _mark_used(patch)
     done(0.6)
     lines = [*cut.list_lines(), *cut.list_joints()]
     seam.insert_cuts()
@@ -138,8 +139,8 @@ def join_surfaces(
     done(0.7)
     made = triangulate(
         Survey(
-            points=np.concatenate([ground[cut.is_kept], insert]),
-            attributes=_join_attributes(base, patch, cut.is_kept),
+            points=np.concatenate([ground[cut.is_kept], insert[is_inserted]]),
+            attributes=_join_attributes((base, cut.is_kept), (patch, is_inserted)),
         ),
         breaklines=lines,
         duplicates="last",
@@ -154,10 +155,20 @@ def join_surfaces(
     return made.replace(report=replace(made.report, notes=notes))
 
 
-def _join_attributes(base: TIN, patch: TIN, is_kept: BoolArray) -> dict[str, AnyArray]:
-    """Return the columns of the vertices of the base that stay, and behind them of the patch."""
-    kept = {name: column[is_kept] for name, column in base.attributes.items()}
-    return join_columns([kept, patch.attributes], [int(is_kept.sum()), len(patch.points)])
+def _join_attributes(*taken: tuple[TIN, BoolArray]) -> dict[str, AnyArray]:
+    """Return the columns of the vertices that are taken, of one surface behind the other."""
+    columns = [
+        {name: column[is_taken] for name, column in tin.attributes.items()}
+        for tin, is_taken in taken
+    ]
+    return join_columns(columns, [int(is_taken.sum()) for _, is_taken in taken])
+
+
+def _mark_used(tin: TIN) -> BoolArray:
+    """Tell which vertices are corners of triangles: files may have others, which are no surface."""
+    is_used = np.zeros(len(tin.points), np.bool_)
+    is_used[tin.triangles] = True
+    return is_used
 
 
 def _list_rings(area: Any, cut: _Base, seam: Seam) -> dict[str, Any]:
@@ -232,6 +243,7 @@ class _Base:
         xy = np.ascontiguousarray(points[:, :2])
         self.is_kept = in_rings(xy, [ring[:, :2] for ring in seam.rings]) < 0
         self.is_kept[seam.find_near(xy)] = False
+        self.is_kept &= _mark_used(base)
         self._pieces = self._cut_edges(progress)
 
     def _cut_edges(self, progress: Tell | None) -> dict[int, list[Float64Array]]:

@@ -73,6 +73,27 @@ def test_triangles_that_are_not_delaunay_stay_in_base_and_patch(seed):
     assert np.abs(pasted.interpolate(xy) - patch.interpolate(xy)).max() < 1e-6
 
 
+def with_unused_vertices(tin):
+    """Vertices of no triangle, as files have them: far away, and in the middle of a triangle."""
+    middle = tin.points[tin.triangles].mean(axis=1)[:3]
+    far = np.add(tin.points[:1], [9e3, 9e3, 0])
+    points = np.vstack([tin.points, np.add(middle, [0, 0, 50]), far])
+    names = np.arange(len(points))
+    return ts.TIN.from_triangles(points, tin.triangles, attributes={"number": names})
+
+
+def test_vertices_of_no_triangle_stay_out_of_the_surface():
+    base = make_base(seed=1)
+    patch = make_star(1, lambda xy, rng: 100 + 3 * rng.random(len(xy)))
+    expected = ts.paste(base, patch)
+    pasted = ts.paste(with_unused_vertices(base), with_unused_vertices(patch))
+    assert pasted.area == pytest.approx(base.area)
+    assert np.array_equal(pasted.points, expected.points)
+    assert np.array_equal(pasted.triangles, expected.triangles)
+    kept = (base.points[:, None, :] == pasted.points[0]).all(axis=2).argmax()
+    assert pasted.attributes["number"][0] == kept
+
+
 def test_a_patch_that_meets_the_base_changes_nothing_beyond_it():
     base = make_base()
     patch = make_star(5, lambda xy, _: base.interpolate(xy + UTM))
