@@ -102,7 +102,7 @@ def find_falls(tin: TIN) -> Falls:
     Raises PointsError if elevations are of a magnitude at which signs are not exact.
     """
     surface = tin.triangulation
-    require_exact_range(surface.points[:, 2:], "Elevations")
+    require_exact_range(surface.points[:, 2:], "Elevations", ["elevation"])
     signs = np.empty(surface.triangles.shape, np.int8)
     values = np.empty(surface.triangles.shape)
     for k in range(3):

@@ -123,7 +123,9 @@ def _measure_heights(breaks: Breaks, rays: Rays, fall: float) -> Float64Array:
     level = eye[:, 2] + share * (target[:, 2] - eye[:, 2])
     # The earth falls as the square of the distance; a straight line from end to end, by chords.
     bulge: Float64Array = fall * square * share * (1.0 - share)
-    return breaks.elevations - level + bulge
+    heights: Float64Array = breaks.elevations - level + bulge
+    at_end = (share <= 0.0) | (share >= 1.0)  # on or above the ground, but for rounding
+    return np.where(at_end, np.minimum(heights, 0.0), heights)
 
 
 def _make_sure(tin: TIN, breaks: Breaks, rays: Rays, heights: Float64Array) -> Float64Array:

@@ -66,7 +66,8 @@ def viewshed(
     Features
         Polygons of what is visible and what is hidden, with the columns ``class``, ``triangles``
         (that have a part in it), ``area`` in the plane, ``share`` of it, and ``color`` for a
-        legend. They tile the surface. With a radius triangles without a corner in it are left out.
+        legend. They tile the surface. With a radius triangles that do not come within it are left
+        out, and the others are judged as far as they reach, which ``notes`` tell.
 
     Raises
     ------
@@ -100,14 +101,38 @@ def viewshed(
         why = "Over a curved earth" if fall != 0.0 else "With such elevations"
         notes.append(f"{why} triangles are not divided: they are judged by their corners.")
     done(0.05)
+    is_near = _find_near(tin, view)
+    reach = float(measure_distances(tin.points, view.eye)[tin.triangles[is_near]].max())
+    if reach > view.radius:
+        notes.append(_describe_reach(view.radius, reach))
+        view = view._replace(radius=reach)
     mesh, classes, owners = _judge_triangles(tin, view) if as_whole else _divide(tin, view)
     done(0.7)
-    near = (measure_distances(tin.points, view.eye) <= view.radius)[tin.triangles]
-    is_near: BoolArray = np.logical_or.reduce(near, axis=1)
     classes[~is_near[owners]] = -1
     found = _as_features(tin, mesh, classes, owners, notes)
     done.end()
     return found
+
+
+def _find_near(tin: TIN, view: View) -> BoolArray:
+    """Tell which triangles come within the radius."""
+    if np.isinf(view.radius):
+        return np.ones(len(tin.triangles), np.bool_)
+    eye = view.eye[:2]
+    start = tin.points[tin.triangles, :2]
+    way = np.roll(start, -1, axis=1) - start
+    share = ((eye - start) * way).sum(axis=2) / (way**2).sum(axis=2)
+    nearest = start + np.clip(share, 0.0, 1.0)[:, :, None] * way
+    is_near: BoolArray = (view.radius >= np.hypot(*(nearest - eye).T).T).any(axis=1)
+    is_near[tin.locate(eye[None])] = True
+    return is_near
+
+
+def _describe_reach(radius: float, reach: float) -> str:
+    return (
+        f"Triangles that come within the radius of {radius:g} are taken whole: what is told "
+        f"reaches as far as {reach:.6g}."
+    )
 
 
 def _judge_triangles(tin: TIN, view: View) -> tuple[Mesh, _Numbers, _Numbers]:

@@ -38,9 +38,10 @@ def simplify(
     Parameters
     ----------
     surface : TIN or Raster
-        A TIN with its lines, boundary and holes; one that is not Delaunay is made so. Of a raster
-        the centres of cells that are corners of a square or half a square of cells with
-        elevations, in its only band or the band "elevation"; a large one is read in blocks.
+        A TIN with its lines, boundary and holes; one that is not Delaunay is made so, which
+        ``report.notes`` tell. Of a raster the centres of cells that are corners of a square or half
+        a square of cells with elevations, in its only band or the band "elevation"; a large one is
+        read in blocks.
     tolerance : float, optional
         No vertex of ``surface`` will be farther than this from the result in elevation, in the
         unit of elevations. Differences in the last digits of elevations, of 1e-14 of the largest,

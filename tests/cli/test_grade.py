@@ -70,3 +70,44 @@ def test_refusals_leave_nothing_behind(tmp_path, pad, options, code, text):
     assert done.exit_code == code, done.output
     assert text in done.output
     assert not out.exists()
+
+
+def write_pad(path, crs, level):
+    ring = np.column_stack([np.vstack([PAD, PAD[:1]]), np.full(5, level)])
+    ts.write(
+        ts.Features(kind="polygons", coordinates=ring, offsets=[[0, 5], [0, 1]], crs=crs), path
+    )
+
+
+@pytest.fixture
+def ground_in_feet(tmp_path):
+    metres = ts.triangulate(
+        ts.read(SITE, crs="EPSG:32616", z_unit="m").points, crs="EPSG:32616", z_unit="m"
+    )
+    ts.write(ts.reproject(metres, "EPSG:2274"), tmp_path / "ground.ply")
+    table = ts.volume(metres, ts.grade(metres, PAD, 327.0, cut_slope=2, fill_slope=3))
+    return tmp_path / "ground.ply", table["fill"][0] / (1200 / 3937) ** 3
+
+
+@pytest.mark.parametrize(
+    ("crs", "options"), [("EPSG:32616+5703", ()), ("EPSG:32616", ("--lines-z-unit", "m"))]
+)
+def test_a_pad_in_metres_on_a_ground_in_feet(tmp_path, ground_in_feet, crs, options):
+    ground, fill = ground_in_feet
+    write_pad(tmp_path / "pad.gpkg", crs, 327.0)
+    given = ("--pad", tmp_path / "pad.gpkg", *options, *SLOPES, "-o", tmp_path / "made.ply")
+    done = run("grade", ground, *given, "--json")
+    assert done.exit_code == 0, done.output
+    told = json.loads(done.stdout)
+    assert told["volume"]["fill"] == pytest.approx(fill, rel=1e-3)
+    assert any("converted from metre to US survey foot" in note for note in told["notes"])
+
+
+def test_a_pad_that_does_not_tell_its_unit_is_no_pad_in_feet(tmp_path, ground_in_feet):
+    ground, _ = ground_in_feet
+    write_pad(tmp_path / "pad.gpkg", "EPSG:32616", 1072.0)
+    given = ("--pad", tmp_path / "pad.gpkg", *SLOPES, "-o", tmp_path / "made.ply")
+    done = run("grade", ground, *given)
+    assert done.exit_code == 1, done.output
+    assert "does not tell the unit of its elevations" in done.stderr
+    assert not (tmp_path / "made.ply").exists()

@@ -89,3 +89,15 @@ def test_wrong_usage_exits_2_and_places_outside_1(site, tmp_path):
         run("sight", site, "--from", 1, 2, "--to", 7, 2, "--whole-triangles", *out).exit_code == 2
     )
     assert run("sight", site, "--from", 99, 2, *out).exit_code == 1
+
+
+def test_several_eyes_go_with_as_many_targets_and_no_viewshed(site, tmp_path):
+    eyes = ("--from", "1", "2", "--from", "2", "2")
+    targets = ("--to", "3", "2", "--to", "5", "2")
+    start = ("sight", site, *eyes, "--eye-height", "3", "--json", "-o")
+    done = run(*start, tmp_path / "lines.csv", *targets)
+    assert done.exit_code == 0, done.output
+    assert [row["distance"] for row in json.loads(done.stdout)["found"]] == [2.0, 3.0]
+    refused = run(*start, tmp_path / "seen.gpkg")
+    assert refused.exit_code == 1
+    assert "There are 2 eyes: a viewshed has one." in refused.output

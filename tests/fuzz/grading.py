@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+from support.surfaces import stretch_triangles
 
 import tinsmith as ts
 
@@ -43,6 +44,7 @@ def generate(rng: np.random.Generator) -> Case:
         "cut": float(rng.choice([0.5, 1, 2])),
         "fill": float(rng.choice([0.5, 1, 2])),
         "places": rng.uniform(0, 1, (40, 2)).tolist(),
+        "stretch": float(rng.choice([0.0, 0.0, 4.0, 0.3])),
         "holes": _draw_hole(rng, base, origin),
         "patch_holes": _draw_hole(rng, patch, origin),
     }
@@ -67,6 +69,8 @@ def examine(case: Case) -> str:
     try:
         base = ts.triangulate(case["base"], max_edge=_find_limit(case), holes=_list_holes(case))
         patch = ts.triangulate(case["patch"], holes=_list_holes(case, "patch_"))
+        if case.get("stretch"):
+            base, patch = (stretch_triangles(one, (1.0, case["stretch"])) for one in (base, patch))
     except ts.TinsmithError:
         return "refused: TIN"
     try:
@@ -76,6 +80,7 @@ def examine(case: Case) -> str:
             raise
         return "refused: boundaries that rounding lets cross"
     _require_sound(base, pasted, beyond=patch)
+    _require_base_beyond(base, pasted, _cover(patch))
     weights = np.array(case["weights"])
     weights /= weights.sum(axis=1, keepdims=True)
     corners = patch.points[patch.triangles]
@@ -140,6 +145,18 @@ def _require_sound(base: Any, made: Any, beyond: Any = None) -> None:
     assert abs(made.area - wanted.area) <= 1e-9 * wanted.area, "another area than both surfaces"
     far = shapely.difference(_cover(made), shapely.buffer(wanted, 1e-6))
     assert far.is_empty, "a triangle beyond both surfaces"
+
+
+def _require_base_beyond(base: Any, made: Any, area: Any) -> None:
+    """Triangles of the base that what was put in does not touch are what they were."""
+    corners = base.points[base.triangles]
+    apart = shapely.distance(shapely.polygons(corners[:, :, :2]), area) > 1e-6
+    middles = corners[apart].mean(axis=1)
+    slack = 1e-6 + _STEPS * np.spacing(np.abs(middles).max(initial=0.0)) * ts.slope(
+        base, unit="ratio"
+    )
+    error = np.abs(made.interpolate(middles[:, :2]) - middles[:, 2])
+    assert (error <= slack[apart]).all(), "the base is another one beyond"
 
 
 CAMPAIGNS = (Campaign("grading", "pasted surfaces, and pads with slopes", generate, examine),)

@@ -39,7 +39,29 @@ def examine(case: Case) -> str:
     lines = found.columns["visible"][len(targets) - len(apart) :]
     assert seen[apart].tolist() == lines.tolist(), "vertices are not seen as by lines of sight"
     _require_parts(tin, eye, case)
+    _require_curved(tin, eye, targets, case)
     return "sight"
+
+
+def _require_curved(tin: ts.TIN, eye: np.ndarray, targets: np.ndarray, case: Case) -> None:
+    """Over a curved earth, with refraction that bends as much as hills: as by plain sampling."""
+    above, target_above = case["heights"]
+    how = {"curvature": True, "refraction": -1.0}
+    big = ts.TIN.from_triangles(
+        tin.points * (1024.0, 1024.0, 1.0), tin.triangles, crs=tin.crs, z_unit="m"
+    )
+    eye, targets = 1024.0 * eye, 1024.0 * targets
+    heights = {"eye_height": above, "target_height": target_above}
+    found = ts.line_of_sight(big, eye, targets, **heights, **how)
+    bend = 2.0 / (2.0 * 6_371_000.0)
+    rounding = 1e-6 + 64 * np.spacing(np.abs(big.points[:, :2]).max()) * ts.slope(big, unit="ratio")
+    for row, (start, end) in enumerate(found.coordinates.reshape(-1, 2, 3)):
+        share = np.linspace(0.0, 1.0, 402)[1:-1, None]
+        places = start + share * (end - start)
+        square = ((end - start)[:2] ** 2).sum()
+        ground = big.interpolate(places[:, :2]) + bend * square * (share * (1 - share))[:, 0]
+        free = np.nanmin(places[:, 2] - ground, initial=np.inf)
+        assert free >= -rounding.max() or not found.columns["visible"][row], f"{start} to {end}"
 
 
 def _require_parts(tin: ts.TIN, eye: np.ndarray, case: Case) -> None:

@@ -35,6 +35,15 @@ def punched(seed):
     return ts.TIN.from_triangles(whole.points, whole.triangles[keep])
 
 
+def stretch_triangles(tin, factors):
+    """Return the triangles of a TIN stretched about its corner: Delaunay no longer, as of files."""
+    corner = tin.points.min(axis=0) * (1.0, 1.0, 0.0)
+    points = (tin.points - corner) * (*factors, 1.0) + corner
+    return ts.TIN.from_triangles(
+        points, tin.triangles, crs=tin.crs, z_unit=tin.elevation_unit, attributes=tin.attributes
+    )
+
+
 UTM = np.array([500_000.0, 4_000_000.0, 300.0])
 """The corner of the points, within 100 by 100, of the surfaces below."""
 

@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import topology
-from ..predicates import Columns, blocks, columns, in_circle, is_last
+from ..predicates import blocks, columns, in_circle
+from ..triangulation.illegal_edges import gather_quadrilaterals, is_against_rule
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Int64Array
     from ..surface import TIN
     from .findings import Findings
 
@@ -23,12 +22,12 @@ def check_delaunay(tin: TIN, found: Findings, *, conforming: bool = False) -> No
     wrong, against_rule = [], []
     n_ties = 0
     for block in blocks(len(tin.triangles)):
-        triangle, *quad = _gather_quadrilaterals(tin, block, conforming)
+        triangle, *quad = gather_quadrilaterals(tin.triangulation, block, conforming)
         side = in_circle(xy, *quad)
         tied = np.flatnonzero(side == 0)
         n_ties += len(tied)
         wrong.append(triangle[side > 0])
-        is_against = _is_against_rule(xy, *(corner[tied] for corner in quad))
+        is_against = is_against_rule(xy, *(corner[tied] for corner in quad))
         against_rule.append(triangle[tied[is_against]])
     found.report(
         "delaunay",
@@ -46,38 +45,3 @@ def check_delaunay(tin: TIN, found: Findings, *, conforming: bool = False) -> No
     )
     found.counts["ties"] = n_ties
     found.counts["ties_against_rule"] = sum(len(triangles) for triangles in against_rule)
-
-
-def _gather_quadrilaterals(tin: TIN, block: slice, conforming: bool) -> tuple[Int64Array, ...]:
-    """Return triangle, its corners from the one opposite an inner edge, and the far corner.
-
-    Every edge comes once, and only if both triangles are counter-clockwise does its sign mean
-    anything: level 2 tells.
-    """
-    own = np.arange(block.start, block.stop)[:, None]
-    is_once = tin.neighbors[block] > own
-    if not conforming:
-        is_once &= ~tin.constrained[block]
-    row, corner = np.nonzero(is_once)
-    triangle = row + block.start
-    a = tin.triangles[triangle, corner].astype(np.int64)
-    b, c = topology.ends(tin.triangles, triangle, corner)
-    across = tin.triangles[tin.neighbors[triangle, corner]]
-    far = across[:, 0].astype(np.int64) + across[:, 1] + across[:, 2] - b - c
-    return triangle, a, b, c, far
-
-
-def _is_against_rule(
-    xy: Columns,
-    a: Int64Array,
-    b: Int64Array,
-    c: Int64Array,
-    far: Int64Array,
-) -> BoolArray:
-    """Tell where the diagonal b-c of a cocircular quad ends at its lexicographically last point.
-
-    The rule lifts that point above the others' plane, so the other diagonal is the lower one.
-    """
-    last_end = np.where(is_last(xy, b, c), b, c)
-    last_opposite = np.where(is_last(xy, a, far), a, far)
-    return is_last(xy, last_end, last_opposite)

@@ -21,6 +21,7 @@ from ..constraints.pslg import build_mesh_of_growth, find_lines_in
 from ..surface import TIN
 from ..validation.options import is_finite_number, is_whole_number, require_positive, require_tin
 from ..validation.threads import thread_count
+from .flips import describe_flips
 from .surface_pslg import gather_pslg, list_rings
 from .unmended import find_unmended
 
@@ -69,7 +70,8 @@ def refine(
     Parameters
     ----------
     tin : TIN
-        With its lines, boundary and holes. One that is not Delaunay is made so.
+        With its lines, boundary and holes. One that is not Delaunay is made so,
+        which ``report.notes`` tell.
     min_angle : float
         Least angle of a triangle, degrees in the plane, from 0 (any) to 33. It is reached for sure
         up to 20.7 degrees if no lines meet under less than 60; beyond, nearly always up to 30.
@@ -394,7 +396,7 @@ def _report(tin: TIN, surface: Surface, found: _Found) -> Report:
         tin.report,
         n_vertices=len(surface.points),
         n_triangles=len(surface.triangles),
-        notes=(*tin.report.notes, added, *unmended.sentences()),
+        notes=(*tin.report.notes, added, *describe_flips(tin), *unmended.sentences()),
         unmended=unmended,
     )
 

@@ -21,6 +21,7 @@ from ..surface import TIN
 from ..validation.options import is_finite_number, is_whole_number, require_tin
 from ..validation.threads import thread_count
 from ..validation.vertices import as_vertex_array
+from .flips import describe_flips
 from .surface_pslg import gather_pslg, list_rings
 
 if TYPE_CHECKING:
@@ -317,7 +318,7 @@ class _Part:
             left_out_why=report.left_out_why,
             crossings=known.crossings,
             overruled=known.overruled,
-            notes=(*report.notes, found.sentence()),
+            notes=(*report.notes, found.sentence(), *describe_flips(self.tin)),
             simplification=found,
         ).with_removed(vertex_of, "simplified away")
 

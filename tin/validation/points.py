@@ -13,6 +13,8 @@ from .tables import Table, as_table
 from .threads import thread_count
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ...arrays import Float64Array
 
 __all__ = [
@@ -176,13 +178,21 @@ def _require_finite(xyz: Float64Array) -> None:
         )
 
 
-def require_exact_range(xy: Float64Array, what: str) -> None:
+def require_exact_range(xy: Float64Array, what: str, names: Sequence[str] = ("x", "y")) -> None:
     """Refuse coordinates for which the predicates are not exact; NaN passes.
+
+    Parameters
+    ----------
+    xy : (n, k) float64 array
+    what : str
+        In the plural: the sentence begins with it.
+    names : sequence of str
+        Of the columns.
 
     Raises
     ------
     PointsError
-        The sentence begins with ``what``, in the plural.
+        With the first row.
     """
     if xy.flags.c_contiguous and _kernel.are_in_exact_range(xy):
         return
@@ -191,11 +201,12 @@ def require_exact_range(xy: Float64Array, what: str) -> None:
     wrong = ((size > largest) | ((size < smallest) & (size > 0))).any(axis=1)
     if wrong.any():
         row, count = int(np.argmax(wrong)), int(wrong.sum())
-        x, y = xy[row].tolist()
+        place = ", ".join(
+            f"{name} {value!r}" for name, value in zip(names, xy[row].tolist(), strict=True)
+        )
         raise PointsError(
             f"{what} have {count} {'row' if count == 1 else 'rows'} outside the exact range "
-            f"(first: row {row}, "
-            f"x {x!r}, y {y!r}): magnitudes from {smallest:.0e} to "
+            f"(first: row {row}, {place}): magnitudes from {smallest:.0e} to "
             f"{largest:.0e}, or 0, are allowed.",
             rows=np.flatnonzero(wrong)[:SHOWN],
         )

@@ -41,7 +41,17 @@ Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 
 class Command(click.Command):
-    """A command whose help lists its own options first, then shared ones by subject."""
+    """A command whose help lists its own options first, then shared ones by subject.
+
+    Options that take one value are refused when they are given twice: of two pads, or two lines,
+    the first would be lost in silence.
+    """
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Read the arguments."""
+        if not ctx.resilient_parsing:
+            _require_once(self.make_parser(ctx).parse_args(args=list(args))[2])
+        return super().parse_args(ctx, args)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options under their subjects."""
@@ -53,6 +63,16 @@ class Command(click.Command):
         for heading in sections:
             with formatter.section(heading):
                 formatter.write_dl(sections[heading])
+
+
+def _require_once(given: list[click.Parameter]) -> None:
+    """Refuse an option that was given more often than it is looked at."""
+    for one in {id(one): one for one in given}.values():
+        is_single = isinstance(one, click.Option) and not (one.multiple or one.is_flag or one.count)
+        if is_single and sum(other is one for other in given) > 1:
+            raise click.UsageError(
+                f"{max(one.opts, key=len)} is given several times: it takes one."
+            )
 
 
 def command(function: Callable[..., Any]) -> click.Command:

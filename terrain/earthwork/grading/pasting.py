@@ -14,6 +14,7 @@ from ....tin import Breakline, Survey, triangulate
 from ....tin.building.attributes import join_columns
 from ....tin.constraints.clipping import in_rings
 from ....tin.topology import edge_keys
+from ....tin.triangulation.illegal_edges import mark_illegal_edges
 from ....tin.validation.options import require_tin
 from ...georeference import agree, find_plane_units
 from .outlines import arrange_rings, fills_hull, find_area
@@ -72,9 +73,10 @@ def paste(base: TIN, patch: TIN, *, progress: Callable[[float], None] | None = N
     -----
     Along the seam elevations are those of the patch, to which the triangles of the base that are
     cut by it are joined. So the surface is that of the base but in these triangles, and there as
-    well if the patch meets the base. Edges that they are cut at are soft breaklines named "joint".
-    Vertices keep their attributes; those made along the seam have none, nor have those of the patch
-    in columns of the base alone, and the other way round.
+    well if the patch meets the base. Edges that they are cut at, and those of both surfaces that
+    are not Delaunay, are soft breaklines named "joint". Vertices keep their attributes; those made
+    along the seam have none, nor have those of the patch in columns of the base alone, and the
+    other way round.
 
     Examples
     --------
@@ -117,6 +119,7 @@ def join_surfaces(
     )
     seam = Seam(patch, insert, measure_tolerance(ground, insert))
     cut = _Base(base, ground, seam, done.stage(0.1, 0.6))
+    is_inserted = _mark_used(patch)
     done(0.6)
     lines = [*cut.list_lines(), *cut.list_joints()]
     seam.insert_cuts()
@@ -127,8 +130,8 @@ def join_surfaces(
     done(0.7)
     made = triangulate(
         Survey(
-            points=np.concatenate([ground[cut.is_kept], insert]),
-            attributes=_join_attributes(base, patch, cut.is_kept),
+            points=np.concatenate([ground[cut.is_kept], insert[is_inserted]]),
+            attributes=_join_attributes((base, cut.is_kept), (patch, is_inserted)),
         ),
         breaklines=lines,
         duplicates="last",
@@ -143,10 +146,20 @@ def join_surfaces(
     return made.replace(report=replace(made.report, notes=notes))
 
 
-def _join_attributes(base: TIN, patch: TIN, is_kept: BoolArray) -> dict[str, AnyArray]:
-    """Return the columns of the vertices of the base that stay, and behind them of the patch."""
-    kept = {name: column[is_kept] for name, column in base.attributes.items()}
-    return join_columns([kept, patch.attributes], [int(is_kept.sum()), len(patch.points)])
+def _join_attributes(*taken: tuple[TIN, BoolArray]) -> dict[str, AnyArray]:
+    """Return the columns of the vertices that are taken, of one surface behind the other."""
+    columns = [
+        {name: column[is_taken] for name, column in tin.attributes.items()}
+        for tin, is_taken in taken
+    ]
+    return join_columns(columns, [int(is_taken.sum()) for _, is_taken in taken])
+
+
+def _mark_used(tin: TIN) -> BoolArray:
+    """Tell which vertices are corners of triangles: files may have others, which are no surface."""
+    is_used = np.zeros(len(tin.points), np.bool_)
+    is_used[tin.triangles] = True
+    return is_used
 
 
 def _list_rings(area: Any, cut: _Base, seam: Seam) -> dict[str, Any]:
@@ -221,6 +234,7 @@ class _Base:
         xy = np.ascontiguousarray(points[:, :2])
         self.is_kept = in_rings(xy, [ring[:, :2] for ring in seam.rings]) < 0
         self.is_kept[seam.find_near(xy)] = False
+        self.is_kept &= _mark_used(base)
         self._pieces = self._cut_edges(progress)
 
     def _cut_edges(self, progress: Tell | None) -> dict[int, list[Float64Array]]:
@@ -280,7 +294,10 @@ class _Base:
                 yield from self._find_parts(a, b)
 
     def list_joints(self) -> Iterator[Breakline]:
-        """Yield the edges of the triangles that the seam cuts, and constrained ones in no line."""
+        """Yield edges without which the triangles would change, but for those in lines.
+
+        Those of triangles that the seam cuts, constrained ones, and those that are not Delaunay.
+        """
         n = len(self._points)
         mesh = self._tin.triangulation
         keys = find_sides(mesh.triangles, n)
@@ -289,6 +306,7 @@ class _Base:
         touched[inside[inside >= 0]] = True
         own = edge_keys(self._tin.lines.segments().reshape(-1, 2), n)
         wanted = touched[:, None] | (mesh.constrained & (mesh.neighbors >= 0))
+        wanted |= mark_illegal_edges(mesh)
         for key in np.setdiff1d(keys[wanted], own).tolist():
             for part in self._find_parts(*divmod(key, n)):
                 yield Breakline(part, kind="soft", name="joint")

@@ -9,6 +9,7 @@ import numpy as np
 from ...._progress import Progress
 from ....tin import Breakline
 from ....tin.topology import edge_keys
+from ....tin.triangulation.illegal_edges import mark_illegal_edges
 from .outlines import build_area
 
 if TYPE_CHECKING:
@@ -168,9 +169,10 @@ class Seam:
             yield Breakline(self._points[list(divmod(key, n))], kind="soft", name="joint")
 
     def _find_fixed(self) -> set[int]:
-        """Return the constrained edges, and those of triangles at which the seam is cut."""
+        """Return constrained edges, those of triangles at the seam, and those not Delaunay."""
         mesh: Any = self._patch.triangulation
         keys = find_sides(mesh.triangles, len(self._points))
         cut = edge_keys(self._pairs[sorted(self._cuts)].reshape(-1, 2), len(self._points))
         wanted = np.asarray(mesh.constrained | np.isin(keys, cut).any(axis=1, keepdims=True))
+        wanted |= mark_illegal_edges(mesh)
         return set(keys[wanted].tolist())

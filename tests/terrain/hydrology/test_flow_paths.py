@@ -127,3 +127,10 @@ def test_bad_input_is_told():
     other = ts.Features.of_points([[1, 1]], crs="EPSG:32616")
     with pytest.raises(ts.CrsError):
         ts.flow_path(ts.triangulate(tin.points, crs="EPSG:32617"), other)
+
+
+@pytest.mark.parametrize("find", [ts.catchments, ts.flow_accumulation, ts.ridges_and_valleys])
+def test_elevations_that_are_too_large_are_refused_with_the_first_of_them(find):
+    tin = ts.triangulate([[0, 0, 0], [4, 0, 1e200], [0, 4, -1e200], [3, 3, 1]])
+    with pytest.raises(ts.PointsError, match=r"2 rows outside .* row 1, elevation 1e\+200\)"):
+        find(tin)

@@ -92,6 +92,20 @@ def test_the_horizon_of_the_sea_is_where_geometry_puts_it(crs, metres):
     assert stronger.columns["visible"].all()
 
 
+@pytest.mark.parametrize("height", [0.0, 2.0])
+def test_ground_that_bulges_hides_what_is_beyond_the_horizon_on_any_slope(height):
+    places = np.array([[0.0, 0], [40_000, 0], [40_000, 40_000], [0, 40_000]])
+    rise = 3.3 + places @ [0.0337, 0.0071]
+    tin = ts.triangulate(np.column_stack([places, rise]), crs="EPSG:32616", z_unit="m")
+    rng = np.random.default_rng(0)
+    # More than twice the horizon of two metres: the ground between is metres above each line.
+    targets = np.column_stack([rng.uniform(15_000, 39_000, 2000), rng.uniform(100, 900, 2000)])
+    eye = [1000.3, 500.7]
+    how = {"eye_height": height, "curvature": True}
+    assert not ts.line_of_sight(tin, eye, targets, **how).columns["visible"].any()
+    assert not ts.line_of_sight(tin, targets, [eye] * 2000, curvature=True).columns["visible"].any()
+
+
 def test_holes_do_not_block_and_are_told():
     square = [[0, 0, 0], [9, 0, 0], [9, 9, 0], [0, 9, 0]]
     hole = [[3, 3], [6, 3], [6, 6], [3, 6]]

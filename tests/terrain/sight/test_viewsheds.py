@@ -7,6 +7,7 @@ import subprocess
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.sight_oracle import find_first_block, require_parts_as_lines
@@ -131,6 +132,36 @@ def test_classes_tile_the_surface_and_a_radius_limits_them():
     assert seen[~far].tolist() == (ts.visible_vertices(tin, [45, 45], eye_height=5)[~far].tolist())
     near = ts.viewshed(tin, [45, 45], eye_height=5, radius=20)
     assert near.columns["area"].sum() < found.columns["area"].sum()
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("radius", [3.0, 15.0, 40.0])
+def test_within_a_radius_all_is_told_and_beyond_it_nothing_wrong(seed, radius):
+    rng = np.random.default_rng(seed)
+    xy = rng.random((int(rng.integers(8, 150)), 2)) * 100
+    points = np.column_stack([xy, 10 * rng.random(len(xy))])
+    tin = ts.triangulate(points, crs="EPSG:32616", z_unit="m")
+    places = rng.random((400, 2)) * 100
+    eye, *others = places[tin.locate(places) >= 0]
+    found = ts.viewshed(tin, eye, eye_height=2.0, radius=radius)
+    lines = ts.line_of_sight(tin, eye, others, eye_height=2.0).columns
+    shapes = found.to_shapely()
+    borders = np.array([shapely.distance(one.boundary, shapely.points(others)) for one in shapes])
+    sure = (borders.min(axis=0) > 1e-6) & ~(np.abs(lines["clearance"]) < 1e-9)
+    inside = np.array([shapely.contains_xy(one, np.array(others)) for one in shapes])
+    told = np.where(inside.any(axis=0), found.columns["class"][inside.argmax(axis=0)], "nothing")
+    seen = np.where(lines["visible"], "visible", "hidden")
+    is_told = sure & (told != "nothing")
+    assert (told == seen)[is_told].all()
+    assert is_told[sure & (lines["distance"] <= radius)].all()
+    assert any("taken whole: what is told reaches as far as" in note for note in found.notes)
+
+
+def test_a_radius_within_one_triangle_has_that_triangle():
+    square = [[0, 0, 0], [90, 0, 0], [90, 90, 0], [0, 90, 0]]
+    found = ts.viewshed(ts.triangulate(square), [60, 50], eye_height=1, radius=3)
+    assert found.columns["area"].tolist() == [4050.0]
+    assert found.columns["class"].tolist() == ["visible"]
 
 
 def test_a_slope_behind_a_crest_is_hidden_and_the_one_before_it_seen():

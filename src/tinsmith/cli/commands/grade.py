@@ -57,7 +57,8 @@ def grade(
 
     planned = request.plan(request.list_inputs(file, more=[_name_pad(pad)]), "TIN")
     tin = request.read_tin(file)
-    ring = _read_pad(pad, tin, elevation)
+    notes: list[str] = []
+    ring = _read_pad(pad, tin, elevation, request.how.lines_z_unit, notes)
     with request.step("Grading") as progress:
         graded = grade_tin(
             tin,
@@ -69,8 +70,9 @@ def grade(
         )
         table = volume(tin, graded)
     planned.write("TIN", graded)
-    rows = _summarise_grading(tin, graded, table)
-    request.finish(planned, rows, lambda: _describe_grading(file, graded, table))
+    notes += table.notes
+    rows = _summarise_grading(tin, graded, table, notes)
+    request.finish(planned, rows, lambda: _describe_grading(file, graded, table, notes))
 
 
 def _name_pad(pad: Path) -> Named:
@@ -79,14 +81,22 @@ def _name_pad(pad: Path) -> Named:
     return Named(split_layer(pad)[0], "--pad")
 
 
-def _read_pad(path: Path, tin: TIN, elevation: float | None) -> Any:
-    """Return the one ring of a file, in the CRS of the ground."""
+def _read_pad(
+    path: Path, tin: TIN, elevation: float | None, z_unit: str | None, notes: list[str]
+) -> Any:
+    """Return the one ring of a file, in the CRS and unit of the ground."""
     from ...io import read_polygons
     from ...io.vector.survey_lines import split_layer
 
     file, layer = split_layer(path)
     found = read_polygons(
-        file, crs=tin.crs, layer=layer, z_unit=tin.elevation_unit, drape=elevation is not None
+        file,
+        crs=tin.crs,
+        elevation_unit=tin.elevation_unit,
+        z_unit=z_unit,
+        layer=layer,
+        drape=elevation is not None,
+        notes=notes,
     )
     if len(found) != 1 or len(found[0]) != 1:
         rings = sum(map(len, found))
@@ -95,17 +105,17 @@ def _read_pad(path: Path, tin: TIN, elevation: float | None) -> Any:
     return found[0][0]
 
 
-def _summarise_grading(tin: TIN, graded: TIN, table: Table) -> list[Row]:
+def _summarise_grading(tin: TIN, graded: TIN, table: Table, notes: list[str]) -> list[Row]:
     from ..output.line_summaries import mesh_counts
 
     unit = table.units.get("cut") or "cubic units of the CRS"
     volumes = [(name.capitalize(), f"{table[name][0]:,.1f} {unit}") for name in ("cut", "fill")]
-    notes = [("Note", note) for note in table.notes]
-    return [("Ground", mesh_counts(tin)), ("Graded", mesh_counts(graded)), *volumes, *notes]
+    counts = [("Ground", mesh_counts(tin)), ("Graded", mesh_counts(graded))]
+    return [*counts, *volumes, *(("Note", note) for note in notes)]
 
 
-def _describe_grading(file: Path, graded: TIN, table: Table) -> dict[str, Any]:
+def _describe_grading(file: Path, graded: TIN, table: Table, notes: list[str]) -> dict[str, Any]:
     from ..output.summaries import describe_tin
 
     volumes = {name: float(table[name][0]) for name in ("cut", "fill", "cut_area", "fill_area")}
-    return {"input": str(file), "tin": describe_tin(graded), "volume": volumes}
+    return {"input": str(file), "tin": describe_tin(graded), "volume": volumes, "notes": notes}

@@ -51,6 +51,7 @@ def refine(
     from ...errors import OptionError, TinsmithError
     from ...tin import quality
     from ...tin import refine as refine_tin
+    from ...tin.meshing.flips import describe_flips
     from ..output.line_summaries import mesh_counts
 
     planned = request.plan(request.list_inputs(file), "TIN")
@@ -78,6 +79,7 @@ def refine(
         ("Read", mesh_counts(tin)),
         ("Mesh", mesh_counts(refined)),
         *_summarise_angles(quality(tin), shapes, refined.report.unmended),
+        *(("Note", note) for note in describe_flips(tin)),
     ]
     request.finish(planned, rows, lambda: _describe_refinement(file, refined, shapes))
 

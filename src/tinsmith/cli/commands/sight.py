@@ -11,7 +11,7 @@ from ..places import name_places, read_places
 from ..request import surface_options
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from ...terrain import Features
@@ -25,7 +25,15 @@ _SHOWN = 12
 
 
 @file_command
-@click.option("--from", "eye", metavar="X Y", nargs=2, type=float, help="The eye.")
+@click.option(
+    "--from",
+    "eye",
+    metavar="X Y",
+    nargs=2,
+    type=float,
+    multiple=True,
+    help="The eye; several go with as many targets.",
+)
 @file_option("--eye", "In its place: a file of points.", name="eyes")
 @click.option(
     "--to",
@@ -74,7 +82,7 @@ def sight(file: Path, request: Request, **asked: Any) -> None:
 
 
 def _require_fitting(asked: dict[str, Any]) -> None:
-    if (asked["eye"] is None) == (asked["eyes"] is None):
+    if bool(asked["eye"]) == (asked["eyes"] is not None):
         raise click.UsageError("One eye is needed: --from X Y, or --eye FILE.")
     has_targets = asked["points"] is not None
     if asked["targets"] and has_targets:
@@ -90,13 +98,18 @@ def _require_fitting(asked: dict[str, Any]) -> None:
         raise click.UsageError("--sight-refraction is a coefficient from -1 to 1.")
 
 
+def _list_eyes(eyes: Sequence[tuple[float, float]]) -> list[Any]:
+    """Return one eye, or several."""
+    return list(eyes[0]) if len(eyes) == 1 else [list(one) for one in eyes]
+
+
 def _look(tin: TIN, asked: dict[str, Any], progress: Callable[[float], None]) -> Features:
     """Return lines of sight, or the viewshed where no targets are given."""
     from ... import terrain
 
     names = ("eye_height", "target_height", "curvature")
     how = {name: asked[name] for name in names} | {"refraction": asked["sight_refraction"]}
-    eye = list(asked["eye"]) if asked["eyes"] is None else read_places(asked["eyes"], tin)
+    eye = _list_eyes(asked["eye"]) if asked["eyes"] is None else read_places(asked["eyes"], tin)
     if asked["points"] is not None:
         return terrain.line_of_sight(tin, eye, read_places(asked["points"], tin), **how)
     if asked["targets"]:

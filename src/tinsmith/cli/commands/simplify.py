@@ -83,7 +83,7 @@ def simplify(
     rows = [
         ("Read", counts),
         ("Left", mesh_counts(simple)),
-        *_summarise_errors(simple),
+        *_summarise_errors(simple, given),
     ]
     request.finish(planned, rows, lambda: _describe_simplification(file, simple))
 
@@ -126,13 +126,18 @@ def _find_kept(
     return np.array(found, np.int64)
 
 
-def _summarise_errors(simple: TIN) -> list[Row]:
+def _summarise_errors(simple: TIN, given: TIN | Raster) -> list[Row]:
+    from ...terrain import Raster
+    from ..output.line_summaries import summarise_news
+
     found = simple.report.simplification
     if found is None:
         return []
+    before = given.notes if isinstance(given, Raster) else given.report.notes
     return [
         ("Errors", f"largest {found.largest_error:.4g}, RMS {found.rms_error:.4g}, at all points"),
         ("Kept", f"{counted(found.required, 'point')} of lines, boundary and those to be kept"),
+        *summarise_news(simple, [*before, found.sentence()]),
     ]
 
 

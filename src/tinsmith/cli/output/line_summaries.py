@@ -10,6 +10,7 @@ from ..._sentences import counted
 from ...tin.report import LEFT_OUT
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
     from ...terrain import Features
@@ -28,6 +29,7 @@ __all__ = [
     "mesh_counts",
     "name_unit",
     "summarise_lines",
+    "summarise_news",
 ]
 
 _NOUNS = {
@@ -82,6 +84,12 @@ def mesh_counts(tin: TIN) -> str:
     """Count vertices and triangles, in words."""
     vertices = counted(len(tin.points), "vertex", "vertices")
     return f"{vertices}, {counted(len(tin.triangles), 'triangle')}"
+
+
+def summarise_news(made: TIN, known: Iterable[str]) -> list[Row]:
+    """Return the notes of a report that were not told in other words or before."""
+    told = set(known)
+    return [("Note", note) for note in made.report.notes if note not in told]
 
 
 def count_lines(report: Report) -> dict[str, Any]:

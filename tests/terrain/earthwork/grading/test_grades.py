@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support.surfaces import stretch_triangles
 
 import tinsmith as ts
 
@@ -77,6 +78,24 @@ def make_hills(seed):
     xy = np.vstack([xy, [[0, 0], [200, 0], [200, 200], [0, 200]]])
     z = 100 + 5 * np.sin(xy[:, 0] / 25) + 4 * np.cos(xy[:, 1] / 30)
     return ts.triangulate(np.column_stack([xy + UTM, z]))
+
+
+def test_ground_whose_triangles_are_not_delaunay_stays_beyond_the_slopes():
+    ground = stretch_triangles(make_hills(0), (1.0, 6.0))
+    middle = (ground.points.min(axis=0) + ground.points.max(axis=0))[:2] / 2
+    pad = middle + SQUARE - 30.0
+    level = float(ground.interpolate(middle))
+    graded = ts.grade(ground, pad, level, cut_slope=1, fill_slope=1)
+    xy = ground.points[ground.triangles, :2].mean(axis=1)
+    daylight = [
+        graded.points[c]
+        for c, n in zip(graded.lines.chains(), graded.lines.names, strict=False)
+        if n == "daylight"
+    ]
+    area = shapely.union_all(shapely.polygons([ring[:, :2] for ring in daylight]))
+    beyond = ~shapely.intersects(shapely.buffer(area, 1e-6), shapely.points(xy))
+    assert beyond.sum() > 100
+    assert np.abs(graded.interpolate(xy) - ground.interpolate(xy))[beyond].max() < 1e-6
 
 
 def test_a_narrow_notch_is_graded_within_what_is_told():

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support.surfaces import stretch_triangles
 
 import tinsmith as ts
 
@@ -54,6 +55,43 @@ def touched(base, patch):
     area = shapely.union_all(shapely.polygons(patch.points[patch.triangles, :2]))
     triangles = shapely.polygons(base.points[base.triangles, :2])
     return np.flatnonzero(shapely.intersects(triangles, area))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_triangles_that_are_not_delaunay_stay_in_base_and_patch(seed):
+    base = stretch_triangles(make_base(seed=seed), (1.0, 8.0))
+    patch = make_star(seed, lambda xy, rng: 100 + 3 * rng.random(len(xy)))
+    patch = stretch_triangles(patch, (1.0, 8.0))
+    pasted = ts.paste(base, patch)
+    assert ts.check(pasted).ok
+    xy = base.points[base.triangles, :2].mean(axis=1)
+    new, inner, old = (tin.interpolate(xy) for tin in (pasted, patch, base))
+    is_beyond = np.isnan(inner) & ~np.isin(base.locate(xy), touched(base, patch))
+    assert is_beyond.sum() > 1000
+    assert np.abs(new - old)[is_beyond].max() < 1e-6
+    xy = patch.points[patch.triangles, :2].mean(axis=1)
+    assert np.abs(pasted.interpolate(xy) - patch.interpolate(xy)).max() < 1e-6
+
+
+def with_unused_vertices(tin):
+    """Vertices of no triangle, as files have them: far away, and in the middle of a triangle."""
+    middle = tin.points[tin.triangles].mean(axis=1)[:3]
+    far = np.add(tin.points[:1], [9e3, 9e3, 0])
+    points = np.vstack([tin.points, np.add(middle, [0, 0, 50]), far])
+    names = np.arange(len(points))
+    return ts.TIN.from_triangles(points, tin.triangles, attributes={"number": names})
+
+
+def test_vertices_of_no_triangle_stay_out_of_the_surface():
+    base = make_base(seed=1)
+    patch = make_star(1, lambda xy, rng: 100 + 3 * rng.random(len(xy)))
+    expected = ts.paste(base, patch)
+    pasted = ts.paste(with_unused_vertices(base), with_unused_vertices(patch))
+    assert pasted.area == pytest.approx(base.area)
+    assert np.array_equal(pasted.points, expected.points)
+    assert np.array_equal(pasted.triangles, expected.triangles)
+    kept = (base.points[:, None, :] == pasted.points[0]).all(axis=2).argmax()
+    assert pasted.attributes["number"][0] == kept
 
 
 def test_a_patch_that_meets_the_base_changes_nothing_beyond_it():

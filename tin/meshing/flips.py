@@ -1,0 +1,32 @@
+"""Edges of given triangles that are not Delaunay: what is built of their vertices has others."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..._sentences import counted
+from ..triangulation.illegal_edges import mark_illegal_edges
+
+if TYPE_CHECKING:
+    from ..surface import TIN
+
+__all__ = ["describe_flips"]
+
+
+def describe_flips(tin: TIN) -> tuple[str, ...]:
+    """Say how many edges a build of the vertices and lines of a TIN cannot keep, if any.
+
+    A TIN that was built here has none; one of existing triangles, as those of a file, may have.
+    """
+    _, origin = tin._snapshot()
+    if origin.inputs is not None:
+        return ()
+    count = int(mark_illegal_edges(tin.triangulation).sum())
+    if count == 0:
+        return ()
+    are, them = ("is", "it") if count == 1 else ("are", "them")
+    return (
+        f"{counted(count, 'edge')} of the given triangles {are} not in the Delaunay triangulation: "
+        f"triangles around {them} were made anew, so that the surface between the vertices is "
+        "another one there.",
+    )
