@@ -139,12 +139,10 @@ def _summarise_crossings(report: Report, survey: Survey) -> list[Row]:
         )
     )
     x, y = crossings.xy[worst].tolist()
+    taken = crossings.vertex_elevations[worst]
     return [
         ("Crossings", f"{places}, elevations differ most by {apart[worst]:.3f}{up}"),
-        (
-            "",
-            f"at x {x:.3f}, y {y:.3f}: {one}, {other}, taken {crossings.vertex_elevations[worst]:.3f}",
-        ),
+        ("", f"at x {x:.3f}, y {y:.3f}: {one}, {other}, taken {taken:.3f}"),
     ]
 
 
