@@ -24,6 +24,7 @@
 #include "mesh.hpp"
 #include "mesh_points.hpp"
 #include "point_search.hpp"
+#include "star_filling.hpp"
 
 namespace tinsmith {
 
@@ -101,13 +102,13 @@ class MeshEditor {
   bool can_remove(Vertex v) const {
     if (count_ <= 3) return false;
     std::int32_t degree = 0;
-    bool is_straight = true;
     for (const HalfEdge e : mesh_.around(v)) {
       const Vertex a = mesh_.to(mesh_.previous_leaving(e)), b = mesh_.to(e), c = mesh_.apex(e);
-      is_straight &= a == kGhost || b == kGhost || c == kGhost || turn(a, b, c) == 0;
+      const bool is_outer = a == kGhost || b == kGhost || c == kGhost;
+      if (!is_outer && turn(a, b, c) != 0) return true;
       ++degree;
     }
-    return !is_straight || degree < count_;
+    return degree < count_;  // else all others are in line
   }
 
   bool has_fixed_edge(Vertex v) const {
@@ -120,6 +121,10 @@ class MeshEditor {
   // v has no fixed edges, and the surface is one without it.
   void remove(Vertex v) {
     --count_;
+    if (star_.find(mesh_, points_, v)) {
+      star_.fill(mesh_, v, [this](Triangle t) { note_filled(t); });
+      return;
+    }
     cut_ears(v);
     const std::int32_t degree = degree_of(v);
     if (degree == 3 && !is_on_hull(v)) {
@@ -336,6 +341,11 @@ class MeshEditor {
 
   // ------------------------------------------------------------------ removal
 
+  void note_filled(Triangle t) {
+    last_ = half_edge(t, 0);
+    if (is_watched_) touched_.push_back(t);
+  }
+
   std::int32_t degree_of(Vertex v) const {
     std::int32_t degree = 0;
     for ([[maybe_unused]] const HalfEdge e : mesh_.around(v)) ++degree;
@@ -456,6 +466,7 @@ class MeshEditor {
   std::vector<HalfEdge> pending_;
   std::vector<Triangle> changed_;
   Corridor corridor_;
+  StarFilling star_;
   Landmarks landmarks_;
   bool is_watched_ = false;
   std::vector<Triangle> touched_;
