@@ -97,6 +97,7 @@ class Mesh {
     fixed_.reserve(triangles);
   }
   void add_vertices(std::size_t count) { leaving_.resize(leaving_.size() + count, kNoHalfEdge); }
+  void drop_last_vertex() { leaving_.pop_back(); }
 
   // The first triangles, all at once: make(t, triangle) fills one in, neighbours and all, and
   // returns the bits of its fixed edges.

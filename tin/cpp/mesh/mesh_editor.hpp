@@ -56,17 +56,24 @@ class MeshEditor {
     mesh_.add_vertices(1);
     return points_.add({});
   }
+  // The number of the last slot, which holds no vertex, is free again.
+  void drop_last_slot() {
+    mesh_.drop_last_vertex();
+    points_.drop_last();
+  }
 
   // Where p lies; the walk there begins at an edge that may be near.
   MeshLocation locate(Point p, HalfEdge near) {
     return PointSearch(mesh_, points_, count_, state_).locate(p, near, kGhost);
   }
 
-  // The vertex at p, which is `slot` if there was none; a fixed edge through p is split.
-  Vertex insert(Point p, Vertex slot) {
-    return insert_at(PointSearch(mesh_, points_, count_, state_).locate(p, last_, landmark_near(p)),
-                     p, slot);
+  // The same from the last change or from a landmark.
+  MeshLocation locate(Point p) {
+    return PointSearch(mesh_, points_, count_, state_).locate(p, last_, landmark_near(p));
   }
+
+  // The vertex at p, which is `slot` if there was none; a fixed edge through p is split.
+  Vertex insert(Point p, Vertex slot) { return insert_at(locate(p), p, slot); }
 
   // The same where it is known in which triangle or on which edge p lies. A point that is only near
   // the edge will do, if the triangles on both sides are turned the right way with it.

@@ -2,6 +2,7 @@
 #include <nanobind/nanobind.h>
 
 #include "bind_constraints.hpp"
+#include "bind_editing.hpp"
 #include "bind_interpolation.hpp"
 #include "bind_location.hpp"
 #include "bind_mesh.hpp"
@@ -18,6 +19,7 @@ NB_MODULE(_core, m) {
   tinsmith::python::bind_interpolation(m);
   tinsmith::python::bind_constraints(m);
   tinsmith::python::bind_mesh(m);
+  tinsmith::python::bind_editing(m);
   tinsmith::python::bind_refinement(m);
   tinsmith::python::bind_simplification(m);
 }
