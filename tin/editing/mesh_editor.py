@@ -173,7 +173,6 @@ class Editor:
     ) -> dict[int, float]:
         """Return the elevations of vertices at which further rows come to stand."""
         elevations: dict[int, float] = {}
-        first = self.edited.slots - len(xyz)
         for row in old:
             slot = int(slots[row])
             here = elevations.get(slot, self.edited.point(slot)[2])

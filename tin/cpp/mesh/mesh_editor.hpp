@@ -260,7 +260,7 @@ class MeshEditor {
 
   // Worth setting up in a large mesh only.
   Vertex landmark_near(Point p) {
-    if (slots() < Landmarks::kDrawn) return kGhost;
+    if (slots() < Landmarks::kLeast) return kGhost;
     if (!landmarks_.are_set()) landmarks_.set(mesh_, points_);
     return landmarks_.near(p);
   }

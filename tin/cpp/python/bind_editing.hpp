@@ -76,9 +76,8 @@ class HeldEdits {
   void open(const GivenTriples& triangles, const GivenTriples& neighbors, const GivenFlags& fixed) {
     edited_.open(CheckedMesh(editor_from(GivenRows(points_), triangles, neighbors, fixed)));
   }
-  bool is_open() const { return edited_.mesh() != nullptr; }
   HeldMesh mesh() const {
-    if (!is_open()) throw std::invalid_argument("the mesh must be opened first");
+    if (edited_.mesh() == nullptr) throw std::invalid_argument("the mesh must be opened first");
     return HeldMesh(edited_.mesh());
   }
   void leave_empty(const GivenNumbers& slots) {
@@ -217,7 +216,6 @@ inline void bind_editing(nb::module_& m) {
            "end_of_lines"_a)
       .def("open", &HeldEdits::open, "triangles"_a.noconvert(), "neighbors"_a.noconvert(),
            "fixed"_a.noconvert(), "Make the mesh.")
-      .def_prop_ro("is_open", &HeldEdits::is_open, "Whether there is a mesh.")
       .def_prop_ro("mesh", &HeldEdits::mesh, "The mesh, whose vertices stay.")
       .def("leave_empty", &HeldEdits::leave_empty, "slots"_a.noconvert(),
            "Slots without a vertex, before the mesh is made.")
@@ -225,12 +223,13 @@ inline void bind_editing(nb::module_& m) {
            "There are lines: what comes as near as this to an edge around it may reach one.")
       .def("lend", &HeldEdits::lend, "From now on edits of one vertex are done, and logged.")
       .def("take_back", &HeldEdits::take_back, "From now on they are refused.")
-      .def("insert_one", &HeldEdits::insert_one, "points"_a, "duplicates"_a,
+      .def("insert_one", &HeldEdits::insert_one, "points"_a.none(), "duplicates"_a.none(),
            "The vertex inserted, or -1 if that was not done.")
-      .def("remove_one", &HeldEdits::remove_one, "vertex"_a, "Whether it was removed.")
-      .def("move_one", &HeldEdits::move_one, "vertex"_a, "point"_a, "Whether it was moved.")
-      .def("set_elevation_of_one", &HeldEdits::set_elevation_of_one, "vertex"_a, "z"_a,
-           "Whether it was set.")
+      .def("remove_one", &HeldEdits::remove_one, "vertex"_a.none(), "Whether it was removed.")
+      .def("move_one", &HeldEdits::move_one, "vertex"_a.none(), "point"_a.none(),
+           "Whether it was moved.")
+      .def("set_elevation_of_one", &HeldEdits::set_elevation_of_one, "vertex"_a.none(),
+           "z"_a.none(), "Whether it was set.")
       .def_prop_ro("is_sound", &HeldEdits::is_sound, "False after an error within an edit.")
       .def_prop_ro("logged", &HeldEdits::logged, "Edits of one vertex since the log was taken.")
       .def("take_log", &HeldEdits::take_log,
