@@ -1,8 +1,9 @@
 // Local change: the constrained Delaunay triangulation of points and fixed edges, kept so while
 // points come and go and edges are fixed and released.
 //
-// By flips (Lawson, "Software for C1 surface interpolation", 1977); a vertex goes by flips too,
-// which cut the ears of its star (Devillers, "On deletion in Delaunay triangulations", 1999).
+// By flips (Lawson, "Software for C1 surface interpolation", 1977). A vertex goes ear by ear of its
+// star (Devillers, "On deletion in Delaunay triangulations", 1999): at once where the ears are
+// Delaunay (star_filling.hpp), else by flips.
 //
 // Every change makes any valid triangulation of the part that it touches, and then flips edges
 // that are not Delaunay until none is left. Ties are decided by the points alone (is_in_circle),
@@ -128,8 +129,9 @@ class MeshEditor {
   // v has no fixed edges, and the surface is one without it.
   void remove(Vertex v) {
     --count_;
-    if (star_.find(mesh_, points_, v)) {
-      star_.fill(mesh_, v, [this](Triangle t) { note_filled(t); });
+    // Whoever watches goes through the triangles that flips make, in their order.
+    if (!is_watched_ && star_.find(mesh_, points_, v)) {
+      last_ = half_edge(star_.fill(mesh_, v), 0);
       return;
     }
     cut_ears(v);
@@ -347,11 +349,6 @@ class MeshEditor {
   }
 
   // ------------------------------------------------------------------ removal
-
-  void note_filled(Triangle t) {
-    last_ = half_edge(t, 0);
-    if (is_watched_) touched_.push_back(t);
-  }
 
   std::int32_t degree_of(Vertex v) const {
     std::int32_t degree = 0;

@@ -23,23 +23,21 @@ class StarFilling {
     return gather(mesh, points, v) && cut_ears();
   }
 
-  // Fill the star that was found; `visit(triangle)` is called for each that is made.
-  template <typename Visit>
-  void fill(Mesh& mesh, Vertex v, Visit&& visit) {
+  // Fill the star that was found; returns the last triangle that was made.
+  Triangle fill(Mesh& mesh, Vertex v) {
     for (int i = 0; i < size_ - 3; ++i) {
       const int tip = ears_[i];
       const int before = before_[tip], after = after_[tip];
       const Triangle t = star_[i];
       make(mesh, t, before, tip, after);
       beyond_[before] = half_edge(t, 1);
-      visit(t);
     }
     const Triangle last = star_[size_ - 3];
     make(mesh, last, before_[left_], left_, after_[left_]);
     mesh.join(half_edge(last, 1), beyond_[after_[left_]]);
     keep_fixed(mesh, half_edge(last, 1));
-    visit(last);
     mesh.drop(v, star_[size_ - 2], star_[size_ - 1]);
+    return last;
   }
 
  private:

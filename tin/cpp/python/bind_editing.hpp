@@ -74,6 +74,7 @@ class HeldEdits {
   }
 
   void open(const GivenTriples& triangles, const GivenTriples& neighbors, const GivenFlags& fixed) {
+    if (edited_.mesh() != nullptr) throw std::invalid_argument("the mesh is open already");
     edited_.open(CheckedMesh(editor_from(GivenRows(points_), triangles, neighbors, fixed)));
   }
   HeldMesh mesh() const {
