@@ -18,6 +18,7 @@ __all__ = [
     "EXACT_RANGE",
     "MOST_POINTS",
     "VECTOR_PATHS",
+    "EditedMesh",
     "Growth",
     "Locator",
     "Mesh",
@@ -61,6 +62,7 @@ NearestBoundary = _core.NearestBoundary
 nearest_vertices = _core.nearest_vertices
 SmoothPatches = _core.SmoothPatches
 Mesh = _core.Mesh
+EditedMesh = _core.EditedMesh
 refine = _core.refine
 regions = _core.regions
 simplify = _core.simplify

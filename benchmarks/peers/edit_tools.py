@@ -18,7 +18,7 @@ __all__ = ["ALL_EDIT_TOOLS", "BUILD", "EDIT_TOOLS", "OPENED", "WITH_ARRAYS"]
 WITH_ARRAYS = "tinsmith, and its arrays"
 """Edits, and the arrays of triangles and neighbours that they lead to."""
 OPENED = "tinsmith, opened"
-"""A first edit, which makes the TIN ready for further ones, is not timed."""
+"""First edits, which make the TIN ready for further ones, are not timed."""
 BUILD = "tinsmith, building"
 """For comparison: the points of the batch alone, triangulated."""
 MORTON_BITS = 16
@@ -65,7 +65,10 @@ def _triangulate_first(given: Any) -> _State:
 
 def _open_session(given: Any) -> _State:
     state = _triangulate_first(given)
-    state.made.set_z(0, state.made.points[0, 2])
+    last = len(state.made.points) - 1
+    point = state.made.points[last].tolist()
+    state.made.remove(last)
+    state.made.insert([point])
     return state
 
 

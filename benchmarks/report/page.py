@@ -364,11 +364,12 @@ def _make_other_row(result: Result, ours: Result) -> list[str]:
 
 EDITS_NOTES = """\
 Random edits of a finished TIN of uniform points, one call each, and as many points again in one
-call; one core each. *tinsmith* is from the finished TIN, the first edit, which makes it ready for
-more, included; *opened* leaves a first one out, *and its arrays* includes looking at the triangles
-afterwards, *building* is the batch triangulated alone. CGAL (`Delaunay_triangulation_2`) and
-startinpy name vertices by handles that stay, and keep no history. CGAL has no heights; a move of
-startinpy is a removal and an insertion; its points are sorted along a curve first, not timed.
+call; one core each. *tinsmith* is from the finished TIN: the first edit, which makes a mesh of its
+arrays, is included. *opened* leaves that out, as for the peers, which are meshes from the start;
+*and its arrays* includes looking at the triangles afterwards, *building* is the batch triangulated
+alone. CGAL (`Delaunay_triangulation_2`) and startinpy name vertices by handles that stay, and keep
+no history. CGAL has no heights; a move of startinpy is a removal and an insertion; its points are
+sorted along a curve first, not timed.
 """
 
 ANSWERS_NOTES = """\

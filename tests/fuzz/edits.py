@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 import tinsmith as ts
+from tinsmith.tin.editing.history import apply_edits
 
 from .campaign import Campaign, Case
 from .coordinates import KINDS, coordinates
@@ -143,9 +144,9 @@ def _edit(operation: str, rng: np.random.Generator, points: Any, line: Any) -> d
     return {
         "op": operation,
         "at": [float(u) for u in rng.random(int(rng.integers(1, 3)))],
-        "points": points(int(rng.integers(1, 4))),
+        "points": points(int(rng.integers(1, 4)) if rng.random() < 0.5 else 1),
         "line": line(),
-        "policy": str(rng.choice(POLICIES)),
+        "policy": str(rng.choice(POLICIES)) if rng.random() < 0.5 else "last",
         "crossing": "error" if rng.random() < 0.1 else "split",
         "by": int(rng.integers(3)),
         "then": str(rng.choice([one for one in OPERATIONS if one not in ("copy", "fork")])),
@@ -165,15 +166,48 @@ def examine(case: Case) -> str:
     except ts.TinsmithError:
         return "refused at first"
     done = 0
+    blind = Blind(tracked.build_anew(), tracked)
     for edit in case["edits"]:
-        tin, tracked, is_done = _step(tin, tracked, edit)
+        tin, tracked, is_done = _step(tin, tracked, edit, blind)
         done += is_done
     if done:
         ts.check(tin, level=3).raise_if_failed()
+    blind.require_fresh()
     return "no edit" if done == 0 else "up to 4 edits" if done <= 4 else "5 edits and more"
 
 
-def _step(tin: ts.TIN, tracked: Tracked, edit: dict[str, Any]) -> tuple[ts.TIN, Tracked, bool]:
+@dataclass
+class Blind:
+    """A TIN that is edited alike, and not looked at before the end: edits are only logged."""
+
+    tin: ts.TIN
+    tracked: Tracked
+
+    def follow(self, tracked: Tracked, new: Tracked, call: Any) -> None:
+        """Do an edit that was done to another TIN of the same inputs."""
+        if self.tracked is tracked:
+            call(self.tin)
+            self.tracked = new
+
+    def require_fresh(self) -> None:
+        """Look at it now, at its record, and at what is there when edits are taken back."""
+        again = self.tracked
+        first = again.before[0] if again.before else again
+        require_fresh(self.tin, again, again.build())
+        assert len(self.tin.edits) == len(again.before)
+        replayed = first.build_anew()
+        apply_edits(replayed, [edit.to_dict() for edit in self.tin.edits])
+        require_same(replayed, again, self.tin)
+        while again.before:
+            count = (len(again.before) + 1) // 2
+            self.tin.undo(count)
+            again = again.before[-count]
+            require_fresh(self.tin, again, again.build())
+
+
+def _step(
+    tin: ts.TIN, tracked: Tracked, edit: dict[str, Any], blind: Blind | None = None
+) -> tuple[ts.TIN, Tracked, bool]:
     if edit["op"] == "copy":
         return _copied(tin, tracked, edit["by"]), tracked, False
     if edit["op"] == "fork":
@@ -193,6 +227,8 @@ def _step(tin: ts.TIN, tracked: Tracked, edit: dict[str, Any]) -> tuple[ts.TIN, 
         return tin, tracked, False
     require_fresh(tin, new, new.build())
     require_fresh(keep, tracked, tracked.build())
+    if blind is not None:
+        blind.follow(tracked, new, call)
     return tin, new, True
 
 
@@ -317,7 +353,8 @@ def _remove(tin: ts.TIN, new: Tracked, vertices: list[int], edit: dict[str, Any]
     for kind in ("boundary", "holes", "water"):
         rings = new.rings.get(kind, [])
         new.rings |= {kind: [_without(r, places, can_close=False) for r in rings]} if rings else {}
-    return new, lambda one: one.remove(vertices)
+    given = vertices[0] if len(vertices) == 1 else vertices
+    return new, lambda one: one.remove(given)
 
 
 def _without(chain: list[list[float]], places: list[list[float]], *, can_close: bool) -> Any:
@@ -344,7 +381,8 @@ def _set_elevation(tin: ts.TIN, new: Tracked, vertices: list[int], edit: dict[st
     z = edit["points"][0][2]
     made = [vertex for vertex in sorted(vertices) if not _lift(tin, new, vertex, z)]
     new.rows += [[*tin.points[vertex, :2].tolist(), z] for vertex in made]
-    return new, lambda one: one.set_elevation(vertices, z)
+    given = vertices[0] if len(vertices) == 1 else vertices
+    return new, lambda one: one.set_elevation(given, z)
 
 
 def _flip(tin: ts.TIN, new: Tracked, vertices: list[int], edit: dict[str, Any]) -> Any:

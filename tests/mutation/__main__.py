@@ -48,9 +48,9 @@ MOST_FILES = 8
 CORE_TESTS = (
     "kernel/test_predicates", "kernel/test_growth", "kernel/test_seams", "validation/test_points",
     "kernel/test_locate", "kernel/test_point_in_polygon", "kernel/test_mesh",
-    "editing/test_session", "constraints/test_noding", "constraints/test_breaklines",
-    "meshing/test_refinement", "test_threads", "kernel/test_work", "building/test_duplicates",
-    "kernel/test_datasets",
+    "kernel/test_edited_mesh", "editing/test_session", "editing/test_single_edits",
+    "constraints/test_noding", "constraints/test_breaklines", "meshing/test_refinement",
+    "test_threads", "kernel/test_work", "building/test_duplicates", "kernel/test_datasets",
 )  # fmt: skip
 NEAREST = {
     "location": ("kernel/test_locate",),
@@ -58,7 +58,10 @@ NEAREST = {
         "constraints/test_noding", "constraints/test_breaklines", "kernel/test_point_in_polygon",
         "kernel/test_contacts",
     ),
-    "mesh": ("kernel/test_mesh", "editing/test_session", "constraints/test_breaklines"),
+    "mesh": (
+        "kernel/test_mesh", "kernel/test_edited_mesh", "editing/test_single_edits",
+        "editing/test_session", "constraints/test_breaklines",
+    ),
     "refinement": (
         "kernel/test_error_bounds", "meshing/test_refinement", "constraints/test_conforming",
     ),

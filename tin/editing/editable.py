@@ -4,6 +4,10 @@ A TIN holds a version, an immutable value, and since its first edit a session. A
 session alone; the next version is made of it when one is looked at, and takes the place of the old
 one in one assignment. A reader holds on to one version, so it never sees half of an edit; a lock
 lets one thread at a time into the session.
+
+Most edits are of one vertex. While there is no version the session lends what does them in the
+compiled core, each in one call that no other thread gets into; so they need no lock. Whoever enters
+the session takes it back first, and from then on they wait for the lock like all others.
 """
 
 from __future__ import annotations
@@ -15,12 +19,14 @@ from ..building.reference import require_crs
 from ..validation.geometries import is_plain
 from .arguments import as_array
 from .origin import Origin
+from .single_edits import make_vertices
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ...arrays import Int32Array, Int64Array
     from ...policies import BreaklineKind, CrossingPolicy, DuplicatePolicy
+    from .._kernel import EditedMesh
     from ..building.inputs import BuildInputs
     from ..report import Edit
     from .session import Session
@@ -47,13 +53,14 @@ class Editable:
         What it was built from; None for one of existing triangles.
     """
 
-    __slots__ = ("_inputs", "_lock", "_origin", "_session", "_version")
+    __slots__ = ("_inputs", "_lent", "_lock", "_origin", "_session", "_version")
 
     def __init__(self, version: Version, inputs: BuildInputs | None) -> None:
         self._version: Version | None = version
         self._session: Session | None = None
         self._inputs = inputs
         self._origin: Origin | None = None
+        self._lent: EditedMesh | None = None
         self._lock = RLock()
 
     @property
@@ -64,7 +71,7 @@ class Editable:
             return version
         with self._lock:
             if self._version is None:
-                self._version = cast("Session", self._session).version()
+                self._version = self._open_session().version()
             return self._version
 
     @property
@@ -75,10 +82,10 @@ class Editable:
     @property
     def edits(self) -> tuple[Edit, ...]:
         """What was done to the TIN since it was built, in order."""
-        session, origin = self._session, self._origin
-        if session is not None:
-            return tuple(session.edits)
-        return () if origin is None else origin.edits
+        with self._lock:
+            if self._session is not None:
+                return self._open_session().list_edits()
+            return () if self._origin is None else self._origin.edits
 
     def _snapshot(self) -> tuple[Version, Origin]:
         """Return what the TIN is, and what it was before its edits."""
@@ -121,7 +128,7 @@ class Editable:
 
     def __getstate__(self) -> dict[str, Any]:
         with self._lock:
-            session = None if self._session is None else self._session.copy()
+            session = None if self._session is None else self._open_session().copy()
             return {
                 "_version": self._current,
                 "_session": session,
@@ -133,6 +140,7 @@ class Editable:
     def __setstate__(self, state: dict[str, Any]) -> None:
         for name, value in ({"_origin": None} | state).items():
             setattr(self, name, value)
+        self._lent = None
         self._lock = RLock()
 
     # -------------------------------------------------------------------- edits
@@ -172,6 +180,11 @@ class Editable:
         >>> tin
         <TIN: 4 vertices, 2 triangles, z 5 to 8, crs unknown>
         """
+        lent = self._lent
+        if lent is not None:
+            vertex = lent.insert_one(points, duplicates)
+            if vertex >= 0:
+                return make_vertices(vertex)
         made: Int32Array = self._edit("insert", points=points, duplicates=duplicates)
         return made
 
@@ -201,7 +214,9 @@ class Editable:
         >>> tin
         <TIN: 4 vertices, 2 triangles, z 5 to 8, crs unknown>
         """
-        self._edit("remove", vertices=vertices)
+        lent = self._lent
+        if lent is None or not lent.remove_one(vertices):
+            self._edit("remove", vertices=vertices)
 
     def move(self, vertex: int, point: ArrayLike) -> None:
         """Move a vertex, in place: the rows there, and the lines that name it.
@@ -227,7 +242,9 @@ class Editable:
         >>> tin.points[4].tolist()
         [2.0, 2.0, 9.0]
         """
-        self._edit("move", vertex=vertex, point=point)
+        lent = self._lent
+        if lent is None or not lent.move_one(vertex, point):
+            self._edit("move", vertex=vertex, point=point)
 
     def set_elevation(self, vertices: ArrayLike, z: ArrayLike) -> None:
         """Give vertices other elevations, in place.
@@ -255,7 +272,9 @@ class Editable:
         >>> tin.points[:, 2].tolist()
         [4.0, 6.0, 7.0, 8.0, 10.0]
         """
-        self._edit("set_elevation", vertices=vertices, z=z)
+        lent = self._lent
+        if lent is None or not lent.set_elevation_of_one(vertices, z):
+            self._edit("set_elevation", vertices=vertices, z=z)
 
     set_z = set_elevation
 
@@ -390,12 +409,18 @@ class Editable:
                 require_crs(arguments[name], self._reference["crs"], f"{name} of the edit")
                 arguments[name] = as_array(arguments[name])
         with self._lock:
-            result = self._open_session().do(operation, arguments)
+            session = self._open_session()
+            result = session.do(operation, arguments)
             if self._version is not None:
                 self._version = None
+            self._lent = session.lend()
             return result
 
     def _open_session(self) -> Session:
+        """Return the session, which nobody else has until the lock is let go."""
+        if self._lent is not None:
+            self._lent.take_back()
+            self._lent = None
         if self._session is None:
             from .session import Session
 

@@ -14,27 +14,24 @@ if TYPE_CHECKING:
 __all__ = ["LiveMesh"]
 
 
-_Arrays = tuple["Float64Array", "Int32Array", "Int32Array", "BoolArray"]
-_NOTHING: _Arrays = (
-    np.empty((0, 2)),
-    np.empty((0, 3), np.int32),
-    np.empty((0, 3), np.int32),
-    np.empty((0, 3), np.bool_),
-)
-
-
 class LiveMesh:
-    """Triangles of a hull, as arrays until they are changed.
+    """Vertices that are edited, with the triangles of their hull as arrays until these change.
 
     Parameters
     ----------
-    points : (n, 2 or 3) float64 array
+    points : (n, 3) float64 array
         Of every slot.
     triangles, neighbors : (m, 3) int32 arrays
         By slot; in canonical order.
     fixed : (m, 3) bool array
+    lines : tuple of int
+        First and end of the slots that are vertices of lines alone.
     alive : (n,) bool array, optional
         Which slots hold a vertex; default all.
+
+    Attributes
+    ----------
+    edited : EditedMesh
     """
 
     def __init__(
@@ -43,48 +40,32 @@ class LiveMesh:
         triangles: Int32Array,
         neighbors: Int32Array,
         fixed: BoolArray,
+        *,
+        lines: tuple[int, int] = (0, 0),
         alive: BoolArray | None = None,
     ) -> None:
-        self._given: _Arrays = (points, triangles, neighbors, fixed)
-        self._alive = np.ones(len(points), np.bool_) if alive is None else alive
-        self._count = int(self._alive.sum())
-        self._mesh: _kernel.Mesh | None = None
+        self.edited = _kernel.EditedMesh(points, *lines)
+        if alive is not None and not alive.all():
+            self.edited.leave_empty(np.flatnonzero(~alive).astype(np.int32))
+        self._given: tuple[Int32Array, Int32Array, BoolArray] | None = triangles, neighbors, fixed
 
-    @classmethod
-    def of(cls, mesh: _kernel.Mesh) -> LiveMesh:
-        """Return one that is a mesh already."""
-        live = cls(*_NOTHING)
-        live._mesh = mesh
-        return live
+    def open(self) -> _kernel.EditedMesh:
+        """Return the vertices, with a mesh of the triangles, to be changed."""
+        if self._given is not None:
+            self.edited.open(*self._given)
+            self._given = None
+        return self.edited
 
     @property
     def mesh(self) -> _kernel.Mesh:
-        """The mesh, to be changed."""
-        if self._mesh is None:
-            self._mesh = _kernel.Mesh(*self._given)
-            self._given = _NOTHING
-        return self._mesh
-
-    @property
-    def slots(self) -> int:
-        """Vertices that are or were there."""
-        return len(self._alive) if self._mesh is None else self._mesh.slots
-
-    @property
-    def count(self) -> int:
-        """Vertices that are there."""
-        return self._count if self._mesh is None else self._mesh.count
-
-    def alive(self) -> BoolArray:
-        """Tell which slots hold a vertex."""
-        return self._alive if self._mesh is None else self._mesh.alive()
+        """The mesh."""
+        return self.open().mesh
 
     def arrays(self, threads: int) -> tuple[Int32Array, Int32Array, BoolArray]:
         """Return triangles, neighbours and fixed edges; vertices are numbered without gaps."""
-        if self._mesh is not None:
-            return self._mesh.arrays(threads)
-        _, triangles, neighbors, fixed = self._given
-        if self._alive.all():
+        if self._given is None:
+            return self.edited.mesh.arrays(threads)
+        triangles, neighbors, fixed = self._given
+        if self.edited.count == self.edited.slots:
             return triangles, neighbors, fixed
-        number = (np.cumsum(self._alive) - 1).astype(np.int32)
-        return number[triangles], neighbors, fixed
+        return self.edited.numbers()[triangles], neighbors, fixed

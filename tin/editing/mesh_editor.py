@@ -6,8 +6,7 @@ a fresh build gives. An edit that fails, or that comes near a line, leaves the m
 
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right, insort
-from functools import cached_property
+from array import array
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -15,16 +14,16 @@ import numpy as np
 from ...errors import PointsError
 from .. import _kernel
 from ..building.duplicates import merge_rows
-from ..report import Report
+from ..report import Edit, Report
 from ..triangulation import Triangulation
 from .changes import AddLine, Change
 from .flipping import are_uncut, make_flipped_edge, require_inner
 from .lazy_mesh import LiveMesh
-from .row_buffer import GrowingRows
+from .single_edits import INSERT, REMOVE, take_log
 from .state import State
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...policies import DuplicatePolicy
@@ -57,14 +56,6 @@ def is_local(build_inputs: BuildInputs) -> bool:
     return is_simple and has_own_elevations and not build_inputs.is_clipped
 
 
-class _Counts(NamedTuple):
-    """How many vertices are there, in the order of their numbers."""
-
-    rows: int
-    inserted: int
-    lines: int
-
-
 class Editor:
     """Mesh and numbers of a TIN that is being edited.
 
@@ -87,68 +78,47 @@ class Editor:
         self._n_first_rows = inputs.n_rows
         self._is_strict = inputs.build_inputs.options.duplicates == "error"
         self._threads = inputs.build_inputs.options.threads
-        self._live = LiveMesh(
-            surface.points, surface.triangles, surface.neighbors, surface.constrained
-        )
-        self._points = GrowingRows(surface.points)
-        self._removed: list[int] = []
         self._n_base = len(surface.points)
         self._base_rows = _group_rows_by_vertex(state.vertex_of_row)
         self._n_rows = self._base_rows.n_vertices
+        self._live = LiveMesh(
+            surface.points,
+            surface.triangles,
+            surface.neighbors,
+            surface.constrained,
+            lines=(self._n_rows, self._n_base),
+        )
         self._own_rows: list[int] = []  # of each slot that was made since
         self._more_rows: dict[int, list[int]] = {}
-        self._new_slots = GrowingRows(np.empty(0, np.int32))
-        self._n_new = 0
-        self._has_lines = self._n_rows < self._n_base or len(state.lines) > 0
+        self._new_slots = array("i")  # of each row that came since
+        self._has_lines = False
+        if self._n_rows < self._n_base or len(state.lines) > 0:
+            self._keep_clear(surface.points)
         self._has_uncut_lines = are_uncut(state, inputs.build_inputs)
 
     # ------------------------------------------------------------------ numbers
 
     @property
+    def edited(self) -> _kernel.EditedMesh:
+        """The vertices as they are."""
+        return self._live.edited
+
+    @property
     def count(self) -> int:
         """Number of vertices."""
-        return self._live.count
+        return self.edited.count
 
     @property
     def _mesh(self) -> _kernel.Mesh:
         return self._live.mesh
 
-    def _count(self) -> _Counts:
-        rows = self._n_rows - bisect_left(self._removed, self._n_base)
-        lines = self._n_base - self._n_rows
-        return _Counts(rows, self._live.count - rows - lines, lines)
-
     def slots(self, vertices: Int64Array) -> Int32Array:
         """Return the slots of vertices, which must exist."""
-        if self._n_rows < self._n_base:
-            rows, inserted, lines = self._count()
-            back = np.where(vertices < rows + inserted, lines, -inserted)
-            vertices = vertices + np.where(vertices < rows, 0, back)
-        removed = self._removed
-        if len(vertices) == 1:
-            vertex = int(vertices[0])
-            before = bisect_right(range(len(removed)), vertex, key=lambda j: removed[j] - j)
-            return np.array([vertex + before], np.int32)
-        gone = np.array(removed, np.int64)
-        shift = np.searchsorted(gone - np.arange(len(gone)), vertices, side="right")
-        return (vertices + shift).astype(np.int32)
+        return self.edited.slots_of(vertices)
 
     def numbers(self, slots: Int32Array) -> Int32Array:
         """Return the vertices that slots hold."""
-        if len(slots) == 1:
-            found = slots - np.int32(bisect_left(self._removed, int(slots[0])))
-        else:
-            gone = np.array(self._removed, np.int64)
-            found = slots - np.searchsorted(gone, slots).astype(np.int32)
-        return self._reorder(found)
-
-    def _reorder(self, ranks: Int32Array) -> Int32Array:
-        """Return the numbers of vertices that are numbered by slot, without gaps."""
-        if self._n_rows == self._n_base:
-            return ranks
-        rows, inserted, lines = self._count()
-        on = np.where(ranks < rows + lines, np.int32(inserted), np.int32(-lines))
-        return ranks + np.where(ranks < rows, np.int32(0), on)
+        return self.edited.numbers_of(slots)
 
     def _find_rows_at(self, slot: int) -> list[int]:
         more = self._more_rows.get(slot, [])
@@ -167,9 +137,9 @@ class Editor:
             If vertices are there, and the policy is "error".
         """
         before = self._live
-        first = before.slots
+        first = before.edited.slots
         is_large = self._is_large(len(xyz))
-        slots = self._grow_with(xyz) if is_large else self._insert_into_mesh(xyz)
+        slots = self._grow_with(xyz) if is_large else before.open().insert(xyz)
         is_new = slots == np.arange(first, first + len(xyz), dtype=np.int32)
         try:
             elevations: dict[int, float] = {}
@@ -184,12 +154,9 @@ class Editor:
                 self._live = before
             else:
                 self._take_back(slots[is_new])
-                self._keep_empty(xyz, first)
+                self._own_rows.extend([-1] * len(xyz))
             raise
         return slots, self._enter(xyz, slots, is_new, elevations)
-
-    def _insert_into_mesh(self, xyz: Float64Array) -> Int32Array:
-        return self._mesh.insert(np.ascontiguousarray(xyz[:, :2]))
 
     def _require_in_order(self, slots: Int32Array, first: int) -> None:
         """Leave rows at one place to a build if it refuses them, or if not the first is kept."""
@@ -206,11 +173,9 @@ class Editor:
     ) -> dict[int, float]:
         """Return the elevations of vertices at which further rows come to stand."""
         elevations: dict[int, float] = {}
-        first = self._live.slots - len(xyz)
         for row in old:
             slot = int(slots[row])
-            here = self._points.at(slot)[2] if slot < first else xyz[slot - first, 2]
-            here = elevations.get(slot, float(here))
+            here = elevations.get(slot, self.edited.point(slot)[2])
             elevations[slot] = merge_elevations(here, float(xyz[row, 2]), policy)
         return elevations
 
@@ -218,10 +183,11 @@ class Editor:
         for slot in set(slots.tolist()):
             self._require_free(slot)
 
-    @cached_property
-    def _least(self) -> float:
-        """The least distance from lines."""
-        return _ROUNDINGS * float(np.spacing(np.abs(self._points.values()[:, :2]).max()))
+    def _keep_clear(self, points: Float64Array) -> None:
+        """From now on vertices must keep a distance from lines."""
+        self._has_lines = True
+        self._least = _ROUNDINGS * float(np.spacing(np.abs(points[:, :2]).max()))
+        self.edited.keep_clear(self._least)
 
     def _require_free(self, slot: int) -> None:
         """Refuse a vertex on a line, or near one."""
@@ -234,14 +200,9 @@ class Editor:
             ends = self._mesh.fixed_neighbors(slot)
             pairs = np.stack([np.full_like(ends, slot), ends], axis=1)
             self._mesh.release(pairs)
-            self._mesh.remove(np.array([slot], np.int32))
+            self.edited.empty(slot)
             if len(ends):
                 self._mesh.force(np.ascontiguousarray(ends[None, :]))
-
-    def _keep_empty(self, xyz: Float64Array, first: int) -> None:
-        self._points.extend(xyz)
-        self._own_rows.extend([-1] * len(xyz))
-        self._removed.extend(range(first, first + len(xyz)))
 
     def _enter(
         self,
@@ -250,18 +211,14 @@ class Editor:
         is_new: BoolArray,
         elevations: dict[int, float],
     ) -> Change:
-        first = len(self._points)
-        self._points.extend(xyz)
-        row = self._n_first_rows + self._n_new
+        row = self._n_first_rows + len(self._new_slots)
         self._own_rows.extend(range(row, row + len(xyz)))
         moved = []
         if elevations:
             for i in np.flatnonzero(~is_new).tolist():
                 self._more_rows.setdefault(int(slots[i]), []).append(row + i)
-            self._removed.extend((first + np.flatnonzero(~is_new)).tolist())
             moved = [self._put_elevation(slot, elevation) for slot, elevation in elevations.items()]
-        self._new_slots.extend(slots)
-        self._n_new += len(xyz)
+        self._new_slots.frombytes(slots.tobytes())
         if not elevations:
             return Change(added=xyz)
         added = xyz.copy()
@@ -271,8 +228,8 @@ class Editor:
 
     def _is_large(self, count: int) -> bool:
         """Tell whether growing all points anew is quicker than inserting so many."""
-        is_worth_it = count > _LARGE_BATCH and count * _LARGE_SHARE > self._live.count
-        return is_worth_it and not self._removed and not self._has_lines
+        is_worth_it = count > _LARGE_BATCH and count * _LARGE_SHARE > self.count
+        return is_worth_it and self.count == self.edited.slots and not self._has_lines
 
     def _grow_with(self, xyz: Float64Array) -> Int32Array:
         """Triangulate the points that are there and those that come; return slots of the latter.
@@ -280,8 +237,8 @@ class Editor:
         A slot is made for every row, as if each had been inserted, and stays empty where a vertex
         was there already.
         """
-        first = self._live.slots
-        rows = np.concatenate([self._points.values(), xyz])
+        first = self.edited.slots
+        rows = np.concatenate([self.edited.points(), xyz])
         growth = _kernel.grow(rows, threads=self._threads)
         own = np.arange(len(rows), dtype=np.int32)
         slots = own if growth.kept_row is None else growth.kept_row
@@ -292,7 +249,7 @@ class Editor:
             growth.triangles if is_kept.all() else vertex[growth.triangles],
             growth.neighbors,
             np.zeros(growth.triangles.shape, np.bool_),
-            is_kept,
+            alive=is_kept,
         )
         return slots[first:]
 
@@ -307,22 +264,20 @@ class Editor:
         if self._has_lines:
             self._require_clear(slots)
         gone: list[int] = []
-        for i, slot in enumerate(slots.tolist()):
-            if not self._mesh.remove(slots[i : i + 1]):
+        edited = self._live.open()
+        for slot in slots.tolist():
+            if not edited.empty(slot):
                 self._put_back(gone)
                 raise PointsError(
                     "No triangle would be left: three vertices not in line must stay."
                 )
             gone.append(slot)
         rows = [row for slot in gone for row in self._find_rows_at(slot)]
-        for slot in gone:
-            insort(self._removed, slot)
         return Change(removed=np.array(rows, np.int64))
 
     def _put_back(self, slots: Sequence[int]) -> None:
         for slot in slots:
-            x, y = self._points.at(slot)[:2].tolist()
-            self._mesh.put(slot, x, y)
+            self.edited.fill(slot, *self.edited.point(slot)[:2])
 
     def move(self, slot: int, point: Float64Array) -> Change:
         """Move a vertex and the rows there.
@@ -334,28 +289,30 @@ class Editor:
         """
         if self._has_lines and self._mesh.has_fixed_edge(slot):
             raise NotLocal
-        if (self._points.at(slot)[:2] != point[:2]).any():
-            self._move_in_plane(slot, float(point[0]), float(point[1]))
-        self._points.put(slot, point)
+        x, y, z = point.tolist()
+        if self.edited.point(slot)[:2] != (x, y):
+            self._move_in_plane(slot, x, y)
+        self.edited.put_elevation(slot, z)
         return self._move_rows(slot, point)
 
     def _move_in_plane(self, slot: int, x: float, y: float) -> None:
         if self._has_lines:
             self._require_free(slot)
-        if not self._mesh.remove(np.array([slot], np.int32)):
+        edited, before = self._live.open(), self.edited.point(slot)[:2]
+        if not edited.empty(slot):
             raise PointsError(
                 "The vertex cannot be moved while all others are in line: insert a point first."
             )
-        found = self._mesh.put(slot, x, y)
+        found = edited.fill(slot, x, y)
         if found != slot:
-            self._put_back([slot])
+            edited.fill(slot, *before)
             raise explain_occupied(int(self.numbers(np.array([found], np.int32))[0]), x, y)
         if self._has_lines:
             try:
                 self._require_free(slot)
             except NotLocal:
                 self._take_back(np.array([slot], np.int32))
-                self._put_back([slot])
+                edited.fill(slot, *before)
                 raise
 
     def set_elevations(self, slots: Int32Array, elevations: list[float]) -> Change:
@@ -370,10 +327,8 @@ class Editor:
         )
 
     def _put_elevation(self, slot: int, elevation: float) -> Change:
-        point = self._points.at(slot).copy()
-        point[2] = elevation
-        self._points.put(slot, point)
-        return self._move_rows(slot, point)
+        self.edited.put_elevation(slot, elevation)
+        return self._move_rows(slot, np.array(self.edited.point(slot)))
 
     def _move_rows(self, slot: int, point: Float64Array) -> Change:
         rows = np.array(self._find_rows_at(slot), np.int64)
@@ -392,20 +347,36 @@ class Editor:
             raise NotLocal
         beside = self._mesh.corners_beside(a, b).tolist()
         require_inner(beside)
-        line = make_flipped_edge(self._points.take([a, b, *beside]))
+        line = make_flipped_edge(np.array([self.edited.point(slot) for slot in (a, b, *beside)]))
         self._mesh.force(np.array([beside], np.int32))
-        self._lines, self._has_lines = self._lines.with_breakline(beside, line), True
+        self._lines = self._lines.with_breakline(beside, line)
+        self._keep_clear(self.edited.points())
         return Change(lines=(AddLine(line),))
+
+    # ------------------------------------------------------------------ the log
+
+    def take_log(self) -> Iterator[tuple[Edit, Change]]:
+        """Yield the edits that the core did on its own since it was last asked, in order."""
+        for edit, kind, slot, point in take_log(self.edited):
+            if kind == INSERT:
+                yield edit, self._enter_one(slot, point)
+            elif kind == REMOVE:
+                yield edit, Change(removed=np.array(self._find_rows_at(slot), np.int64))
+            else:
+                yield edit, self._move_rows(slot, point)
+
+    def _enter_one(self, slot: int, point: Float64Array) -> Change:
+        self._own_rows.append(self._n_first_rows + len(self._new_slots))
+        self._new_slots.append(slot)
+        return Change(added=point[None])
 
     # ------------------------------------------------------------------- result
 
     def state(self, inputs: Callable[[], NumberedInputs]) -> State:
         """Return what the edits led to; ``inputs()`` are those of now, asked for if needed."""
-        alive = self._live.alive()
-        number = self._reorder(np.cumsum(alive, dtype=np.int32) - np.int32(1))
-        number = np.where(alive, number, np.int32(-1))
-        surface = self._make_triangulation(alive)
-        slot_of_row = np.append(self._vertex_of_row, self._new_slots.values())
+        number = self.edited.numbers()
+        surface = self._make_triangulation()
+        slot_of_row = np.append(self._vertex_of_row, np.array(self._new_slots, np.int32))
         vertex_of_row = np.append(number, np.int32(-1))[slot_of_row]
         lines, base = self._lines, self._report
         if self._has_lines:
@@ -414,22 +385,22 @@ class Editor:
             number, len(vertex_of_row), len(surface.points), len(surface.triangles)
         )
         report = report.with_removed(vertex_of_row).with_merges(
-            _gather_merges(vertex_of_row, self._count(), inputs)
+            _gather_merges(vertex_of_row, self.count - (self._n_base - self._n_rows), inputs)
         )
         if self._has_lines:
             report = report.with_lines(inputs().build_inputs.lines.labels())
         return State(surface, vertex_of_row, lines, report, None)
 
-    def _make_triangulation(self, alive: BoolArray) -> Triangulation:
+    def _make_triangulation(self) -> Triangulation:
         triangles, neighbors, constrained = self._live.arrays(self._threads)
-        points = self._points.values()[alive]
-        rows, inserted, lines = self._count()
-        if lines and inserted:
-            between = rows + lines
-            points = np.concatenate([points[:rows], points[between:], points[rows:between]])
-            triangles = self._reorder(np.arange(len(points), dtype=np.int32))[triangles]
+        if self._n_rows < self._n_base < self.edited.slots:  # vertices of lines are the last ones
+            number = self.edited.numbers()
+            triangles = number[number >= 0][triangles]
         return Triangulation(
-            points=points, triangles=triangles, neighbors=neighbors, constrained=constrained
+            points=self.edited.points(),
+            triangles=triangles,
+            neighbors=neighbors,
+            constrained=constrained,
         )
 
 
@@ -457,11 +428,11 @@ def _group_rows_by_vertex(vertex_of_row: Int32Array) -> _RowsByVertex:
 
 
 def _gather_merges(
-    vertex_of_row: Int32Array, counts: _Counts, inputs: Callable[[], NumberedInputs]
+    vertex_of_row: Int32Array, n_vertices: int, inputs: Callable[[], NumberedInputs]
 ) -> Report | None:
-    """Return the account of rows that share a vertex, as a build gives it; None for none."""
+    """Return the account of rows that share one of so many vertices, as a build gives it."""
     rows = np.flatnonzero(vertex_of_row >= 0)
-    if len(rows) == counts.rows + counts.inserted:
+    if len(rows) == n_vertices:
         return None
     vertex = vertex_of_row[rows]
     shares = np.flatnonzero(np.bincount(vertex)[vertex] > 1)  # the others are no matter

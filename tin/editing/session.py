@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from ..._interrupts import hold_interrupts
 from ..._sentences import counted, inflect
 from ...errors import PointsError, TinsmithError
 from ..report import Edit
@@ -21,6 +22,7 @@ from .version import Version
 
 if TYPE_CHECKING:
     from ...arrays import AnyArray, Int32Array
+    from .._kernel import EditedMesh
     from ..building.inputs import BuildInputs
 
 __all__ = ["Session"]
@@ -107,6 +109,7 @@ class Session:
 
     def origin(self) -> Origin:
         """Return what the TIN was before the edits, and the edits."""
+        self.settle()
         given = None if not self.edits else self._given
         inputs = self._begin.build_inputs if self._given is None else None
         return Origin(inputs, given, tuple(self.edits))
@@ -118,6 +121,7 @@ class Session:
         return other
 
     def __getstate__(self) -> dict[str, Any]:
+        self.settle()
         return {
             "edits": list(self.edits),
             "_changes": list(self._changes),
@@ -135,6 +139,7 @@ class Session:
 
     def version(self) -> Version:
         """Return the TIN after the edits."""
+        self.settle()
         if self._given is not None and not self.edits:
             return self._given
         state, edits = self.now(), tuple(self.edits)
@@ -166,6 +171,7 @@ class Session:
         PointsError, LinesError
             As the methods of :class:`.TIN`.
         """
+        self.settle()
         operation = OPERATIONS[name](**arguments)
         kept, before = operation.arguments(), self._state
         try:
@@ -198,6 +204,32 @@ class Session:
         except NotLocal:
             return None
 
+    def lend(self) -> EditedMesh | None:
+        """Return what does edits of one vertex and logs them, until it is taken back."""
+        if self._editor is None:
+            return None
+        self._editor.edited.lend()
+        return self._editor.edited
+
+    def list_edits(self) -> tuple[Edit, ...]:
+        """Return what was done, in order."""
+        self.settle()
+        return tuple(self.edits)
+
+    def settle(self) -> None:
+        """Write down the edits that were only logged; everything else asks for this first."""
+        editor = self._editor
+        if editor is None:
+            return
+        if editor.edited.logged:
+            with hold_interrupts():  # what is taken from the log must arrive
+                for edit, change in editor.take_log():
+                    self.edits.append(edit)
+                    self._changes.append(change)
+                self._state = None
+        if not editor.edited.is_sound:
+            self._editor = None
+
     def undo(self, count: int) -> None:
         """Take back the last edits: build the inputs that were there before.
 
@@ -208,6 +240,7 @@ class Session:
         OptionError
             If it is no whole number above 0.
         """
+        self.settle()
         require_count("count", count)
         if count > len(self.edits):
             made = inflect(f"{len(self.edits)} [was|were] made", len(self.edits))
@@ -232,6 +265,7 @@ class Session:
 
     def inputs(self) -> NumberedInputs:
         """Return what the TIN is the build of now."""
+        self.settle()
         if self._n_applied < len(self._changes):
             self._inputs = self._inputs.after(self._changes[self._n_applied :])
             self._n_applied = len(self._changes)

@@ -143,3 +143,31 @@ def test_threads_take_back_edits():
     run_together(*(lambda: [tin.undo() for _ in range(5)] for _ in range(4)))
     assert tin.edits == ()
     np.testing.assert_array_equal(tin.triangles, before)
+
+
+def test_threads_edit_and_take_back_what_is_only_logged():
+    """Edits of one vertex need no lock; whoever looks, copies or takes back waits for them."""
+    tin = ts.triangulate(survey(9))
+    n_before, is_over = len(tin.points), threading.Event()
+
+    def insert(seed):
+        rng = np.random.default_rng(seed)
+        for _ in range(200):
+            tin.insert([[*rng.uniform(0, 11, 2).tolist(), 1.0]])
+
+    def look():
+        while not is_over.is_set():
+            assert len(tin.vertex_of) >= n_before
+            assert len(copy.copy(tin).edits) <= 200 * EDITORS
+            tin.insert(np.array([[5.0, 5.0, 1.0]]))
+            tin.undo()
+
+    def insert_all():
+        try:
+            run_together(*(lambda k=k: insert(k) for k in range(EDITORS)))
+        finally:
+            is_over.set()
+
+    run_together(insert_all, look)
+    require_sound(tin)
+    assert len(tin.edits) == len(tin.vertex_of) - n_before

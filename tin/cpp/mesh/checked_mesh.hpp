@@ -28,6 +28,7 @@ class CheckedMesh {
   explicit CheckedMesh(MeshEditor editor) : editor_(std::move(editor)) {}
 
   const MeshEditor& editor() const { return editor_; }
+  MeshEditor& editor() { return editor_; }  // for those who are never mistaken
 
   // The vertex at each point, in the order given: a new slot's, or the one that is there already.
   void insert(const Point* points, std::int32_t count, std::int32_t* result) {

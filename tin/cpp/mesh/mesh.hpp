@@ -97,6 +97,7 @@ class Mesh {
     fixed_.reserve(triangles);
   }
   void add_vertices(std::size_t count) { leaving_.resize(leaving_.size() + count, kNoHalfEdge); }
+  void drop_last_vertex() { leaving_.pop_back(); }
 
   // The first triangles, all at once: make(t, triangle) fills one in, neighbours and all, and
   // returns the bits of its fixed edges.
@@ -194,9 +195,7 @@ class Mesh {
     const Vertex x = to(e), y = to(f), z = to(g);
     const Side xy = side(after(e)), yz = side(after(f)), zx = side(after(g));
     put(t, x, y, z, yz, zx, xy);
-    free(s);
-    free(r);
-    leaving_[number(v)] = kNoHalfEdge;
+    drop(v, s, r);
     return t;
   }
 
@@ -207,11 +206,9 @@ class Mesh {
     const Triangle t = triangle_of(e), s = triangle_of(g);
     const Vertex w = to(e), x = to(f), y = to(g), z = to(h);
     const Side wx = side(after(e)), xy = side(after(f)), yz = side(after(g)), zw = side(after(h));
-    free(triangle_of(f));
-    free(triangle_of(h));
+    drop(v, triangle_of(f), triangle_of(h));
     put(t, w, x, y, xy, {half_edge(s, 1), false}, wx);
     put(s, y, z, w, zw, {half_edge(t, 1), false}, yz);
-    leaving_[number(v)] = kNoHalfEdge;
     return half_edge(t, 1);
   }
 
@@ -230,6 +227,13 @@ class Mesh {
     for (int i = 0; i < 2; ++i) {
       for (const HalfEdge f : pair[i]) keep_leaving(triangle_of(f));
     }
+    leaving_[number(v)] = kNoHalfEdge;
+  }
+
+  // A vertex is in no triangle any more, and two triangles go with it.
+  void drop(Vertex v, Triangle t, Triangle s) {
+    free(t);
+    free(s);
     leaving_[number(v)] = kNoHalfEdge;
   }
 

@@ -1,8 +1,9 @@
 // Local change: the constrained Delaunay triangulation of points and fixed edges, kept so while
 // points come and go and edges are fixed and released.
 //
-// By flips (Lawson, "Software for C1 surface interpolation", 1977); a vertex goes by flips too,
-// which cut the ears of its star (Devillers, "On deletion in Delaunay triangulations", 1999).
+// By flips (Lawson, "Software for C1 surface interpolation", 1977). A vertex goes ear by ear of its
+// star (Devillers, "On deletion in Delaunay triangulations", 1999): at once where the ears are
+// Delaunay (star_filling.hpp), else by flips.
 //
 // Every change makes any valid triangulation of the part that it touches, and then flips edges
 // that are not Delaunay until none is left. Ties are decided by the points alone (is_in_circle),
@@ -24,6 +25,7 @@
 #include "mesh.hpp"
 #include "mesh_points.hpp"
 #include "point_search.hpp"
+#include "star_filling.hpp"
 
 namespace tinsmith {
 
@@ -55,17 +57,24 @@ class MeshEditor {
     mesh_.add_vertices(1);
     return points_.add({});
   }
+  // The number of the last slot, which holds no vertex, is free again.
+  void drop_last_slot() {
+    mesh_.drop_last_vertex();
+    points_.drop_last();
+  }
 
   // Where p lies; the walk there begins at an edge that may be near.
   MeshLocation locate(Point p, HalfEdge near) {
     return PointSearch(mesh_, points_, count_, state_).locate(p, near, kGhost);
   }
 
-  // The vertex at p, which is `slot` if there was none; a fixed edge through p is split.
-  Vertex insert(Point p, Vertex slot) {
-    return insert_at(PointSearch(mesh_, points_, count_, state_).locate(p, last_, landmark_near(p)),
-                     p, slot);
+  // The same from the last change or from a landmark.
+  MeshLocation locate(Point p) {
+    return PointSearch(mesh_, points_, count_, state_).locate(p, last_, landmark_near(p));
   }
+
+  // The vertex at p, which is `slot` if there was none; a fixed edge through p is split.
+  Vertex insert(Point p, Vertex slot) { return insert_at(locate(p), p, slot); }
 
   // The same where it is known in which triangle or on which edge p lies. A point that is only near
   // the edge will do, if the triangles on both sides are turned the right way with it.
@@ -101,13 +110,13 @@ class MeshEditor {
   bool can_remove(Vertex v) const {
     if (count_ <= 3) return false;
     std::int32_t degree = 0;
-    bool is_straight = true;
     for (const HalfEdge e : mesh_.around(v)) {
       const Vertex a = mesh_.to(mesh_.previous_leaving(e)), b = mesh_.to(e), c = mesh_.apex(e);
-      is_straight &= a == kGhost || b == kGhost || c == kGhost || turn(a, b, c) == 0;
+      const bool is_outer = a == kGhost || b == kGhost || c == kGhost;
+      if (!is_outer && turn(a, b, c) != 0) return true;
       ++degree;
     }
-    return !is_straight || degree < count_;
+    return degree < count_;  // else all others are in line
   }
 
   bool has_fixed_edge(Vertex v) const {
@@ -120,6 +129,11 @@ class MeshEditor {
   // v has no fixed edges, and the surface is one without it.
   void remove(Vertex v) {
     --count_;
+    // Whoever watches goes through the triangles that flips make, in their order.
+    if (!is_watched_ && star_.find(mesh_, points_, v)) {
+      last_ = half_edge(star_.fill(mesh_, v), 0);
+      return;
+    }
     cut_ears(v);
     const std::int32_t degree = degree_of(v);
     if (degree == 3 && !is_on_hull(v)) {
@@ -248,7 +262,7 @@ class MeshEditor {
 
   // Worth setting up in a large mesh only.
   Vertex landmark_near(Point p) {
-    if (slots() < Landmarks::kDrawn) return kGhost;
+    if (slots() < Landmarks::kLeast) return kGhost;
     if (!landmarks_.are_set()) landmarks_.set(mesh_, points_);
     return landmarks_.near(p);
   }
@@ -456,6 +470,7 @@ class MeshEditor {
   std::vector<HalfEdge> pending_;
   std::vector<Triangle> changed_;
   Corridor corridor_;
+  StarFilling star_;
   Landmarks landmarks_;
   bool is_watched_ = false;
   std::vector<Triangle> touched_;

@@ -23,6 +23,7 @@ class MeshPoints {
     points_.push_back(p);
     return Vertex{slots() - 1};
   }
+  void drop_last() { points_.pop_back(); }
 
  private:
   ScratchVector<Point> points_;

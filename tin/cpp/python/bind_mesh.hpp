@@ -6,6 +6,7 @@
 #include <nanobind/stl/tuple.h>
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
@@ -40,18 +41,19 @@ inline VertexPairs pairs_of(const GivenPairs& pairs) { return {pairs.data(), pai
 
 class HeldMesh {
  public:
+  explicit HeldMesh(std::shared_ptr<CheckedMesh> mesh) : held_(std::move(mesh)) {}
   HeldMesh(const GivenRows& points, const GivenTriples& triangles, const GivenTriples& neighbors,
            const std::optional<GivenFlags>& fixed)
-      : mesh_(editor_from(points, triangles, neighbors, fixed)) {}
+      : held_(std::make_shared<CheckedMesh>(editor_from(points, triangles, neighbors, fixed))) {}
 
-  std::int32_t slots() const { return mesh_.editor().slots(); }
-  std::int32_t count() const { return mesh_.editor().count(); }
-  std::int64_t fixed_splits() const { return mesh_.editor().fixed_splits(); }
+  std::int32_t slots() const { return held_->editor().slots(); }
+  std::int32_t count() const { return held_->editor().count(); }
+  std::int64_t fixed_splits() const { return held_->editor().fixed_splits(); }
 
   Flags alive() const {
     const auto size = static_cast<std::size_t>(slots());
     auto flags = streamed_array<bool>(size);
-    mesh_.write_alive(flags.get());
+    held_->write_alive(flags.get());
     return hand_over<Flags>(std::move(flags), {size});
   }
 
@@ -60,55 +62,55 @@ class HeldMesh {
     auto result = streamed_array<std::int32_t>(count);
     {
       nb::gil_scoped_release release;
-      mesh_.insert(points_of(xy), count, result.get());
+      held_->insert(points_of(xy), count, result.get());
     }
     return hand_over<Numbers>(std::move(result), {xy.shape(0)});
   }
 
   std::int32_t put(std::int32_t slot, double x, double y) {
-    return number(mesh_.put(Vertex{slot}, {x, y}));
+    return number(held_->put(Vertex{slot}, {x, y}));
   }
 
   bool remove(const GivenNumbers& vertices) {
-    return mesh_.remove(vertices.data(), vertices.shape(0));
+    return held_->remove(vertices.data(), vertices.shape(0));
   }
 
   auto force(const GivenPairs& segments) {
     const CheckedMesh::Forced forced = [&] {
       nb::gil_scoped_release release;
-      return mesh_.force(pairs_of(segments), no_signal);
+      return held_->force(pairs_of(segments), no_signal);
     }();
     if (!forced.is_complete) throw nb::python_error();
     return std::make_tuple(hand_over(forced.passed), hand_over(forced.blocked));
   }
 
   Numbers crossed(const GivenPairs& segments, bool only_fixed) const {
-    return hand_over(mesh_.crossed(pairs_of(segments), only_fixed));
+    return hand_over(held_->crossed(pairs_of(segments), only_fixed));
   }
-  std::int32_t release(const GivenPairs& segments) { return mesh_.release(pairs_of(segments)); }
+  std::int32_t release(const GivenPairs& segments) { return held_->release(pairs_of(segments)); }
 
   Numbers illegal_fixed_edges() {
     const auto illegal = [&] {
       nb::gil_scoped_release release;
-      return mesh_.illegal_fixed_edges();
+      return held_->illegal_fixed_edges();
     }();
     return hand_over(illegal);
   }
 
-  bool has_fixed_edge(std::int32_t v) const { return mesh_.has_fixed_edge(Vertex{v}); }
-  double clearance(std::int32_t v) const { return mesh_.clearance(Vertex{v}); }
+  bool has_fixed_edge(std::int32_t v) const { return held_->has_fixed_edge(Vertex{v}); }
+  double clearance(std::int32_t v) const { return held_->clearance(Vertex{v}); }
   Numbers fixed_neighbors(std::int32_t v) const {
-    return hand_over(mesh_.fixed_neighbors(Vertex{v}));
+    return hand_over(held_->fixed_neighbors(Vertex{v}));
   }
   Numbers corners_beside(std::int32_t a, std::int32_t b) const {
-    return hand_over(mesh_.apexes_beside(Vertex{a}, Vertex{b}));
+    return hand_over(held_->apexes_beside(Vertex{a}, Vertex{b}));
   }
 
   auto arrays(int threads) const {
     MeshArrays made = [&] {
       nb::gil_scoped_release release;
       Team team(threads, [] { return true; });
-      return MeshArrays(mesh_.editor(), team);
+      return MeshArrays(held_->editor(), team);
     }();
     const std::size_t size = made.triangle_count;
     return std::make_tuple(hand_over<Triples>(std::move(made.corners), {size, 3}),
@@ -117,7 +119,7 @@ class HeldMesh {
   }
 
  private:
-  CheckedMesh mesh_;
+  std::shared_ptr<CheckedMesh> held_;
 };
 
 // Region of each triangle, and the largest triangle of each region.

@@ -2,6 +2,7 @@
 #include <nanobind/nanobind.h>
 
 #include "bind_constraints.hpp"
+#include "bind_editing.hpp"
 #include "bind_interpolation.hpp"
 #include "bind_location.hpp"
 #include "bind_mesh.hpp"
@@ -19,6 +20,7 @@ NB_MODULE(_core, m) {
   bind_interpolation(m);
   bind_constraints(m);
   bind_mesh(m);
+  bind_editing(m);
   bind_refinement(m);
   bind_simplification(m);
 }
