@@ -27,14 +27,14 @@ __all__ = ["contours"]
 @click.command(cls=Command)
 @input_file("file")
 @output_files
-@number_option("--interval", "HEIGHT", "Between levels, in the unit of elevations.")
+@number_option("--interval", "HEIGHT", "Contour interval, in the unit of elevations.")
 @click.option(
     "--levels",
     metavar="Z,Z,...",
     callback=parse_numbers,
-    help="Explicit levels instead of an interval, with commas.",
+    help="Explicit levels instead of an interval, separated by commas.",
 )
-@number_option("--base", "ELEVATION", "A level from which the others are counted.", default=0.0)
+@number_option("--base", "ELEVATION", "Level from which the others are counted.", default=0.0)
 @number_option(
     "--index",
     "N",
@@ -45,9 +45,9 @@ __all__ = ["contours"]
 @number_option(
     "--smooth",
     "HEIGHT",
-    "Round the corners, as far as the surface stays within this much of the level.",
+    "Smooth the lines, as long as the surface stays within this height of the level.",
 )
-@number_option("--simplify", "HEIGHT", "Drop points, likewise.")
+@number_option("--simplify", "HEIGHT", "Remove points of lines, within this height of the level.")
 @click.option("--bands", is_flag=True, help="Write the bands between levels, as polygons.")
 @click.option(
     "--labels", is_flag=True, help="Write labels of the lines, as points with a rotation."
@@ -55,7 +55,7 @@ __all__ = ["contours"]
 @number_option(
     "--label-spacing",
     "DISTANCE",
-    "Between labels of a line, in CRS units; default a third of the extent.",
+    "Distance between labels of a line, in CRS units; default a third of the extent.",
 )
 @surface_options(vector_options)
 def contours(
@@ -63,10 +63,11 @@ def contours(
     request: Request,
     **options: Any,
 ) -> None:
-    """Draw contours of the TIN in FILE, or that of the points in it, at an interval or at levels.
+    """Draw contours of the TIN in FILE, or built from the points in it.
 
-    A level counts as just below its value: lines are closed or end at the boundary, and flat areas
-    at a level lie above it. Smoothed and simplified lines do not touch one another.
+    Levels are given by an interval or one by one. A level is treated as infinitesimally below its
+    value: lines are closed or end at the boundary, and flat areas at a level lie above it. Smoothed
+    and simplified lines do not touch one another.
 
     \b
     Example:

@@ -28,8 +28,14 @@ _SHOWN = 12
 @click.command(cls=Command)
 @input_file("file")
 @output_files
-@click.option("--from", "eye", metavar="X Y", nargs=2, type=float, help="The eye.")
-@click.option("--eye", "eyes", metavar="FILE", type=LINES, help="In its place: a file of points.")
+@click.option("--from", "eye", metavar="X Y", nargs=2, type=float, help="Position of the eye.")
+@click.option(
+    "--eye",
+    "eyes",
+    metavar="FILE",
+    type=LINES,
+    help="Vector file of points, instead of coordinates.",
+)
 @click.option(
     "--to",
     "targets",
@@ -37,27 +43,38 @@ _SHOWN = 12
     nargs=2,
     type=float,
     multiple=True,
-    help="A target, for a line of sight; without one the viewshed. May be given several times.",
+    help="Position of a target, for a line of sight; without one the viewshed. May be given "
+    "several times.",
 )
 @click.option(
-    "--targets", "points", metavar="FILE", type=LINES, help="In its place: a file of points."
+    "--targets",
+    "points",
+    metavar="FILE",
+    type=LINES,
+    help="Vector file of points, instead of coordinates.",
 )
-@number_option("--eye-height", "HEIGHT", "Of the eye above the ground.", default=0.0)
-@number_option("--target-height", "HEIGHT", "Of targets above the ground.", default=0.0)
-@number_option("--radius", "LENGTH", "Of the viewshed; any distance if absent.")
-@click.option("--curvature", is_flag=True, help="Mind that the earth is a sphere.")
-@number_option("--sight-refraction", "COEFFICIENT", "With --curvature; 0.13 if absent.")
+@number_option("--eye-height", "HEIGHT", "Height of the eye above the ground.", default=0.0)
+@number_option("--target-height", "HEIGHT", "Height of targets above the ground.", default=0.0)
+@number_option("--radius", "LENGTH", "Radius of the viewshed; default unlimited.")
+@click.option("--curvature", is_flag=True, help="Take earth curvature and refraction into account.")
+@number_option(
+    "--sight-refraction",
+    "COEFFICIENT",
+    "Coefficient of refraction, with --curvature; default 0.13.",
+)
 @click.option(
-    "--whole-triangles", is_flag=True, help="Judge triangles by their corners: do not divide them."
+    "--whole-triangles",
+    is_flag=True,
+    help="Classify whole triangles by their corners, without dividing them.",
 )
 @surface_options()
 def sight(file: Path, request: Request, **asked: Any) -> None:
-    """Find what is seen from a place on the TIN in FILE, or on that of the points in it.
+    """Find what is visible from a point on the TIN in FILE, or built from the points in it.
 
-    Without targets the viewshed: what is visible and what is hidden, as polygons that divide
-    triangles. Vector files get the features, tables (.csv, .json) their columns. Ground that only
-    touches a line of sight does not block it. Points of files are reprojected; several eyes go
-    with as many targets.
+    Without targets the result is the viewshed: the visible and the hidden part, as polygons that
+    divide triangles. Vector files get the features, tables (.csv, .json) their columns. Ground
+    that only touches a line of sight does not block it. Points of files are reprojected; several
+    eyes need as many targets.
 
     \b
     Example:
