@@ -14,9 +14,9 @@ FORMATS = (
         reads=("TIN", "Survey"),
         write="tinsmith.io.cad.landxml.writing:write",
         writes=(*SURFACES, "Features"),
-        precision="Coordinates come back bit for bit.",
-        losses="One unit for coordinates and elevations; of a survey no attributes but number, "
-        "description and code, and no erased areas; no notes and no report; vertices of no "
+        precision="Coordinates are kept bit for bit.",
+        losses="One unit for coordinates and elevations; of a survey attributes other than number, "
+        "description and code, and erased areas; notes and report; vertices of no "
         "triangle.",
         loses=("elevation unit", "erased areas", "attributes", "notes", "report"),
         sniff=signatures.is_landxml,
@@ -29,7 +29,7 @@ FORMATS = (
         reads=("TIN", "Survey"),
         write="tinsmith.io.cad.dxf.writing:write",
         writes=(*SURFACES, "Features"),
-        precision="Coordinates come back bit for bit.",
+        precision="Coordinates are kept bit for bit.",
         losses="One unit for coordinates and elevations; the numbers of vertices; attributes of "
         "points but number and description; columns of features; notes and report. R12 has no "
         "CRS.",

@@ -15,7 +15,7 @@ from .signatures import (
 
 __all__ = ["FORMATS"]
 
-_EXACT = "Every number comes back bit for bit."
+_EXACT = "Every number is kept bit for bit."
 
 
 def _make(name: str, description: str, *suffixes: str, module: str, **more: Any) -> Format:
@@ -42,8 +42,8 @@ FORMATS = (
         module="ply.file",
         sniff=signatures.is_ply,
         precision=_EXACT,
-        losses="The report and its notes, and what undoing edits needs; of points, their lines and "
-        "attributes that are no numbers.",
+        losses="The report and its notes, and the history of edits; of points, their lines and "
+        "attributes that are not numbers.",
         loses=("survey lines", "attributes", "notes", "report"),
     ),
     _make(
@@ -60,8 +60,8 @@ FORMATS = (
         module="stl",
         sniff=signatures.is_stl,
         writes=("TIN",),
-        precision="Coordinates are rounded to float32 after an origin is subtracted: to a sixteen "
-        "millionth of the extent.",
+        precision="Coordinates are rounded to float32 after subtracting an origin: 1/16,000,000 "
+        "of the extent.",
         relative_rounding=6e-8,
         losses="The order of vertices and triangles, which edges are constrained, lines, "
         "attributes and the report.",
@@ -108,7 +108,7 @@ FORMATS = (
         module="ugrid",
         writes=("TIN",),
         precision=_EXACT,
-        losses="Names of lines, which are chained anew, attributes, and the report.",
+        losses="Names of lines (lines are joined again from edges), attributes, and the report.",
         loses=("lines", "attributes", "notes", "report"),
         extra="mesh",
         sniff=signatures.is_ugrid,
@@ -130,7 +130,7 @@ FORMATS = (
         reads=("TIN",),
         write="tinsmith.io.mesh.city_json.writing:write",
         writes=("TIN",),
-        precision="Decimals come back bit for bit, other numbers to the last digit of float64; or "
+        precision="Decimals are kept bit for bit, other numbers to the last digit of float64; or "
         "to the precision asked for.",
         rounding=2e-9,
         losses="Which edges are constrained, lines, attributes and the report; vertices of no "
@@ -144,8 +144,8 @@ FORMATS = (
         suffixes=(),
         write="tinsmith.io.mesh.quantized_mesh.writing:write",
         writes=("TIN",),
-        precision="A thousandth of the median edge in the plane, a millimetre or a 32,767th of the "
-        "range of elevations in a tile.",
+        precision="Horizontally 1/1000 of the median edge; vertically a millimetre or 1/32,767 "
+        "of the range of elevations in a tile.",
         losses="The surface is cut into tiles in longitude and latitude, without lines and "
         "attributes; one tile is read at a time.",
         loses=(
@@ -173,7 +173,7 @@ FORMATS = (
         suffixes=(".glb",),
         write="tinsmith.io.mesh.gltf.writing:write",
         writes=("TIN",),
-        precision="A sixteen millionth of the extent, from an origin that the file tells.",
+        precision="1/16,000,000 of the extent, relative to an origin stored in the file.",
         losses="Which edges are constrained, lines, attributes and the report; vertices of no "
         "triangle.",
         loses=("constrained", "lines", "attributes", "notes", "report"),

@@ -12,7 +12,7 @@ def _make(name: str, description: str, function: str) -> Format:
     """Describe a kind of GeoTIFF that is written."""
     write = f"{__package__}.geotiff:{function}"
     kinds: dict[str, Any] = {"suffixes": (".tif", ".tiff"), "writes": ("Raster",)}
-    kinds["precision"] = "Every cell comes back bit for bit."
+    kinds["precision"] = "Every cell is kept bit for bit."
     return Format(name=name, description=description, write=write, **kinds)
 
 
@@ -36,7 +36,7 @@ FORMATS = (
         suffixes=(".asc",),
         write="tinsmith.io.raster.ascii_grid:write",
         writes=("Raster",),
-        precision="Every number is the same double.",
+        precision="Every number is kept bit for bit.",
         losses="Units and notes; all bands but one.",
     ),
 )

@@ -11,7 +11,7 @@ FORMATS = (
         suffixes=(".csv", ".tsv", ".txt"),
         write="tinsmith.io.tables.csv_tables:write",
         writes=("Table", "Features"),
-        precision="Every number comes back bit for bit.",
+        precision="Every number is kept bit for bit.",
         losses="Notes and the CRS.",
     ),
     Format(
@@ -20,7 +20,7 @@ FORMATS = (
         suffixes=(".json",),
         write="tinsmith.io.tables.json_tables:write",
         writes=("Table",),
-        precision="Every number comes back bit for bit.",
+        precision="Every number is kept bit for bit.",
         losses="",
     ),
 )
