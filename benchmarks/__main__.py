@@ -50,7 +50,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "--points": {
         "type": int,
         "metavar": "N",
-        "help": "points, rows, places, triangles; default 100,000",
+        "help": "points, rows, triangles; default 100,000",
     },
     "--full": {
         "action": "store_true",

@@ -17,10 +17,11 @@ _HEAD = """\
 *Written by `docs/make_formats.py` from the registry; `tinsmith formats` shows the same for what is
 installed, `tinsmith formats --json` for a program.*
 
-A **TIN** is a surface, a **Survey** points with what is known of them, **Features** are points,
+A **TIN** is a surface, a **Survey** points with lines and attributes, **Features** are points,
 lines or polygons, a **Raster** cells, a **Table** named columns. A reader is chosen by the content
-of a file, else by its suffix; a writer by what there is to write and the suffix. `format=`
-(`--format`, `--output-format`) names one whatever the suffix.
+of a file, else by its suffix; a writer by the type of the object and the suffix. `format=`
+(`--format`, `--output-format`) overrides both. [Which format for a TIN](#which-format-for-a-tin)
+compares the main ones.
 
 """
 
@@ -28,22 +29,21 @@ _WHOLE = """
 ## Which format for a TIN
 
 **`.gpkg` keeps everything**: points, triangles, constrained edges, lines with their names and
-kinds, water, CRS, units, the report, and what edits and undoing them need. Read back, the TIN
-equals the one that was written bit for bit, and so do its edits. QGIS, ArcGIS and GDAL open its
-layers (`vertices`, `triangles` with slope and aspect, `lines`, `boundary`, `water`) at once.
-Compared, for a TIN of 1 million triangles, on one core of a busy machine:
+kinds, water, CRS, units, the report, and the history of edits for undo. The TIN read back equals
+the one written bit for bit, edits included. QGIS, ArcGIS and GDAL open its layers (`vertices`,
+`triangles` with slope and aspect, `lines`, `boundary`, `water`). For a TIN of 1 million triangles,
+on one core of a shared machine:
 
-| format | size | write | read | who reads it | what is lost |
+| format | size | write | read | read by | what is lost |
 |---|---|---|---|---|---|
 | GeoPackage, by SQLite alone | 219 MB | 5.4 s | 3.4 to 4.7 s | every GIS | nothing |
-| GeoPackage of the triangles, by GDAL | 284 MB | 8.0 s | | every GIS | what is no layer |
-| PLY with edges | 25 MB | 0.1 s | 0.7 s | QGIS (mesh), CloudCompare, MeshLab | report, undoing |
-| Parquet, two tables | 24 MB | 0.3 s | 0.03 s | tools of columns | what tables cannot say |
+| GeoPackage of the triangles, by GDAL | 284 MB | 8.0 s | | every GIS | all but the triangles |
+| PLY with edges | 25 MB | 0.1 s | 0.7 s | QGIS (mesh), CloudCompare, MeshLab | report, undo |
+| Parquet, two tables | 24 MB | 0.3 s | 0.03 s | columnar tools | what tables cannot hold |
 
-GDAL's file has a spatial index, which SQLite alone would fill one triangle after the other, in
-21 s. Parquet and Arrow hold tables: a TIN in them is several files, or a layout that no other
-program knows, so they were not chosen. Take PLY to look at a surface as a mesh, and where size
-counts.
+GDAL's file has a spatial index; filling one by SQLite alone would take 21 s. Parquet and Arrow
+hold tables: a TIN needs several files, or a layout that no other program reads, so they are not
+used for whole TINs. Use PLY to view a surface as a mesh, and where size matters.
 
 ## Formats and commands of other packages
 
@@ -56,10 +56,10 @@ Another package adds formats through the entry-point group `tinsmith.formats`, e
 ifc = "tinsmith_ifc:IFC"
 ```
 
-- A plug-in that cannot be loaded, or is at fault, is left out with a warning that names its
+- A plug-in that cannot be loaded or is invalid is skipped, with a warning that names its
   distribution and version.
-- Built-in formats and commands cannot be replaced. A suffix that a plug-in and another format claim
-  for the same thing is refused where it is used, and the sentence names both: `format=` chooses.
+- Built-in formats and commands cannot be replaced. If a plug-in and another format claim the same
+  suffix for the same type, using it is an error that names both; `format=` decides.
 - A reader takes `(path, *, crs=None, z_unit=None)` and options of its own, and returns a Survey or
   a TIN; a writer takes `(obj, path)` and options of its own.
 """

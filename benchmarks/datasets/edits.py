@@ -35,7 +35,7 @@ EDIT_TASKS = {
     "inserts": (0,),
     "removals": (1,),
     "moves": (2,),
-    "new heights": (3,),
+    "new elevations": (3,),
     "mixed edits": (0, 1, 2, 3),
 }
 """What is done in each task but the batch."""

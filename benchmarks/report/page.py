@@ -8,6 +8,7 @@ import textwrap
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
 from pathlib import Path
+from statistics import median
 
 from ..measure import OURS, Outcome, Result, is_installed
 from ..peers.answers import AS_MANY, EQUAL
@@ -24,13 +25,13 @@ LEAST_FOR_MEMORY = 50_000
 """Below this many points memory is that of the libraries, not of the points."""
 
 INTRODUCTION = """\
-# Benchmarks
+# {title}
 
-tinsmith beside the libraries that do the same, run in turn (A B C A B C) in one command, on one
-core each where nothing else is said; seconds are medians. **Every answer that is timed is
-compared**: ours is proved by `ts.check`, an exact peer's must be the same triangulation or one that
-differs only in how ties between cocircular points are broken, and what the others lose is said
-below the table.
+tinsmith compared with libraries for the same tasks. The tools run alternately (A B C A B C) in one
+command, on one core each unless stated otherwise; seconds are medians. **Every result that is timed
+is verified**: that of tinsmith by `ts.check`; that of an exact library must be the same
+triangulation or differ only in how ties between cocircular points are broken; points and triangles
+that other libraries lose are listed below the table.
 """
 HOW_TO_REPEAT = """\
 ## How to repeat this
@@ -42,17 +43,17 @@ HOW_TO_REPEAT = """\
 ```
 
 CGAL is a C++ library: with `g++` and its headers (Debian: `libcgal-dev`) the command compiles a
-small harness; without them, and without any other peer, it says so and goes on. Data sets are
-made by seeded generators in `benchmarks/`.
+small program. Tools that are not installed are skipped and named. Data sets are made by seeded
+generators in `benchmarks/`.
 """
 KERNEL_NOTES = """\
-Seconds, and in brackets how many times the whole call `ts.triangulate(points)` that is: above 1
-tinsmith is faster. That call checks the input, merges duplicates and makes all arrays of the TIN;
-*kernel* is the compiled part alone, triangles and neighbours. Of the peers only the triangulation
-is timed: not the conversion of the points to their own types, and of CGAL (`insert(begin, end)`,
-exact predicates, compiled with `-O3 -march=native`) nothing of Python. Points come in the order
-of the data set; startinpy inserts them in that order, so random order costs it most. † wrong,
-incomplete or not ended in time, see below.
+Seconds, and in brackets the ratio to the whole call `ts.triangulate(points)`: above 1 tinsmith is
+faster. That call checks the input, merges duplicates and makes all arrays of the TIN; *kernel* is
+the compiled part alone, triangles and neighbours. Of the other libraries only the triangulation is
+timed, without the conversion of the points to their types; CGAL (`insert(begin, end)`, exact
+predicates, compiled with `-O3 -march=native`) runs without Python. Points are in the order of the
+data set; startinpy inserts them in that order and is slowest in random order. † wrong, incomplete
+or not finished in time, see below.
 """
 
 
@@ -91,6 +92,16 @@ def write_report(
     return written
 
 
+def _make_title(results: Sequence[Result]) -> str:
+    """Return what is measured, with the usual number of points rounded to a power of ten."""
+    counts = [result.count for result in results if result.section in PLOTS]
+    if not counts:
+        return "Benchmarks"
+    is_of_lines = all(result.section != "kernel" for result in results)
+    subject = "Benchmarks with breaklines" if is_of_lines else "Benchmarks"
+    return f"{subject}: {10 ** round(math.log10(median(counts))):,} points"
+
+
 def _name_plots(outcome: Outcome, name: str) -> dict[str, str]:
     """Return the names of the plots to draw, by section."""
     drawn = {
@@ -122,7 +133,8 @@ def _format_page(
     outcome: Outcome, machine: dict[str, str], command: str, plots: dict[str, str]
 ) -> str:
     versions = ", ".join(f"{k} {v}" for k, v in machine.items() if k != "machine")
-    parts = [INTRODUCTION, f"Machine: {machine['machine']}. {versions}.\n"]
+    title = _make_title(outcome.results)
+    parts = [INTRODUCTION.format(title=title), f"Machine: {machine['machine']}. {versions}.\n"]
     for section, render in SECTIONS.items():
         results = _select_section(outcome.results, section)
         if results:
@@ -213,7 +225,7 @@ def _format_kernel_part(results: list[Result], plot: str) -> str:
     parts += _format_plot(plot)
     parts.append(_format_times(rows, tools))
     parts += format_goals(results)
-    parts += ["### What the others lose, and how ties fall\n", _format_remarks(rows)]
+    parts += ["### Differences from tinsmith: lost points, errors, ties\n", _format_remarks(rows)]
     parts += ["### Memory\n", MEMORY_NOTES, _format_memory(rows, tools)]
     parts += ["### Work\n", WORK_NOTES, _format_work(rows)]
     return "\n".join(parts)
@@ -224,8 +236,8 @@ def _format_plot(plot: str) -> list[str]:
 
 
 GOALS_NOTES = """\
-The project's own goals for one thread at 1,000,000 points unless said otherwise, judged by the
-figures of this page. Each ratio is the least favourable of its data sets.
+The project's goals, for one thread at 1,000,000 points unless stated otherwise, and the figures of
+this page. Each ratio is the least favourable of its data sets.
 """
 
 
@@ -262,9 +274,9 @@ def _format_remarks(rows: list[_KernelRow]) -> str:
 
 
 MEMORY_NOTES = """\
-Bytes per point: by how much the resident memory of a process that runs only this tool rises above
-what it held with the points loaded; the answer is part of it. *Beyond input and output*: less the
-arrays returned (of the whole call 82 bytes per point, of the kernel 48).
+Bytes per point: the increase of the resident memory of a process that runs only this tool, from
+the state with the points loaded; it includes the result. *Beyond input and output*: without the
+arrays returned (82 bytes per point for the whole call, 48 for the kernel).
 """
 
 
@@ -286,10 +298,10 @@ def _format_memory(rows: list[_KernelRow], tools: list[str]) -> str:
 
 
 WORK_NOTES = """\
-Per triangle: searches for a third point (below 1 where the kernel hands the rest to insertion); of
-these, full searches that go beyond the gathered neighbourhood; candidates looked at, rows of cells
-that full searches enter, and decisions that needed exact arithmetic. These do not depend on the
-machine; `count_work` in `tin/_kernel.py` tells them of any points.
+Per triangle: searches for a third point (below 1 where the kernel switches to insertion); full
+searches, which go beyond the gathered neighbourhood; candidates examined; rows of cells that full
+searches enter; decisions that needed exact arithmetic. These counts do not depend on the machine;
+`count_work` in `tin/_kernel.py` returns them for any points.
 """
 WORK_COUNTS = ("searches", "full_searches", "candidates", "cell_rows", "exact_decisions")
 
@@ -305,19 +317,19 @@ def _format_work(rows: list[_KernelRow]) -> str:
 # ------------------------------------------------------------------------- lines
 
 LINES_NOTES = """\
-Seconds for the whole call `ts.triangulate(points, breaklines=lines)`, and of the peers in brackets
-how many times that. tinsmith finds out itself which vertices of lines are points, where lines cross
-and which points lie on them; the peers are given every place once and the lines as pairs of place
-numbers, made beforehand. CGAL: `insert` all points and `insert_constraint` by vertex handles, or
-`insert_constraints` by indices, exact predicates. Triangle: switches `pcQz`. Counted are points and
-vertices of lines together.
+Seconds for the whole call `ts.triangulate(points, breaklines=lines)`, and in brackets the ratio of
+the other libraries to it. tinsmith itself finds which vertices of lines are points, where lines
+cross and which points lie on them; the others are given distinct points and the lines as pairs of
+point numbers, prepared beforehand. CGAL: `insert` all points and `insert_constraint` by vertex
+handles, or `insert_constraints` by indices, exact predicates. Triangle: switches `pcQz`. The number
+of points includes vertices of lines.
 
-- *short lines*: uniform points, lines of ten segments; *long lines*: from side to side
-- *nested rings*: contours of one hill, each within the next; *hills*: 70 on each of many hills
-- *raster lines*: between points of a 0.1 m raster, many over further points
+- *short lines*: uniform points, lines of ten segments; *long lines*: across the whole area
+- *nested rings*: contours of one hill; *hills*: 70 rings on each of many hills
+- *raster lines*: between points of a 0.1 m raster, many of them through further points
 """
 LINES_MEMORY_NOTES = """\
-As for triangulation without lines. Every tool is given what it needs before.
+As for triangulation without lines. The input of every tool is prepared beforehand.
 """
 
 
@@ -326,7 +338,7 @@ def _format_lines_part(results: list[Result], plot: str) -> str:
     tools = [tool for tool in ALL_LINE_TOOLS if any(tool in row.by_tool for row in rows)]
     parts = ["## Triangulation with breaklines\n", LINES_NOTES, *_format_plot(plot)]
     parts += [_format_times(rows, tools), *format_goals(results)]
-    parts += ["### Answers with lines that differ from ours\n", _format_remarks(rows)]
+    parts += ["### Differences from tinsmith with lines\n", _format_remarks(rows)]
     parts += ["### Memory with lines\n", LINES_MEMORY_NOTES, _format_memory(rows, tools)]
     return "\n".join(parts)
 
@@ -363,31 +375,30 @@ def _make_other_row(result: Result, ours: Result) -> list[str]:
 
 
 EDITS_NOTES = """\
-Random edits of a finished TIN of uniform points, one call each, and as many points again in one
-call; one core each. *tinsmith* is from the finished TIN: the first edit, which makes a mesh of its
-arrays, is included. *opened* leaves that out, as for the peers, which are meshes from the start;
-*and its arrays* includes looking at the triangles afterwards, *building* is the batch triangulated
-alone. CGAL (`Delaunay_triangulation_2`) and startinpy name vertices by handles that stay, and keep
-no history. CGAL has no heights; a move of startinpy is a removal and an insertion; its points are
-sorted along a curve first, not timed.
+Random edits of a TIN of uniform points, one call each; *batch* inserts as many points as the TIN
+has in one call; one core each. *tinsmith* includes the first edit, which makes a mesh of the
+arrays of the TIN; *opened* excludes it, as for the peers, which are meshes from the start; *and
+its arrays* includes reading the triangles afterwards; *building* is a triangulation of the points
+of the batch alone. CGAL (`Delaunay_triangulation_2`) and startinpy have stable vertex handles and
+no history. CGAL has no elevations; a move in startinpy is a removal and an insertion, and its
+points are sorted along a curve first, which is not timed.
 """
 
 ANSWERS_NOTES = """\
-What is derived from a TIN, on one and the same TIN. To prepare is from the TIN to its index. Every
-answer is compared with ours, as said below the table; one that differs ends the run.
+Products of one TIN. Preparation is from the TIN to its index. Every result is compared with that
+of tinsmith, as stated below the table; a difference stops the run.
 """
 
 
 def _format_answers_part(results: list[Result], plot: str) -> str:
-    part = _make_part_formatter("Answers from the surface", "points", ANSWERS_NOTES)
+    part = _make_part_formatter("Products of a TIN", "points", ANSWERS_NOTES)
     compared = [_format_item(text) for text in answers.describe_modules()]
     return "\n".join([part(results, plot), "### What is compared\n", *compared, ""])
 
 
 PRODUCTS_NOTES = """\
-What is made of a surface, each product alone in a process of its own; its answer is checked.
-Seconds are those by the clock and of the processor; memory is how far that of the process rises
-above what it holds with its input.
+Products of a surface, each in a separate process; results are checked. Elapsed seconds and
+processor seconds; memory is the increase above that of the process with its input.
 """
 
 
@@ -423,7 +434,7 @@ SECTIONS: dict[str, Callable[[list[Result], str], str]] = {
         "Variants of the kernel",
         "points",
         "Vector instructions, the two methods between which the kernel chooses, and small inputs;\n"
-        "all in one process and in turn, each with the same arrays as the others.\n",
+        "alternately in one process, all with the same arrays.\n",
     ),
     "lines": _format_lines_part,
     "edits": _make_part_formatter(
@@ -433,14 +444,14 @@ SECTIONS: dict[str, Callable[[list[Result], str], str]] = {
     ),
     "locate": _make_part_formatter(
         "Queries",
-        "places",
-        "Random places on a TIN of uniform points, near the origin of coordinates so that SciPy\n"
-        "can take part; ratios are per place. To prepare is from points to the first answer.\n",
+        "points",
+        "Random query points on a TIN of uniform points, near the origin of coordinates as SciPy\n"
+        "needs it; ratios are per point. Preparation is from the points to the first result.\n",
     ),
     "readers": _make_part_formatter(
         "Readers",
         "rows",
-        "One file of each kind, in the cache of the system; equal numbers read.\n",
+        "One file of each format, in the file cache of the system; numbers read are compared.\n",
     ),
     "writers": _make_part_formatter(
         "Writers", "triangles", "From the TIN to the file; every file is read back and compared.\n"
@@ -450,6 +461,6 @@ SECTIONS: dict[str, Callable[[list[Result], str], str]] = {
     "startup": _make_part_formatter(
         "Starting up",
         "points",
-        "The command line on so little that starting takes most of the time; fresh processes.\n",
+        "The command line with very little input, in new processes: mostly the time to start.\n",
     ),
 }

@@ -58,7 +58,7 @@ def run(
 
 
 def _takes_part(tool: str, name: str) -> bool:
-    if tool == CGAL and name == "new heights":  # it has none
+    if tool == CGAL and name == "new elevations":  # it has none
         return False
     return tool != (OPENED if name == BATCH else BUILD)
 
@@ -102,7 +102,7 @@ def _judge_edits(tool: str, process: ToolProcess, tin: TIN, task: EditTask) -> V
     found = judge_answer(wanted, numbers, rank_triangles(wanted.triangles))
     if found.is_right and answer.shape[2] == 3:
         wrong = np.count_nonzero(wanted.points[numbers, 2] != answer[:, :, 2])
-        found = Verdict(False, f"{wrong:,} heights of corners wrong") if wrong else found
+        found = Verdict(False, f"{wrong:,} elevations of corners wrong") if wrong else found
     is_exact = is_cgal(tool) or EDIT_TOOLS[tool].is_exact
     assert found.is_right or not is_exact, f"{tool}: {found.text}"
     return found

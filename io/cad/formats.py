@@ -13,15 +13,15 @@ def _make(name: str, description: str, *suffixes: str, **more: Any) -> Format:
     where = f"{__package__}.{name}"
     ends: dict[str, Any] = {"read": f"{where}.reading:read", "reads": ("TIN", "Survey")}
     ends |= {"write": f"{where}.writing:write", "writes": (*SURFACES, "Features")}
-    ends["precision"] = "Coordinates come back bit for bit."
+    ends["precision"] = "Coordinates are kept bit for bit."
     return Format(name=name, description=description, suffixes=suffixes, **(ends | more))
 
 
 FORMATS = (
     _make(
         *("landxml", "LandXML (Civil 3D, Carlson, 12d, Trimble)", ".xml", ".landxml"),
-        losses="One unit for coordinates and elevations; of a survey no attributes but number, "
-        "description and code, and no erased areas; no notes and no report; vertices of no "
+        losses="One unit for coordinates and elevations; of a survey attributes other than number, "
+        "description and code, and erased areas; notes and report; vertices of no "
         "triangle.",
         loses=("elevation unit", "erased areas", "attributes", "notes", "report"),
         sniff=signatures.is_landxml,

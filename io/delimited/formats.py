@@ -11,10 +11,9 @@ FORMATS = (
         suffixes=(".csv", ".txt", ".xyz", ".tsv", ".pts", ".dat", ".pnt"),
         read="tinsmith.io.delimited.survey_text:read",
         write="tinsmith.io.delimited.survey_text:write",
-        precision="Every number comes back bit for bit.",
-        losses="Points alone: of a TIN its vertices, without triangles and lines; of a survey no "
-        "lines. The CRS is not kept; in .xyz and .pts neither attributes nor the unit of "
-        "elevations.",
+        precision="Every number is kept bit for bit.",
+        losses="Of a TIN all but its vertices; lines of a survey; the CRS; in .xyz and .pts also "
+        "attributes and the unit of elevations.",
         loses=(
             *("crs", "elevation unit", "triangles", "constrained", "lines"),
             *("survey lines", "attributes", "notes", "report"),

@@ -14,13 +14,13 @@ FORMATS = (
         write="tinsmith.io.lidar.writing:write",
         writes=SURFACES,
         precision=(
-            "Coordinates are whole multiples of a power of ten, the coarsest that gives each of "
-            "them back; else of a millionth of a CRS unit, or of what 32 bits hold."
+            "Coordinates are whole multiples of a power of ten, the coarsest that keeps each of "
+            "them; else of a millionth of a CRS unit, or of the resolution of 32 bits."
         ),
         rounding=5.1e-7,
         relative_rounding=1.2e-9,
         losses=(
-            "Of a TIN all but its vertices; lines of a survey, and texts among its attributes; the "
+            "Of a TIN all but its vertices; lines and text attributes of a survey; the "
             "unit of elevations where the CRS has no vertical axis."
         ),
         loses=(

@@ -24,7 +24,7 @@ def _make(name: str, description: str, *suffixes: str, module: str, **more: Any)
     """Describe a format of TINs that a module here reads and writes, exactly if nothing is said."""
     where = f"{__package__}.{module}"
     usual: dict[str, Any] = {"read": f"{where}:read", "reads": ("TIN",), "write": f"{where}:write"}
-    usual |= {"writes": ("TIN",), "precision": "Every number comes back bit for bit."}
+    usual |= {"writes": ("TIN",), "precision": "Every number is kept bit for bit."}
     return Format(name=name, description=description, suffixes=suffixes, **(usual | more))
 
 
@@ -43,8 +43,8 @@ FORMATS = (
         module="ply.file",
         sniff=signatures.is_ply,
         writes=SURFACES,
-        losses="The report and its notes, and what undoing edits needs; of points, their lines and "
-        "attributes that are no numbers.",
+        losses="The report and its notes, and the history of edits; of points, their lines and "
+        "attributes that are not numbers.",
         loses=("survey lines", "attributes", "notes", "report"),
     ),
     _make(
@@ -58,8 +58,8 @@ FORMATS = (
         *("stl", "STL mesh", ".stl"),
         module="stl",
         sniff=signatures.is_stl,
-        precision="Coordinates are rounded to float32 after an origin is subtracted: to a sixteen "
-        "millionth of the extent.",
+        precision="Coordinates are rounded to float32 after subtracting an origin: 1/16,000,000 "
+        "of the extent.",
         relative_rounding=6e-8,
         losses="The order of vertices and triangles, which edges are constrained, lines, "
         "attributes and the report.",
@@ -98,7 +98,7 @@ FORMATS = (
         "UGRID mesh in netCDF (for Delft3D FM and xugrid; opens in QGIS)",
         ".nc",
         module="ugrid",
-        losses="Names of lines, which are chained anew, attributes, and the report.",
+        losses="Names of lines (lines are joined again from edges), attributes, and the report.",
         loses=("lines", "attributes", "notes", "report"),
         extra="mesh",
         sniff=signatures.is_ugrid,
@@ -116,7 +116,7 @@ FORMATS = (
         *("cityjson", "CityJSON 2.0 with a TINRelief", ".city.json", ".cityjson"),
         module="city_json.reading",
         write="tinsmith.io.mesh.city_json.writing:write",
-        precision="Decimals come back bit for bit, other numbers to the last digit of float64; or "
+        precision="Decimals are kept bit for bit, other numbers to the last digit of float64; or "
         "to the precision asked for.",
         rounding=2e-9,
         losses=f"{_LOSSES}; vertices of no triangle.",
@@ -129,8 +129,8 @@ FORMATS = (
         suffixes=(),
         write="tinsmith.io.mesh.quantized_mesh.writing:write",
         writes=("TIN",),
-        precision="A thousandth of the median edge in the plane, a millimetre or a 32,767th of the "
-        "range of elevations in a tile.",
+        precision="Horizontally 1/1000 of the median edge; vertically a millimetre or 1/32,767 "
+        "of the range of elevations in a tile.",
         losses="The surface is cut into tiles in longitude and latitude, without lines and "
         "attributes; one tile is read at a time.",
         loses=("crs", "elevation unit", "triangles", *_LOSES),
@@ -149,7 +149,7 @@ FORMATS = (
         suffixes=(".glb",),
         write="tinsmith.io.mesh.gltf.writing:write",
         writes=("TIN",),
-        precision="A sixteen millionth of the extent, from an origin that the file tells.",
+        precision="1/16,000,000 of the extent, relative to an origin stored in the file.",
         losses=f"{_LOSSES}; vertices of no triangle.",
         loses=_LOSES,
     ),

@@ -11,7 +11,7 @@ __all__ = ["FORMATS"]
 def _make(name: str, description: str, writer: str, **more: Any) -> Format:
     """Describe a format that rasters are written in, GeoTIFF if nothing is said."""
     usual: dict[str, Any] = {"suffixes": (".tif", ".tiff"), "writes": ("Raster",)}
-    usual["precision"] = "Every cell comes back bit for bit."
+    usual["precision"] = "Every cell is kept bit for bit."
     write = f"{__package__}.{writer}"
     return Format(name=name, description=description, write=write, **(usual | more))
 
@@ -33,7 +33,7 @@ FORMATS = (
     _make(
         *("asc", "Esri ASCII grid, one band as text", "ascii_grid:write"),
         suffixes=(".asc",),
-        precision="Every number is the same double.",
+        precision="Every number is kept bit for bit.",
         losses="Units and notes; all bands but one.",
     ),
 )

@@ -15,7 +15,7 @@ def _make(
         suffixes=suffixes,
         write=f"{__package__}.{name}_tables:write",
         writes=writes,
-        precision="Every number comes back bit for bit.",
+        precision="Every number is kept bit for bit.",
         losses=losses,
     )
 

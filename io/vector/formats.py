@@ -17,8 +17,8 @@ from .signatures import (
 __all__ = ["FORMATS"]
 
 _LOSSES = (
-    "Of a TIN what the kind that is written does not show: lines and attributes beside triangles, "
-    "the report, vertices of no triangle; of a survey its lines."
+    "Of a TIN all that is not of the kind written: with triangles lines and attributes, the "
+    "report, vertices of no triangle; of a survey its lines."
 )
 _LOSES: tuple[Loss, ...] = (
     *("order", "constrained", "lines", "survey lines"),
@@ -43,21 +43,20 @@ FORMATS = (
         writes=(*SURFACES, "Features"),
         precision=(
             "Longitude and latitude with 9 decimals, elevations in metres with 6; with the option "
-            "projected every coordinate is the same double."
+            "projected every coordinate is kept bit for bit."
         ),
         rounding=2e-4,
-        losses="The CRS, as RFC 7946 knows WGS 84 alone: name it on reading. " + _LOSSES,
+        losses="The CRS, since RFC 7946 allows only WGS 84: name it when reading. " + _LOSSES,
         sniff=signatures.is_geojson,
     ),
     _make(
         "geojsonseq",
-        "Sequence of GeoJSON features, a line each (RFC 8142 without its separators)",
+        "Sequence of GeoJSON features, one per line (RFC 8142 without its separators)",
         *(".geojsonl", ".geojsons", ".ndjson"),
         writer="surface_layers:write_geojson_sequence",
         precision="Longitude and latitude with 9 decimals, elevations in metres with 6.",
         rounding=2e-4,
-        losses="The CRS, units and notes, which a sequence has no place for: name it on reading. "
-        + _LOSSES,
+        losses="CRS, units and notes: name the CRS when reading. " + _LOSSES,
         sniff=is_geojson_sequence,
     ),
     _make(
@@ -78,7 +77,7 @@ FORMATS = (
     _make(
         *("shapefile", "Shapefile (with its parts .shx, .dbf, .prj, .cpg)", ".shp"),
         writer="surface_layers:write_shapefile",
-        precision="Coordinates are the same doubles; other numbers have 15 decimals at most.",
+        precision="Coordinates are kept bit for bit; other numbers have at most 15 decimals.",
         losses="Names beyond 10 bytes, texts beyond 254, units and notes. As a MultiPatch (on "
         "request) slope, aspect and area too. " + _LOSSES,
         loses=("elevation unit", *_LOSES),

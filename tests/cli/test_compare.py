@@ -132,7 +132,7 @@ def test_more_points_than_the_limit_name_the_way_out(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "code", "words"),
     [
-        (("--sample", "41"), 1, "40 points there are"),
+        (("--sample", "41"), 1, "40 points of the file"),
         (("--sample", "2"), 2, "x>=3"),
         (("-o", "out.svg"), 2, "must end in .png"),
         (("-o", "none/out.png"), 1, "none"),

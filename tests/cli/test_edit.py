@@ -62,7 +62,7 @@ def test_report_of_a_run_is_a_script(folder):
 @pytest.mark.parametrize(
     ("script", "sentence"),
     [
-        ("[{", "no JSON (line 1"),
+        ("[{", "not JSON (line 1"),
         ("{}", "holds something else"),
         ("[3]", "holds something else"),
         ([{"op": "explode"}], "Edit 0 has op 'explode'"),
@@ -100,8 +100,8 @@ def test_json_tells_files_surface_and_report(folder):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"\xff\xfe[]", "'script.json' is no text in UTF-8: a list of edits is needed"),
-        (b"[1", "'script.json' is no JSON (line 1: Expecting ',' delimiter): a list of edits"),
+        (b"\xff\xfe[]", "'script.json' is not text in UTF-8: a list of edits is needed"),
+        (b"[1", "'script.json' is not JSON (line 1: Expecting ',' delimiter): a list of edits"),
         (b"[1]", "'script.json' holds something else: a list of edits is needed"),
         (b"{}", "'script.json' holds something else: a list of edits is needed"),
     ],

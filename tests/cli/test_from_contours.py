@@ -72,5 +72,5 @@ def test_what_are_no_contours_is_refused(tmp_path):
     frame.to_file(tmp_path / "slope.gpkg")
     out = run("build", "--from-contours", tmp_path / "slope.gpkg", "-o", tmp_path / "a.ply")
     assert out.exit_code == 1
-    assert "of 1 line 0 are level: these are no contours" in out.stderr
+    assert "of 1 line 0 are level: these are not contours" in out.stderr
     assert not (tmp_path / "a.ply").exists()

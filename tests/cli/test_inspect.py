@@ -54,7 +54,7 @@ def test_a_build_tells_of_blunders_and_leaves_them_in(site, tmp_path):
     result = run("build", site, "--crs", "EPSG:32616", "-o", tmp_path / "a.ply")
     line = next(line for line in result.stderr.splitlines() if line.startswith("Blunders"))
     assert "3 points look like blunders: rows 40, 50, 60" in line
-    assert "'tinsmith inspect' tells more" in line
+    assert "'tinsmith inspect' lists them" in line
     assert len(ts.read(tmp_path / "a.ply").points) == COUNT
 
 

@@ -275,7 +275,7 @@ def test_a_terminal_gets_no_bytes(folder):
     os.close(terminal)
     os.close(other_end)
     assert result.returncode == 2
-    assert "no text for a terminal" in result.stderr
+    assert "is binary" in result.stderr
 
 
 def test_a_file_that_vanishes_is_a_sentence(folder, monkeypatch):

@@ -51,7 +51,7 @@ def test_no_heading_without_plug_ins(install):
 )
 def test_broken_command_says_so_and_harms_no_other(install, value, reason):
     install(Entry("broken", value), Entry("hello", hello()))
-    sentence = f"The plug-in 'broken' of ground-plus 1.2 cannot be loaded ({reason}): mend or"
+    sentence = f"The plug-in 'broken' of ground-plus 1.2 cannot be loaded ({reason}): repair or"
     result = run("--help")
     assert result.stderr.startswith(f"Warning: {sentence}")
     assert result.stderr.count("\n") == 1

@@ -60,7 +60,10 @@ def test_points_of_a_file_stay(tmp_path):
     keep.write_text("1 2 3\n1 3 3\n4 5 3\n")
     out = run("simplify", SITE, "--points", 300, "--keep", keep, "-o", path)
     assert out.exit_code == 1
-    assert "3 points of 3 to be kept are none of the surface; the first is at 1, 2." in out.stderr
+    assert (
+        "3 points of 3 to be kept are not vertices of the surface; the first is at 1, 2."
+        in out.stderr
+    )
 
 
 @pytest.mark.parametrize(

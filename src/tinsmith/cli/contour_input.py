@@ -56,6 +56,6 @@ def require_contours(survey: Survey, path: Path) -> None:
     level = sum(line.shape[1] == 3 and bool((line[:, 2] == line[0, 2]).all()) for line in lines)
     if 2 * level < len(lines):
         raise Failure(
-            f"'{path}': of {counted(len(lines), 'line')} {level:,} are level: these are no "
-            "contours, whose points all have one elevation."
+            f"'{path}': of {counted(len(lines), 'line')} {level:,} are level: these are not "
+            "contours, since all points of a contour have the same elevation."
         )

@@ -328,7 +328,7 @@ def _require_free_stdout(planned: Sequence[Output], console: Console) -> None:
     for one in chosen.formats.values():
         if one.name not in _TEXT_FORMATS and sys.stdout is not None and sys.stdout.isatty():
             raise click.UsageError(
-                f"{one.name} is no text for a terminal: send standard output to a file or a pipe."
+                f"The format '{one.name}' is binary: send standard output to a file or a pipe."
             )
 
 

@@ -42,24 +42,24 @@ CODE_OPTIONS = under(
     click.option(
         "--codes",
         is_flag=True,
-        help="Make lines of the points' own codes, such as EP1 BEG, EP1, EP1 END, BLDG1 CLS.",
+        help="Make lines from the field codes of the points, such as EP1 BEG, EP1, EP1 END, BLDG1 "
+        "CLS.",
     ),
     click.option(
         "--code-table",
         metavar="FILE",
         type=LINES,
-        help="As --codes, by a table of codes (TOML): what each becomes, and how they are written.",
+        help="As --codes, with a table of codes (TOML) that defines their kinds and marks.",
     ),
     choice_option(
         "--code-style",
         CodeStyle,
-        "As --codes, in this style; default that of the table, else the one that fits.",
+        "As --codes, in this style; default that of the table, else detected.",
     ),
     number_option(
         "--arc-tolerance",
         "LENGTH",
-        "By which the chords of curves among the codes may leave them, in CRS units; default "
-        "0.01 m.",
+        "Largest distance of chords from the curves of field codes, in CRS units; default 0.01 m.",
     ),
 )
 
@@ -83,34 +83,32 @@ _LINES = under(
         "--water-z",
         metavar="Z",
         callback=_parse_level,
-        help="Height of the water, or the column that holds it.",
+        help="Elevation of the water, or the column that holds it.",
     ),
     click.option(
         "--lines-z-unit",
         metavar="UNIT",
-        help="Unit of the elevations in the files of lines, where they do not say.",
+        help="Unit of the elevations in the files of lines, if they do not state it.",
     ),
     click.option(
-        "--drape", is_flag=True, help="Take the heights of lines in files from the surface."
+        "--drape", is_flag=True, help="Take the elevations of lines in files from the surface."
     ),
     choice_option(
         "--crossing",
         CrossingPolicy,
-        "Where lines cross: make a vertex there, or refuse.",
+        "Where lines cross: add a vertex, or refuse the input.",
         default="split",
     ),
-    click.option(
-        "--conforming", is_flag=True, help="Split lines until every edge is Delaunay by itself."
-    ),
+    click.option("--conforming", is_flag=True, help="Split lines until every edge is Delaunay."),
 )
 
 _TRIMMING = under(
     "Triangulation",
-    number_option("--max-edge", "LENGTH", "Drop triangles with longer edges, in CRS units."),
+    number_option("--max-edge", "LENGTH", "Remove triangles with longer edges, in CRS units."),
     choice_option(
         "--trim",
         TrimPolicy,
-        "Where --max-edge drops them: from the outside inwards, or everywhere.",
+        "Where --max-edge removes triangles: from the outside inwards, or everywhere.",
         default="perimeter",
     ),
 )

@@ -13,7 +13,7 @@ MESH_READING = (
         "--join",
         is_flag=True,
         default=None,
-        help="Make one TIN of all surfaces of a CityJSON file.",
+        help="Join all surfaces of a CityJSON file to one TIN.",
     ),
     click.option(
         "--variable",
@@ -23,7 +23,7 @@ MESH_READING = (
     click.option(
         "--tile",
         metavar="LEVEL/COLUMN/ROW",
-        help="Where a quantized-mesh tile lies, if its path does not tell.",
+        help="Position of a quantized-mesh tile, if its path does not contain it.",
     ),
 )
 
@@ -31,7 +31,8 @@ MESH_WRITING = (
     click.option(
         "--multipatch",
         is_flag=True,
-        help="Write a shapefile of one MultiPatch, the surface that ArcGIS knows, not of polygons.",
+        help="Write a shapefile with one MultiPatch, the surface type of ArcGIS, instead of "
+        "polygons.",
     ),
     click.option(
         "--ortho",
@@ -39,7 +40,7 @@ MESH_WRITING = (
         "texture",
         metavar="FILE",
         type=INPUT,
-        help="Drape a picture over a GLB or OBJ file: a GeoTIFF in any CRS, or a PNG or JPEG file "
+        help="Drape an image over a GLB or OBJ file: a GeoTIFF in any CRS, or a PNG or JPEG file "
         "with a world file beside it.",
     ),
     click.option(
@@ -51,32 +52,32 @@ MESH_WRITING = (
         "--thickness",
         metavar="LENGTH",
         type=float,
-        help="Of the base of --solid below the lowest vertex: millimetres with --scale or --size, "
-        "else CRS units.",
+        help="Thickness of the base of --solid below the lowest vertex: millimetres with --scale "
+        "or --size, else CRS units.",
     ),
     click.option(
         "--scale",
         metavar="N",
         type=float,
-        help="Make an STL model of 1:N in millimetres.",
+        help="Write an STL model at 1:N in millimetres.",
     ),
     click.option(
         "--size",
         metavar="MM",
         type=float,
-        help="Make an STL model whose longer side has so many millimetres.",
+        help="Write an STL model whose longer side has this length in millimetres.",
     ),
     click.option(
         "--exaggeration",
         metavar="FACTOR",
         type=float,
-        help="Factor on the elevations of a GLB file or an STL model.",
+        help="Vertical exaggeration of a GLB file or an STL model.",
     ),
     click.option(
         "--precision",
         metavar="STEP",
         type=float,
-        help="Step of the coordinates of a CityJSON file, such as 0.001; default every digit.",
+        help="Resolution of the coordinates of a CityJSON file, such as 0.001; default all digits.",
     ),
     click.option(
         "--max-level",

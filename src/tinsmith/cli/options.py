@@ -240,19 +240,20 @@ _COORDINATES = under(
     "Coordinates and units",
     crs_option(
         "--crs",
-        "Coordinate reference system of points that name none, such as EPSG:32616; "
-        "points in another one are reprojected to it.",
+        "Coordinate reference system of points whose file names none, such as EPSG:32616; "
+        "points in another CRS are reprojected to it.",
     ),
     click.option(
         "--z-unit",
         metavar="UNIT",
-        help="Unit of the elevations in the file, where it does not say: m, ft, 'US survey foot'. "
+        help="Unit of the elevations, if the file does not state it: m, ft, 'US survey foot'. "
         "Points that are reprojected get the unit of --crs.",
     ),
     crs_option("--source-crs", "CRS that the points are in, if it is not --crs."),
     crs_option(
         "--to-crs",
-        "Reproject what was read to this CRS; the input must name its own, or --crs does.",
+        "Reproject the input to this CRS; the CRS of the input must be known from the file or "
+        "--crs.",
     ),
 )
 
@@ -262,13 +263,13 @@ _INPUT = under(
         "--format",
         metavar="NAME",
         type=FormatName("read"),
-        help="Format of the input, whatever it looks like.",
+        help="Format of the input, in place of the detected one.",
     ),
     click.option(
         "--remote",
         is_flag=True,
         default=None,
-        help="Let the input be an address (https://...), which is downloaded first.",
+        help="Allow an address (https://...) as input, which is downloaded first.",
     ),
 )
 
@@ -281,13 +282,17 @@ _TEXT = under(
         help="Columns of a text file: letters (PNEZD, PENZD, XYZ, ENZ; - skips one), names in "
         "their order (x,y,z), or roles (easting=X,northing=Y,elevation=3).",
     ),
-    click.option("--delimiter", metavar="TEXT", help="What separates the columns of a text file."),
-    click.option("--decimal", type=Words([".", ","]), help="Decimal mark of the numbers in it."),
+    click.option(
+        "--delimiter", metavar="TEXT", help="Character or text between the columns of a text file."
+    ),
+    click.option(
+        "--decimal", type=Words([".", ","]), help="Decimal mark of the numbers in a text file."
+    ),
     click.option(
         "--skip-bad",
         is_flag=True,
         default=None,
-        help="Leave out the rows of a text file that cannot be read, and name them.",
+        help="Leave out rows of a text file that cannot be read, and name them.",
     ),
 )
 
@@ -300,7 +305,7 @@ _RASTERS = under(
         type=(float, float, float, float),
         help="Part of a raster or of lidar to read, in the units of its own CRS.",
     ),
-    number_option("--stride", "N", "Take every Nth cell of a raster.", type=int),
+    number_option("--stride", "N", "Read every Nth row and column of a raster.", type=int),
     number_option(
         "--nodata",
         "ELEVATION",
@@ -332,7 +337,7 @@ _MESHES = under(
         "--texts",
         is_flag=True,
         default=None,
-        help="Read texts of a DXF file that are numbers as points of that elevation.",
+        help="Read texts of a DXF file that are numbers as points with that elevation.",
     ),
 )
 
@@ -341,39 +346,39 @@ _INSTRUMENTS = under(
     click.option(
         "--code-blocks",
         type=Words(("before", "after")),
-        help="Where the codes of a GSI file stand, seen from their points.",
+        help="Whether the code blocks of a GSI file come before or after their points.",
     ),
     click.option(
         "--oriented",
         is_flag=True,
         default=None,
-        help="Take the circle readings of a GSI file for azimuths, to reduce its shots.",
+        help="Use the circle readings of a GSI file as azimuths, to reduce its shots.",
     ),
     number_option(
         "--refraction",
         "K",
-        "Coefficient by which shots of GSI and SDR files are corrected for refraction and the "
-        "earth's curvature, such as 0.13; default neither.",
+        "Correct shots of GSI and SDR files for earth curvature and refraction with this "
+        "coefficient, such as 0.13; default no correction.",
     ),
 )
 
 _LIDAR = under(
     "Input: lidar",
     click.option(
-        "--classes", metavar="N,N", help="Classes of lidar points to take, such as 2 (ground)."
+        "--classes", metavar="N,N", help="Classes of lidar points to read, such as 2 (ground)."
     ),
     click.option(
         "--returns",
         metavar="NAME,N",
-        help="Returns of lidar points to take: first, last, only, or numbers.",
+        help="Returns of lidar points to read: first, last, only, or numbers.",
     ),
     click.option(
         "--resolution",
         metavar="DISTANCE",
         type=float,
-        help="Of COPC lidar take the levels down to this distance of points.",
+        help="Read the levels of a COPC file down to this point spacing.",
     ),
-    click.option("--every", metavar="N", type=int, help="Take every Nth point of lidar."),
+    click.option("--every", metavar="N", type=int, help="Read every Nth point of lidar."),
 )
 
 _VECTORS = under(
@@ -381,8 +386,8 @@ _VECTORS = under(
     click.option(
         "--layer",
         metavar="NAME",
-        help="Layer of a vector file; of a DXF file layers, names or patterns with commas between, "
-        "such as 'TOPO*,BREAK?'.",
+        help="Layer of a vector file; for a DXF file names or patterns of layers, separated by "
+        "commas, such as 'TOPO*,BREAK?'.",
     ),
     click.option(
         "--z-field",
@@ -392,7 +397,7 @@ _VECTORS = under(
     choice_option(
         "--lines-as",
         LineReading,
-        "Take the lines of a vector file as breaklines, or their vertices as points.",
+        "Read the lines of a vector file as breaklines, or their vertices as points.",
     ),
 )
 
@@ -420,8 +425,8 @@ def make_reading_options(*, unit_flag: str = "--unit") -> Callable[[Function], F
         unit_flag,
         "length_unit",
         metavar="UNIT",
-        help="Unit of the coordinates and elevations of a LandXML or DXF file, where it does not "
-        "say, or says another one than its CRS.",
+        help="Unit of the coordinates and elevations of a LandXML or DXF file, if it does not "
+        "state one, or one that differs from its CRS.",
     )
     return _gather("reading", Reading, *_READING, *under("Coordinates and units", unit))
 
@@ -433,7 +438,7 @@ _TRIANGULATION = under(
     choice_option(
         "--duplicates",
         DuplicatePolicy,
-        "Elevation where several points share one place.",
+        "Elevation of points with equal easting and northing.",
         default="mean",
     ),
     number_option(
@@ -442,7 +447,7 @@ _TRIANGULATION = under(
     number_option(
         "--threads",
         "N",
-        "Number of threads; default every core. The result is the same.",
+        "Number of threads; default all cores. The result is the same.",
         type=click.IntRange(min=1),
     ),
 )
@@ -455,13 +460,13 @@ _format_option = click.option(
     "--output-format",
     metavar="NAME",
     type=FormatName("write"),
-    help="Format of the output, whatever its suffix.",
+    help="Format of the output, in place of that of its suffix.",
 )
-_kind_option = choice_option("--kind", FeatureKind, "What a GeoJSON file shows.")
+_kind_option = choice_option("--kind", FeatureKind, "Content of a GeoJSON file.")
 
 
 def _make_projected_option(whose: str) -> Decorator:
-    words = f"Leave the coordinates of a GeoJSON file in the CRS of the {whose}."
+    words = f"Write the coordinates of a GeoJSON file in the CRS of the {whose}."
     return click.option("--projected", is_flag=True, help=words)
 
 
@@ -482,7 +487,7 @@ console_options = _gather(
     click.option(
         "--events",
         is_flag=True,
-        help="Write progress, summary, warnings and errors to stderr as JSON, a line each.",
+        help="Write progress, summary, warnings and errors to stderr as JSON, one object per line.",
     ),
     click.option("-q", "--quiet", is_flag=True, help="No summary, no progress."),
 )

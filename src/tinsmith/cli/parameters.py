@@ -245,7 +245,7 @@ def output_option(help: str, *, required: bool = False) -> Decorator:  # noqa: A
 
 
 output_files = output_option(
-    "File to write; its suffix chooses the format, and one that is there is replaced. "
+    "File to write; its suffix chooses the format. An existing file is replaced. "
     "- is standard output, with --output-format.",
     required=True,
 )

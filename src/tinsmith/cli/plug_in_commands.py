@@ -57,8 +57,8 @@ def _try_to_load(claims: Sequence[PlugIn]) -> tuple[click.Command | None, str]:
             return command, ""
         reason = f"it is a {type(command).__name__}, not a click command"
     return None, (
-        f"The plug-in '{first.name}' of {first.distribution} cannot be loaded ({reason}): mend or "
-        "uninstall it."
+        f"The plug-in '{first.name}' of {first.distribution} cannot be loaded ({reason}): "
+        "repair or uninstall it."
     )
 
 

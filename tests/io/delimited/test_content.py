@@ -91,7 +91,7 @@ def test_two_plausible_layouts_are_refused(columns, words):
     message = str(caught.value)
     assert f"its columns may be {' or '.join(words)}: " in message
     assert " or ".join(f"columns='{word}'" for word in words) in message
-    assert message.endswith("the CRS of the points may tell, too.")
+    assert message.endswith("the CRS of the points may decide, too.")
 
 
 def test_whole_numbers_before_whole_coordinates_may_be_coordinates_themselves():
@@ -101,7 +101,7 @@ def test_whole_numbers_before_whole_coordinates_may_be_coordinates_themselves():
     assert "PNEZ or PENZ or NEZ or XYZ" in str(caught.value)
     with pytest.raises(ReadError) as caught:
         find_columns_by_content(small, AreaOfUse.of(CRS.of("EPSG:4326"), None))
-    assert "may tell, too" not in str(caught.value)
+    assert "may decide, too" not in str(caught.value)
 
 
 @pytest.mark.parametrize(

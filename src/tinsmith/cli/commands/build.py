@@ -35,8 +35,8 @@ __all__ = ["build"]
 @click.option(
     "--drop-blunders",
     is_flag=True,
-    help="Leave out the points that look like blunders, but for doubtful ones; the report names "
-    "each. 'tinsmith inspect' shows them first.",
+    help="Leave out points that look like blunders, except doubtful ones; the report names "
+    "each. 'tinsmith inspect' shows them beforehand.",
 )
 @click.option(
     "--from-contours",
@@ -52,12 +52,12 @@ def build(
     request: Request,
     from_contours: bool,
 ) -> None:
-    """Build the exact Delaunay TIN of the elevation points in POINTS, and of lines.
+    """Build the exact Delaunay TIN of elevation points and lines.
 
     POINTS is a text file of survey points (CSV, TXT, XYZ) or an elevation raster (DEM); several
-    files, or a folder of tiles, are one survey. 'tinsmith formats' lists what can be read and
-    written. Breaklines, a boundary, holes and water come from vector files, in any CRS, or from the
-    codes of the points.
+    files, or a folder of tiles, are read as one survey. 'tinsmith formats' lists what can be read
+    and written. Breaklines, a boundary, holes and water are read from vector files, in any CRS, or
+    made from the field codes of the points.
 
     \b
     Example:

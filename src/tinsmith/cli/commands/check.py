@@ -42,7 +42,7 @@ _PROVED = {
 @triangulating_options
 @console_options
 def check(file: Path, level: int, reading: Reading, how: Triangulating, console: Console) -> None:
-    """Check the TIN in FILE, exactly; of a file of points, the TIN built from them.
+    """Check the TIN in FILE, or built from the points in it, in exact arithmetic.
 
     The exit code is 1 if a problem is found.
 

@@ -32,7 +32,7 @@ _COLUMN = 16
 @number_option(
     "--sample",
     "N",
-    "Take N of the points at random, the same every time.",
+    "Use N of the points, chosen at random but the same every time.",
     type=click.IntRange(min=3),
 )
 @reading_options
@@ -42,8 +42,8 @@ def compare(
 ) -> None:
     """Triangulate the points in FILE by the paper's algorithms and by the exact kernel.
 
-    Of each: triangles, time, memory, searches, angles, and faults. Without --sample at most 2,500
-    points, for the paper's algorithms take quadratic time.
+    Shown for each are triangles, time, memory, searches, angles, and faults. Without --sample at
+    most 2,500 points are allowed, because the paper's algorithms take quadratic time.
 
     \b
     Example:
@@ -77,14 +77,12 @@ def _sample_points(points: AnyArray, count: int | None) -> AnyArray:
     if count is None:
         if len(points) > MOST_POINTS:
             raise Failure(
-                f"{len(points):,} points would take too long, for the paper's algorithms take "
-                f"quadratic time: --sample {MOST_POINTS} takes so many of them."
+                f"{len(points):,} points would take too long, because the paper's algorithms "
+                f"take quadratic time: use --sample {MOST_POINTS}."
             )
         return points
     if count > len(points):
-        raise Failure(
-            f"--sample {count:,} asks for more than the {len(points):,} points there are."
-        )
+        raise Failure(f"--sample {count:,} is more than the {len(points):,} points of the file.")
     rows = np.random.default_rng(0).choice(len(points), count, replace=False)
     return points[np.sort(rows)]
 

@@ -18,7 +18,7 @@ _VARIABLE = "_TINSMITH_COMPLETE"
 def completion(ctx: click.Context, shell: str) -> None:
     """Write the completion script for SHELL to standard output.
 
-    Commands, options, their words, formats and files are completed then.
+    It completes commands, options, their values, formats and files.
 
     \b
     Example:

@@ -25,9 +25,11 @@ __all__ = ["contours"]
 
 
 @file_command
-@number_option("--interval", "HEIGHT", "Between levels, in the unit of elevations.")
-@numbers_option("--levels", "Z,Z,...", "Explicit levels instead of an interval, with commas.")
-@number_option("--base", "ELEVATION", "A level from which the others are counted.", default=0.0)
+@number_option("--interval", "HEIGHT", "Contour interval, in the unit of elevations.")
+@numbers_option(
+    "--levels", "Z,Z,...", "Explicit levels instead of an interval, separated by commas."
+)
+@number_option("--base", "ELEVATION", "Level from which the others are counted.", default=0.0)
 @number_option(
     "--index",
     "N",
@@ -38,9 +40,9 @@ __all__ = ["contours"]
 @number_option(
     "--smooth",
     "HEIGHT",
-    "Round the corners, as far as the surface stays within this much of the level.",
+    "Smooth the lines, as long as the surface stays within this height of the level.",
 )
-@number_option("--simplify", "HEIGHT", "Drop points, likewise.")
+@number_option("--simplify", "HEIGHT", "Remove points of lines, within this height of the level.")
 @click.option("--bands", is_flag=True, help="Write the bands between levels, as polygons.")
 @click.option(
     "--labels", is_flag=True, help="Write labels of the lines, as points with a rotation."
@@ -48,7 +50,7 @@ __all__ = ["contours"]
 @number_option(
     "--label-spacing",
     "DISTANCE",
-    "Between labels of a line, in CRS units; default a third of the extent.",
+    "Distance between labels of a line, in CRS units; default a third of the extent.",
 )
 @surface_options(vector_options)
 def contours(
@@ -56,10 +58,11 @@ def contours(
     request: Request,
     **options: Any,
 ) -> None:
-    """Draw contours of the TIN in FILE, or that of the points in it, at an interval or at levels.
+    """Draw contours of the TIN in FILE, or built from the points in it.
 
-    A level counts as just below its value: lines are closed or end at the boundary, and flat areas
-    at a level lie above it. Smoothed and simplified lines do not touch one another.
+    Levels are given by an interval or one by one. A level is treated as infinitesimally below its
+    value: lines are closed or end at the boundary, and flat areas at a level lie above it. Smoothed
+    and simplified lines do not touch one another.
 
     \b
     Example:

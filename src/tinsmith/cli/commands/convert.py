@@ -35,9 +35,9 @@ def convert(
 ) -> None:
     """Write what is in FILE in another format: a TIN as a TIN, points as points.
 
-    A TIN can be written as points too, or as features (--kind); points that are the cells of a
-    grid, such as those of a DEM, as a raster. To make a TIN of points, use 'tinsmith build'; a
-    raster of any other surface, 'tinsmith raster'.
+    A TIN can also be written as points or features (--kind), and points that are the cells of a
+    grid, such as those of a DEM, as a raster. To build a TIN from points, use 'tinsmith build';
+    for a raster of another surface 'tinsmith raster'.
 
     \b
     Example:

@@ -32,7 +32,7 @@ __all__ = ["diff"]
     is_flag=True,
     help="Write the line between cut and fill to vector files, in place of the polygons.",
 )
-@click.option("--title", metavar="TEXT", help="Of the map; default the names of the files.")
+@click.option("--title", metavar="TEXT", help="Title of the map; default the names of the files.")
 @surface_options()
 def diff(
     file: Path,
@@ -41,11 +41,11 @@ def diff(
     title: str | None,
     request: Request,
 ) -> None:
-    """Subtract the TIN in FILE from that in OTHER, exactly where both are.
+    """Subtract the TIN in FILE from that in OTHER, exactly, where both exist.
 
-    The difference is a TIN itself (.ply, .obj, .vtu ...) above 0 where OTHER is higher. Statistics,
-    weighted by area, go to .csv or .json, the parts that are cut and filled to .gpkg, .geojson,
-    .shp or .fgb, a map to .png.
+    The difference is itself a TIN (.ply, .obj, .vtu ...), above 0 where OTHER is higher.
+    Statistics, weighted by area, go to .csv or .json, the parts that are cut and filled to .gpkg,
+    .geojson, .shp or .fgb, a map to .png.
 
     \b
     Example:

@@ -24,7 +24,7 @@ __all__ = ["drape"]
 @choice_option(
     "--outside",
     OutsidePolicy,
-    "What lies outside the surface: refuse, keep without elevations, or leave out.",
+    "Parts outside the surface: refuse, keep without elevations, or leave out.",
     default="error",
 )
 @surface_options()
@@ -34,7 +34,7 @@ def drape(
     outside: str,
     request: Request,
 ) -> None:
-    """Lay the FEATURES of a vector file on the TIN in FILE, or on that of the points in it.
+    """Drape the FEATURES of a vector file on the TIN in FILE, or built from the points in it.
 
     Lines and polygons get a vertex wherever they cross an edge of the TIN; columns are kept.
     FEATURES in another CRS are reprojected; FILE:LAYER names a layer.

@@ -33,12 +33,12 @@ def edit(
     report: Path | None,
     request: Request,
 ) -> None:
-    """Change the TIN in FILE, or that of the points in it, by the edits in SCRIPT.
+    """Edit the TIN in FILE, or built from the points in it, by the edits in SCRIPT.
 
-    SCRIPT is a JSON list of edits, done in their order: insert, remove, move, set_elevation, flip,
-    add_breakline, remove_breakline. The report of an earlier run will do as well. Vertices are
-    numbered as they are then: those behind a removed one move up. A breakline that is removed
-    takes along the vertices that only it had.
+    SCRIPT is a JSON list of edits, applied in order: insert, remove, move, set_elevation, flip,
+    add_breakline, remove_breakline. The report of an earlier run can be used, too. Each edit uses
+    the vertex numbers after the edits before it: removing a vertex lowers the numbers of later
+    ones. Removing a breakline also removes the vertices that only it had.
 
     \b
     Example:
@@ -101,10 +101,10 @@ def _read_script(path: Path) -> list[dict[str, Any]]:
         content = json.loads(_read_bytes(path).decode("utf-8-sig"))
     except json.JSONDecodeError as error:
         raise Failure(
-            f"'{path}' is no JSON (line {error.lineno}: {error.msg}): {wanted}."
+            f"'{path}' is not JSON (line {error.lineno}: {error.msg}): {wanted}."
         ) from error
     except UnicodeDecodeError as error:
-        raise Failure(f"'{path}' is no text in UTF-8: {wanted}.") from error
+        raise Failure(f"'{path}' is not text in UTF-8: {wanted}.") from error
     edits = content.get("edits") if isinstance(content, dict) else content
     if not isinstance(edits, list) or not all(isinstance(one, dict) for one in edits):
         raise Failure(f"'{path}' holds something else: {wanted}.")

@@ -45,27 +45,31 @@ _FLAGS = {
     nargs=2,
     type=float,
     multiple=True,
-    help="Where a drop falls, for paths, or an outlet, for catchments. May be given several times.",
+    help="Start of a path, or outlet of a catchment. May be given several times.",
 )
-@file_option("--points", "Vector file of such places.")
-@number_option("--level", "ELEVATION", "Of the water, for ponds.")
-@number_option("--min-depth", "HEIGHT", "Leave out depressions that are not as deep.")
-@click.option("--nested", is_flag=True, help="Also depressions that are part of larger ones.")
-@number_option("--min-angle", "DEGREES", "Leave out ridges and valleys that bend less.")
-@number_option("--min-area", "AREA", "Leave out channels through which less drains.")
+@file_option("--points", "Vector file of such points.")
+@number_option("--level", "ELEVATION", "Level of the water, for ponds.")
+@number_option("--min-depth", "HEIGHT", "Leave out shallower depressions.")
+@click.option("--nested", is_flag=True, help="Include depressions that are part of larger ones.")
+@number_option(
+    "--min-angle",
+    "DEGREES",
+    "Leave out ridges and valleys with a smaller angle between their triangles.",
+)
+@number_option("--min-area", "AREA", "Leave out channels with a smaller drainage area.")
 @click.option(
     "--fill-depressions",
     is_flag=True,
-    help="Let water go on from where full depressions spill, to the boundary.",
+    help="Continue from the spill points of full depressions, to the boundary.",
 )
 @surface_options()
 def flow(file: Path, find: FlowProduct, request: Request, **asked: Any) -> None:
-    """Find where water runs on the TIN in FILE, or on that of the points in it.
+    """Find where water flows on the TIN in FILE, or built from the points in it.
 
-    Paths of drops, pits, depressions with the water they hold, ponds at a level, edges that are
-    ridges and valleys, catchments of pits or of outlets, or the area that drains through each
-    channel. Water leaves the surface freely at its boundary. Vector files get the
-    features, tables (.csv, .json) their columns.
+    Finds paths of steepest descent, pits, depressions with their volume, ponds at a level, ridges
+    and valleys, catchments of pits or outlets, or the area that drains through each channel. Water
+    leaves the surface at its boundary. Vector files get the features, tables (.csv, .json) their
+    columns.
 
     \b
     Example:

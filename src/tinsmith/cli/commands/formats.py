@@ -19,10 +19,10 @@ __all__ = ["formats"]
 @command
 @console_options
 def formats(console: Console) -> None:
-    """List the formats: what each reads and writes, what it needs, and whether that is there.
+    """List the formats: what each reads and writes, what it needs, and whether that is installed.
 
     A TIN is a surface, a Survey points with their lines, Features are points, lines or polygons.
-    Formats of plug-ins come last. docs/formats.md tells what each format keeps.
+    Formats of plug-ins come last. docs/formats.md describes what each format keeps.
 
     \b
     Example:

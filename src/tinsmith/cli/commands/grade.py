@@ -27,12 +27,12 @@ __all__ = ["grade"]
 @number_option(
     "--elevation",
     "ELEVATION",
-    "Of the pad, in the unit of the ground's; default that of its corners.",
+    "Elevation of the pad, in the unit of the ground; default that of its corners.",
 )
 @number_option(
     "--cut-slope", "RATIO", "Slope of cuts, horizontal over vertical: 2 is 2:1.", required=True
 )
-@number_option("--fill-slope", "RATIO", "Slope of fills likewise.", required=True)
+@number_option("--fill-slope", "RATIO", "Slope of fills, horizontal over vertical.", required=True)
 @surface_options(writing_options)
 def grade(
     file: Path,
@@ -42,10 +42,10 @@ def grade(
     fill_slope: float,
     request: Request,
 ) -> None:
-    """Grade a level pad into the TIN in FILE, or that of the points in it.
+    """Grade a level pad into the TIN in FILE, or built from the points in it.
 
-    Side slopes rise from the edge of the pad through cuts and fall over fills, to the daylight
-    line, where they meet the ground. Cut and fill are told.
+    Side slopes rise from the edge of the pad in cuts and fall in fills, to the daylight line,
+    where they meet the ground. The summary gives cut and fill.
 
     \b
     Example:

@@ -47,53 +47,56 @@ _PARAMETERS = (
 @number_option(
     "--terrain-slope",
     "RATIO",
-    "Rise per length up to which the lowest points are seeds without a doubt.",
+    "Slope limit of the openings that choose the seeds.",
     default=0.12,
 )
 @number_option(
     "--iteration-angle",
     "DEGREES",
-    "Largest angle of a point that is added, at the nearest corner of its triangle.",
+    "Largest angle of an added point at the nearest corner of its triangle.",
     default=20.0,
 )
 @number_option(
     "--iteration-distance",
     "METRES",
-    "Largest distance of a point that is added from the plane of its triangle.",
+    "Largest distance of an added point from the plane of its triangle.",
     default=1.4,
 )
 @number_option(
     "--edge-length",
     "METRES",
-    "In triangles with shorter edges the angle is smaller in proportion.",
+    "In triangles with shorter edges the angle is reduced in proportion.",
     default=5.0,
 )
 @number_option(
-    "--tolerance", "METRES", "Points no higher above the surface are ground.", default=0.3
+    "--tolerance", "METRES", "Largest height of ground points above the surface.", default=0.3
 )
 @number_option(
     "--horizontal-tolerance",
     "METRES",
-    "On slopes so much times the slope is added to the tolerance.",
+    "Horizontal tolerance; this times the slope is added to --tolerance.",
     default=1.0,
 )
 @number_option(
-    "--noise-depth", "METRES", "Points deeper below all around them are noise.", default=1.0
+    "--noise-depth",
+    "METRES",
+    "Points deeper than this below all around them are noise.",
+    default=1.0,
 )
 @click.option(
     "--any-return",
     is_flag=True,
-    help="Let points of any return be ground, not the last of their pulse alone.",
+    help="Allow ground points of any return, not only the last.",
 )
 @click.option("--ground-only", is_flag=True, help="Write only the ground to LAS and LAZ files.")
 @click.option(
     "--as-points",
     is_flag=True,
-    help="Write the points of the ground where a file could hold their TIN.",
+    help="Write ground points instead of their TIN.",
 )
 @surface_options(writing_options)
 def ground(points: tuple[Path, ...], request: Request, **options: Any) -> None:
-    """Tell which of the POINTS are ground, by progressive densification of a TIN.
+    """Classify the ground among POINTS by progressive densification of a TIN.
 
     LAS and LAZ files get all points with their classes (2 ground, 1 others, 7 low noise) and
     attributes, other files of points those of the ground, and files of TINs their TIN.

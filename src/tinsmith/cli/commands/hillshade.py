@@ -19,13 +19,17 @@ __all__ = ["hillshade"]
 
 
 @file_command
-@number_option("--spacing", "LENGTH", "Side of a cell; default a thousandth of it.")
+@number_option("--spacing", "LENGTH", "Cell size; default a thousandth of the extent.")
 @number_option(
-    "--azimuth", "DEGREES", "Where the light comes from, clockwise from north.", default=315.0
+    "--azimuth", "DEGREES", "Direction of the light, clockwise from north.", default=315.0
 )
-@number_option("--altitude", "DEGREES", "Of the light above the horizon.", default=45.0)
+@number_option("--altitude", "DEGREES", "Altitude of the light above the horizon.", default=45.0)
 @number_option("--exaggeration", "FACTOR", "Vertical exaggeration.", default=1.0)
-@click.option("--smooth", is_flag=True, help="Let no edges of triangles be seen.")
+@click.option(
+    "--smooth",
+    is_flag=True,
+    help="Interpolate normals, so that edges of triangles are not visible.",
+)
 @surface_options()
 def hillshade(
     file: Path,
@@ -36,9 +40,9 @@ def hillshade(
     smooth: bool,
     request: Request,
 ) -> None:
-    """Shade the TIN in FILE, or that of the points in it, and write a raster with a georeference.
+    """Write a georeferenced hillshade raster of the TIN in FILE, or built from the points in it.
 
-    Cells are 1 (no light) to 255, as gdaldem writes them, and 0 where there is no surface.
+    Cells are 1 (no light) to 255, as in gdaldem, and 0 where there is no surface.
 
     \b
     Example:

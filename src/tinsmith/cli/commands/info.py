@@ -37,9 +37,9 @@ def info(
 ) -> None:
     """Describe FILES: survey points, an elevation raster or a TIN.
 
-    Several files of points are one survey. Counts, extent, elevations and CRS; of a TIN also
-    areas, slopes and the shapes of its triangles; with --codes the lines that the codes of points
-    make, and what is odd in them.
+    Several files of points are read as one survey. Shown are counts, extent, elevations and CRS;
+    for a TIN also areas, slopes and the shape of triangles; with --codes the lines made from field
+    codes, and irregularities in them.
 
     \b
     Example:

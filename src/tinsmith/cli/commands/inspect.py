@@ -27,15 +27,15 @@ _SHOWN = 12
 @command
 @input_files("points")
 @output_option("Table (.csv, .json), points (.gpkg, .geojson, .shp, .fgb) or map (.png) to write.")
-@click.option("--title", metavar="TEXT", help="Of the map; default the name of the file.")
+@click.option("--title", metavar="TEXT", help="Title of the map; default the name of the file.")
 @surface_options()
 def inspect(points: tuple[Path, ...], title: str | None, request: Request) -> None:
-    """Check the points in POINTS: name those that look like blunders, and why.
+    """Find points in POINTS that look like blunders, with the reason.
 
-    Each is compared with the surface that the others make without it. Told are spikes and pits,
-    elevations that stand for none, factors of ten and of feet, swapped axes, points far from all
-    others, point numbers and places that occur twice, and lines that cross at different heights.
-    Nothing is changed; 'tinsmith build --drop-blunders' leaves them out.
+    Each point is compared with the surface of all others. Reported are spikes and pits, codes for
+    missing elevations, factors of ten and of feet, exchanged axes, points far from all others,
+    repeated point numbers and positions, and lines that cross at different elevations. Nothing is
+    changed; 'tinsmith build --drop-blunders' leaves such points out.
 
     \b
     Example:

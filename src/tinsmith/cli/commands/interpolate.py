@@ -34,20 +34,22 @@ __all__ = ["interpolate"]
     required=True,
 )
 @output_files
-@choice_option("--method", InterpolationMethod, "What lies between the vertices.", default="linear")
+@choice_option(
+    "--method", InterpolationMethod, "Interpolation between the vertices.", default="linear"
+)
 @choice_option(
     "--extrapolate",
     Extrapolation,
-    "Outside the surface take its nearest point; default no elevation.",
+    "Outside the surface use its nearest point; default no elevation.",
 )
 @click.option(
     "--at-columns",
     metavar="X Y",
     nargs=2,
-    help="Columns of easting and northing, if their names do not say.",
+    help="Columns of easting and northing, if their names are not recognised.",
 )
-@click.option("--at-delimiter", metavar="TEXT", help="What separates its columns.")
-@crs_option("--at-crs", "CRS of the points of --at, if it is not the surface's.")
+@click.option("--at-delimiter", metavar="TEXT", help="Delimiter of the columns of --at.")
+@crs_option("--at-crs", "CRS of the points of --at, if it is not that of the surface.")
 @click.option(
     "--column",
     metavar="NAME",
@@ -62,7 +64,7 @@ def interpolate(
     request: Request,
     **asked: Any,
 ) -> None:
-    """Find the elevations of the TIN in FILE, or that of its points, at other points.
+    """Interpolate elevations of the TIN in FILE, or built from its points, at other points.
 
     \b
     Example:

@@ -23,12 +23,12 @@ __all__ = ["paste"]
 @output_files
 @surface_options(writing_options)
 def paste(base: Path, patch: Path, request: Request) -> None:
-    """Put the TIN in PATCH in the place of a part of that in BASE.
+    """Replace a part of the TIN in BASE by the TIN in PATCH.
 
     Within the boundary of PATCH the surface is that of PATCH, elsewhere that of BASE: a new survey
-    in an old one, a design in the ground. Where PATCH reaches beyond BASE the surface becomes
-    larger, and a note says so. Either file may hold points, of which the TIN is built. Elevations
-    along the seam are those of PATCH.
+    in an old one, a design in the ground. Where PATCH extends beyond BASE the surface becomes
+    larger, with a note. Either file may hold points, from which the TIN is built. Elevations along
+    the seam are those of PATCH.
 
     \b
     Example:

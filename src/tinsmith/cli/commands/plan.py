@@ -44,7 +44,7 @@ __all__ = ["plan"]
 @click.option(
     "--scale",
     metavar="SCALE",
-    help="Such as 500 for 1:500, or '1\"=20 ft'; default the largest usual one that fits.",
+    help="Scale, such as 500 for 1:500, or '1\"=20 ft'; default the largest usual one that fits.",
 )
 @click.option(
     "--paper",
@@ -54,32 +54,36 @@ __all__ = ["plan"]
     help="A4 to A0, Letter, Legal, Tabloid, 'ANSI A' to 'ANSI E', 'ARCH A' to 'ARCH E', or width "
     "and height in millimetres such as 900x600.",
 )
-@choice_option("--orientation", PaperOrientation, "Of the paper; default whatever fits better.")
+@choice_option(
+    "--orientation",
+    PaperOrientation,
+    "Orientation of the paper; default the one with the larger scale.",
+)
 @choice_option(
     "--layout",
     SheetLayout,
-    "All on one sheet, rows of sheets, or strips along the axis of a long surface.",
+    "One sheet, rows of sheets, or strips along the axis of a long surface.",
     default="single",
 )
 @file_option("--axis", "Vector file of the axis of strips.", name="axis_file")
-@number_option("--interval", "HEIGHT", "Between contours; chosen if absent.")
+@number_option("--interval", "HEIGHT", "Contour interval; chosen if absent.")
 @number_option(
     "--smooth",
     "HEIGHT",
-    "Round contours, as far as the surface stays within this much of the level.",
+    "Smooth contours, as long as the surface stays within this height of the level.",
 )
-@choice_option("--labels", ContourLabeling, "Contours whose elevation is written.", default="index")
-@choice_option("--points", PointMarking, "What is drawn at points.", default="none")
-@choice_option("--grid", GridStyle, "How the coordinate grid is drawn.", default="crosses")
-@click.option("--title", metavar="TEXT", help="Default the file's name.")
-@click.option("--date", metavar="TEXT", help="Date of the plan, as it is to be written.")
+@choice_option("--labels", ContourLabeling, "Contours that are labelled.", default="index")
+@choice_option("--points", PointMarking, "Marks and labels of points.", default="none")
+@choice_option("--grid", GridStyle, "Style of the coordinate grid.", default="crosses")
+@click.option("--title", metavar="TEXT", help="Title of the plan; default the name of the file.")
+@click.option("--date", metavar="TEXT", help="Date in the title block, as text.")
 @click.option(
     "--ground-unit",
     metavar="UNIT",
-    help="Unit of eastings and northings, where the CRS is not known.",
+    help="Unit of eastings and northings, if the CRS is not known.",
 )
 @number_option(
-    "--dpi", "N", "Pixels to an inch of a PNG.", type=click.IntRange(50, 1200), default=200
+    "--dpi", "N", "Pixels per inch of a PNG.", type=click.IntRange(50, 1200), default=200
 )
 @reading_options
 @triangulating_options
@@ -93,10 +97,10 @@ def plan(
     dpi: int,
     **asked: Any,
 ) -> None:
-    """Draw the TIN in FILE, or that of the points in it, on sheets of paper, true to scale.
+    """Draw a scaled plan of the TIN in FILE, or built from the points in it.
 
-    Contours with their elevations, lines, water, points, a coordinate grid, title block, north
-    arrow, scale bar and legend. Several sheets are pages of a PDF, or files of their own.
+    The plan has contours with labels, lines, water, points, a coordinate grid, title block, north
+    arrow, scale bar and legend. Several sheets are pages of a PDF, or separate files.
 
     \b
     Example:

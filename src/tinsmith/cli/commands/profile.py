@@ -46,26 +46,28 @@ class _Line:
 @click.argument("files", nargs=-1, required=True, type=INPUT)
 @output_files
 @file_option("--line", "Vector file of the lines.", name="line_file")
-@click.option("--from", "begin", metavar="X Y", nargs=2, type=float, help="Where a line begins.")
-@click.option("--to", "end", metavar="X Y", nargs=2, type=float, help="Where it ends.")
-@number_option("--interval", "LENGTH", "Add a row at every multiple of this station.")
-@number_option("--start", "STATION", "Station where the line begins.", default=0.0)
+@click.option("--from", "begin", metavar="X Y", nargs=2, type=float, help="Start of a line.")
+@click.option("--to", "end", metavar="X Y", nargs=2, type=float, help="End of the line.")
+@number_option("--interval", "LENGTH", "Add a row at every multiple of this length.")
+@number_option("--start", "STATION", "Station at the start of the line.", default=0.0)
 @click.option(
     "--sections",
     metavar="INTERVAL WIDTH",
     nargs=2,
     type=float,
-    help="Cut square to the line instead, at this interval and over this width.",
+    help="Make cross sections perpendicular to the line, at this interval and of this width.",
 )
 @click.option(
     "--name",
     "names",
     metavar="TEXT",
     multiple=True,
-    help="Name of a surface, once for each; default its file's.",
+    help="Name of a surface, once for each; default the name of its file.",
 )
 @number_option("--exaggeration", "FACTOR", "Of the picture; chosen if absent.")
-@click.option("--title", metavar="TEXT", help="Of the picture; default the first file's name.")
+@click.option(
+    "--title", metavar="TEXT", help="Title of the picture; default the name of the first file."
+)
 @surface_options()
 def profile(
     files: tuple[Path, ...],
@@ -76,11 +78,11 @@ def profile(
     request: Request,
     **asked: Any,
 ) -> None:
-    """Cut the TINs in FILES, or those of the points in them, along a line.
+    """Compute profiles of the TINs in FILES, or built from the points in them, along a line.
 
-    A row wherever the line crosses an edge of a TIN, with the elevations of all of them. Tables go
-    to .csv or .json, a picture to .png; cross sections also to .gpkg, .geojson and others as lines
-    in space; their picture is a sheet of them. Lines in another CRS are reprojected.
+    There is a row wherever the line crosses an edge of a TIN, with the elevations of all TINs.
+    Tables are written to .csv or .json, a picture to .png; cross sections also to .gpkg, .geojson
+    and others as 3D lines; their picture is a sheet. Lines in another CRS are reprojected.
 
     \b
     Example:

@@ -25,20 +25,22 @@ __all__ = ["raster"]
 
 @file_command
 @number_option(
-    "--spacing", "LENGTH", "Side of a cell, CRS units; cells are aligned to its multiples."
+    "--spacing", "LENGTH", "Cell size, in CRS units; cells are aligned to its multiples."
 )
-@file_option("--like", "Raster whose cells are taken.")
+@file_option("--like", "Raster whose cells are used.")
 @choice_option(
     "--value",
     RasterValue,
-    "What the cells hold; slope and aspect in degrees, hillshade from 1 to 255.",
+    "Value of the cells; slope and aspect in degrees, hillshade from 1 to 255.",
     default="elevation",
 )
-@choice_option("--method", InterpolationMethod, "What lies between the vertices.", default="linear")
+@choice_option(
+    "--method", InterpolationMethod, "Interpolation between the vertices.", default="linear"
+)
 @choice_option(
     "--at",
     RasterSample,
-    "The value at the centre of each cell, or its mean.",
+    "Value at the centre of each cell, or mean over the cell.",
     name="sample",
     default="center",
 )
@@ -52,7 +54,7 @@ def raster(
     request: Request,
     **asked: Any,
 ) -> None:
-    """Turn the TIN in FILE, or that of the points in it, into a raster.
+    """Rasterize the TIN in FILE, or built from the points in it.
 
     Cells outside the surface have no data. A raster may be larger than memory.
 

@@ -23,14 +23,14 @@ __all__ = ["refine"]
 
 
 @file_command
-@number_option("--min-angle", "DEGREES", "Least angle of a triangle, up to 33.", default=25.0)
-@number_option("--max-area", "AREA", "Largest triangle, in CRS units squared.")
+@number_option("--min-angle", "DEGREES", "Smallest angle of a triangle, up to 33.", default=25.0)
+@number_option("--max-area", "AREA", "Largest area of a triangle, in CRS units squared.")
 @number_option(
     "--max-side",
     "LENGTH",
     "Longest side of a triangle, in CRS units. (--max-edge trims the TIN before.)",
 )
-@number_option("--max-vertices", "N", "So many vertices are allowed.", type=int, default=10_000_000)
+@number_option("--max-vertices", "N", "Largest number of vertices.", type=int, default=10_000_000)
 @surface_options(writing_options)
 def refine(
     file: Path,
@@ -40,9 +40,10 @@ def refine(
     max_vertices: int,
     request: Request,
 ) -> None:
-    """Add points to the TIN in FILE, or that of the points in it, until its triangles are good.
+    """Refine the TIN in FILE, or built from the points in it, for finite elements.
 
-    Boundary, holes and breaklines stay, and the new points lie on the surface.
+    Points are added until the angles and sizes of all triangles are within the limits. Boundary,
+    holes and breaklines are kept, and the new points lie on the surface.
 
     \b
     Example:

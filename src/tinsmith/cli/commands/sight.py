@@ -32,9 +32,9 @@ _SHOWN = 12
     nargs=2,
     type=float,
     multiple=True,
-    help="The eye; several go with as many targets.",
+    help="Position of the eye; several go with as many targets.",
 )
-@file_option("--eye", "In its place: a file of points.", name="eyes")
+@file_option("--eye", "Vector file of points, instead of coordinates.", name="eyes")
 @click.option(
     "--to",
     "targets",
@@ -42,25 +42,32 @@ _SHOWN = 12
     nargs=2,
     type=float,
     multiple=True,
-    help="A target, for a line of sight; without one the viewshed. May be given several times.",
+    help="Position of a target, for a line of sight; without one the viewshed. May be given "
+    "several times.",
 )
-@file_option("--targets", "In its place: a file of points.", name="points")
-@number_option("--eye-height", "HEIGHT", "Of the eye above the ground.", default=0.0)
-@number_option("--target-height", "HEIGHT", "Of targets above the ground.", default=0.0)
-@number_option("--radius", "LENGTH", "Of the viewshed; any distance if absent.")
-@click.option("--curvature", is_flag=True, help="Mind that the earth is a sphere.")
-@number_option("--sight-refraction", "COEFFICIENT", "With --curvature; 0.13 if absent.")
+@file_option("--targets", "Vector file of points, instead of coordinates.", name="points")
+@number_option("--eye-height", "HEIGHT", "Height of the eye above the ground.", default=0.0)
+@number_option("--target-height", "HEIGHT", "Height of targets above the ground.", default=0.0)
+@number_option("--radius", "LENGTH", "Radius of the viewshed; default unlimited.")
+@click.option("--curvature", is_flag=True, help="Take earth curvature and refraction into account.")
+@number_option(
+    "--sight-refraction",
+    "COEFFICIENT",
+    "Coefficient of refraction, with --curvature; default 0.13.",
+)
 @click.option(
-    "--whole-triangles", is_flag=True, help="Judge triangles by their corners: do not divide them."
+    "--whole-triangles",
+    is_flag=True,
+    help="Classify whole triangles by their corners, without dividing them.",
 )
 @surface_options()
 def sight(file: Path, request: Request, **asked: Any) -> None:
-    """Find what is seen from a place on the TIN in FILE, or on that of the points in it.
+    """Find what is visible from a point on the TIN in FILE, or built from the points in it.
 
-    Without targets the viewshed: what is visible and what is hidden, as polygons that divide
-    triangles. Vector files get the features, tables (.csv, .json) their columns. Ground that only
-    touches a line of sight does not block it. Points of files are reprojected; several eyes go
-    with as many targets.
+    Without targets the result is the viewshed: the visible and the hidden part, as polygons that
+    divide triangles. Vector files get the features, tables (.csv, .json) their columns. Ground
+    that only touches a line of sight does not block it. Points of files are reprojected; several
+    eyes need as many targets.
 
     \b
     Example:

@@ -30,12 +30,12 @@ __all__ = ["simplify"]
 @number_option(
     "--tolerance",
     "HEIGHT",
-    "Farthest that a point may be above or below the new surface, in the unit of elevations.",
+    "Largest vertical distance of a point from the new surface, in the unit of elevations.",
 )
-@number_option("--points", "N", "In its place: leave so many points.", type=int)
+@number_option("--points", "N", "Number of points to keep, instead of a tolerance.", type=int)
 @file_option(
     "--keep",
-    "Points that stay, such as benchmarks: each must be one of the surface.",
+    "File of points to keep, such as benchmarks: each must be a vertex of the surface.",
     type=INPUT,
 )
 @surface_options(writing_options)
@@ -46,10 +46,10 @@ def simplify(
     keep: Path | None,
     request: Request,
 ) -> None:
-    """Leave out points of the TIN in FILE, or of that of the points in it, that it can do without.
+    """Leave out points of the TIN in FILE, or built from the points in it, within a tolerance.
 
-    None of the points is farther than --tolerance from the new surface in elevation. Boundary,
-    holes, breaklines and water stay; voids of a raster stay voids. A raster may be larger than
+    At every point the elevation of the new surface differs by at most --tolerance. Boundary,
+    holes, breaklines and water are kept, and so are voids of a raster. A raster may be larger than
     memory: it is read and simplified in blocks.
 
     \b
@@ -120,8 +120,8 @@ def _find_kept(
         x, y = places[missing[0]].tolist()
         raise Failure(
             f"'{path}': {counted(len(missing), 'point')} of {len(found):,} to be kept "
-            f"{'is none' if len(missing) == 1 else 'are none'} of the surface; the first is at "
-            f"{x:.12g}, {y:.12g}."
+            f"{'is not a vertex' if len(missing) == 1 else 'are not vertices'} of the surface; the "
+            f"first is at {x:.12g}, {y:.12g}."
         )
     return np.array(found, np.int64)
 

@@ -26,14 +26,14 @@ __all__ = ["slope"]
 @choice_option(
     "--unit",
     SlopeUnit,
-    "Of slopes: an angle, or rise over a run of 100 or of 1.",
+    "Unit of slopes: an angle, or rise over a run of 100 or of 1.",
     name="slope_unit",
     default="degrees",
 )
 @numbers_option(
-    "--breaks", "S,S,...", "Limits between the classes, in that unit; usual ones if absent."
+    "--breaks", "S,S,...", "Limits between the classes, in that unit; default the usual ones."
 )
-@click.option("--aspect", is_flag=True, help="Classes of the direction in which it falls instead.")
+@click.option("--aspect", is_flag=True, help="Classes of aspect instead of slope.")
 @surface_options(reading_options=make_reading_options(unit_flag="--length-unit"))
 def slope(
     file: Path,
@@ -42,7 +42,7 @@ def slope(
     aspect: bool,
     request: Request,
 ) -> None:
-    """Divide the TIN in FILE, or that of the points in it, into classes of slope.
+    """Divide the TIN in FILE, or built from the points in it, into classes of slope.
 
     Vector files get the classes as polygons with a legend, tables (.csv, .json) their areas. The
     statistics in the summary are weighted by area.

@@ -53,7 +53,7 @@ def _parse_size(
 
 @command
 @input_files("files")
-@picture_option("Picture to write (.png, .jpg, .tif) instead of opening a window.")
+@picture_option("Page (.html) or picture (.png, .jpg, .tif) to write instead of opening a window.")
 @number_option("--exaggeration", "FACTOR", "Vertical exaggeration; chosen if absent.")
 @click.option("--edges", is_flag=True, help="Draw the edges of the triangles.")
 @click.option(
@@ -62,33 +62,37 @@ def _parse_size(
     show_default=True,
     help="Draw breaklines and rings.",
 )
-@click.option("--top", is_flag=True, help="Look straight down, north up.")
+@click.option("--top", is_flag=True, help="View from vertically above, north up.")
 @file_option(
     "--ortho",
-    "Picture of the ground to drape over the surface: a GeoTIFF in any CRS, or another with "
-    "its place.",
+    "Orthophoto to drape over the surface: a GeoTIFF in any CRS, or another georeferenced image.",
     type=INPUT,
 )
-@number_option("--azimuth", "DEGREES", "Where the viewer stands, clockwise from north.")
-@number_option("--tilt", "DEGREES", "Height of the viewer above the horizon, 90 from above.")
+@number_option(
+    "--azimuth", "DEGREES", "Direction from the surface to the viewer, clockwise from north."
+)
+@number_option(
+    "--tilt", "DEGREES", "Elevation angle of the viewer above the horizon; 90 is from above."
+)
 @click.option(
     "--full",
     is_flag=True,
     help="Show every cell of a large raster; default a sample of a million, or half as many in a "
     "page.",
 )
-@click.option("--title", metavar="TEXT", help="Title in the picture; default the file's name.")
+@click.option("--title", metavar="TEXT", help="Title of the picture; default the name of the file.")
 @click.option(
     "--size",
     metavar="WIDTHxHEIGHT",
     callback=_parse_size,
     help="Pixels of a picture or window; default 1600x1000.",
 )
-@number_option("--dpi", "NUMBER", "Dots per inch written into a picture, for printing.")
+@number_option("--dpi", "NUMBER", "Dots per inch written to a picture, for printing.")
 @numbers_option(
     "--sun",
     "AZIMUTH,ALTITUDE",
-    "Light in a picture, degrees from north and above the horizon; default 315,45.",
+    "Direction of the light in a picture, degrees from north and above the horizon; "
+    "default 315,45.",
 )
 @click.option(
     "--background",
@@ -98,7 +102,7 @@ def _parse_size(
 @numbers_option(
     "--elevations", "LOW,HIGH", "Range of the tints in a picture; default that of the surface."
 )
-@choice_option("--tint", Tint, "What colours tell in a picture.", default="elevation")
+@choice_option("--tint", Tint, "Quantity shown by the colours of a picture.", default="elevation")
 @number_option("--contours", "INTERVAL", "Draw contours in a picture, in the unit of elevations.")
 @reading_options
 @triangulating_options
@@ -113,7 +117,7 @@ def view(
     console: Console,
     **drawing: Any,
 ) -> None:
-    """Show the TIN in FILES, or of the points in them.
+    """Show the TIN in FILES, or built from the points in them, in 3D.
 
     \b
     Example:

@@ -37,16 +37,17 @@ _FEET = ("ft³", "US ft³")
 @number_option("--base", "ELEVATION", "Level in place of a design.")
 @file_option(
     "--regions",
-    "Vector file of polygons to measure in; a column name, region, id or label names them.",
+    "Vector file of polygons within which to measure; a column name, region, id or label names "
+    "them.",
 )
 @click.option(
     "--stage-storage",
     is_flag=True,
-    help="Tabulate area and volume of the water that stands in GROUND at each level.",
+    help="Tabulate area and volume of water in GROUND at each level.",
 )
 @number_option("--level", "ELEVATION", "Level of the table.", name="levels", multiple=True)
-@number_option("--interval", "LENGTH", "Or multiples of this.")
-@click.option("--title", metavar="TEXT", help="Of the map; default the names of the files.")
+@number_option("--interval", "LENGTH", "Interval of the levels of the table.")
+@click.option("--title", metavar="TEXT", help="Title of the map; default the names of the files.")
 @surface_options()
 def volume(
     files: tuple[Path, ...],
@@ -54,9 +55,9 @@ def volume(
     request: Request,
     **asked: Any,
 ) -> None:
-    """Measure cut and fill from the TIN in GROUND to that in DESIGN, or to a level.
+    """Compute cut and fill from the TIN in GROUND to that in DESIGN, or to a level.
 
-    Both triangulations are overlaid, exactly; either file may hold points, of which the TIN is
+    Both triangulations are overlaid exactly; either file may hold points, from which the TIN is
     built. Fill is where the design, or the level, is above the ground, cut where it is below.
 
     \b
@@ -88,7 +89,9 @@ def volume(
 
 def _require_one_base(files: Sequence[Path], asked: dict[str, Any]) -> None:
     if len(files) > 2:
-        raise click.UsageError(f"{len(files)} files are given: a ground, and perhaps a design.")
+        raise click.UsageError(
+            f"{len(files)} files are given: one ground and at most one design are allowed."
+        )
     bases = (len(files) == 2) + (asked["base"] is not None) + asked["stage_storage"]
     if bases != 1:
         raise click.UsageError(

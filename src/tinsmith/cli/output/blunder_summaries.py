@@ -83,7 +83,7 @@ def tell_suspects(found: Suspects) -> list[Row]:
     looks = "looks like a blunder" if len(rows) == 1 else "look like blunders"
     told = f"{counted(len(rows), 'point')} {looks}: row{'s' * (len(rows) > 1)} {names}"
     if found.dropped is None:
-        return [("Blunders", f"{told}; 'tinsmith inspect' tells more")]
+        return [("Blunders", f"{told}; 'tinsmith inspect' lists them")]
     return [("Blunders", f"{told}; {len(found.dropped):,} left out")]
 
 

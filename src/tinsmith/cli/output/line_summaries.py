@@ -150,7 +150,7 @@ def _describe_overruled(report: Report, survey: Survey) -> str:
     overruled = report.overruled
     most = float(np.abs(overruled.elevations - overruled.vertex_elevations).max())
     number, up = len(overruled.vertices), find_elevation_symbol(survey)
-    return f"{number:,} overruled by lines of more weight, the most by {most:.3f}{up}"
+    return f"{number:,} overruled by lines of higher priority, the most by {most:.3f}{up}"
 
 
 def describe_features(file: Path, found: Features, **more: Any) -> dict[str, Any]:
