@@ -90,7 +90,7 @@ def test_a_crash_is_a_sentence(name):
     assert "crashed" in text or "damaged" in text
 
 
-@pytest.mark.parametrize("name", ["spin", "wait"])
+@pytest.mark.parametrize("name", ["spin", pytest.param("wait", marks=pytest.mark.slow)])
 def test_a_hang_ends_at_the_limit(name):
     start = time.monotonic()
     assert "after 1 second" in refused(name, Limits(1.0, 1 << 28))
@@ -263,7 +263,7 @@ def test_a_fork_starts_at_once_and_is_used_again(tmp_path):
 @pytest.mark.parametrize(
     ("name", "words"),
     [("crash", "crashed"), ("leave", "crashed"), ("spin", "after 1 second"),
-     ("wait", "after 1 second"), ("hoard", "GiB of memory")],
+     pytest.param("wait", "after 1 second", marks=pytest.mark.slow), ("hoard", "GiB of memory")],
 )  # fmt: skip
 def test_what_becomes_of_a_fork_leaves_the_program_alone(tmp_path, name, words):
     code = (

@@ -357,6 +357,7 @@ def test_the_page_shows_each_colour_at_its_place(tmp_path, crs):
         assert np.abs(read_canvas(page, tin, places) - colors).max() > 100
 
 
+@pytest.mark.slow
 def test_the_tints_stay_where_there_is_no_picture(tmp_path):
     bands = np.concatenate([paint_quarters(200), np.zeros((1, 200, 200), np.uint8)])
     bands[3, :100] = 255

@@ -56,7 +56,13 @@ SURFACES = {
 }
 
 
-@pytest.mark.parametrize("name", SURFACES)
+ALSO = ("large", "small", "almost flat at 0", "degrees, feet", "feet", "steep", "one triangle")
+"""Left to the slow tests: others in the list are much like them."""
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(one, marks=[pytest.mark.slow] * (one in ALSO)) for one in SURFACES]
+)
 def test_readouts_are_those_of_the_surface(name, tmp_path):
     tin = SURFACES[name]()
     with open_page(ts.preview(tin).save(tmp_path / "a.html")) as page:

@@ -78,7 +78,7 @@ def test_strips_follow_a_given_axis_in_its_direction():
     assert uncovered(tin, made) == 0.0
 
 
-@pytest.mark.parametrize("layout", ["rows", "strips"])
+@pytest.mark.parametrize("layout", [pytest.param("rows", marks=pytest.mark.slow), "strips"])
 def test_every_sheet_is_true_to_scale_however_it_is_turned(layout, tmp_path):
     tin, _ = corridor()
     made = ts.plan(tin, scale=1000, layout=layout, interval=0.5)
@@ -142,6 +142,7 @@ def test_match_lines_are_the_same_on_both_sheets(tmp_path):
         assert one.crosses(outline(tin)) or one.intersects(outline(tin))
 
 
+@pytest.mark.slow
 def test_a_pdf_has_a_page_for_each_sheet(tmp_path):
     tin, _ = corridor()
     made = ts.plan(tin, scale=1000, layout="strips", paper="A4")
@@ -152,6 +153,7 @@ def test_a_pdf_has_a_page_for_each_sheet(tmp_path):
         assert f"Sheet {number} of {len(made)}" in [text.text for text in page.texts]
 
 
+@pytest.mark.slow
 def test_files_of_several_sheets_have_numbers(tmp_path):
     tin, _ = corridor(length=5000.0, sway=0.0)
     made = ts.plan(tin, scale=500, layout="strips", paper="A4")
