@@ -40,6 +40,7 @@ __all__ = [
     "find_owners",
     "find_triangles",
     "gather",
+    "mark_corners",
     "neighbors_of",
     "sort_half_edges",
     "turn_about",
@@ -85,6 +86,13 @@ def find_boundary_vertices(triangles: Int32Array, neighbors: Int32Array, count: 
     is_boundary = np.zeros(count, np.bool_)
     is_boundary[edges_at(triangles, neighbors == NO_NEIGHBOR)] = True
     return is_boundary
+
+
+def mark_corners(triangles: AnyArray, count: int) -> BoolArray:
+    """Mark which of so many vertices are corners of triangles; files may have others."""
+    is_corner = np.zeros(count, np.bool_)
+    is_corner[triangles] = True
+    return is_corner
 
 
 def edge_keys(pairs: AnyArray, n_vertices: int) -> Int64Array:

@@ -9,7 +9,7 @@ import numpy as np
 from ..._sentences import counted
 from ...tin import TIN
 from ...tin.constraints.breaklines import Lines
-from ...tin.topology import directed_edges, edge_keys, find_offsets
+from ...tin.topology import directed_edges, edge_keys, find_offsets, mark_corners
 from ..mesh.common import add_notes, make_tin
 
 if TYPE_CHECKING:
@@ -64,8 +64,7 @@ def merge_equal_points(mesh: Mesh) -> Mesh:
     stands_for = np.empty(len(order), np.int64)
     stands_for[order] = first[np.cumsum(is_first) - 1]
     triangles = stands_for[mesh.triangles]
-    is_used = np.zeros(len(mesh.points), np.bool_)
-    is_used[triangles] = True
+    is_used = mark_corners(triangles, len(mesh.points))
     number = np.cumsum(is_used) - 1
     notes = list(mesh.notes)
     n_equal = len(mesh.points) - len(first)

@@ -208,8 +208,7 @@ def _find_corners_on_edges(points: Float64Array, triangles: Int32Array) -> Int64
 
 
 def _drop_unused(points: Float64Array, triangles: Int32Array) -> tuple[Float64Array, Int32Array]:
-    used = np.zeros(len(points), bool)
-    used[triangles.ravel()] = True
+    used = topology.mark_corners(triangles, len(points))
     number = np.cumsum(used, dtype=np.int32) - np.int32(1)
     return points[used], np.ascontiguousarray(number[triangles])
 

@@ -16,6 +16,7 @@ import numpy as np
 from ...._atomic import replacing
 from ...._sentences import counted
 from ....errors import LossWarning, OptionError, WriteError
+from ....tin.topology import mark_corners
 from ..common import format_crs, format_unit, require_tin
 from .decimals import DecimalGrid, choose_digits
 
@@ -58,8 +59,7 @@ def write(
         If the CRS has no EPSG number: programs other than this one do not find it.
     """
     tin = require_tin(surface, path, format_name="CityJSON")
-    used = np.zeros(len(tin.points), np.bool_)
-    used[tin.triangles] = True
+    used = mark_corners(tin.triangles, len(tin.points))
     points = tin.points[used]
     triangles = (np.cumsum(used) - 1)[tin.triangles]
     grids = [_choose_grid(axis, precision) for axis in points.T]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ....tin import TIN, Breakline, Survey, triangulate
+from ....tin.topology import mark_corners
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -39,8 +40,7 @@ def simplify(surface: TIN, tolerances: Sequence[float]) -> Iterator[Int64Array]:
     rings = [ring for ring in surface.boundary if len(ring) > 2]
     chosen[np.concatenate(rings)] = True
     lines = [Breakline(surface.points[np.append(ring, ring[0])]) for ring in rings]
-    wanted = np.zeros(len(surface.points), np.bool_)
-    wanted[surface.triangles] = True
+    wanted = mark_corners(surface.triangles, len(surface.points))
     for tolerance in tolerances:
         while True:
             triangles = _connect(surface, np.flatnonzero(chosen), lines)

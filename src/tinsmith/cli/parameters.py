@@ -27,6 +27,7 @@ __all__ = [
     "output_files",
     "output_option",
     "picture_option",
+    "position_option",
     "refuse_value",
     "report_option",
     "under",
@@ -249,6 +250,13 @@ output_files = output_option(
     "- is standard output, with --output-format.",
     required=True,
 )
+
+
+def position_option(flag: str, name: str, help: str, *, multiple: bool = False) -> Decorator:  # noqa: A002 - click's name
+    """Return an option for an easting and a northing."""
+    return click.option(
+        flag, name, metavar="X Y", nargs=2, type=float, multiple=multiple, help=help
+    )
 
 
 def file_option(

@@ -13,7 +13,7 @@ from ....errors import PointsError
 from ....tin import Breakline, Survey, triangulate
 from ....tin.building.attributes import join_columns
 from ....tin.constraints.clipping import in_rings
-from ....tin.topology import edge_keys
+from ....tin.topology import edge_keys, mark_corners
 from ....tin.triangulation.illegal_edges import mark_illegal_edges
 from ....tin.validation.options import require_tin
 from ...georeference import agree, find_plane_units
@@ -119,7 +119,7 @@ def join_surfaces(
     )
     seam = Seam(patch, insert, measure_tolerance(ground, insert))
     cut = _Base(base, ground, seam, done.stage(0.1, 0.6))
-    is_inserted = _mark_used(patch)
+    is_inserted = mark_corners(patch.triangles, len(patch.points))
     done(0.6)
     lines = [*cut.list_lines(), *cut.list_joints()]
     seam.insert_cuts()
@@ -153,13 +153,6 @@ def _join_attributes(*taken: tuple[TIN, BoolArray]) -> dict[str, AnyArray]:
         for tin, is_taken in taken
     ]
     return join_columns(columns, [int(is_taken.sum()) for _, is_taken in taken])
-
-
-def _mark_used(tin: TIN) -> BoolArray:
-    """Tell which vertices are corners of triangles: files may have others, which are no surface."""
-    is_used = np.zeros(len(tin.points), np.bool_)
-    is_used[tin.triangles] = True
-    return is_used
 
 
 def _list_rings(area: Any, cut: _Base, seam: Seam) -> dict[str, Any]:
@@ -234,7 +227,7 @@ class _Base:
         xy = np.ascontiguousarray(points[:, :2])
         self.is_kept = in_rings(xy, [ring[:, :2] for ring in seam.rings]) < 0
         self.is_kept[seam.find_near(xy)] = False
-        self.is_kept &= _mark_used(base)
+        self.is_kept &= mark_corners(base.triangles, len(base.points))
         self._pieces = self._cut_edges(progress)
 
     def _cut_edges(self, progress: Tell | None) -> dict[int, list[Float64Array]]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...policies import FlowProduct
-from ..parameters import choice_option, file_command, file_option, number_option
+from ..parameters import choice_option, file_command, file_option, number_option, position_option
 from ..places import name_places, read_places
 from ..request import surface_options
 
@@ -38,14 +38,11 @@ _FLAGS = {
 
 @file_command
 @choice_option("--find", FlowProduct, "What to find.", default="depressions")
-@click.option(
+@position_option(
     "--from",
     "begins",
-    metavar="X Y",
-    nargs=2,
-    type=float,
+    "Start of a path, or outlet of a catchment. May be given several times.",
     multiple=True,
-    help="Start of a path, or outlet of a catchment. May be given several times.",
 )
 @file_option("--points", "Vector file of such points.")
 @number_option("--level", "ELEVATION", "Level of the water, for ponds.")

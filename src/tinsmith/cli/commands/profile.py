@@ -10,7 +10,7 @@ import click
 
 from ..._sentences import counted
 from ..output.failures import Failure
-from ..parameters import command, file_option, number_option, output_files
+from ..parameters import command, file_option, number_option, output_files, position_option
 from ..paths import INPUT, Named, make_title
 from ..request import surface_options
 
@@ -46,8 +46,8 @@ class _Line:
 @click.argument("files", nargs=-1, required=True, type=INPUT)
 @output_files
 @file_option("--line", "Vector file of the lines.", name="line_file")
-@click.option("--from", "begin", metavar="X Y", nargs=2, type=float, help="Start of a line.")
-@click.option("--to", "end", metavar="X Y", nargs=2, type=float, help="End of the line.")
+@position_option("--from", "begin", "Start of a line.")
+@position_option("--to", "end", "End of the line.")
 @number_option("--interval", "LENGTH", "Add a row at every multiple of this length.")
 @number_option("--start", "STATION", "Station at the start of the line.", default=0.0)
 @click.option(

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..parameters import file_command, file_option, number_option
+from ..parameters import file_command, file_option, number_option, position_option
 from ..places import name_places, read_places
 from ..request import surface_options
 
@@ -25,25 +25,16 @@ _SHOWN = 12
 
 
 @file_command
-@click.option(
-    "--from",
-    "eye",
-    metavar="X Y",
-    nargs=2,
-    type=float,
-    multiple=True,
-    help="Position of the eye; several go with as many targets.",
+@position_option(
+    "--from", "eye", "Position of the eye; several go with as many targets.", multiple=True
 )
 @file_option("--eye", "Vector file of points, instead of coordinates.", name="eyes")
-@click.option(
+@position_option(
     "--to",
     "targets",
-    metavar="X Y",
-    nargs=2,
-    type=float,
+    "Position of a target, for a line of sight; without one the viewshed. May be given several "
+    "times.",
     multiple=True,
-    help="Position of a target, for a line of sight; without one the viewshed. May be given "
-    "several times.",
 )
 @file_option("--targets", "Vector file of points, instead of coordinates.", name="points")
 @number_option("--eye-height", "HEIGHT", "Height of the eye above the ground.", default=0.0)
