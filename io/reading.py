@@ -426,8 +426,13 @@ def _read_file(
             raise
         raise _blame_plug_in(chosen, file, describe_failure(error)) from error
     if isinstance(found, Survey | TIN):
-        return found
+        return _name_source(found, file)
     raise _blame_plug_in(chosen, file, f"it gives a {type(found).__name__}, no Survey and no TIN")
+
+
+def _name_source(found: Survey | TIN, file: Path) -> Survey | TIN:
+    """Return a TIN that knows its file; a survey does already."""
+    return found if isinstance(found, Survey) else found.with_source(file.name)
 
 
 def _blame_plug_in(one: Format, file: Path, reason: str) -> ReadError:

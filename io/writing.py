@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 from .._atomic import as_path
 from .._plug_ins import describe_failure
+from .._products import product
 from .._progress import Progress
 from ..errors import FormatError, TinsmithError, WriteError
 from ..terrain.results import Features, Raster, Table
-from ..tin import TIN, Survey
+from ..tin import Surface, Survey
 from .registry.format import require_options, takes_progress
 from .registry.lookup import find_writer
 from .registry.losses import tell_lost_lines
@@ -23,9 +24,10 @@ if TYPE_CHECKING:
 
 __all__ = ["find_kind", "write"]
 
-_KINDS = {"TIN": TIN, "Survey": Survey, "Features": Features, "Raster": Raster, "Table": Table}
+_KINDS = {"TIN": Surface, "Survey": Survey, "Features": Features, "Raster": Raster, "Table": Table}
 
 
+@product
 def write(
     obj: object,
     path: str | os.PathLike[str],

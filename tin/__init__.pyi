@@ -22,6 +22,8 @@ from .paper.comparison import compare as compare
 from .report import Merge as Merge
 from .report import Report as Report
 from .surface import TIN as TIN
+from .surface import Snapshot as Snapshot
+from .surface import Surface as Surface
 from .types import Bounds as Bounds
 from .types import Grid as Grid
 from .voronoi.diagram import Voronoi as Voronoi

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -25,6 +26,7 @@ __all__ = [
     "Report",
     "Simplification",
     "Unmended",
+    "describe_skipped",
 ]
 
 LEFT_OUT = (
@@ -286,6 +288,26 @@ class Simplification(NamedTuple):
         return self._asdict()
 
 
+EXPECTED_SKIPS = "header lines"
+"""What every file may have, and nobody needs to be told of."""
+
+
+def describe_skipped(skipped: Mapping[str, int]) -> tuple[str, ...]:
+    """Say what a reader left out, in one sentence or none.
+
+    Examples
+    --------
+    >>> describe_skipped({"header lines": 1, "rows without an elevation": 2})
+    ('Left out by the reader: 2 rows without an elevation.',)
+    """
+    left = [
+        counted(number, re.sub(r"\b(cell|row|line|point)s\b", r"\1", what, count=1), what)
+        for what, number in skipped.items()
+        if what != EXPECTED_SKIPS
+    ]
+    return (f"Left out by the reader: {', '.join(left)}.",) if left else ()
+
+
 def _make_none_overruled() -> Overruled:
     return Overruled(_make_no_rows(), _make_no_rows(), np.empty(0), np.empty(0))
 
@@ -341,6 +363,8 @@ class Report(Frozen):
         Triangles that refinement had to leave. None after an edit, which numbers triangles anew.
     simplification : Simplification or None
         What :func:`tinsmith.simplify` left out. None after an edit.
+    source : str
+        Name of the file that the points or triangles come from; empty if there is none.
 
     Examples
     --------
@@ -372,6 +396,35 @@ class Report(Frozen):
     edits: Sequence[Edit] = ()
     unmended: Unmended = field(default_factory=Unmended.none)
     simplification: Simplification | None = None
+    source: str = ""
+
+    def sentences(self) -> tuple[str, ...]:
+        """Return what who uses the surface should know of its making.
+
+        Notes, what the reader left out, and points at one place with different elevations.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> points = [[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]]
+        >>> ts.triangulate(points).report.sentences()
+        ('Points at 1 place differ in elevation, by up to 2: ...',)
+        """
+        return (*self.notes, *describe_skipped(self.skipped), *self._describe_merges())
+
+    def _describe_merges(self) -> tuple[str, ...]:
+        if len(self.merged_rows) == 0:
+            return ()
+        starts = self.merged_offsets[:-1]
+        spread = np.maximum.reduceat(self.merged_elevations, starts)
+        spread = spread - np.minimum.reduceat(self.merged_elevations, starts)
+        differing = int(np.count_nonzero(spread))
+        if differing == 0:
+            return ()
+        return (
+            f"Points at {counted(differing, 'place')} differ in elevation, by up to "
+            f"{spread.max():.6g}: the surface has there what duplicates='{self.duplicates}' gives.",
+        )
 
     def after_edits(
         self, vertex_of: Int32Array, n_vertices: int, n_triangles: int, edits: Sequence[Edit]

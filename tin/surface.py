@@ -1,9 +1,9 @@
-"""TIN: the triangulated surface, with its measures and queries."""
+"""The triangulated surface: what can be asked of it, TIN, and snapshots of TINs."""
 
 from __future__ import annotations
 
 from dataclasses import Field, FrozenInstanceError, make_dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Never, Self, overload
+from typing import TYPE_CHECKING, Any, ClassVar, Never, Self, cast, overload
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from .building.moving import move_inputs, move_points, require_move
 from .building.reference import require_crs
 from .constraints.breaklines import Lines
 from .editing.editable import Editable
+from .editing.origin import Origin
 from .editing.version import Version
 from .report import Report
 from .triangulation import Triangulation
@@ -28,18 +29,19 @@ from .validation.triangles import as_flags, as_triangles, turn_counter_clockwise
 from .validation.vertices import as_vertex, as_vertex_pairs
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
     from ..arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
     from ..crs import CrsLike, UnitLike
     from .building.inputs import BuildInputs
+    from .report import Edit
     from .types import Bounds, PointsLike
     from .voronoi.diagram import Voronoi
 
 
-__all__ = ["TIN"]
+__all__ = ["TIN", "Snapshot", "Surface"]
 
 _ARGUMENTS = (
     "points",
@@ -55,161 +57,100 @@ _ARGUMENTS = (
 )
 
 
-class TIN(Editable):
-    """A triangulated irregular network: one elevation for every place inside its boundary.
+class Surface:
+    """What can be asked of a triangulated surface: a :class:`TIN`, or a snapshot of one.
 
-    Built by :func:`tinsmith.triangulate`, or from existing triangles by
-    :meth:`TIN.from_triangles`. All arrays are read-only; edits replace them by others.
+    It has everything that reads and nothing that edits. Products take a surface, and begin from a
+    snapshot of it (:meth:`snapshot`), so that an edit in another thread cannot reach them.
 
     Attributes
     ----------
-    points : (n, 3) float64 array
-        Easting, northing, elevation of the vertices, in the order given.
-    triangles : (m, 3) int32 array
-        Vertices of each triangle, counter-clockwise seen from above.
-    neighbors : (m, 3) int32 array
-        The triangle across the edge opposite each corner; -1 outside.
-    constrained : (m, 3) bool array
-        Whether that edge is a breakline, boundary or hole.
-    vertex_of : (n_input,) int32 array
-        The vertex that stands for each input row.
-    report : Report
-        What became of every input row.
-    lines : Lines
-        Breaklines, boundary, holes and water, as chains of vertices.
-    crs : CRS or None
-        Coordinate reference system.
-    elevation_unit : Unit or None
-        Unit of elevations; None if it is not known.
-    attributes : mapping of str to (n,) array
-        Further columns of the vertices, such as ``"number"`` and ``"description"``.
-    row_attributes : mapping of str to array
-        The same of the input rows.
-
-    Notes
-    -----
-    Several threads may read and edit one TIN. Each attribute and each method sees the TIN as it was
-    between two edits; for several attributes that belong together take ``tin.triangulation``, or a
-    copy first. Copies (``copy.copy``, ``copy.deepcopy``, pickles) share nothing that changes: each
-    is edited on its own, and takes back the edits made before it was copied.
-
-    ``len`` is the number of triangles. Two TINs are equal if they are the same surface to the last
-    bit: vertices, triangles, lines, attributes, CRS and unit; report and edits do not count. What
-    can be edited has no hash. As ``__geo_interface__`` and stream of Arrow it is its triangles.
-
-    Examples
-    --------
-    >>> import tinsmith as ts
-    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
-    >>> tin
-    <TIN: 4 vertices, 2 triangles, z 5 to 8, crs unknown>
-    >>> tin.area, tin.bounds.width
-    (12.0, 4.0)
+    As of :class:`TIN`.
     """
 
-    __slots__ = ("__weakref__", "_crs", "_elevation_unit", "_row_attributes")
+    __slots__ = ()
 
-    # ``dataclasses.replace(tin, crs=...)`` makes a TIN that differs in some arguments.
-    __dataclass_fields__: ClassVar[dict[str, Field[Any]]] = vars(
-        make_dataclass("Arguments", _ARGUMENTS, kw_only=True)
-    )["__dataclass_fields__"]
+    _crs: CRS | None
+    _elevation_unit: Unit | None
+    _row_attributes: Mapping[str, AnyArray]
+    _source: str
 
-    def __init__(
-        self,
-        *,
-        points: Float64Array,
-        triangles: Int32Array,
-        neighbors: Int32Array,
-        constrained: BoolArray,
-        vertex_of: Int32Array,
-        report: Report,
-        lines: Lines | None = None,
-        crs: CrsLike | None = None,
-        elevation_unit: UnitLike | None = None,
-        row_attributes: Mapping[str, ArrayLike] | None = None,
-        inputs: BuildInputs | None = None,
-    ) -> None:
-        system = CRS.of(crs)
-        unit = require_one_unit(system, Unit.of(elevation_unit))
-        triangulation = Triangulation(
-            points=points, triangles=triangles, neighbors=neighbors, constrained=constrained
-        )
-        version = Version(
-            triangulation=triangulation,
-            vertex_of=vertex_of,
-            report=report,
-            lines=Lines() if lines is None else lines,
-        )
-        super().__init__(version, inputs)
-        self._crs = system
-        self._elevation_unit = unit
-        self._row_attributes = as_row_attributes(row_attributes or {}, len(vertex_of))
+    @property
+    def _current(self) -> Version:
+        """What the surface is between two edits."""
+        raise NotImplementedError
 
-    @classmethod
-    def from_triangles(
-        cls,
-        points: ArrayLike,
-        triangles: ArrayLike,
-        *,
-        constrained: ArrayLike | None = None,
-        crs: CrsLike | None = None,
-        z_unit: UnitLike | None = None,
-        attributes: Mapping[str, ArrayLike] | None = None,
-    ) -> TIN:
-        """Make a TIN of triangles that exist already, for example those of a file.
+    def _keep(self) -> TIN:
+        """Return a TIN that nobody edits."""
+        raise NotImplementedError
 
-        Parameters
-        ----------
-        points : (n, 3) array, CRS units
-        triangles : (m, 3) int array
-            Vertex numbers; clockwise triangles are turned round.
-        constrained : (m, 3) bool array, optional
-            Flags of the edge opposite each corner as given; default none.
-        crs : CRS, str, int or pyproj.CRS, optional
-        z_unit : Unit or str, optional
-            Unit of the elevations; default that of the CRS's vertical axis, else not known.
-        attributes : mapping of str to (n,) array, optional
-            Further columns of the points.
+    def _settle(self) -> tuple[Version, Origin]:
+        """Return what the surface is, and what it was before its edits."""
+        return self._keep()._settle()
 
-        Raises
-        ------
-        CrsError
-            If the CRS is unknown.
-        OptionError
-            If ``z_unit`` is unknown, or another than that of the CRS's vertical axis; if an
-            attribute has not one value for each point.
-        PointsError
-            If a vertex number is out of range, a triangle has no area, or triangles overlap
-            along an edge.
+    def _gather_inputs(self) -> BuildInputs | None:
+        """Return what it is the build of, edits included; None for existing triangles."""
+        return self._keep()._gather_inputs()
+
+    def snapshot(self) -> Snapshot:
+        """Return the surface as it is now, which no edit changes.
 
         Examples
         --------
         >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
-        >>> tin
-        <TIN: 3 vertices, 1 triangle, z 1 to 3, crs unknown>
+        >>> before = tin.snapshot()
+        >>> tin.set_elevation(0, 9.0)
+        >>> before.points[0].tolist(), tin.points[0].tolist()
+        ([0.0, 0.0, 1.0], [0.0, 0.0, 9.0])
         """
-        system = CRS.of(crs)
-        unit = require_one_unit(system, Unit.of(z_unit))
-        xyz = as_points(points)
-        corners = as_triangles(triangles, len(xyz))
-        flags = as_flags(constrained, len(corners))
-        corners, flags = turn_counter_clockwise(xyz, corners, flags)
-        return cls(
-            points=xyz,
-            triangles=corners,
-            neighbors=topology.neighbors_of(corners, len(xyz)),
-            constrained=flags,
-            vertex_of=np.arange(len(xyz), dtype=np.int32),
-            report=Report(n_rows=len(xyz), n_vertices=len(xyz), n_triangles=len(corners)),
-            crs=system,
-            elevation_unit=unit,
-            row_attributes=as_columns(attributes or {}, (len(xyz),)),
-        )
+        return Snapshot(self._keep())
 
-    def __setattr__(self, name: str, value: Never) -> None:
-        if not name.startswith("_"):
-            raise FrozenInstanceError(f"cannot assign to '{name}' of a TIN: edits change it")
-        super().__setattr__(name, value)
+    def to_tin(self) -> TIN:
+        """Return a TIN of the surface, to be edited on its own.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
+        >>> other = tin.snapshot().to_tin()
+        >>> other.set_elevation(0, 9.0)
+        >>> tin == other
+        False
+        """
+        return self._keep().copy()
+
+    @property
+    def source(self) -> str:
+        """Name of the file that it was read from, else of that of its points; empty if of none."""
+        return self._source or self._current.report.source
+
+    @property
+    def edits(self) -> tuple[Edit, ...]:
+        """What was done to the surface since it was built, in order."""
+        return self._keep().edits
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What who uses the surface should know, in sentences.
+
+        What the reader assumed and left out, how far merged points differ, and what looks wrong
+        with the surface: blunders, lines at other elevations than the ground, gaps. Products have
+        them among their own notes. They are found once for each version of a TIN.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> x, y = np.divmod(np.arange(100.0), 10)
+        >>> z = 320 + 0.01 * x * y
+        >>> z[33] = 0
+        >>> len(ts.triangulate(np.column_stack([x, y, z])).notes)
+        1
+        """
+        still = self.snapshot()
+        version = still._current
+        if version.notes is None:
+            found = call_method("Surface.findings", still)
+            version.keep_notes(tuple(dict.fromkeys([*version.report.sentences(), *found])))
+        return cast("tuple[str, ...]", version.notes)
 
     # ---------------------------------------------------------------- arrays
 
@@ -289,21 +230,6 @@ class TIN(Editable):
         """Further columns of the input rows; those that edits inserted, behind them, have none."""
         return dict(self._row_attributes)
 
-    def __getstate__(self) -> dict[str, Any]:
-        own = ("_crs", "_elevation_unit", "_row_attributes")
-        return super().__getstate__() | {name: getattr(self, name) for name in own}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        super().__setstate__({"_row_attributes": {}} | state)
-
-    @property
-    def _reference(self) -> dict[str, Any]:
-        return {
-            "crs": self._crs,
-            "elevation_unit": self._elevation_unit,
-            "row_attributes": self._row_attributes,
-        }
-
     def replace(self, **changes: Any) -> TIN:
         """Return a TIN that differs in some arguments of the constructor; it has no edits.
 
@@ -313,10 +239,7 @@ class TIN(Editable):
         >>> tin.replace(crs="EPSG:32616").crs
         CRS('EPSG:32616')
         """
-        version = self._current
-        given = {name: getattr(version.triangulation, name) for name in _ARGUMENTS[:4]}
-        given |= {name: getattr(version, name) for name in _ARGUMENTS[4:7]}
-        return type(self)(**(given | self._reference | changes))
+        return self._keep()._replace(changes)
 
     def transform(
         self,
@@ -362,44 +285,7 @@ class TIN(Editable):
         >>> tin.transform(lambda points: points + [10.0, 20.0, 0.0]).bounds.xmin
         10.0
         """
-        system = CRS.of(crs)
-        unit = require_one_unit(system, Unit.of(z_unit))
-        require_move(function, length)
-        inputs = self._gather_inputs()
-        if inputs is None:
-            moved = move_points(self.points.copy(), function)
-            return self._keep_triangles(moved, system, unit)
-        rows = self._list_rows()
-        inputs = move_inputs(inputs, function, length=length, crs=system, elevation_unit=unit)
-        built = assemble(inputs)
-        return type(self)(
-            **built.surface._asdict(),
-            vertex_of=built.vertex_of,
-            report=built.report,
-            lines=built.lines,
-            crs=system,
-            elevation_unit=unit,
-            row_attributes=self._choose_attributes(rows),
-            inputs=inputs,
-        )
-
-    def _choose_attributes(self, rows: Int64Array | None) -> Mapping[str, AnyArray]:
-        """Return the attributes of some rows, None for all."""
-        if rows is None:
-            return self._row_attributes
-        return dict(Attributes(self._row_attributes, lambda: rows))
-
-    def _keep_triangles(self, points: Float64Array, crs: CRS | None, unit: Unit | None) -> TIN:
-        """Return the same triangles at other places, all turned round where the map is mirrored."""
-        made = type(self).from_triangles(
-            points, self.triangles, constrained=self.constrained, crs=crs, z_unit=unit
-        )
-        return made.replace(
-            vertex_of=self.vertex_of,
-            report=self.report,
-            lines=self.lines,
-            row_attributes=self._row_attributes,
-        )
+        return self._keep()._transform(function, crs, z_unit, length)
 
     # ---------------------------------------------------------------- measures
 
@@ -831,8 +717,9 @@ class TIN(Editable):
         surface = self._current.triangulation
         count = len(surface.triangles)
         z = surface.points[:, 2]
+        name = type(self).__name__
         return (
-            f"<TIN: {len(surface.points):,} vertices, {counted(count, 'triangle')}, "
+            f"<{name}: {len(surface.points):,} vertices, {counted(count, 'triangle')}, "
             f"z {z.min():g} to {z.max():g}, crs {shorten_crs(self.crs)}>"
         )
 
@@ -841,25 +728,12 @@ class TIN(Editable):
 
     # ---------------------------------------------------------------- as a value
 
-    def copy(self) -> Self:
-        """Return a copy that is edited on its own, and takes back the edits made before.
-
-        Examples
-        --------
-        >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
-        >>> other = tin.copy()
-        >>> other.set_elevation(0, 9.0)
-        >>> tin == other
-        False
-        """
-        return self.__copy__()
-
     def __len__(self) -> int:
         return len(self.triangles)
 
     def __eq__(self, other: object) -> bool:
         """Whether both are the same surface, whatever rows and edits they come from."""
-        if not isinstance(other, TIN):
+        if not isinstance(other, Surface):
             return NotImplemented
         one, two = self._current, other._current
         mine, theirs = one.triangulation, two.triangulation
@@ -869,7 +743,10 @@ class TIN(Editable):
             and np.array_equal(mine.triangles, theirs.triangles)
             and np.array_equal(mine.constrained, theirs.constrained)
             and one.lines.is_same(two.lines)
-            and _have_same_values(self.attributes, other.attributes)
+            and _have_same_values(
+                Attributes(self._row_attributes, lambda: one.first_rows),
+                Attributes(other._row_attributes, lambda: two.first_rows),
+            )
         )
 
     # Edits change it.
@@ -887,7 +764,7 @@ class TIN(Editable):
         >>> ts.triangulate(points, crs="EPSG:32616").to_crs("EPSG:32617").bounds.xmin
         212642.559...
         """
-        moved: TIN = call_method("TIN.to_crs", self, crs, z_unit=z_unit)
+        moved: TIN = call_method("TIN.to_crs", self.snapshot(), crs, z_unit=z_unit)
         return moved
 
     def to_geodataframe(self, kind: FeatureKind = "triangles") -> Any:
@@ -908,7 +785,7 @@ class TIN(Editable):
         >>> float(tin.to_geodataframe().area.sum())
         12.0
         """
-        return call_method("TIN.to_geodataframe", self, kind)
+        return call_method("TIN.to_geodataframe", self.snapshot(), kind)
 
     def plot(
         self,
@@ -960,7 +837,7 @@ class TIN(Editable):
         """
         return call_method(
             "TIN.plot",
-            self,
+            self.snapshot(),
             ax,
             values=values,
             edges=edges,
@@ -972,13 +849,333 @@ class TIN(Editable):
     @property
     def __geo_interface__(self) -> dict[str, Any]:
         """The triangles as GeoJSON-like values, in their own CRS."""
-        collection: dict[str, Any] = call_method("TIN.__geo_interface__", self)
+        collection: dict[str, Any] = call_method("TIN.__geo_interface__", self.snapshot())
         return collection
 
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
         """Return the triangles as a stream of Arrow, as :class:`tinsmith.Features` has them."""
-        stream: object = call_method("TIN.__arrow_c_stream__", self, requested_schema)
+        stream: object = call_method("TIN.__arrow_c_stream__", self.snapshot(), requested_schema)
         return stream
+
+
+class TIN(Editable, Surface):
+    """A triangulated irregular network: one elevation for every place inside its boundary.
+
+    Built by :func:`tinsmith.triangulate`, or from existing triangles by
+    :meth:`TIN.from_triangles`. All arrays are read-only; edits replace them by others.
+
+    Attributes
+    ----------
+    points : (n, 3) float64 array
+        Easting, northing, elevation of the vertices, in the order given.
+    triangles : (m, 3) int32 array
+        Vertices of each triangle, counter-clockwise seen from above.
+    neighbors : (m, 3) int32 array
+        The triangle across the edge opposite each corner; -1 outside.
+    constrained : (m, 3) bool array
+        Whether that edge is a breakline, boundary or hole.
+    vertex_of : (n_input,) int32 array
+        The vertex that stands for each input row.
+    report : Report
+        What became of every input row.
+    lines : Lines
+        Breaklines, boundary, holes and water, as chains of vertices.
+    crs : CRS or None
+        Coordinate reference system.
+    elevation_unit : Unit or None
+        Unit of elevations; None if it is not known.
+    attributes : mapping of str to (n,) array
+        Further columns of the vertices, such as ``"number"`` and ``"description"``.
+    row_attributes : mapping of str to array
+        The same of the input rows.
+
+    Notes
+    -----
+    Several threads may read and edit one TIN. Each attribute and each method sees the TIN as it was
+    between two edits; for several attributes that belong together take ``tin.triangulation``, or a
+    copy first. Copies (``copy.copy``, ``copy.deepcopy``, pickles) share nothing that changes: each
+    is edited on its own, and takes back the edits made before it was copied.
+
+    ``len`` is the number of triangles. Two TINs are equal if they are the same surface to the last
+    bit: vertices, triangles, lines, attributes, CRS and unit; report and edits do not count. What
+    can be edited has no hash. As ``__geo_interface__`` and stream of Arrow it is its triangles.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+    >>> tin
+    <TIN: 4 vertices, 2 triangles, z 5 to 8, crs unknown>
+    >>> tin.area, tin.bounds.width
+    (12.0, 4.0)
+    """
+
+    __slots__ = ("__weakref__", "_crs", "_elevation_unit", "_row_attributes", "_source")
+
+    # ``dataclasses.replace(tin, crs=...)`` makes a TIN that differs in some arguments.
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]] = vars(
+        make_dataclass("Arguments", _ARGUMENTS, kw_only=True)
+    )["__dataclass_fields__"]
+
+    def __init__(
+        self,
+        *,
+        points: Float64Array,
+        triangles: Int32Array,
+        neighbors: Int32Array,
+        constrained: BoolArray,
+        vertex_of: Int32Array,
+        report: Report,
+        lines: Lines | None = None,
+        crs: CrsLike | None = None,
+        elevation_unit: UnitLike | None = None,
+        row_attributes: Mapping[str, ArrayLike] | None = None,
+        inputs: BuildInputs | None = None,
+    ) -> None:
+        system = CRS.of(crs)
+        unit = require_one_unit(system, Unit.of(elevation_unit))
+        triangulation = Triangulation(
+            points=points, triangles=triangles, neighbors=neighbors, constrained=constrained
+        )
+        version = Version(
+            triangulation=triangulation,
+            vertex_of=vertex_of,
+            report=report,
+            lines=Lines() if lines is None else lines,
+        )
+        super().__init__(version, inputs)
+        self._crs = system
+        self._elevation_unit = unit
+        self._row_attributes = as_row_attributes(row_attributes or {}, len(vertex_of))
+        self._source = ""
+
+    @classmethod
+    def from_triangles(
+        cls,
+        points: ArrayLike,
+        triangles: ArrayLike,
+        *,
+        constrained: ArrayLike | None = None,
+        crs: CrsLike | None = None,
+        z_unit: UnitLike | None = None,
+        attributes: Mapping[str, ArrayLike] | None = None,
+    ) -> TIN:
+        """Make a TIN of triangles that exist already, for example those of a file.
+
+        Parameters
+        ----------
+        points : (n, 3) array, CRS units
+        triangles : (m, 3) int array
+            Vertex numbers; clockwise triangles are turned round.
+        constrained : (m, 3) bool array, optional
+            Flags of the edge opposite each corner as given; default none.
+        crs : CRS, str, int or pyproj.CRS, optional
+        z_unit : Unit or str, optional
+            Unit of the elevations; default that of the CRS's vertical axis, else not known.
+        attributes : mapping of str to (n,) array, optional
+            Further columns of the points.
+
+        Raises
+        ------
+        CrsError
+            If the CRS is unknown.
+        OptionError
+            If ``z_unit`` is unknown, or another than that of the CRS's vertical axis; if an
+            attribute has not one value for each point.
+        PointsError
+            If a vertex number is out of range, a triangle has no area, or triangles overlap
+            along an edge.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
+        >>> tin
+        <TIN: 3 vertices, 1 triangle, z 1 to 3, crs unknown>
+        """
+        system = CRS.of(crs)
+        unit = require_one_unit(system, Unit.of(z_unit))
+        xyz = as_points(points)
+        corners = as_triangles(triangles, len(xyz))
+        flags = as_flags(constrained, len(corners))
+        corners, flags = turn_counter_clockwise(xyz, corners, flags)
+        return cls(
+            points=xyz,
+            triangles=corners,
+            neighbors=topology.neighbors_of(corners, len(xyz)),
+            constrained=flags,
+            vertex_of=np.arange(len(xyz), dtype=np.int32),
+            report=Report(n_rows=len(xyz), n_vertices=len(xyz), n_triangles=len(corners)),
+            crs=system,
+            elevation_unit=unit,
+            row_attributes=as_columns(attributes or {}, (len(xyz),)),
+        )
+
+    def with_source(self, source: str) -> TIN:
+        """Return a copy that names the file that it was read from.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
+        >>> tin.with_source("site.obj").source
+        'site.obj'
+        """
+        other = self.copy()
+        other._source = str(source)
+        return other
+
+    def with_notes(self, notes: Sequence[str]) -> TIN:
+        """Return the TIN with further notes in its report, in front; edits can be taken back.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
+        >>> tin.with_notes(["Two files were joined."]).report.notes
+        ('Two files were joined.',)
+        """
+        told = tuple(dict.fromkeys([*notes, *self.report.notes]))
+        return self if told == tuple(self.report.notes) else self._with_report(notes=told)
+
+    def _with_report(self, **changes: Any) -> TIN:
+        version, origin = self._settle()
+        given, inputs = origin.given, origin.inputs
+        if given is not None:
+            given = replace(given, report=replace(given.report, **changes))
+        if inputs is not None:
+            inputs = replace(inputs, **changes)
+        other = self._replace({"report": replace(version.report, **changes)})
+        other._resume(Origin(inputs, given, origin.edits))
+        return other
+
+    def _replace(self, changes: dict[str, Any]) -> TIN:
+        version = self._current
+        given = {name: getattr(version.triangulation, name) for name in _ARGUMENTS[:4]}
+        given |= {name: getattr(version, name) for name in _ARGUMENTS[4:7]}
+        made = type(self)(**(given | self._reference | changes))
+        made._source = self._source
+        return made
+
+    def _transform(
+        self,
+        function: Callable[[Float64Array], Float64Array],
+        crs: CrsLike | None,
+        z_unit: UnitLike | None,
+        length: float,
+    ) -> TIN:
+        system = CRS.of(crs)
+        unit = require_one_unit(system, Unit.of(z_unit))
+        require_move(function, length)
+        inputs = self._gather_inputs()
+        if inputs is None:
+            moved = move_points(self.points.copy(), function)
+            return self._keep_triangles(moved, system, unit)
+        rows = self._list_rows()
+        inputs = move_inputs(inputs, function, length=length, crs=system, elevation_unit=unit)
+        built = assemble(inputs)
+        return type(self)(
+            **built.surface._asdict(),
+            vertex_of=built.vertex_of,
+            report=built.report,
+            lines=built.lines,
+            crs=system,
+            elevation_unit=unit,
+            row_attributes=self._choose_attributes(rows),
+            inputs=inputs,
+        )
+
+    def _choose_attributes(self, rows: Int64Array | None) -> Mapping[str, AnyArray]:
+        """Return the attributes of some rows, None for all."""
+        if rows is None:
+            return self._row_attributes
+        return dict(Attributes(self._row_attributes, lambda: rows))
+
+    def _keep_triangles(self, points: Float64Array, crs: CRS | None, unit: Unit | None) -> TIN:
+        """Return the same triangles at other places, all turned round where the map is mirrored."""
+        made = type(self).from_triangles(
+            points, self.triangles, constrained=self.constrained, crs=crs, z_unit=unit
+        )
+        return made.replace(
+            vertex_of=self.vertex_of,
+            report=self.report,
+            lines=self.lines,
+            row_attributes=self._row_attributes,
+        )
+
+    def __setattr__(self, name: str, value: Never) -> None:
+        if not name.startswith("_"):
+            raise FrozenInstanceError(f"cannot assign to '{name}' of a TIN: edits change it")
+        super().__setattr__(name, value)
+
+    def __getstate__(self) -> dict[str, Any]:
+        own = ("_crs", "_elevation_unit", "_row_attributes", "_source")
+        return super().__getstate__() | {name: getattr(self, name) for name in own}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        super().__setstate__({"_row_attributes": {}, "_source": ""} | state)
+
+    @property
+    def _reference(self) -> dict[str, Any]:
+        return {
+            "crs": self._crs,
+            "elevation_unit": self._elevation_unit,
+            "row_attributes": self._row_attributes,
+        }
+
+    def copy(self) -> Self:
+        """Return a copy that is edited on its own, and takes back the edits made before.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
+        >>> other = tin.copy()
+        >>> other.set_elevation(0, 9.0)
+        >>> tin == other
+        False
+        """
+        return self.__copy__()
+
+    def _keep(self) -> TIN:
+        return self.__copy__()
+
+
+class Snapshot(Surface):
+    """A TIN as it was at one time: what products begin from. Made by :meth:`TIN.snapshot`.
+
+    It is asked like a TIN, and has no edits; :meth:`to_tin` makes a TIN of it that can be edited.
+
+    Parameters
+    ----------
+    tin : TIN
+        That nobody edits.
+    """
+
+    __slots__ = ("__weakref__", "_crs", "_elevation_unit", "_row_attributes", "_source", "_tin")
+
+    def __init__(self, tin: TIN) -> None:
+        self._tin = tin
+        self._crs = tin._crs
+        self._elevation_unit = tin._elevation_unit
+        self._row_attributes = tin._row_attributes
+        self._source = tin._source
+
+    @property
+    def _current(self) -> Version:
+        return self._tin._current
+
+    def _keep(self) -> TIN:
+        return self._tin
+
+    def snapshot(self) -> Snapshot:
+        """Return itself: it never changes."""
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Snapshot, (self._tin,))
+
+    def __copy__(self) -> Snapshot:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Snapshot:
+        return self
 
 
 def _have_same_values(one: Mapping[str, AnyArray], other: Mapping[str, AnyArray]) -> bool:

@@ -11,7 +11,7 @@ from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import CrsError, FormatError, OptionError, PointsError, ReadError
 from ...terrain.inspection.nodata import find_suspect_elevations
-from ...tin import TIN, Survey
+from ...tin import TIN, Surface, Survey
 from ...tin.checking.overlaps import describe_overlaps
 from ...tin.validation.options import is_finite_number
 from ..reprojection.placement import settle_unit
@@ -71,7 +71,7 @@ def read_content(path: Path) -> bytes:
 
 def require_writable(surface: object, path: Path) -> TIN | Survey:
     """Return a TIN or a survey; refuse anything else."""
-    if isinstance(surface, TIN | Survey):
+    if isinstance(surface, Surface | Survey):
         return surface
     raise FormatError(
         f"Cannot write '{path}': a {type(surface).__name__} is neither a TIN nor a Survey."
@@ -81,7 +81,7 @@ def require_writable(surface: object, path: Path) -> TIN | Survey:
 def require_tin(surface: object, path: Path, *, format_name: str) -> TIN:
     """Return a TIN; refuse a survey, which has no faces, and anything else."""
     writable = require_writable(surface, path)
-    if isinstance(writable, TIN):
+    if isinstance(writable, Surface):
         return writable
     raise FormatError(
         f"Cannot write '{path}': {format_name} holds triangles, and a survey has none; "

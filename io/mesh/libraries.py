@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ... import _optional
+from ..._products import product
 from ..._sentences import counted
 from ...errors import PointsError, ReadError
 from ...terrain.drawing.models import choose_origin
@@ -60,6 +61,7 @@ def _describe(tin: TIN) -> dict[str, str]:
     }
 
 
+@product
 def to_pyvista(tin: TIN) -> pyvista.PolyData:
     """Return a TIN as a mesh of PyVista that :func:`from_mesh` takes back bit for bit.
 
@@ -115,6 +117,7 @@ def to_pyvista(tin: TIN) -> pyvista.PolyData:
     return mesh
 
 
+@product
 def to_trimesh(tin: TIN) -> Any:
     """Return a TIN as a mesh of trimesh that :func:`from_mesh` takes back bit for bit.
 
@@ -153,6 +156,7 @@ def to_trimesh(tin: TIN) -> Any:
     )
 
 
+@product
 def to_meshio(tin: TIN) -> Any:
     """Return a TIN as a mesh of meshio that :func:`from_mesh` takes back bit for bit.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ... import _optional
+from ..._products import product
 from ...tin.validation.options import require_tin
 from .ugrid import write_content
 
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["to_ugrid"]
 
 
+@product
 def to_ugrid(tin: TIN) -> Any:
     """Return a TIN as a data set of xarray by the conventions of UGRID.
 

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
+from ..._products import product
 from ...crs import CRS, Unit
 from ...errors import CrsError, OptionError
-from ...tin import TIN, Breakline, Survey, Water
+from ...tin import TIN, Breakline, Surface, Survey, Water
 from .transformation import find_conversion_factor
 from .transformation import reproject as reproject_points
 
@@ -33,6 +34,7 @@ def reproject(surface: Survey, crs: CrsLike, *, z_unit: UnitLike | None = None) 
 def reproject(
     surface: TIN | Survey, crs: CrsLike, *, z_unit: UnitLike | None = None
 ) -> TIN | Survey: ...
+@product
 def reproject(
     surface: TIN | Survey, crs: CrsLike, *, z_unit: UnitLike | None = None
 ) -> TIN | Survey:
@@ -78,7 +80,7 @@ def reproject(
     >>> moved.points[0].round(2).tolist()
     [212642.56, 4021976.76, 1032.0]
     """
-    if not isinstance(surface, TIN | Survey):
+    if not isinstance(surface, Surface | Survey):
         raise OptionError("surface", surface, "a TIN or a Survey")
     source, target = surface.crs, CRS.of(crs)
     unit = _settle_unit(surface, Unit.of(z_unit))

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ...errors import OptionError
 from ...terrain.results import Features
-from ...tin import TIN, Survey, Voronoi
+from ...tin import TIN, Surface, Survey, Voronoi
 from ...tin.topology import find_offsets
 from .surface_features import make_features
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["build_collection", "build_frame", "build_stream", "to_features"]
 
 
+@product
 def to_features(surface: TIN | Survey | Voronoi, kind: FeatureKind | None = None) -> Features:
     """Return the parts of a surface as features, for GIS and other libraries.
 
@@ -60,9 +62,9 @@ def to_features(surface: TIN | Survey | Voronoi, kind: FeatureKind | None = None
         if kind is not None:
             raise OptionError("kind", kind, "None: a Voronoi diagram has cells only")
         return _make_cells(surface)
-    if not isinstance(surface, TIN | Survey):
+    if not isinstance(surface, Surface | Survey):
         raise OptionError("surface", surface, "a TIN, a Survey or a Voronoi diagram")
-    if kind == "lines" and isinstance(surface, TIN) and not _has_lines(surface):
+    if kind == "lines" and isinstance(surface, Surface) and not _has_lines(surface):
         return _make_no_lines(surface)
     return make_features(surface, Path("features"), kind)
 
@@ -114,16 +116,19 @@ def _count_within(sizes: Int64Array) -> Int64Array:
 # ---------------------------------------------------------------- methods of a TIN
 
 
+@product
 def build_frame(tin: TIN, kind: FeatureKind | None = None) -> Any:
     """Return the GeoDataFrame of :meth:`TIN.to_geodataframe`."""
     return to_features(tin, kind).to_geodataframe()
 
 
+@product
 def build_collection(tin: TIN) -> dict[str, Any]:
     """Return the triangles as the ``__geo_interface__`` has them."""
     return to_features(tin).__geo_interface__
 
 
+@product
 def build_stream(tin: TIN, requested_schema: object | None = None) -> object:
     """Return the triangles as a stream of Arrow."""
     return to_features(tin).__arrow_c_stream__(requested_schema)

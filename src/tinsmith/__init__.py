@@ -13,6 +13,8 @@ from ._methods import register_methods
 register_methods(
     {
         "TIN._repr_html_": "tinsmith.terrain.preview.card:make_card",
+        "Snapshot._repr_html_": "tinsmith.terrain.preview.card:make_card",
+        "Surface.findings": "tinsmith.terrain.inspection.findings:describe_findings",
         "Survey._repr_html_": "tinsmith.terrain.drawing.cards.survey:make_survey_card",
         "Report._repr_html_": "tinsmith.terrain.drawing.cards.survey:make_report_card",
         "Features._repr_html_": "tinsmith.terrain.drawing.cards.results:make_features_card",

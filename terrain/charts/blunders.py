@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from copy import copy
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from ...tin.validation.options import require_tin, require_type
 from ..inspection.findings import DROPPED
 from ..results import Table
 from .arguments import parse_title
-from .figures import INK
+from .figures import INK, picture
 from .maps import draw_shade, shade_for_map, start_map
 
 if TYPE_CHECKING:
@@ -34,6 +33,7 @@ _LEGEND = 1.6
 """Inches beside the map."""
 
 
+@picture
 def blunder_map(tin: TIN, table: Table, *, title: str | None = None) -> Any:
     """Draw where the points are that look like blunders.
 
@@ -96,7 +96,7 @@ def _leave_out(tin: TIN, table: Table) -> TIN:
     """Return the surface without the points that look wrong, as far as there is one."""
     rows = table["row"][np.isin(table["reason"].astype(str), DROPPED)]
     vertices = np.unique(tin.vertex_of[rows])
-    rest = copy(tin)
+    rest = tin.to_tin()
     try:
         rest.remove(vertices[vertices >= 0])
     except TinsmithError:

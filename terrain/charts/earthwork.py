@@ -15,7 +15,7 @@ from ..gridding import rasterize
 from ..gridding.grids import cover
 from ..relief.shading import hillshade
 from .arguments import parse_title
-from .figures import INK
+from .figures import INK, picture
 from .maps import PIXELS, draw_scale, draw_shade, start_map
 
 if TYPE_CHECKING:
@@ -40,6 +40,7 @@ _LINES = 8
 """So many lines of equal cut or fill are drawn at most on each side."""
 
 
+@picture
 def earthwork_map(
     difference: Difference, *, ground: TIN | None = None, title: str | None = None
 ) -> Any:

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+import textwrap
+from functools import wraps
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from ... import _optional
+from ..._products import join_notes, product
+from ...tin.surface import Surface
 
-__all__ = ["INK", "color_frame", "start_figure", "start_panels", "write_title"]
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+__all__ = ["INK", "color_frame", "picture", "start_figure", "start_panels", "write_title"]
+
+F = TypeVar("F", bound="Callable[..., Any]")
 
 INK = "#333333"
 _TITLE = {"fontsize": 15, "color": INK, "parse_math": False}
@@ -36,3 +45,64 @@ def color_frame(axes: Any) -> None:
     axes.tick_params(colors=INK)
     for spine in axes.spines.values():
         spine.set_color(INK)
+
+
+# ---------------------------------------------------------------- notes
+
+_NOTE = {"fontsize": 7, "color": INK, "parse_math": False, "linespacing": 1.25}
+_LINE = 0.125
+"""Of a note, inches."""
+_LETTER = 0.052
+"""Of a note, inches on the average."""
+_NOTE_EDGE = 0.15
+_MOST_NOTES = 8
+
+
+def picture(function: F) -> F:
+    """Make a function that draws a figure a product, with the notes of all that it shows below."""
+
+    @wraps(function)
+    def draw(*given: Any, **options: Any) -> Any:
+        figure = function(*given, **options)
+        shown = [*given, *options.values()]
+        surfaces = [one for one in shown if isinstance(one, Surface)]
+        notes = dict.fromkeys(join_notes(surfaces) if surfaces else ())
+        for one in shown:
+            if one not in surfaces:
+                notes |= dict.fromkeys(getattr(one, "notes", ()))
+        write_notes(figure, list(notes))
+        return figure
+
+    return product(cast("F", draw))
+
+
+def write_notes(figure: Any, notes: Sequence[str]) -> None:
+    """Write notes below a figure, which becomes taller by as much; the rest stays as large."""
+    if not notes:
+        return
+    width, height = figure.get_size_inches()
+    letters = int((width - 2 * _NOTE_EDGE) / _LETTER)
+    told = [*notes[:_MOST_NOTES]]
+    if len(notes) > _MOST_NOTES:
+        told.append(f"{len(notes) - _MOST_NOTES:,} more notes.")
+    lines = [line for note in told for line in textwrap.wrap(note, letters)]
+    strip = _LINE * len(lines) + 2 * _NOTE_EDGE
+    _add_below(figure, strip / (height + strip))
+    figure.set_size_inches(width, height + strip)
+    at = (_NOTE_EDGE / width, _NOTE_EDGE / (height + strip))
+    figure.text(*at, "\n".join(lines), ha="left", va="bottom", **_NOTE)
+
+
+def _add_below(figure: Any, share: float) -> None:
+    """Move all that a figure has up, so that a share of its height is free at the bottom."""
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.set(rect=(0.0, share, 1.0, 1.0 - share))
+        return
+    for axes in figure.axes:
+        box = axes.get_position(original=True)
+        low = share + box.y0 * (1.0 - share)
+        axes.set_position((box.x0, low, box.width, box.height * (1.0 - share)))
+    for text in figure.texts:
+        x, y = text.get_position()
+        text.set_position((x, share + y * (1.0 - share)))

@@ -11,6 +11,7 @@ from ...tin.validation.options import require_tin
 from ..isolines.labels import contour_labels
 from ..preview.tints import interpolate_tints
 from .arguments import parse_title, require_features
+from .figures import picture
 from .maps import draw_scale, draw_shade, find_paths, shade_for_map, start_map
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ _SCALE = 0.95
 _BAND_VEIL = 0.72
 
 
+@picture
 def contour_map(
     tin: TIN,
     lines: Features | None = None,

@@ -13,7 +13,7 @@ from ..drawing.rounding import choose_ticks, format_number
 from ..results import Table
 from . import curves
 from .arguments import parse_title
-from .figures import INK, color_frame, start_figure, write_title
+from .figures import INK, color_frame, picture, start_figure, write_title
 
 if TYPE_CHECKING:
     from ...arrays import Float64Array
@@ -51,6 +51,7 @@ class _Scale:
     height: float  # inches
 
 
+@picture
 def profile_picture(
     table: Table,
     *,

@@ -8,6 +8,7 @@ from ... import _optional
 from ...tin.validation.options import require_tin, require_type
 from ..results import Raster
 from .arguments import parse_title, require_features
+from .figures import picture
 from .maps import draw_shade, find_paths, shade_for_map, start_map
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ _LEGEND = 1.8
 """Inches beside the map."""
 
 
+@picture
 def relief_map(
     tin: TIN,
     classes: Features | None = None,

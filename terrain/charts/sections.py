@@ -15,7 +15,7 @@ from ..drawing.rounding import choose_ticks, round_down
 from ..results import Table
 from . import curves
 from .arguments import parse_title
-from .figures import INK, start_figure, write_title
+from .figures import INK, picture, start_figure, write_title
 
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array
@@ -67,6 +67,7 @@ class _Sheet:
     rows: int
 
 
+@picture
 def section_picture(
     table: Table,
     *,

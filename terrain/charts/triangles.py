@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import _optional
+from ..._products import product
 from ...errors import OptionError
 from ...tin.validation.options import require_tin
 from ..drawing.linework import EDGE_KINDS, find_line_edges
@@ -29,6 +30,7 @@ _COLORS = {
 }  # fmt: skip
 
 
+@product
 def to_matplotlib(tin: TIN) -> Any:
     """Return the triangles as matplotlib has them, for ``tripcolor``, ``tricontourf``, ``triplot``.
 
@@ -67,6 +69,7 @@ def to_matplotlib(tin: TIN) -> Any:
     return tri.Triangulation(x.copy(), y.copy(), tin.triangles.copy())
 
 
+@product
 def plot_tin(
     tin: TIN,
     ax: Any,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ... import _optional
+from ..._products import product
 from ...crs import scale_elevations
 from ...errors import OptionError
 from ...tin.validation.options import is_finite_number, require_tin
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["choose_origin", "lift"]
 
 
+@product
 def lift(
     tin: TIN, *, origin: ArrayLike | None = None, exaggeration: float = 1.0
 ) -> pyvista.PolyData:

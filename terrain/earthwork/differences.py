@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ..._progress import Progress
 from ...errors import OptionError, PointsError
 from ...tin.validation.threads import thread_count
 from .. import _kernel
 from ..results import Features, Table
+from ..results.columns import join_notes
 from . import zones as parts
 from .cells import fan_out
 from .meshes import as_mesh, cut_at_zero, mend, part_places, rebuild
@@ -69,6 +71,14 @@ class Difference:
     notes: tuple[str, ...]
     _reference: Reference
     _sums: dict[str, float]
+
+    def with_notes(self, notes: Sequence[str]) -> Difference:
+        """Return the same with further notes in front of its own, those of its parts too."""
+        told = join_notes(notes, self.notes)
+        if told == self.notes:
+            return self
+        reference = replace(self._reference, notes=told)
+        return replace(self, tin=self.tin.with_notes(told), notes=told, _reference=reference)
 
     @property
     def cut(self) -> float:
@@ -162,6 +172,7 @@ def _list_moments(sums: dict[str, float]) -> dict[str, float]:
     }
 
 
+@product
 def difference(
     tin: TIN, other: TIN, *, progress: Callable[[float], None] | None = None
 ) -> Difference:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ...crs import CRS
 from ...errors import OptionError, PointsError
 from ...tin import topology
@@ -33,6 +34,7 @@ _USUAL_LEVELS = 20
 """So many levels a table has at most, if nothing else is asked for."""
 
 
+@product
 def stage_storage(
     tin: TIN,
     *,

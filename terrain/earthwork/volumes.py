@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ..._progress import Progress
 from ..._sentences import inflect
 from ...errors import OptionError
@@ -33,6 +34,7 @@ _ROUNDING = 1e-12
 """An area alone that is a smaller share of the whole is what the sums' rounding leaves."""
 
 
+@product
 def volume(
     tin: TIN,
     other: TIN | None = None,

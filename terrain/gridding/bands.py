@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -48,7 +47,7 @@ class SurfaceBand:
         is_mean: bool,
         threads: int | None,
     ) -> None:
-        self._tin = copy.copy(tin)
+        self._tin = tin.snapshot()
         self._grid = grid
         self._values = values
         self._method = method

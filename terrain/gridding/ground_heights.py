@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ..._sentences import counted
 from ...tin import Survey
 from ...tin.validation.options import require_tin
@@ -25,6 +26,7 @@ __all__ = ["height_above"]
 _SHOWN = 5
 
 
+@product
 def height_above(
     tin: TIN,
     cloud: Survey | ArrayLike,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from ..._products import product
 from ..._progress import Progress
 from ...errors import OptionError, choice
 from ...policies import InterpolationMethod, RasterSample, RasterValue
@@ -27,6 +28,7 @@ __all__ = ["rasterize"]
 _UNITS = {"slope": "°", "aspect": "°"}
 
 
+@product
 def rasterize(
     tin: TIN,
     *,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ..._progress import Progress
 from ...errors import OptionError, PointsError
 from ...tin.validation.options import as_flag, is_finite_number
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 __all__ = ["catchments", "flow_accumulation"]
 
 
+@product
 def catchments(
     tin: TIN,
     outlets: Any = None,
@@ -141,6 +143,7 @@ def catchments(
     )
 
 
+@product
 def flow_accumulation(
     tin: TIN,
     *,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..._products import product
 from ...errors import OptionError
 from ...tin.validation.options import is_finite_number
 from ..earthwork.reference import find_reference
@@ -23,6 +24,7 @@ __all__ = ["ridges_and_valleys"]
 _MOST_DEGREES = 180.0
 
 
+@product
 def ridges_and_valleys(tin: TIN, *, min_angle: float = 0.0) -> Features:
     """Find the edges that are ridges or valleys.
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ..._sentences import counted
 from ...errors import PointsError
 from ...tin.topology import find_offsets
@@ -33,6 +34,7 @@ FILLED_NOTE = "Depressions are full: their water goes on from where they spill."
 ENDS = {PIT: "pit", FLAT: "flat", BOUNDARY: "boundary"}
 
 
+@product
 def flow_path(tin: TIN, points: Any, *, fill_depressions: bool = False) -> Features:
     """Follow drops of water down a surface, along the steepest descent.
 

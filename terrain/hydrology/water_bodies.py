@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ...errors import OptionError
 from ...tin.topology import NO_NEIGHBOR, find_boundary_vertices, gather
 from ...tin.validation.options import as_flag, is_finite_number
@@ -34,6 +35,7 @@ _MOST_VERTICES = 5_000_000
 BOUNDARY_NOTE = "Water leaves the surface freely at its boundary, and into its holes."
 
 
+@product
 def pits(tin: TIN) -> Features:
     """Find the pits of a surface: the lowest vertices of its depressions.
 
@@ -84,6 +86,7 @@ def pits(tin: TIN) -> Features:
     )
 
 
+@product
 def depressions(tin: TIN, *, nested: bool = False, min_depth: float = 0.0) -> Features:
     """Find the depressions of a surface, with the water they hold when they are full.
 
@@ -148,6 +151,7 @@ def depressions(tin: TIN, *, nested: bool = False, min_depth: float = 0.0) -> Fe
     return _draw_waters(tin, waters, columns, reference, "depressions", (BOUNDARY_NOTE,))
 
 
+@product
 def ponds(tin: TIN, level: float) -> Features:
     """Find the ponds when water stands at one level wherever the surface is lower.
 

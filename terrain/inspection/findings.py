@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from copy import copy
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ..._progress import Progress
+from ..._sentences import counted
 from ...errors import LinesError, OptionError, PointsError
-from ...tin import TIN, Survey, triangulate
+from ...tin import TIN, Surface, Survey, triangulate
 from ..results import Table
 from .gaps import describe_gaps
 from .heights import STRICT, find_heights, find_peaks_and_pits
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from ...arrays import AnyArray, Int64Array
     from .heights import Heights
 
-__all__ = ["DROPPED", "blunders", "screen"]
+__all__ = ["DROPPED", "blunders", "describe_findings", "screen"]
 
 DROPPED = ("outside", "swapped", "factor", "isolated", "code", "spike", "pit")
 """Reasons for which a point may be left out; other ones leave open which point is wrong."""
@@ -38,6 +39,7 @@ _MOST_PEAKS = 0.02
 """Of the points: where more stand out they are the ground, or what grows on it."""
 
 
+@product
 def blunders(points: Survey | TIN, *, progress: Callable[[float], None] | None = None) -> Table:
     """Check points: find those that look like blunders.
 
@@ -123,8 +125,18 @@ def screen(tin: TIN) -> Table:
     return _tabulate(tin, [*suspects, *codes, *heights], notes)
 
 
+def describe_findings(tin: Surface) -> tuple[str, ...]:
+    """Say what looks wrong with a surface, in little time: blunders and gaps."""
+    table = screen(tin)
+    is_wrong = np.isin(table["reason"].astype(str), DROPPED)
+    is_wrong &= table["certainty"].astype(str) != "low"
+    count = int(is_wrong.sum())
+    told = [f"{counted(count, 'point')} may be blunders."] if count else []
+    return (*told, *table.notes, *describe_gaps(tin))
+
+
 def _as_tin(points: Any, progress: Tell | None) -> TIN:
-    if isinstance(points, TIN):
+    if isinstance(points, Surface):
         return points
     if not isinstance(points, Survey):
         raise OptionError("points", points, "a Survey or a TIN")
@@ -177,7 +189,7 @@ def _take_out(tin: TIN, misplaced: Sequence[Suspect]) -> TIN:
     vertices = np.unique(tin.vertex_of[[one.row for one in misplaced]]) if misplaced else ()
     if len(vertices) == 0:
         return tin
-    ground = copy(tin)
+    ground = tin.to_tin()
     try:
         ground.remove(vertices)
     except (PointsError, LinesError):  # no triangle would be left, or a line would vanish

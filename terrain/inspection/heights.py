@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -275,7 +274,7 @@ def _measure_without(tin: TIN, search: _Search, *, is_exact: bool) -> Heights:
 
 def _interpolate_without(tin: TIN, vertices: Int32Array) -> Float64Array:
     """Return the elevation at some vertices of the surface without them; NaN outside of it."""
-    rest = copy(tin)
+    rest = tin.to_tin()
     try:
         rest.remove(vertices)
     except (PointsError, LinesError):  # what is left has no triangle, or a line goes through

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..._products import product
 from ...tin.types import seal
 from ...tin.validation.options import require_tin
 from .. import _kernel
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["contour_bands"]
 
 
+@product
 def contour_bands(
     tin: TIN,
     interval: float | None = None,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ... import _optional
+from ..._products import product
 from ...errors import OptionError
 from ...tin.predicates import orientation
 from ...tin.validation.options import require_tin
@@ -65,6 +66,7 @@ class _Segments(NamedTuple):
     line: Int64Array
 
 
+@product
 def check_contours(tin: TIN, lines: Features) -> ContourCheck:
     """Check that contours do not touch one another, and how far from their level they run.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from ..._products import product
 from ..._progress import Progress
 from ...tin.types import seal
 from ...tin.validation.options import require_tin
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["contours"]
 
 
+@product
 def contours(
     tin: TIN,
     interval: float | None = None,

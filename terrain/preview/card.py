@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..._products import product
 from ..._sentences import counted
 from ..drawing.cards.frame import SIZE, describe_bounds, name_crs, name_units, write_card
 from ..georeference.units import find_ground
@@ -30,6 +31,7 @@ _STEEPEST = 1e6
 """Rise over run, beyond which light is the same."""
 
 
+@product
 def make_card(tin: TIN) -> str:
     """Return the HTML of a card: counts, CRS, units, bounds, and a map with hillshade.
 

@@ -11,11 +11,13 @@ from typing import TYPE_CHECKING, Unpack, overload
 import numpy as np
 
 from ..._atomic import as_path, replacing
+from ..._products import product
 from ...errors import RenderError
 from ...tin import TIN, Survey
 from ...tin.validation.options import require_type
 from ..earthwork import difference
 from ..georeference.units import find_ground
+from ..results.columns import join_notes
 from .alignment import Aligned, align
 from .look import Look, LookOptions, make_look
 from .ortho import Ortho, read_ortho
@@ -28,6 +30,7 @@ from .window import open_window
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Sequence
 
     from ...arrays import Float64Array
     from ..georeference.units import Ground
@@ -55,8 +58,14 @@ class Preview:
     """
 
     def __init__(
-        self, aligned: Aligned, look: Look, survey: Survey | None, ortho: Ortho | None = None
+        self,
+        aligned: Aligned,
+        look: Look,
+        survey: Survey | None,
+        ortho: Ortho | None = None,
+        notes: Sequence[str] = (),
     ) -> None:
+        self._notes = tuple(notes)
         self._ortho = ortho
         self._aligned = aligned
         self._surfaces = aligned.surfaces
@@ -70,7 +79,7 @@ class Preview:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Sentences on what a viewer should know: elevations far off all others.
+        """Sentences on what a viewer should know: notes of the surfaces, elevations far off.
 
         Examples
         --------
@@ -80,11 +89,17 @@ class Preview:
         >>> ts.preview(ts.triangulate(points)).notes
         ('1 elevation far off all others: 9,999.',)
         """
-        return tuple(
+        far_off = (
             f"{words}." if len(self._surfaces) == 1 else f"{name}: {words}."
             for name, tin in self._surfaces.items()
             if (words := describe_far_off(tin, self._ranges[name]))
         )
+        return join_notes(self._notes, self._aligned.notes, far_off)
+
+    def with_notes(self, notes: Sequence[str]) -> Preview:
+        """Return the same with further notes."""
+        told = join_notes(notes, self._notes)
+        return Preview(self._aligned, self._look, self._survey, self._ortho, told)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write a page (.html) or a picture (.png, .jpg, .jpeg, .tif, .tiff).
@@ -166,7 +181,7 @@ class Preview:
             start=self._choose_start(ground),
             changes=changes,
             labels=labels,
-            notes=(*self._aligned.notes, *self.notes, *(self._ortho.told if self._ortho else ())),
+            notes=(*self.notes, *(self._ortho.told if self._ortho else ())),
             ortho=self._ortho,
         )
         return make_document(content)
@@ -229,6 +244,7 @@ def preview(
 ) -> Path: ...
 
 
+@product
 def preview(
     tin: TIN | Mapping[str, TIN],
     *,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..._products import product
 from ...errors import OptionError, choice
 from ...policies import SlopeUnit
 from ..georeference import describe_unknown, find_plane_units
@@ -51,6 +52,7 @@ class _Legend(NamedTuple):
     colors: Sequence[str]
 
 
+@product
 def slope_classes(
     tin: TIN, *, breaks: ArrayLike | None = None, unit: SlopeUnit = "degrees"
 ) -> Features:
@@ -108,6 +110,7 @@ def slope_classes(
     return _as_features(tin, classes, legend, symbol, "slope_classes")
 
 
+@product
 def aspect_classes(tin: TIN) -> Features:
     """Divide a surface into the eight directions in which it falls, and level ground.
 

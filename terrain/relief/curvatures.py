@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..._products import product
 from ...errors import choice
 from ...policies import CurvatureKind, SurfacePart
 from ...tin.validation.options import require_tin
@@ -33,6 +34,7 @@ class _Derivatives(NamedTuple):
     yy: Float64Array
 
 
+@product
 def curvature(
     tin: TIN, *, kind: CurvatureKind = "profile", per: SurfacePart = "vertex"
 ) -> Float64Array:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ...errors import choice
 from ...policies import SlopeUnit, SurfacePart
 from ...tin.validation.options import require_tin
@@ -33,6 +34,7 @@ __all__ = [
 ]
 
 
+@product
 def slope(tin: TIN, *, unit: SlopeUnit = "degrees", per: SurfacePart = "triangle") -> Float64Array:
     """Measure the slope of each triangle, or at each vertex.
 
@@ -87,6 +89,7 @@ def measure_slopes(upward: Float64Array, unit: SlopeUnit) -> Float64Array:
     return values
 
 
+@product
 def aspect(tin: TIN, *, per: SurfacePart = "triangle") -> Float64Array:
     """Find the direction in which each triangle, or the surface at each vertex, falls.
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ...errors import OptionError
 from ...tin.validation.options import is_finite_number, require_tin
 from ...tin.validation.threads import thread_count
@@ -31,6 +32,7 @@ _USUAL_SIDE = 1000
 _BLOCK_CELLS = 1 << 20
 
 
+@product
 def hillshade(
     tin: TIN,
     *,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..._products import product
 from ...errors import OptionError, choice
 from ...policies import SlopeUnit
 from ..georeference import describe_unknown, find_plane_units
@@ -25,6 +26,7 @@ SYMBOLS = {"degrees": "°", "percent": "%", "ratio": ""}
 _PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
 
 
+@product
 def slope_statistics(
     tin: TIN, *, unit: SlopeUnit = "degrees", percentiles: ArrayLike = _PERCENTILES
 ) -> Table:

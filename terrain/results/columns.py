@@ -24,6 +24,7 @@ __all__ = [
     "as_notes",
     "as_units",
     "frozen_copy",
+    "join_notes",
     "named_items",
     "unit_text",
 ]
@@ -173,6 +174,11 @@ def as_name(name: Any) -> str:
     if not (isinstance(name, str) and name.isprintable()):
         raise OptionError("name", name, allowed="a printable text")
     return str(name)
+
+
+def join_notes(*groups: Iterable[str]) -> tuple[str, ...]:
+    """Return notes one group after the other, each once."""
+    return tuple(dict.fromkeys(note for group in groups for note in group))
 
 
 def as_notes(notes: Any) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
@@ -12,7 +12,7 @@ from ..._sentences import counted
 from ...crs import CRS, Unit, require_one_unit, shorten_crs
 from ...errors import OptionError
 from ...tin.types import Bounds, Frozen
-from .columns import as_columns, as_name, as_notes, as_units, frozen_copy
+from .columns import as_columns, as_name, as_notes, as_units, frozen_copy, join_notes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -231,6 +231,18 @@ class Features(Frozen):
         return _make(
             cls, "polygons", coordinates, levels, columns, units, crs, elevation_unit, name, notes
         )
+
+    def with_notes(self, notes: Sequence[str]) -> Features:
+        """Return the same with further notes in front of its own, each once.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> ts.Features.of_points([[0, 0]]).with_notes(["One row was left out."]).notes
+        ('One row was left out.',)
+        """
+        told = join_notes(notes, self.notes)
+        return self if told == self.notes else replace(self, notes=told)
 
     # ------------------------------------------------------------------ what it is
 

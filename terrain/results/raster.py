@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +13,15 @@ from ..._sentences import counted
 from ...crs import CRS, shorten_crs
 from ...errors import OptionError
 from ...tin.types import Frozen, Grid
-from .columns import FrozenMapping, as_name, as_notes, as_units, frozen_copy, named_items
+from .columns import (
+    FrozenMapping,
+    as_name,
+    as_notes,
+    as_units,
+    frozen_copy,
+    join_notes,
+    named_items,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -117,6 +125,20 @@ class Raster(Frozen):
         from .gridded import build_dataset
 
         return build_dataset(self)
+
+    def with_notes(self, notes: Sequence[str]) -> Raster:
+        """Return the same with further notes in front of its own, each once.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> grid = ts.Grid(ts.Bounds(0, 0, 2, 2), 1.0, (2, 2))
+        >>> raster = ts.Raster({"z": [[1.0, 2.0], [3.0, 4.0]]}, grid)
+        >>> raster.with_notes(["One row was left out."]).notes
+        ('One row was left out.',)
+        """
+        told = join_notes(notes, self.notes)
+        return self if told == self.notes else replace(self, notes=told)
 
     def __repr__(self) -> str:
         rows, columns = self.grid.shape

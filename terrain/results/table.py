@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from ... import _optional
@@ -10,7 +10,7 @@ from ..._methods import make_card
 from ..._sentences import counted
 from ...errors import OptionError
 from ...tin.types import Frozen
-from .columns import as_columns, as_name, as_notes, as_units, unit_text
+from .columns import as_columns, as_name, as_notes, as_units, join_notes, unit_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -98,6 +98,18 @@ class Table(Frozen):
         units = {name: unit_text(self.units, name) for name in self.units}
         frame.attrs |= {"name": self.name, "units": units, "notes": list(self.notes)}
         return frame
+
+    def with_notes(self, notes: Sequence[str]) -> Table:
+        """Return the same with further notes in front of its own, each once.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> ts.Table({"level": [318.0]}).with_notes(["One row was left out."]).notes
+        ('One row was left out.',)
+        """
+        told = join_notes(notes, self.notes)
+        return self if told == self.notes else replace(self, notes=told)
 
     def __repr__(self) -> str:
         title = f" {self.name}" if self.name else ""

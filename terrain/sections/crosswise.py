@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..._products import product
 from ...crs import scale_elevations
 from ...errors import OptionError, PointsError
 from ...tin.validation.points import as_elevations
@@ -58,6 +59,7 @@ class _Cut(NamedTuple):
     notes: tuple[str, ...]
 
 
+@product
 def cross_sections(
     tin: TIN | Sequence[TIN] | Mapping[str, TIN],
     centreline: Any,
@@ -132,6 +134,7 @@ def cross_sections(
     )
 
 
+@product
 def section_lines(
     tin: TIN | Sequence[TIN] | Mapping[str, TIN],
     centreline: Any,

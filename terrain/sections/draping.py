@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ..._sentences import counted
 from ...errors import LinesError, OptionError, choice
 from ...policies import OutsidePolicy
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["drape"]
 
 
+@product
 def drape(tin: TIN, features: Any, *, outside: OutsidePolicy = "error") -> Features:
     """Lay points, lines or polygons on a surface.
 

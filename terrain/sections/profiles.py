@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ..._sentences import counted
 from ...crs import scale_elevations
 from ...errors import LinesError, OptionError
@@ -46,6 +47,7 @@ _FINEST = 1e-6
 """Share of a line's length to which stations must be told apart."""
 
 
+@product
 def profile(
     tin: TIN | Sequence[TIN] | Mapping[str, TIN],
     line: Any,

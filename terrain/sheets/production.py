@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ... import _optional
+from ..._products import product
 from ..._sentences import counted
 from ...crs import assume_elevation_unit
 from ...errors import LinesError, OptionError, PointsError, choice
@@ -17,6 +18,7 @@ from ...tin import Bounds, Survey
 from ...tin.validation.options import require_tin, require_type
 from ..charts.arguments import parse_text
 from ..georeference import require_same_crs
+from ..results.columns import join_notes
 from ..sections.geometries import as_features
 from ..sections.segments import as_segments
 from .arrangement import Ground, choose_single, cut_rows, cut_strip_windows
@@ -135,6 +137,11 @@ class Plan:
         """What was chosen or assumed, and after :meth:`save` what had no room, in sentences."""
         return (*self._notes, *self._notes_of_drawing)
 
+    def with_notes(self, notes: Sequence[str]) -> Plan:
+        """Return the same with further notes in front of its own."""
+        told = join_notes(notes, self._notes)
+        return Plan(self._sheets, self._contents, self._style, self._caption, told)
+
     @property
     def frames(self) -> Float64Array:
         """Corners on the ground of the map on each sheet, (n, 4, 2), from the lower left one."""
@@ -231,6 +238,7 @@ def _describe_no_room(crowded: int, is_cut: bool) -> Iterator[str]:
         yield "A text in the title block was cut, for it had no room: give a shorter title."
 
 
+@product
 def plan(
     tin: TIN,
     *,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ..._sentences import counted
 from ...errors import OptionError, PointsError
 from ...tin.validation.options import is_finite_number
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["as_height", "line_of_sight", "raise_places"]
 
 
+@product
 def line_of_sight(
     tin: TIN,
     eyes: Any,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ...tin.predicates import EXACT_RANGE
 from ...tin.types import seal
 from ...tin.validation.threads import thread_count
@@ -33,6 +34,7 @@ _BREAKS = 4_000_000
 """Crossings that are held at a time, about."""
 
 
+@product
 def visible_vertices(
     tin: TIN,
     eye: Any,

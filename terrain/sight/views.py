@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ..._progress import Progress
 from ...tin.validation.options import as_flag
 from ..earthwork.reference import find_reference
@@ -35,6 +36,7 @@ _DOUBT = 1e-12
 """Share of its terms below which a height above a plane may be rounding."""
 
 
+@product
 def viewshed(
     tin: TIN,
     eye: Any,

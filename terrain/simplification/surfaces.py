@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ..._products import product
 from ..._progress import Progress
 from ...tin.meshing.simplification import Goal, simplify_tin
 from ..results import Raster
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["simplify"]
 
 
+@product
 def simplify(
     surface: TIN | Raster,
     *,

@@ -89,6 +89,7 @@ def _report(
         duplicates=inputs.options.duplicates,
         snap=inputs.options.snap,
         skipped=dict(inputs.skipped),
+        source=inputs.source,
         **{"notes": tuple(inputs.notes), **account},
     )
 

@@ -62,6 +62,8 @@ class BuildInputs:
         Infinity for none.
     has_own_boundary : bool
         Whether some of the lines are edges of the boundary of existing triangles.
+    source : str
+        Name of the file that the points come from; empty if there is none.
     """
 
     points: Float64Array
@@ -80,6 +82,7 @@ class BuildInputs:
     has_own_boundary: bool = False
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
+    source: str = ""
 
     @property
     def is_plain(self) -> bool:
@@ -195,6 +198,7 @@ def gather_inputs(
         elevation_unit=require_one_unit(system, unit),
         skipped=own.skipped,
         notes=(*own.notes, *told, *_describe_rings(outer, inner)),
+        source=own.source or "",
     )
 
 

@@ -29,6 +29,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ..._products import product
 from ...errors import CheckError, OptionError
 from ..building.survey import Survey
 from ..constraints.constraint_set import as_sequence, gather_lines
@@ -138,6 +139,7 @@ def _as_plain(problem: Problem) -> dict[str, Any]:
     return asdict(problem) | {"first": list(problem.first)}
 
 
+@product
 def check(
     tin: TIN,
     *,

@@ -87,7 +87,7 @@ class Editable:
                 return self._open_session().list_edits()
             return () if self._origin is None else self._origin.edits
 
-    def _snapshot(self) -> tuple[Version, Origin]:
+    def _settle(self) -> tuple[Version, Origin]:
         """Return what the TIN is, and what it was before its edits."""
         with self._lock:
             version = self._current

@@ -37,3 +37,13 @@ class Version(Frozen):
     def first_rows(self) -> Int64Array:
         """The first row that each vertex stands for, -1 for none."""
         return find_first_rows(self.vertex_of, len(self.triangulation.points))
+
+    @property
+    def notes(self) -> tuple[str, ...] | None:
+        """Notes on the surface; None until they are kept."""
+        kept: tuple[str, ...] | None = self.__dict__.get("_notes")
+        return kept
+
+    def keep_notes(self, notes: tuple[str, ...]) -> None:
+        """Keep what was found out about the surface, which takes a look at all of it."""
+        self.__dict__["_notes"] = notes

@@ -18,7 +18,7 @@ def describe_flips(tin: TIN) -> tuple[str, ...]:
 
     A TIN that was built here has none; one of existing triangles, as those of a file, may have.
     """
-    _, origin = tin._snapshot()
+    _, origin = tin._settle()
     if origin.inputs is not None:
         return ()
     count = int(mark_illegal_edges(tin.triangulation).sum())

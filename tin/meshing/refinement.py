@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..._products import product
 from ..._progress import Progress
 from ..._sentences import counted
 from ...errors import OptionError, PointsError
@@ -48,6 +49,7 @@ MOST_VERTICES = 10_000_000
 """What a mesh may have unless the caller says otherwise: some five gigabytes of memory."""
 
 
+@product
 def refine(
     tin: TIN,
     *,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._products import product
 from ...crs import scale_elevations
 from ..validation.options import as_flag, require_tin
 
@@ -126,6 +127,7 @@ class Quality:
         )
 
 
+@product
 def quality(tin: TIN, *, space: bool = False) -> Quality:
     """Measure the shape of each triangle.
 

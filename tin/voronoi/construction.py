@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from ..._products import product
 from ..validation.options import require_tin
 from .diagram import Voronoi, divide_plane
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["voronoi"]
 
 
+@product
 def voronoi(
     tin: TIN, *, boundary: Bounds | ArrayLike | None = None, pad: float | None = None
 ) -> Voronoi:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ....terrain.results import Features
-from ....tin import TIN, Breakline, Survey
+from ....tin import TIN, Breakline, Surface, Survey
 from ....tin.constraints.constraint_set import as_sequence
 from ....tin.constraints.polygons import gather_rings_of_regions
 from ....tin.topology import directed_edges, edge_keys
@@ -55,7 +55,7 @@ def _find_other_edges(tin: TIN) -> Int64Array:
 
 def select_texts(obj: TIN | Survey | Features, path: Path) -> dict[str, AnyArray]:
     """Return the texts of points that a drawing holds, and tell of other attributes."""
-    if isinstance(obj, TIN) or (isinstance(obj, Features) and obj.kind != "points"):
+    if isinstance(obj, Surface) or (isinstance(obj, Features) and obj.kind != "points"):
         return {}
     attributes = obj.attributes if isinstance(obj, Survey) else obj.columns
     reason = "a drawing has the number and the description of a point"

@@ -18,7 +18,7 @@ from ...._atomic import replacing
 from ....errors import FormatError, LossWarning, OptionError, choice
 from ....policies import DrawingVersion
 from ....terrain.results import Features
-from ....tin import TIN, Survey
+from ....tin import TIN, Surface, Survey
 from ...registry.losses import tell_unknown_elevations
 from ..lengths import choose_length_unit
 from .content import add_features, add_survey, add_tin, select_texts
@@ -77,7 +77,7 @@ def write(
         If elevations are converted, as a drawing has one unit for all lengths, or none are known;
         if attributes are left out, or line breaks in texts.
     """
-    if not isinstance(obj, TIN | Survey | Features):
+    if not isinstance(obj, Surface | Survey | Features):
         raise FormatError(f"Cannot write '{path}': a {type(obj).__name__} is no surface or survey.")
     choice("version", version, DrawingVersion)
     if not isinstance(labels, bool):
@@ -120,7 +120,7 @@ def _add_content(
     *,
     labels: bool,
 ) -> None:
-    if isinstance(obj, TIN):
+    if isinstance(obj, Surface):
         add_tin(writer, obj, factor)
     elif isinstance(obj, Survey):
         add_survey(writer, obj, texts, factor, labels=labels)

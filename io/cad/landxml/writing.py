@@ -16,7 +16,7 @@ from ...._atomic import replacing
 from ....crs import CRS
 from ....errors import FormatError, LossWarning, OptionError
 from ....terrain.results import Features
-from ....tin import TIN, Survey
+from ....tin import TIN, Surface, Survey
 from ...registry.losses import select_attributes, tell_unknown_elevations
 from ..lengths import choose_length_unit
 from .lines import quote, write_features, write_source_of_survey, write_source_of_tin
@@ -90,7 +90,7 @@ def write(
         If elevations are converted, as LandXML has one unit for all lengths, or attributes are
         left out, or line breaks in texts.
     """
-    if not isinstance(obj, TIN | Survey | Features):
+    if not isinstance(obj, Surface | Survey | Features):
         raise FormatError(f"Cannot write '{path}': a {type(obj).__name__} is no surface or survey.")
     if not isinstance(surface, str) or not surface.strip():
         raise OptionError("surface", surface, "the name of a surface")
@@ -118,7 +118,7 @@ def _write_content(
     factor: float,
     progress: Tell | None,
 ) -> None:
-    if isinstance(obj, TIN):
+    if isinstance(obj, Surface):
         points = _scale(obj.points, factor)
         file.write(f"<Surfaces>\n<Surface name={quote(surface)}>\n")
         write_source_of_tin(file, obj, points)
@@ -264,7 +264,7 @@ def _write_points(file: IO[str], points: Float64Array, texts: dict[str, list[str
 
 def _select_texts(obj: TIN | Survey | Features, path: Path) -> dict[str, list[str]]:
     """Return the texts of points that LandXML holds; numbers only if they all differ."""
-    if isinstance(obj, TIN) or (isinstance(obj, Features) and obj.kind != "points"):
+    if isinstance(obj, Surface) or (isinstance(obj, Features) and obj.kind != "points"):
         return {}
     attributes = obj.attributes if isinstance(obj, Survey) else obj.columns
     held = select_attributes(

@@ -17,7 +17,7 @@ import numpy as np
 
 from ...._atomic import replacing
 from ....errors import ReadError
-from ....tin import TIN, Survey
+from ....tin import TIN, Surface, Survey
 from ...registry.losses import tell_lost_attributes
 from .. import common
 from .body import Ragged, Table, read_tables
@@ -168,7 +168,7 @@ def write(surface: TIN | Survey, path: Path, *, progress: Tell | None = None) ->
         tell_lost_attributes(lost, path, "PLY has doubles, and names of one ASCII word")
     body = {"vertex": _pack_vertices(surface.points, columns)}
     comments: list[str] = []
-    if isinstance(surface, TIN):
+    if isinstance(surface, Surface):
         edges = take_edges(surface)
         body["face"] = _pack_faces(surface, edges)
         if len(edges):

@@ -36,6 +36,8 @@ __all__ = [
     "build_tin",
     "describe_written",
     "list_inputs",
+    "note_found",
+    "note_surfaces",
     "open_standard_input",
     "plan_outputs",
     "read_input",
@@ -215,9 +217,31 @@ def read_tin_of_files(
                 f"'{paths[0]}' holds a TIN already, and {how.shaping[0]} needs points to build "
                 "from: 'tinsmith edit' adds lines to a TIN."
             )
+        note_surfaces([found], console)
         return found, None
     survey = add_lines(found, how, console)
-    return build_tin(survey, how, console), survey
+    tin = build_tin(survey, how, console)
+    note_surfaces([tin], console)
+    return tin, survey
+
+
+def note_found(found: Survey | TIN, console: Console) -> None:
+    """Take note of what is known of what was read."""
+    from ..tin import TIN
+    from ..tin.report import describe_skipped
+
+    if isinstance(found, TIN):
+        note_surfaces([found], console)
+    else:
+        console.note([*describe_skipped(found.skipped), *found.notes])
+
+
+def note_surfaces(surfaces: Sequence[TIN], console: Console) -> None:
+    """Take note of what is known of surfaces, showing progress, for summary and record."""
+    from .._products import join_notes
+
+    with console.step("Checking points"):
+        console.note(join_notes(surface.snapshot() for surface in surfaces))
 
 
 def list_inputs(*files: Path, how: Coding | None = None) -> list[Named]:

@@ -7,7 +7,15 @@ from functools import wraps
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from .files import add_lines, build_tin, list_inputs, plan_outputs, read_input, read_tin
+from .files import (
+    add_lines,
+    build_tin,
+    list_inputs,
+    note_surfaces,
+    plan_outputs,
+    read_input,
+    read_tin,
+)
 from .options import (
     CODE_FLAGS,
     console_options,
@@ -15,7 +23,6 @@ from .options import (
     reading_options,
     triangulating_options,
 )
-from .output.console import format_json
 from .output.failures import Failure
 from .paths import Named
 from .products import Products, plan_products
@@ -87,12 +94,14 @@ class Request:
 
         found = [read_input(file, self.reading, self.console) for file in files]
         self._require_points(sum(not isinstance(one, TIN) for one in found))
-        return [
+        surfaces = [
             one
             if isinstance(one, TIN)
             else build_tin(add_lines(one, self.how, self.console), self.how, self.console)
             for one in found
         ]
+        note_surfaces(surfaces, self.console)
+        return surfaces
 
     def _require_points(self, n_surveys: int) -> None:
         of_codes = [f"--{name.replace('_', '-')}" for name in CODE_FLAGS]
@@ -114,7 +123,7 @@ class Request:
         if self.console.as_json:
             record = describe()
             record.setdefault("outputs", [str(path) for path in planned.paths])
-            self.console.emit(format_json(record))
+            self.console.emit_record(record)
 
 
 def surface_options(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from ...._products import product
 from ...._progress import Progress
 from ....crs import scale_elevations
 from ....errors import LinesError, OptionError, PointsError
@@ -32,6 +33,7 @@ _SLOPE = 0.2
 """Of the work as it is told, following the one slope or the other."""
 
 
+@product
 def grade(
     tin: TIN,
     pad: ArrayLike | Any,

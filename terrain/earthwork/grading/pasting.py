@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...._products import product
 from ...._progress import Progress
 from ....errors import PointsError
 from ....tin import Breakline, Survey, triangulate
@@ -38,6 +39,7 @@ _PRIORITY = 1000
 """Of the seam: where lines cross it, its elevations count."""
 
 
+@product
 def paste(base: TIN, patch: TIN, *, progress: Callable[[float], None] | None = None) -> TIN:
     """Put a surface in the place of a part of another one.
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...._products import product
 from ...._sentences import counted
 from ....tin.validation.options import require_tin
 from ...georeference import describe_unknown, find_plane_units
@@ -33,6 +34,7 @@ _GRID = 4.0
 """Points are a grid if columns times rows are no more than so many times the points."""
 
 
+@product
 def flats(tin: TIN) -> Features:
     """Find the flat triangles of a TIN, such as those that contours leave.
 

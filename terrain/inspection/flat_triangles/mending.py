@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import copy
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...._products import product
 from ...._progress import Progress
 from ...._sentences import counted
 from ....tin.validation.options import require_tin
@@ -31,6 +31,7 @@ behind where the survey has another one of this name."""
 _GIVEN, _ADDED = "given", "added"
 
 
+@product
 def mend_flats(tin: TIN, *, progress: Callable[[float], None] | None = None) -> TIN:
     """Add points along ridges, valleys, peaks and pits where contours leave flat triangles.
 
@@ -98,7 +99,7 @@ def mend_flats(tin: TIN, *, progress: Callable[[float], None] | None = None) -> 
     points = _lift(regions, skeleton)
     done(0.6)
     given = len(tin.vertex_of)
-    mended = copy.copy(tin)
+    mended = tin.to_tin()
     if len(points):
         mended.insert(points)
     annotated = _annotate(mended, regions, len(mended.vertex_of) - given)

@@ -46,7 +46,7 @@ class Record(NamedTuple):
 
 def pack_tin(tin: TIN) -> Record:
     """Return report, lines, reference, inputs and edits of a TIN as plain values and arrays."""
-    version, origin = tin._snapshot()
+    version, origin = tin._settle()
     packer = _Packer()
     document: dict[str, Any] = {
         "crs": packer.pack(tin.crs),

@@ -123,6 +123,7 @@ def require_inputs(inputs: Any, n_rows: int) -> None:
     _require_options(inputs.options)
     _require_counts(inputs.skipped, "what was skipped")
     _require_texts(inputs.notes, "notes")
+    require(isinstance(inputs.source, str), "the source")
 
 
 def _require_rings_of_lines(inputs: BuildInputs) -> None:
@@ -193,6 +194,7 @@ def require_report(report: Any, n_rows: int, n_vertices: int, n_triangles: int) 
     _require_accounts(report, n_vertices)
     _require_counts(report.skipped, "what was skipped")
     _require_texts(report.notes, "notes")
+    require(isinstance(report.source, str), "the source")
     require_edits(report.edits)
     _require_unmended(report.unmended)
     _require_simplification(report.simplification)

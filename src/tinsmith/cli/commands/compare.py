@@ -51,13 +51,14 @@ def compare(
     """  # noqa: D301 - click reads the control character
     from ...tin import TIN
     from ...tin import compare as compare_points
-    from ..files import list_inputs, read_input, require_picture
+    from ..files import list_inputs, note_found, read_input, require_picture
 
     if output is not None:
         require_picture(output, place="--output", inputs=list_inputs(file))
     found = read_input(file, reading, console)
     if isinstance(found, TIN):
         raise Failure(f"'{file}' holds a TIN: 'tinsmith compare' needs points.")
+    note_found(found, console)
     points = _sample_points(found.points, sample)
     with console.steps() as steps, steps.step(f"Comparing on {counted(len(points), 'point')}"):
         result = compare_points(points, limit=len(points))

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from ..._sentences import counted
 from ..options import console_options, reading_options, writing_options
-from ..output.console import format_json
 from ..parameters import file_command
 from ..paths import name_file
 
@@ -43,7 +42,7 @@ def convert(
     Example:
       tinsmith convert sample_data/site_survey.csv -o site.xyz
     """  # noqa: D301 - click reads the control character
-    from ..files import describe_written, list_inputs, plan_outputs, read_input
+    from ..files import describe_written, list_inputs, note_found, plan_outputs, read_input
     from ..output.summaries import note_assumed_unit, summarise_reading
 
     planned = plan_outputs(
@@ -51,15 +50,14 @@ def convert(
     )
     found = read_input(file, reading, console)
     _write(found, planned, console)
+    note_found(found, console)
     notes = summarise_reading(found)
     if note := note_assumed_unit(found):
         notes = [*notes, ("Elevation", note)]
     read = ("Read", f"{_describe_content(found)} from {name_file(file)}")
     console.summarise([read, *notes, ("Written", describe_written(planned))])
     if console.as_json:
-        console.emit(
-            format_json({"input": str(file), "outputs": [str(one.path) for one in planned]})
-        )
+        console.emit_record({"input": str(file), "outputs": [str(one.path) for one in planned]})
 
 
 def _write(found: TIN | Survey, planned: list[Output], console: Console) -> None:

@@ -106,12 +106,13 @@ def ground(points: tuple[Path, ...], request: Request, **options: Any) -> None:
       tinsmith ground cloud.laz -o classified.laz -o ground.gpkg
     """  # noqa: D301 - click reads the control character
     from ...terrain import ground as find_ground
-    from ..files import add_lines, read_inputs
+    from ..files import add_lines, note_found, read_inputs
 
     planned = _plan(request, points, options["as_points"])
     reading = replace(request.reading, attributes="all")
     found = read_inputs(points, reading, request.console)
     survey = add_lines(_require_survey(found, points[0]), request.how, request.console)
+    note_found(survey, request.console)
     with request.step(f"Finding the ground among {counted(len(survey), 'point')}") as progress:
         given = {name: options[name] for name in _PARAMETERS}
         returns: GroundReturns = "all" if options["any_return"] else "last"

@@ -47,12 +47,13 @@ def info(
       tinsmith info sample_data/site_survey.csv --crs EPSG:32616 --json
     """  # noqa: D301 - click reads the control character
     from ...tin import TIN
-    from ..files import add_coded_lines, list_inputs, read_inputs, require_picture
+    from ..files import add_coded_lines, list_inputs, note_found, read_inputs, require_picture
     from ..output.summaries import describe_survey, summarise_survey
 
     if plot is not None:
         require_picture(plot, place="--plot", inputs=list_inputs(*files, how=how))
     found, file = read_inputs(files, reading, console), files[0]
+    note_found(found, console)
     if isinstance(found, TIN):
         if how.has_codes:
             raise Failure(f"'{file}' holds a TIN, and codes are those of points.")

@@ -7,7 +7,7 @@ import math
 import shutil
 import sys
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -28,6 +28,8 @@ Row = tuple[str, str]
 """A label and what it says; further lines stand under the first."""
 
 _LABEL_WIDTH = 11
+_LAST = ("Written", "Time")
+"""Labels of rows that stand behind all notes."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,14 @@ class Console:
     """Write the result as JSON on stdout instead of for people."""
     events: bool = False
     """Write summary and progress as events, for programs."""
+    notes: list[str] = field(default_factory=list, compare=False)
+    """What is known of all that was read, which summary and record tell."""
+    _told: set[str] = field(default_factory=set, compare=False)
+    """Those that a summary told."""
+
+    def note(self, notes: Iterable[str]) -> None:
+        """Take note of what whoever uses the answer should know."""
+        self.notes[:] = dict.fromkeys([*self.notes, *notes])
 
     def steps(self) -> Steps:
         """Return the context in which long work shows its progress."""
@@ -52,9 +62,10 @@ class Console:
             yield progress
 
     def summarise(self, rows: Iterable[Row]) -> None:
-        """Write a summary to stderr."""
+        """Write a summary to stderr, with the notes."""
         if self.quiet:
             return
+        rows = self._add_notes(rows)
         if not self.events:
             tell(_format_rows(rows))
             return
@@ -62,8 +73,27 @@ class Console:
             send_event("summary", label=label, text=name_flags(text))
 
     def answer(self, rows: Iterable[Row], record: Mapping[str, Any]) -> None:
-        """Write the result to stdout: rows for people, or a record as JSON."""
-        self.emit(format_json(record) if self.as_json else _format_rows(rows))
+        """Write the result to stdout: rows for people, or a record as JSON; with the notes."""
+        if self.as_json:
+            self.emit_record(record)
+        else:
+            self.emit(_format_rows(self._add_notes(rows)))
+
+    def emit_record(self, record: Mapping[str, Any]) -> None:
+        """Write a record to stdout as JSON, with the notes among its own."""
+        own = list(record.get("notes", ()))
+        lacking = [note for note in self.notes if note not in own]
+        self.emit(format_json({**record, "notes": own + lacking}))
+
+    def _add_notes(self, rows: Iterable[Row]) -> list[Row]:
+        """Return rows with the notes that they lack and nobody told yet, before the last ones."""
+        shown = list(rows)
+        self._told.update(text for label, text in shown if label == "Note")
+        lacking = [("Note", note) for note in self.notes if note not in self._told]
+        self._told.update(self.notes)
+        labels = [label for label, _ in shown]
+        end = next((i for i, label in enumerate(labels) if label in _LAST), len(shown))
+        return [*shown[:end], *lacking, *shown[end:]]
 
     def emit(self, text: str) -> None:
         """Write to stdout, to the last byte.

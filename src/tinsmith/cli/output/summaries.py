@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +13,7 @@ from ...io.reprojection.transformation import is_geographic, length_unit
 from ...terrain import slope
 from ...terrain.relief.gradients import measure_areas
 from ...tin import TIN, Bounds, Survey, quality
+from ...tin.report import describe_skipped
 from .line_summaries import (
     count_constrained_edges,
     count_given_lines,
@@ -48,9 +48,6 @@ __all__ = [
     "summarise_survey",
     "summarise_tin",
 ]
-
-_EXPECTED = "header lines"
-"""What every file may have, and nobody needs to be told of."""
 
 
 def describe_survey(survey: Survey) -> dict[str, Any]:
@@ -261,18 +258,7 @@ def summarise_reading(found: Survey | TIN) -> list[Row]:
     """Say what the reader left out, what it assumed and what it found odd, if anything."""
     if not isinstance(found, Survey):
         return [("Note", note) for note in found.report.notes]
-    skipped = [
-        counted(number, _make_singular(what), what)
-        for what, number in found.skipped.items()
-        if what != _EXPECTED
-    ]
-    rows = [("Skipped", ", ".join(skipped))] if skipped else []
-    return [*rows, *(("Note", note) for note in found.notes)]
-
-
-def _make_singular(what: str) -> str:
-    """Return what was skipped as one thing: "nodata cells", "rows without an elevation"."""
-    return re.sub(r"\b(cell|row|line|point)s\b", r"\1", what, count=1)
+    return [("Note", note) for note in (*describe_skipped(found.skipped), *found.notes)]
 
 
 def summarise_merges(report: Report, survey: Survey) -> list[Row]:
