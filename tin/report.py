@@ -408,7 +408,7 @@ class Report(Frozen):
         >>> import tinsmith as ts
         >>> points = [[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]]
         >>> ts.triangulate(points).report.sentences()
-        ('Points at 1 place differ in elevation, by up to 2: ...',)
+        ("Points at 1 place differ in elevation, by up to 2: ...'mean'.",)
         """
         return (*self.notes, *describe_skipped(self.skipped), *self._describe_merges())
 
@@ -416,14 +416,15 @@ class Report(Frozen):
         if len(self.merged_rows) == 0:
             return ()
         starts = self.merged_offsets[:-1]
-        spread = np.maximum.reduceat(self.merged_elevations, starts)
-        spread = spread - np.minimum.reduceat(self.merged_elevations, starts)
+        highest = np.maximum.reduceat(self.merged_elevations, starts)
+        with np.errstate(over="ignore"):  # between the largest floats
+            spread = highest - np.minimum.reduceat(self.merged_elevations, starts)
         differing = int(np.count_nonzero(spread))
         if differing == 0:
             return ()
         return (
             f"Points at {counted(differing, 'place')} differ in elevation, by up to "
-            f"{spread.max():.6g}: the surface has there what duplicates='{self.duplicates}' gives.",
+            f"{spread.max():.6g}: the surface has there the one of the policy '{self.duplicates}'.",
         )
 
     def after_edits(

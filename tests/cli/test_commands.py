@@ -331,7 +331,8 @@ def test_view_shows_or_writes(pyramid, tmp_path, asked, as_json, writes):
     assert ("(7 bytes)" in result.stderr) is writes
     assert "Warning: Mind the gap." in result.stderr
     if writes and as_json:
-        assert json.loads(result.stdout) == {"input": str(pyramid), "output": str(picture)}
+        record = json.loads(result.stdout)
+        assert record == {"input": str(pyramid), "output": str(picture), "notes": []}
     else:
         assert result.stdout == ""
 

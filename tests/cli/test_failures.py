@@ -168,7 +168,9 @@ def test_bad_rows_and_nodata_are_left_out_on_request(folder):
     code, _, stderr = build(rows, "--skip-bad", "--nodata", "-9999")
     assert code == 0
     assert re.search(r"^Note +1 bad row is left out \(line 6", stderr, re.MULTILINE)
-    assert re.search(r"^Skipped +1 bad row, 1 nodata point$", stderr, re.MULTILINE)
+    assert re.search(
+        r"^Note +Left out by the reader: 1 bad row, 1 nodata point\.$", stderr, re.MULTILINE
+    )
     assert "4 vertices" in stderr
 
 

@@ -48,7 +48,7 @@ def test_a_summary_has_labels_of_one_width_and_lines_below_each_other(capsys):
     Console(quiet=True).answer(fields[:1], {"a": 1})
     assert capsys.readouterr().out == "Points      7\n"
     Console(as_json=True).answer(fields, {"a": 1})
-    assert json.loads(capsys.readouterr().out) == {"a": 1}
+    assert json.loads(capsys.readouterr().out) == {"a": 1, "notes": []}
 
 
 def test_facts_are_strict_json():

@@ -171,7 +171,7 @@ def test_what_the_reader_skipped_and_noted():
         notes=("odd",),
     )
     assert summaries.summarise_reading(survey) == [
-        ("Skipped", "1 row without an elevation, 1,200 nodata cells"),
+        ("Note", "Left out by the reader: 1 row without an elevation, 1,200 nodata cells."),
         ("Note", "odd"),
     ]
     plain = ts.Survey(points=TETRA)

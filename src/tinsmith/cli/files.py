@@ -240,7 +240,7 @@ def note_surfaces(surfaces: Sequence[TIN], console: Console) -> None:
     """Take note of what is known of surfaces, showing progress, for summary and record."""
     from .._products import join_notes
 
-    with console.step("Checking points"):
+    with console.step("Looking for blunders and gaps"):
         console.note(join_notes(surface.snapshot() for surface in surfaces))
 
 
