@@ -28,13 +28,6 @@ class GriddedSurface:
         progress: Callable[[float], None] | None = ...,
     ) -> Float64Array: ...
 
-class LeaveOneOut:
-    def __init__(
-        self, points: Float64Array, triangles: Int32Array, neighbors: Int32Array
-    ) -> None: ...
-    def interpolate(self, vertices: Int32Array, threads: int = ...) -> Float64Array: ...
-    def list_neighbors(self, vertices: Int32Array) -> tuple[Int64Array, Int32Array]: ...
-
 def trace_contours(
     points: Float64Array,
     triangles: Int32Array,
@@ -153,7 +146,6 @@ def find_seen_vertices(
     fall: float,
     threads: int = ...,
 ) -> UInt8Array: ...
-def measure_neighbors(points: Float64Array, triangles: Int32Array) -> Float64Array: ...
 def shade_planes(
     normals: Float64Array,
     east: float,

@@ -17,7 +17,6 @@ __all__ = [
     "TILE_SIDE",
     "FallingSurface",
     "GriddedSurface",
-    "LeaveOneOut",
     "OverlayMesh",
     "accumulate",
     "cut_cells",
@@ -28,7 +27,6 @@ __all__ = [
     "find_seen_vertices",
     "fit_quadratics",
     "measure_cells",
-    "measure_neighbors",
     "overlay",
     "shade_planes",
     "simplify_cells",
@@ -52,8 +50,6 @@ vertex_normals = _core.vertex_normals
 shade_planes = _core.shade_planes
 fit_quadratics = _core.fit_quadratics
 
-LeaveOneOut = _core.LeaveOneOut
-measure_neighbors = _core.measure_neighbors
 densify = _core.densify
 simplify_cells = _core.simplify_cells
 measure_cells = _core.measure_cells

@@ -20,6 +20,7 @@ __all__ = [
     "VECTOR_PATHS",
     "EditedMesh",
     "Growth",
+    "LeaveOneOut",
     "Locator",
     "Mesh",
     "Method",
@@ -37,6 +38,7 @@ __all__ = [
     "in_circle",
     "intersections",
     "join_triangles",
+    "measure_neighbors",
     "nearest_vertices",
     "orientation",
     "places_in_rings",
@@ -81,6 +83,8 @@ touches = _core.touches
 intersections = _core.intersections
 vertices_at = _core.vertices_at
 places_in_rings = _core.points_in_polygons
+LeaveOneOut = _core.LeaveOneOut
+measure_neighbors = _core.measure_neighbors
 Method = _core.Method
 
 

@@ -148,7 +148,9 @@ class Surface:
         still = self.snapshot()
         version = still._current
         if version.notes is None:
-            found = call_method("Surface.findings", still)
+            inputs = still._gather_inputs()
+            is_trimmed = inputs is not None and bool(np.isfinite(inputs.max_edge))
+            found = call_method("Surface.findings", still, gaps=not is_trimmed)
             version.keep_notes(tuple(dict.fromkeys([*version.report.sentences(), *found])))
         return cast("tuple[str, ...]", version.notes)
 

@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 
 import tinsmith as ts
-from tinsmith.terrain import _kernel
 from tinsmith.terrain.inspection.findings import screen
-from tinsmith.tin import TIN
+from tinsmith.tin import TIN, _kernel
 
 from ..measure import OURS, Outcome, Result, alternate, find_median
 
@@ -65,9 +64,8 @@ def _compare_residuals(tin: TIN) -> None:
     from scipy.interpolate import LinearNDInterpolator
 
     vertices = np.argsort(((tin.points[:, :2] - SIZE / 2) ** 2).sum(axis=1))[:CHECKED]
-    found: Any = _kernel.leave_one_out(
-        tin.points, tin.triangles, tin.neighbors, vertices.astype(np.int32)
-    )
+    without = _kernel.LeaveOneOut(tin.points, tin.triangles, tin.neighbors)
+    found: Any = without.interpolate(vertices.astype(np.int32))
     for vertex, elevation in zip(vertices.tolist(), found[:, 0].tolist(), strict=True):
         rest = np.delete(tin.points, vertex, axis=0)
         near = (np.abs(rest[:, :2] - SIZE / 2) < SIZE / 4).all(axis=1)

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError
-from ...terrain.georeference.area_of_use import AreaOfUse
+from ...tin.screening.area_of_use import AreaOfUse
 from ..reprojection.placement import settle_unit
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from ...arrays import Float64Array
-    from ...terrain.georeference.area_of_use import AreaOfUse
+    from ...tin.screening.area_of_use import AreaOfUse
 
 __all__ = [
     "Column",

@@ -12,7 +12,7 @@ import numpy as np
 from ..._sentences import counted
 from ...crs import FOOT, Unit
 from ...errors import CrsError, OptionError, ReadError
-from ...terrain.inspection.nodata import describe_elevations
+from ...tin.screening.nodata import describe_elevations
 from .cells import is_number, split_line
 from .columns import COORDINATES, find_columns_by_header, find_unit_word, list_names
 from .content import are_plausible_elevations, is_too_steep, measure_relief_and_extent
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from ...arrays import AnyArray, Float64Array, Int64Array
     from ...crs import CRS
-    from ...terrain.georeference.area_of_use import AreaOfUse
+    from ...tin.screening.area_of_use import AreaOfUse
     from .columns import Columns
     from .layout import Layout
     from .lines import TextLines

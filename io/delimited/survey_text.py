@@ -13,9 +13,9 @@ from ..._progress import Progress
 from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError, WriteError
-from ...terrain.georeference.area_of_use import AreaOfUse
-from ...terrain.inspection.nodata import parse_nodata
 from ...tin import TIN, Survey
+from ...tin.screening.area_of_use import AreaOfUse
+from ...tin.screening.nodata import parse_nodata
 from ..registry.losses import keep_on_one_line
 from ..reprojection.placement import place, settle_unit
 from ..reprojection.transformation import is_geographic

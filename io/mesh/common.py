@@ -10,9 +10,9 @@ import numpy as np
 from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import CrsError, FormatError, OptionError, PointsError, ReadError
-from ...terrain.inspection.nodata import find_suspect_elevations
 from ...tin import TIN, Surface, Survey
 from ...tin.checking.overlaps import describe_overlaps
+from ...tin.screening.nodata import find_suspect_elevations
 from ...tin.validation.options import is_finite_number
 from ..reprojection.placement import settle_unit
 

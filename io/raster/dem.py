@@ -18,8 +18,8 @@ from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError
 from ...terrain.gridding.voids import trace_rings
-from ...terrain.inspection.nodata import describe_elevations, parse_nodata
 from ...tin import Bounds, Survey
+from ...tin.screening.nodata import describe_elevations, parse_nodata
 from ..isolated import Limits, choose_limits, run_isolated, stream_isolated
 from ..isolated.free_memory import measure_free_memory
 from ..reprojection.placement import place, settle_unit

@@ -11,8 +11,8 @@ import numpy as np
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError
 from ...terrain.gridding.grids import as_parts, to_grid
-from ...terrain.inspection.nodata import parse_nodata
 from ...terrain.results import Raster
+from ...tin.screening.nodata import parse_nodata
 from ..isolated.local_files import require_local
 from ..isolated.spooling import is_pipe, require_readable
 from ..reprojection.placement import place

@@ -9,7 +9,7 @@ import numpy as np
 from ..._sentences import counted
 from ...crs import require_same_unit
 from ...errors import CrsError, ReadError
-from ...terrain.georeference.area_of_use import AreaOfUse
+from ...tin.screening.area_of_use import AreaOfUse
 from .transformation import convert_elevations, find_utm_zone, reproject, transform_points
 
 if TYPE_CHECKING:

@@ -15,8 +15,8 @@ from ..._sentences import counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError, choice
 from ...policies import LineReading
-from ...terrain.inspection.nodata import describe_elevations, parse_nodata
 from ...tin import TIN, Breakline, Survey
+from ...tin.screening.nodata import describe_elevations, parse_nodata
 from ...tin.topology import find_offsets
 from ..mesh.common import Reference, make_tin
 from ..reprojection.placement import place, settle_unit

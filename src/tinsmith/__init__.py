@@ -14,7 +14,7 @@ register_methods(
     {
         "TIN._repr_html_": "tinsmith.terrain.preview.card:make_card",
         "Snapshot._repr_html_": "tinsmith.terrain.preview.card:make_card",
-        "Surface.findings": "tinsmith.terrain.inspection.findings:describe_findings",
+        "Surface.findings": "tinsmith.tin.screening:describe_findings",
         "Survey._repr_html_": "tinsmith.terrain.drawing.cards.survey:make_survey_card",
         "Report._repr_html_": "tinsmith.terrain.drawing.cards.survey:make_report_card",
         "Features._repr_html_": "tinsmith.terrain.drawing.cards.results:make_features_card",

@@ -8,8 +8,8 @@ import numpy as np
 
 from ..._sentences import counted
 from ...errors import OptionError, TinsmithError
+from ...tin.screening.suspects import DROPPED
 from ...tin.validation.options import require_tin, require_type
-from ..inspection.findings import DROPPED
 from ..results import Table
 from .arguments import parse_title
 from .figures import INK, picture

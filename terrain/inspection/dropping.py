@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...errors import LinesError, PointsError
-from .findings import DROPPED
+from ...tin.screening.suspects import DROPPED
 
 if TYPE_CHECKING:
     from ...arrays import Int32Array, Int64Array

@@ -8,35 +8,20 @@ import numpy as np
 
 from ..._products import product
 from ..._progress import Progress
-from ..._sentences import counted
-from ...errors import LinesError, OptionError, PointsError
+from ...errors import OptionError
 from ...tin import TIN, Surface, Survey, triangulate
+from ...tin.screening.gaps import describe_gaps
+from ...tin.screening.searching import inspect_points, screen_points
 from ..results import Table
-from .gaps import describe_gaps
-from .heights import STRICT, find_heights, find_peaks_and_pits
-from .nodata import find_suspect_elevations, is_customary
-from .places import find_places
-from .records import find_crossings, find_repeated_numbers, find_repeated_places
-from .slips import name_factor
-from .suspects import CERTAINTIES, REASONS, Rows, Suspect
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from ..._progress import Tell
     from ...arrays import AnyArray, Int64Array
-    from .heights import Heights
+    from ...tin.screening.suspects import Suspect
 
-__all__ = ["DROPPED", "blunders", "describe_findings", "screen"]
-
-DROPPED = ("outside", "swapped", "factor", "isolated", "code", "spike", "pit")
-"""Reasons for which a point may be left out; other ones leave open which point is wrong."""
-
-_SAMPLE = 8_192
-_FEW = 10_000
-"""So many points are inspected as a whole where others are screened."""
-_MOST_PEAKS = 0.02
-"""Of the points: where more stand out they are the ground, or what grows on it."""
+__all__ = ["blunders", "screen"]
 
 
 @product
@@ -96,18 +81,8 @@ def blunders(points: Survey | TIN, *, progress: Callable[[float], None] | None =
     """
     done = Progress(progress)
     tin = _as_tin(points, done.stage(0.0, 0.3))
-    rows = Rows.of(tin)
-    suspects, notes = find_places(rows, tin.crs)
-    codes = _find_codes(rows)
-    done(0.4)
-    heights, scale = _find_heights(tin, suspects, codes, progress=done.stage(0.4, 0.8))
-    done(0.8)
-    suspects += [*codes, *heights]
-    repeated, more = find_repeated_numbers(tin, rows)
-    suspects += repeated
-    suspects += find_repeated_places(tin, rows, scale)
-    suspects += find_crossings(tin, scale, STRICT * scale)
-    table = _tabulate(tin, suspects, [*notes, *more, *describe_gaps(tin)])
+    found = inspect_points(tin, done.stage(0.3, 0.9))
+    table = _tabulate(tin, found.suspects, [*found.notes, *describe_gaps(tin)])
     done.end()
     return table
 
@@ -118,21 +93,8 @@ def screen(tin: TIN) -> Table:
     Of more than 10,000 points only those further beyond all their neighbours than these are apart
     are judged, with scales from a sample; repeated numbers and places are left to others.
     """
-    rows = Rows.of(tin)
-    suspects, notes = find_places(rows, tin.crs)
-    codes = _find_codes(rows)
-    heights, _ = _find_heights(tin, suspects, codes, is_whole=len(tin.points) <= _FEW)
-    return _tabulate(tin, [*suspects, *codes, *heights], notes)
-
-
-def describe_findings(tin: Surface) -> tuple[str, ...]:
-    """Say what looks wrong with a surface, in little time: blunders and gaps."""
-    table = screen(tin)
-    is_wrong = np.isin(table["reason"].astype(str), DROPPED)
-    is_wrong &= table["certainty"].astype(str) != "low"
-    count = int(is_wrong.sum())
-    told = [f"{counted(count, 'point')} may be blunders."] if count else []
-    return (*told, *table.notes, *describe_gaps(tin))
+    found = screen_points(tin)
+    return _tabulate(tin, found.suspects, found.notes)
 
 
 def _as_tin(points: Any, progress: Tell | None) -> TIN:
@@ -143,133 +105,23 @@ def _as_tin(points: Any, progress: Tell | None) -> TIN:
     return triangulate(points, progress=progress)
 
 
-# ---------------------------------------------------------------- elevations
-
-
-def _find_codes(rows: Rows) -> list[Suspect]:
-    """Find elevations that stand for none."""
-    found = []
-    for one in find_suspect_elevations(rows.xyz[:, 2]):
-        sentence = (
-            f"An elevation of {one.value:g} may stand for none: the others are "
-            f"{one.lowest:g} to {one.highest:g}."
-        )
-        for i in np.flatnonzero(rows.xyz[:, 2] == one.value).tolist():
-            found.append(rows.suspect(i, "code", sentence, "high"))
-    return found
-
-
-def _find_heights(
-    tin: TIN,
-    misplaced: Sequence[Suspect],
-    codes: Sequence[Suspect],
-    *,
-    is_whole: bool = True,
-    progress: Tell | None = None,
-) -> tuple[list[Suspect], float]:
-    """Return the rows that are too high or too low, and the usual scale of residuals.
-
-    What is in a wrong place is taken out first; what is a code has no say.
-    """
-    ground = _take_out(tin, misplaced)
-    rows = Rows.of(ground)
-    numbers = np.unique([one.row for one in codes]).astype(np.int64)
-    numbers = numbers[np.isin(numbers, rows.numbers)]
-    wrong = np.unique(rows.vertices[np.searchsorted(rows.numbers, numbers)])
-    count = len(ground.points)
-    judged = np.arange(count, dtype=np.int32) if is_whole else find_peaks_and_pits(ground)
-    if not is_whole and len(judged) > _MOST_PEAKS * count:
-        return [], np.nan
-    sample = None if is_whole else _SAMPLE
-    heights = find_heights(ground, judged, wrong, sample=sample, progress=progress)
-    return _judge_rows(ground, rows, heights.found), heights.scale
-
-
-def _take_out(tin: TIN, misplaced: Sequence[Suspect]) -> TIN:
-    vertices = np.unique(tin.vertex_of[[one.row for one in misplaced]]) if misplaced else ()
-    if len(vertices) == 0:
-        return tin
-    ground = tin.to_tin()
-    try:
-        ground.remove(vertices)
-    except (PointsError, LinesError):  # no triangle would be left, or a line would vanish
-        return tin
-    return ground
-
-
-def _judge_rows(tin: TIN, rows: Rows, found: Heights) -> list[Suspect]:
-    """Return the rows of vertices that are too high or too low, each by its own elevation."""
-    if len(found.vertices) == 0:
-        return []
-    place = np.searchsorted(found.vertices, rows.vertices)
-    place = np.minimum(place, len(found.vertices) - 1)
-    suspects = []
-    for i in np.flatnonzero(found.vertices[place] == rows.vertices).tolist():
-        at = int(place[i])
-        own, limit = float(rows.xyz[i, 2]), float(found.limits[at])
-        expected = float(tin.points[rows.vertices[i], 2] - found.residuals[at])
-        if abs(own - expected) > limit:
-            told = _describe_height(own, expected, limit)
-            one = rows.suspect(i, *told, _rate(abs(own - expected) / limit))
-            scale = float(found.scales[at])
-            suspects.append(one._replace(residual=own - expected, scale=scale))
-    return suspects
-
-
-def _describe_height(z: float, expected: float, limit: float) -> tuple[str, str]:
-    """Return reason and sentence for an elevation that does not fit."""
-    if is_customary(z):
-        return "code", f"It may stand for none: the points around it give {expected:.6g}."
-    words = name_factor(z, expected, limit)
-    if words is not None:
-        return "factor", f"It is {words} the {expected:.6g} that the points around it give."
-    side = "above" if z > expected else "below"
-    return (
-        "spike" if z > expected else "pit",
-        f"It is {abs(z - expected):.4g} {side} the surface of the points around it.",
-    )
-
-
-def _rate(times: float) -> str:
-    return "high" if times > 3.0 else "medium" if times > 1.5 else "low"
-
-
-# ---------------------------------------------------------------- the table
-
-
 def _tabulate(tin: TIN, suspects: Sequence[Suspect], notes: Sequence[str]) -> Table:
-    """Return suspects as a table, one reason of each row but for what others have, too."""
-    ordered = sorted(_choose_reasons(suspects), key=_rank)
-    rows = np.array([one.row for one in ordered], np.int64)
-    places = np.array([one.place for one in ordered], np.float64).reshape(-1, 3)
+    rows = np.array([one.row for one in suspects], np.int64)
+    places = np.array([one.place for one in suspects], np.float64).reshape(-1, 3)
     elevation = tin.elevation_unit
     length = None if tin.crs is None else tin.crs.horizontal_unit
     columns: dict[str, Any] = {
         "row": rows,
         "number": _find_numbers(tin, rows),
         **dict(zip("xyz", places.T, strict=True)),
-        "residual": np.array([one.residual for one in ordered], np.float64),
-        "scale": np.array([one.scale for one in ordered], np.float64),
-        "reason": np.array([one.reason for one in ordered], object),
-        "certainty": np.array([one.certainty for one in ordered], object),
-        "explanation": np.array([one.explanation for one in ordered], object),
+        "residual": np.array([one.residual for one in suspects], np.float64),
+        "scale": np.array([one.scale for one in suspects], np.float64),
+        "reason": np.array([one.reason for one in suspects], object),
+        "certainty": np.array([one.certainty for one in suspects], object),
+        "explanation": np.array([one.explanation for one in suspects], object),
     }
     units = dict.fromkeys("xy", length) | dict.fromkeys(("z", "residual", "scale"), elevation)
     return Table(columns, units=units, name="blunders", notes=tuple(notes))
-
-
-def _choose_reasons(suspects: Sequence[Suspect]) -> list[Suspect]:
-    """Return one suspect of each row and kind: what is wrong with it, or what others have, too."""
-    chosen: dict[Any, Suspect] = {}
-    for one in sorted(suspects, key=lambda one: REASONS.index(one.reason)):
-        kind = "wrong" if one.reason in DROPPED else one.reason
-        chosen.setdefault((one.row, kind) if one.row >= 0 else one.place, one)
-    return list(chosen.values())
-
-
-def _rank(one: Suspect) -> tuple[Any, ...]:
-    times = abs(one.residual) / one.scale if one.scale > 0 else 0.0
-    return (CERTAINTIES.index(one.certainty), -times, one.row, REASONS.index(one.reason), one.place)
 
 
 def _find_numbers(tin: TIN, rows: Int64Array) -> AnyArray:

@@ -20,11 +20,11 @@ from ...errors import OptionError, PointsError
 from ...tin import Survey, triangulate
 from ...tin.meshing.simplification import Errors, Goal, insert_until_near
 from ...tin.report import Simplification
+from ...tin.screening.nodata import describe_suspects, find_suspect_elevations
 from ...tin.topology import NO_NEIGHBOR
 from ...tin.validation.threads import thread_count
 from .. import _kernel
 from ..gridding.voids import find_surface
-from ..inspection.nodata import describe_suspects, find_suspect_elevations
 from .elevations import Block, Elevations, Heights, cut_blocks
 from .seams import Frame, find_frame, trace_block
 

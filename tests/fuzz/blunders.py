@@ -8,9 +8,9 @@ import numpy as np
 from support.leave_one_out import interpolate_without, rounding_of
 
 import tinsmith as ts
-from tinsmith.terrain import _kernel
 from tinsmith.terrain.inspection.dropping import drop_blunders, list_wrong_rows
 from tinsmith.terrain.inspection.findings import screen
+from tinsmith.tin import _kernel
 
 from .campaign import Campaign, Case
 from .coordinates import points

@@ -7,8 +7,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from ..building.attributes import find_first_rows
-from ..interpolation.interpolator import Interpolator
 from ..types import Frozen
+from .interpolation.interpolator import Interpolator
 
 if TYPE_CHECKING:
     from ...arrays import Int32Array, Int64Array

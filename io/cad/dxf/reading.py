@@ -11,9 +11,9 @@ import numpy as np
 from ...._sentences import counted
 from ....errors import LinesError, ReadError, choice
 from ....policies import BreaklineKind, DrawingContent, LineKind
-from ....terrain.inspection.nodata import describe_elevations
 from ....tin import Breakline, Survey, Water
 from ....tin.constraints.breaklines import as_ring
+from ....tin.screening.nodata import describe_elevations
 from ...mesh.common import Reference, require_own_crs
 from ..placing import place_rows
 from ..reference import Declared, Measures, choose_measures

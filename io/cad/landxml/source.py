@@ -12,9 +12,9 @@ from .... import _optional
 from ...._sentences import counted
 from ....errors import LinesError, ReadError
 from ....policies import BreaklineKind
-from ....terrain.inspection.nodata import describe_elevations
 from ....tin import Breakline, Survey, Water
 from ....tin.constraints.breaklines import as_ring
+from ....tin.screening.nodata import describe_elevations
 from ..placing import Placing, place_rows
 from .numbers import fault
 from .properties import KIND, PRIORITY

@@ -14,7 +14,7 @@
 #include "../../../tin/cpp/base/parallel.hpp"
 #include "../../../tin/cpp/index/box_tree.hpp"
 #include "../../../tin/cpp/location/ordered_surface.hpp"
-#include "../pulse.hpp"
+#include "../../../tin/cpp/base/pulse.hpp"
 #include "facet.hpp"
 
 namespace tinsmith::earthwork {

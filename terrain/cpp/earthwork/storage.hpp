@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "../pulse.hpp"
+#include "../../../tin/cpp/base/pulse.hpp"
 #include "facet.hpp"
 #include "sums.hpp"
 #include "volumes.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../../../tin/cpp/base/parallel.hpp"
-#include "../pulse.hpp"
+#include "../../../tin/cpp/base/pulse.hpp"
 #include "cell.hpp"
 #include "facet.hpp"
 #include "pairs.hpp"

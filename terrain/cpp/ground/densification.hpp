@@ -39,7 +39,7 @@
 #include "../../../tin/cpp/mesh/mesh_arrays.hpp"
 #include "../../../tin/cpp/mesh/mesh_editor.hpp"
 #include "../../../tin/cpp/triangulation.hpp"
-#include "../pulse.hpp"
+#include "../../../tin/cpp/base/pulse.hpp"
 
 namespace tinsmith {
 

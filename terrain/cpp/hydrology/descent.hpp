@@ -12,7 +12,7 @@
 
 #include "../../../tin/cpp/base/arrays.hpp"
 #include "../../../tin/cpp/base/ids.hpp"
-#include "../pulse.hpp"
+#include "../../../tin/cpp/base/pulse.hpp"
 #include "falling_surface.hpp"
 #include "filling.hpp"
 #include "steepness.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "../../../tin/cpp/base/arrays.hpp"
-#include "../pulse.hpp"
+#include "../../../tin/cpp/base/pulse.hpp"
 #include "descent.hpp"
 #include "strips.hpp"
 

@@ -13,7 +13,7 @@
 #include <stdexcept>
 
 #include "../../../tin/cpp/base/arrays.hpp"
-#include "../pulse.hpp"
+#include "../../../tin/cpp/base/pulse.hpp"
 #include "falling_surface.hpp"
 
 namespace tinsmith::hydrology {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "../pulse.hpp"
+#include "../../../tin/cpp/base/pulse.hpp"
 #include "level_surface.hpp"
 
 namespace tinsmith::isolines {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "../../../tin/cpp/base/parallel.hpp"
-#include "../pulse.hpp"
+#include "../../../tin/cpp/base/pulse.hpp"
 #include "level_surface.hpp"
 #include "line_exits.hpp"
 

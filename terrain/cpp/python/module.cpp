@@ -5,7 +5,6 @@
 #include "bind_gridding.hpp"
 #include "bind_ground.hpp"
 #include "bind_hydrology.hpp"
-#include "bind_inspection.hpp"
 #include "bind_isolines.hpp"
 #include "bind_raster_simplification.hpp"
 #include "bind_relief.hpp"
@@ -19,7 +18,6 @@ NB_MODULE(_core, m) {
   bind_earthwork(m);
   bind_relief(m);
   bind_hydrology(m);
-  bind_inspection(m);
   bind_ground(m);
   bind_raster_simplification(m);
   bind_sight(m);

@@ -20,7 +20,7 @@
 #include "../../../tin/cpp/base/ids.hpp"
 #include "../../../tin/cpp/base/parallel.hpp"
 #include "../../../tin/cpp/location/ordered_surface.hpp"
-#include "../pulse.hpp"
+#include "../../../tin/cpp/base/pulse.hpp"
 #include "vertex_neighbors.hpp"
 
 namespace tinsmith {

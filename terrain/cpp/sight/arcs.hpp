@@ -14,7 +14,7 @@
 
 #include "../../../tin/cpp/base/ids.hpp"
 #include "../../../tin/cpp/location/surface.hpp"
-#include "../pulse.hpp"
+#include "../../../tin/cpp/base/pulse.hpp"
 #include "directions.hpp"
 #include "edge_tree.hpp"
 #include "seen_vertices.hpp"

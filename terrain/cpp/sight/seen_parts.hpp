@@ -17,7 +17,7 @@
 #include "../../../tin/cpp/base/ids.hpp"
 #include "../../../tin/cpp/base/parallel.hpp"
 #include "../../../tin/cpp/location/surface.hpp"
-#include "../pulse.hpp"
+#include "../../../tin/cpp/base/pulse.hpp"
 #include "arcs.hpp"
 #include "directions.hpp"
 #include "horizon.hpp"

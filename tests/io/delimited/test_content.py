@@ -16,7 +16,7 @@ from tinsmith.io.delimited.content import (
     measure_relief_and_extent,
     require_no_split_decimals,
 )
-from tinsmith.terrain.georeference.area_of_use import AreaOfUse
+from tinsmith.tin.screening.area_of_use import AreaOfUse
 
 RNG = np.random.default_rng(5)
 N = 40

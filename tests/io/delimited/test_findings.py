@@ -18,7 +18,7 @@ from tinsmith.io.delimited.findings import (
     require_in_area,
 )
 from tinsmith.io.delimited.table import Fault
-from tinsmith.terrain.georeference.area_of_use import AreaOfUse
+from tinsmith.tin.screening.area_of_use import AreaOfUse
 
 PATH = Path("a.csv")
 AREA = "the area of use of EPSG:32616 (longitude -90 to -84, latitude 0 to 84)"

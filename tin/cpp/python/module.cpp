@@ -8,6 +8,7 @@
 #include "bind_mesh.hpp"
 #include "bind_points.hpp"
 #include "bind_refinement.hpp"
+#include "bind_screening.hpp"
 #include "bind_simplification.hpp"
 #include "bind_triangulation.hpp"
 
@@ -22,5 +23,6 @@ NB_MODULE(_core, m) {
   bind_mesh(m);
   bind_editing(m);
   bind_refinement(m);
+  bind_screening(m);
   bind_simplification(m);
 }

@@ -110,7 +110,7 @@ def _find_blunders(tin: TIN, request: Request, *, drop: bool) -> Suspects:
 
 def _find_gaps(tin: TIN, request: Request) -> list[str]:
     """Describe gaps that the surface spans, unless the user has said how far it may."""
-    from ...terrain.inspection.gaps import describe_gaps
+    from ...tin.screening.gaps import describe_gaps
 
     if request.how.max_edge is not None:
         return []

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...tin.topology import edges_at
-from ...tin.validation.threads import thread_count
 from .. import _kernel
+from ..topology import edges_at
+from ..validation.threads import thread_count
 
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
-    from ...tin.triangulation import Triangulation
+    from ..triangulation import Triangulation
 
 __all__ = ["Residuals", "fit_plane"]
 

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import _kernel
-from ..validation.threads import thread_count
+from ... import _kernel
+from ...validation.threads import thread_count
 from .barriers import find_barriers
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array
-    from ...policies import InterpolationMethod
-    from ..constraints.breaklines import Lines
-    from ..triangulation import Triangulation
+    from ....arrays import BoolArray, Float64Array
+    from ....policies import InterpolationMethod
+    from ...constraints.breaklines import Lines
+    from ...triangulation import Triangulation
 
 __all__ = ["Interpolator"]
 

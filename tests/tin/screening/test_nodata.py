@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.terrain.inspection.nodata import (
+from tinsmith.tin.screening.nodata import (
     describe_elevations,
     describe_suspects,
     find_suspect_elevations,

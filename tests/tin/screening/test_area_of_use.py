@@ -9,7 +9,7 @@ import pyproj
 import pytest
 
 from tinsmith.crs import CRS
-from tinsmith.terrain.georeference.area_of_use import AreaOfUse, _convert_to_degrees, _measure_width
+from tinsmith.tin.screening.area_of_use import AreaOfUse, _convert_to_degrees, _measure_width
 
 UTM_16 = "EPSG:32616"
 NEW_ZEALAND = "EPSG:4167"  # 160.6 E to 171.2 W: across the antimeridian

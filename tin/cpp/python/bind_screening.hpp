@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "../../../tin/cpp/python/conversion.hpp"
-#include "../inspection/leave_one_out.hpp"
+#include "conversion.hpp"
+#include "../screening/leave_one_out.hpp"
 
 namespace tinsmith::python {
 
@@ -87,7 +87,7 @@ inline Xyz measure_neighbors(const GivenXyz& points, const GivenTriples& triangl
   return hand_over<Xyz>(std::move(found), {points.shape(0), 3});
 }
 
-inline void bind_inspection(nb::module_& m) {
+inline void bind_screening(nb::module_& m) {
   nb::class_<HeldLeaveOneOut>(m, "LeaveOneOut", "Tells of a surface without single vertices.")
       .def(nb::init<const GivenXyz&, const GivenTriples&, const GivenTriples&>(),
            "points"_a.noconvert(), "triangles"_a.noconvert(), "neighbors"_a.noconvert())

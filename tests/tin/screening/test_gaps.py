@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 import tinsmith as ts
 from tinsmith.cli import main
-from tinsmith.terrain.inspection.gaps import describe_gaps
+from tinsmith.tin.screening.gaps import describe_gaps
 
 RNG = np.random.default_rng(5)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..._sentences import counted
-from ..georeference.area_of_use import AreaOfUse
+from .area_of_use import AreaOfUse
 from .slips import FACTORS
 
 if TYPE_CHECKING:
@@ -59,6 +59,8 @@ def find_places(rows: Rows, crs: CRS | None) -> tuple[list[Suspect], list[str]]:
     multiplied, is told as such.
     """
     notes: list[str] = []
+    if len(rows) == 0:
+        return [], notes
     found = _find_outside(rows, crs, notes)
     box = _Box.of(rows.xyz[:, :2])
     if not 0.0 < box.diagonal < np.inf:

@@ -16,13 +16,13 @@
 #include <utility>
 #include <vector>
 
-#include "../../../tin/cpp/base/arrays.hpp"
-#include "../../../tin/cpp/base/ids.hpp"
-#include "../../../tin/cpp/base/parallel.hpp"
-#include "../../../tin/cpp/base/range.hpp"
-#include "../../../tin/cpp/location/surface.hpp"
-#include "../../../tin/cpp/predicates/predicates.hpp"
-#include "../pulse.hpp"
+#include "../base/arrays.hpp"
+#include "../base/ids.hpp"
+#include "../base/parallel.hpp"
+#include "../base/range.hpp"
+#include "../location/surface.hpp"
+#include "../predicates/predicates.hpp"
+#include "../base/pulse.hpp"
 
 namespace tinsmith {
 

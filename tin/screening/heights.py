@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..._progress import Progress
-from ...errors import LinesError, PointsError
-from ...tin.topology import find_boundary_vertices, find_owners
 from .. import _kernel
+from ..topology import find_boundary_vertices, find_owners
 from .residuals import Residuals, fit_plane
 from .scales import find_rounding, measure_scales
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ..._progress import Tell
     from ...arrays import Float64Array, Int32Array, Int64Array
-    from ...tin import TIN
+    from ..triangulation import Triangulation
 
 __all__ = ["STRICT", "Heights", "Judgement", "find_heights", "find_peaks_and_pits"]
 
@@ -55,11 +56,12 @@ class Judgement(NamedTuple):
 
 
 def find_heights(
-    tin: TIN,
+    surface: Triangulation,
     judged: Int32Array,
     wrong: Int32Array,
     *,
     sample: int | None = None,
+    without: Callable[[Int32Array], Float64Array] | None = None,
     progress: Tell | None = None,
 ) -> Judgement:
     """Find vertices that are too high or too low for those around them.
@@ -74,8 +76,9 @@ def find_heights(
     4. So on with those that stand out then, until none does.
 
     Vertices are ``judged``, (k,); those known to be ``wrong``, (m,), count for nothing. With a
-    ``sample`` scales are measured from so many of the vertices, and residuals against corrected
-    elevations, else scales from all of them, and residuals against the surface without those found.
+    ``sample`` scales are measured from so many of the vertices, else from all of them. ``without``
+    returns the elevations at some vertices of the surface without them, NaN for none: residuals of
+    what is found are measured against it, by default against the corrected elevations around.
     Progress is told before the first round, and after each half of what is left.
 
     References
@@ -84,12 +87,12 @@ def find_heights(
     Mining and Knowledge Discovery 1(1), 73-79. https://doi.org/10.1002/widm.2
     """
     done, left = Progress(progress), 1.0
-    search = _Search.start(tin, judged, wrong, sample)
+    search = _Search.start(surface, judged, wrong, sample)
     done(_STARTED)
     while search.correct_most_striking():
         left *= 0.5
         done(1.0 - (1.0 - _STARTED) * left)
-    found = _measure_without(tin, search, is_exact=sample is None)
+    found = _measure_without(search, without)
     return Judgement(found, float(np.nanmedian(search.scales)))
 
 
@@ -104,8 +107,10 @@ class _Search:
     found: list[Int32Array]
 
     @classmethod
-    def start(cls, tin: TIN, judged: Int32Array, wrong: Int32Array, sample: int | None) -> _Search:
-        known = Residuals.of(tin.triangulation)
+    def start(
+        cls, surface: Triangulation, judged: Int32Array, wrong: Int32Array, sample: int | None
+    ) -> _Search:
+        known = Residuals.of(surface)
         known.xyz[wrong, 2] -= np.nan_to_num(known.measure(wrong))
         count = len(known.xyz)
         chosen = judged
@@ -114,7 +119,7 @@ class _Search:
             chosen = np.union1d(judged, spread).astype(np.int32)
         residuals, moments, scales = (np.full(count, np.nan) for _ in range(3))
         residuals[chosen], moments[chosen] = known.measure_with_moments(chosen)
-        least = find_rounding(tin.points[:, 2])
+        least = find_rounding(surface.points[:, 2])
         for group in (chosen[~known.on_line[chosen]], chosen[known.on_line[chosen]]):
             scales[group] = measure_scales(
                 known.xyz[group, :2], residuals[group], moments[group], least
@@ -256,37 +261,28 @@ def _find_second(offsets: Int64Array, values: Float64Array) -> Float64Array:
     return np.where(np.diff(offsets) > 1, second, 0.0)
 
 
-def _measure_without(tin: TIN, search: _Search, *, is_exact: bool) -> Heights:
+def _measure_without(
+    search: _Search, without: Callable[[Int32Array], Float64Array] | None
+) -> Heights:
     """Return what was found, measured against the surface without any of it."""
     known, limits = search.known, search.limits
     none = np.empty(0, np.int32)
     vertices = np.sort(np.concatenate([none, *search.found])).astype(np.int32)
-    residuals = known.surface.points[vertices, 2] - known.xyz[vertices, 2]
+    z = known.surface.points[:, 2]
+    residuals = z[vertices] - known.xyz[vertices, 2]
     free = ~known.on_line[vertices]
-    if is_exact and 0 < free.sum() <= _MOST_REMOVED:
-        without = _interpolate_without(tin, vertices[free])
-        exact = tin.points[vertices[free], 2] - without
+    if without is not None and 0 < free.sum() <= _MOST_REMOVED:
+        exact = z[vertices[free]] - without(vertices[free])
         residuals[free] = np.where(np.isnan(exact), residuals[free], exact)
     stays = np.abs(residuals) > limits[vertices]
     vertices = vertices[stays]
     return Heights(vertices, residuals[stays], search.scales[vertices], limits[vertices])
 
 
-def _interpolate_without(tin: TIN, vertices: Int32Array) -> Float64Array:
-    """Return the elevation at some vertices of the surface without them; NaN outside of it."""
-    rest = tin.to_tin()
-    try:
-        rest.remove(vertices)
-    except (PointsError, LinesError):  # what is left has no triangle, or a line goes through
-        return np.full(len(vertices), np.nan)
-    elevations: Float64Array = rest.interpolate(tin.points[vertices, :2])
-    return elevations
-
-
-def find_peaks_and_pits(tin: TIN) -> Int32Array:
+def find_peaks_and_pits(surface: Triangulation) -> Int32Array:
     """Return the vertices further beyond all their neighbours than these are apart."""
-    lowest, highest, _ = _kernel.measure_neighbors(tin.points, tin.triangles).T
-    z = tin.points[:, 2]
+    lowest, highest, _ = _kernel.measure_neighbors(surface.points, surface.triangles).T
+    z = surface.points[:, 2]
     with np.errstate(invalid="ignore"):
         beyond = np.maximum(z - highest, lowest - z) > highest - lowest
     return np.flatnonzero(beyond).astype(np.int32)

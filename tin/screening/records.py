@@ -10,7 +10,7 @@ from .suspects import Suspect
 
 if TYPE_CHECKING:
     from ...arrays import AnyArray, Int64Array
-    from ...tin import TIN
+    from ..surface import TIN
     from .suspects import Rows
 
 __all__ = ["find_crossings", "find_repeated_numbers", "find_repeated_places"]

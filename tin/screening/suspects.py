@@ -9,9 +9,9 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ...arrays import Float64Array, Int32Array, Int64Array
-    from ...tin import TIN
+    from ..surface import TIN
 
-__all__ = ["CERTAINTIES", "REASONS", "Rows", "Suspect"]
+__all__ = ["CERTAINTIES", "DROPPED", "REASONS", "Rows", "Suspect"]
 
 CERTAINTIES = ("high", "medium", "low")
 REASONS = (
@@ -27,6 +27,9 @@ REASONS = (
     "crossing",
 )
 """Reasons, in the order in which one is named of a row that has several."""
+
+DROPPED = ("outside", "swapped", "factor", "isolated", "code", "spike", "pit")
+"""Reasons for which a point may be left out; other ones leave open which point is wrong."""
 
 
 class Suspect(NamedTuple):

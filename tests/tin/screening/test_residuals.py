@@ -7,9 +7,9 @@ import pytest
 from support.leave_one_out import interpolate_without, rounding_of
 
 import tinsmith as ts
-from tinsmith.terrain import _kernel
-from tinsmith.terrain.inspection.residuals import Residuals
-from tinsmith.terrain.inspection.scales import NORMAL, find_rounding, measure_scales
+from tinsmith.tin import _kernel
+from tinsmith.tin.screening.residuals import Residuals
+from tinsmith.tin.screening.scales import NORMAL, find_rounding, measure_scales
 
 
 def prepare(tin):

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...tin.constraints.clipping import Surface, trim
-from ...tin.topology import NO_NEIGHBOR
-from ..relief.gradients import slope
+from ...crs import assume_elevation_unit, scale_elevations
+from ..constraints.clipping import Surface, trim
+from ..topology import NO_NEIGHBOR
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array
-    from ...tin import TIN
+    from ...arrays import BoolArray, Float64Array, Int64Array
+    from ..surface import TIN
 
 __all__ = ["describe_gaps"]
 
@@ -25,6 +25,11 @@ _STEEPER = 5.0
 """A sliver is steep above 30 degrees, if its gradient is 5 times that of 90 % of the triangles."""
 
 _SAMPLE = 20_000
+
+_EARTH_RADIUS = 6_371_000.0
+"""Metres."""
+_POLE = 1e-3
+"""Meridians are no nearer to each other than this share of their distance at the equator."""
 
 
 def describe_gaps(tin: TIN) -> list[str]:
@@ -100,14 +105,13 @@ def _describe_slivers(tin: TIN, squares: Float64Array, stays: BoolArray) -> list
         _compute_gradients(tin, slice(None, None, max(1, len(stays) // _SAMPLE))), 90
     )
     slivers = outer[_compute_gradients(tin, outer) > _STEEPER * usual]
-    if len(slivers):
-        degrees = slope(tin)
-        slivers = slivers[degrees[slivers] > _STEEP]
+    degrees = _measure_slopes(tin, slivers)
+    slivers, degrees = slivers[degrees > _STEEP], degrees[degrees > _STEEP]
     if len(slivers) == 0:
         return []
     shortest = float(np.sqrt(squares[slivers].max(axis=1).min()))
     return [
-        f"{_count_triangles(len(slivers))} along the hull as steep as {degrees[slivers].max():.1f} "
+        f"{_count_triangles(len(slivers))} along the hull as steep as {degrees.max():.1f} "
         f"degrees, where the ground is not: a max_edge below {shortest:.4g} trims them."
     ]
 
@@ -120,6 +124,26 @@ def _compute_gradients(tin: TIN, chosen: Any) -> Float64Array:
         gradients = np.hypot(east, north) / up
     steep: Float64Array = np.nan_to_num(gradients, nan=0.0)  # infinite is the largest
     return steep
+
+
+def _measure_slopes(tin: TIN, chosen: Int64Array) -> Float64Array:
+    """Return the slopes of some triangles in degrees, elevations in the unit of eastings."""
+    a, b, c = (tin.points[tin.triangles[chosen, k]] * _find_factors(tin) for k in range(3))
+    east, north, up = np.cross(b - a, c - a).T
+    slopes: Float64Array = np.degrees(np.arctan2(np.hypot(east, north), up))
+    return slopes
+
+
+def _find_factors(tin: TIN) -> Float64Array:
+    """Return factors that make all coordinates lengths; degrees are those of a sphere."""
+    crs = tin.crs
+    if crs is None or not crs.is_geographic:
+        return np.array([1.0, 1.0, scale_elevations(crs, tin.elevation_unit)])
+    up = assume_elevation_unit(crs, tin.elevation_unit)
+    metres = None if up is None else up.metres
+    along = _EARTH_RADIUS * float(crs.to_pyproj().axis_info[0].unit_conversion_factor)
+    latitude = float(np.median(tin.points[:, 1])) * along / _EARTH_RADIUS
+    return np.array([along * max(np.cos(latitude), _POLE), along, metres or 1.0])
 
 
 def _count_triangles(count: int) -> str:

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "../../tin/cpp/base/parallel.hpp"
+#include "parallel.hpp"
 
 namespace tinsmith {
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.terrain.inspection.heights import STRICT, find_heights
+from tinsmith.tin.screening.heights import STRICT, find_heights
 
 COUNT = 4_000
 PLANTED = 20
@@ -103,7 +103,7 @@ def test_planted_blunders_are_found_and_nothing_else(ground):
 
 
 def find_scales(points):
-    from tinsmith.terrain.inspection.heights import _Search
+    from tinsmith.tin.screening.heights import _Search
 
     tin = ts.triangulate(points)
     judged = np.arange(len(points), dtype=np.int32)
