@@ -61,11 +61,15 @@ class Surface:
     """What can be asked of a triangulated surface: a :class:`TIN`, or a snapshot of one.
 
     It has everything that reads and nothing that edits. Products take a surface, and begin from a
-    snapshot of it (:meth:`snapshot`), so that an edit in another thread cannot reach them.
+    snapshot of it (:meth:`snapshot`), so that an edit in another thread cannot reach them. Its
+    attributes are those of :class:`TIN`.
 
-    Attributes
-    ----------
-    As of :class:`TIN`.
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+    >>> isinstance(tin, Surface), isinstance(tin.snapshot(), Surface)
+    (True, True)
     """
 
     __slots__ = ()
@@ -150,7 +154,8 @@ class Surface:
         if version.notes is None:
             inputs = still._gather_inputs()
             is_trimmed = inputs is not None and bool(np.isfinite(inputs.max_edge))
-            found = call_method("Surface.findings", still, gaps=not is_trimmed)
+            with np.errstate(over="ignore", invalid="ignore"):  # of elevations beyond all real ones
+                found = call_method("Surface.findings", still, gaps=not is_trimmed)
             version.keep_notes(tuple(dict.fromkeys([*version.report.sentences(), *found])))
         return cast("tuple[str, ...]", version.notes)
 
@@ -1148,6 +1153,12 @@ class Snapshot(Surface):
     ----------
     tin : TIN
         That nobody edits.
+
+    Examples
+    --------
+    >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
+    >>> tin.snapshot()
+    <Snapshot: 3 vertices, 1 triangle, z 1 to 3, crs unknown>
     """
 
     __slots__ = ("__weakref__", "_crs", "_elevation_unit", "_row_attributes", "_source", "_tin")
@@ -1167,7 +1178,15 @@ class Snapshot(Surface):
         return self._tin
 
     def snapshot(self) -> Snapshot:
-        """Return itself: it never changes."""
+        """Return itself: it never changes.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
+        >>> still = tin.snapshot()
+        >>> still.snapshot() is still
+        True
+        """
         return self
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -73,7 +73,15 @@ class Difference:
     _sums: dict[str, float]
 
     def with_notes(self, notes: Sequence[str]) -> Difference:
-        """Return the same with further notes in front of its own, those of its parts too."""
+        """Return the same with further notes in front of its own, those of its parts too.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> flat = ts.triangulate([[0, 0, 1], [4, 0, 1], [4, 4, 1], [0, 4, 1]])
+        >>> ts.difference(flat, flat).with_notes(["One row was left out."]).zones.notes
+        ('One row was left out.', ...)
+        """
         told = join_notes(notes, self.notes)
         if told == self.notes:
             return self

@@ -54,7 +54,7 @@ class Preview:
     >>> import tinsmith as ts
     >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:32616")
     >>> ts.preview(tin, title="Yard").notes
-    ()
+    ('The unit of elevations is not known: taken to be the metre.',)
     """
 
     def __init__(
@@ -86,8 +86,8 @@ class Preview:
         >>> import tinsmith as ts
         >>> points = [[x, y, 5.0 + x] for x in range(6) for y in range(6)]
         >>> points[7][2] = 9999.0
-        >>> ts.preview(ts.triangulate(points)).notes
-        ('1 elevation far off all others: 9,999.',)
+        >>> ts.preview(ts.triangulate(points)).notes[-1]
+        '1 elevation far off all others: 9,999.'
         """
         far_off = (
             f"{words}." if len(self._surfaces) == 1 else f"{name}: {words}."
@@ -97,7 +97,15 @@ class Preview:
         return join_notes(self._notes, self._aligned.notes, far_off)
 
     def with_notes(self, notes: Sequence[str]) -> Preview:
-        """Return the same with further notes."""
+        """Return the same with further notes.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+        >>> ts.preview(tin).with_notes(["One row was left out."]).notes[0]
+        'One row was left out.'
+        """
         told = join_notes(notes, self._notes)
         return Preview(self._aligned, self._look, self._survey, self._ortho, told)
 

@@ -132,7 +132,7 @@ class Raster(Frozen):
         Examples
         --------
         >>> import tinsmith as ts
-        >>> grid = ts.Grid(ts.Bounds(0, 0, 2, 2), 1.0, (2, 2))
+        >>> grid = ts.Grid(ts.Bounds(0.0, 0.0, 2.0, 2.0), shape=(2, 2), spacing=1.0)
         >>> raster = ts.Raster({"z": [[1.0, 2.0], [3.0, 4.0]]}, grid)
         >>> raster.with_notes(["One row was left out."]).notes
         ('One row was left out.',)

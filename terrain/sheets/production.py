@@ -138,7 +138,15 @@ class Plan:
         return (*self._notes, *self._notes_of_drawing)
 
     def with_notes(self, notes: Sequence[str]) -> Plan:
-        """Return the same with further notes in front of its own."""
+        """Return the same with further notes in front of its own.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> tin = ts.triangulate([[0, 0, 5], [40, 0, 6], [0, 30, 8]], crs="EPSG:32616")
+        >>> ts.plan(tin).with_notes(["One row was left out."]).notes[0]
+        'One row was left out.'
+        """
         told = join_notes(notes, self._notes)
         return Plan(self._sheets, self._contents, self._style, self._caption, told)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from copy import copy
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -140,7 +139,7 @@ def _take_out(tin: TIN, misplaced: Sequence[Suspect]) -> TIN:
     vertices = np.unique(tin.vertex_of[[one.row for one in misplaced]]) if misplaced else ()
     if len(vertices) == 0:
         return tin
-    ground = copy(tin)
+    ground = tin.to_tin()
     try:
         ground.remove(vertices)
     except (PointsError, LinesError):  # no triangle would be left, or a line would vanish
@@ -150,7 +149,7 @@ def _take_out(tin: TIN, misplaced: Sequence[Suspect]) -> TIN:
 
 def _interpolate_without(tin: TIN, vertices: Int32Array) -> Float64Array:
     """Return the elevation at some vertices of the surface without them; NaN outside of it."""
-    rest = copy(tin)
+    rest = tin.to_tin()
     try:
         rest.remove(vertices)
     except (PointsError, LinesError):  # what is left has no triangle, or a line goes through

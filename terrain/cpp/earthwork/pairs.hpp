@@ -12,9 +12,9 @@
 
 #include "../../../tin/cpp/base/box.hpp"
 #include "../../../tin/cpp/base/parallel.hpp"
+#include "../../../tin/cpp/base/pulse.hpp"
 #include "../../../tin/cpp/index/box_tree.hpp"
 #include "../../../tin/cpp/location/ordered_surface.hpp"
-#include "../../../tin/cpp/base/pulse.hpp"
 #include "facet.hpp"
 
 namespace tinsmith::earthwork {

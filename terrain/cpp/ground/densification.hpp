@@ -35,11 +35,11 @@
 
 #include "../../../tin/cpp/base/ids.hpp"
 #include "../../../tin/cpp/base/parallel.hpp"
+#include "../../../tin/cpp/base/pulse.hpp"
 #include "../../../tin/cpp/index/hilbert_order.hpp"
 #include "../../../tin/cpp/mesh/mesh_arrays.hpp"
 #include "../../../tin/cpp/mesh/mesh_editor.hpp"
 #include "../../../tin/cpp/triangulation.hpp"
-#include "../../../tin/cpp/base/pulse.hpp"
 
 namespace tinsmith {
 

@@ -19,8 +19,8 @@
 #include "../../../tin/cpp/base/arrays.hpp"
 #include "../../../tin/cpp/base/ids.hpp"
 #include "../../../tin/cpp/base/parallel.hpp"
-#include "../../../tin/cpp/location/ordered_surface.hpp"
 #include "../../../tin/cpp/base/pulse.hpp"
+#include "../../../tin/cpp/location/ordered_surface.hpp"
 #include "vertex_neighbors.hpp"
 
 namespace tinsmith {

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "../../../tin/cpp/base/ids.hpp"
-#include "../../../tin/cpp/location/surface.hpp"
 #include "../../../tin/cpp/base/pulse.hpp"
+#include "../../../tin/cpp/location/surface.hpp"
 #include "directions.hpp"
 #include "edge_tree.hpp"
 #include "seen_vertices.hpp"

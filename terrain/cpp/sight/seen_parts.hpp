@@ -16,8 +16,8 @@
 
 #include "../../../tin/cpp/base/ids.hpp"
 #include "../../../tin/cpp/base/parallel.hpp"
-#include "../../../tin/cpp/location/surface.hpp"
 #include "../../../tin/cpp/base/pulse.hpp"
+#include "../../../tin/cpp/location/surface.hpp"
 #include "arcs.hpp"
 #include "directions.hpp"
 #include "horizon.hpp"

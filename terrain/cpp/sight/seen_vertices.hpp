@@ -22,9 +22,9 @@
 
 #include "../../../tin/cpp/base/ids.hpp"
 #include "../../../tin/cpp/base/parallel.hpp"
+#include "../../../tin/cpp/base/pulse.hpp"
 #include "../../../tin/cpp/location/surface.hpp"
 #include "../../../tin/cpp/predicates/predicates.hpp"
-#include "../../../tin/cpp/base/pulse.hpp"
 #include "directions.hpp"
 #include "edge_tree.hpp"
 #include "eye.hpp"

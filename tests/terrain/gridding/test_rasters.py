@@ -363,7 +363,7 @@ def test_cells_of_data_sets_of_rasterio_and_xarray(tmp_path):
         assert ts.rasterize(tin, like=opened).grid == of_file.grid
     found = ts.rasterize(tin, like=of_file.to_xarray())
     assert found.grid == of_file.grid
-    assert found.notes == ()
+    assert found.notes == tin.notes
     turned = of_file.to_xarray().isel(x=[0, 1, 3])
     with pytest.raises(OptionError, match="even steps"):
         ts.rasterize(tin, like=turned)

@@ -36,9 +36,8 @@ def test_a_blunder_changes_neither_tints_nor_exaggeration_nor_frame(value, rows)
     assert sound.caption.warning == ""
     count = "1 elevation" if len(rows) == 1 else f"{len(rows)} elevations"
     assert wrong.caption.warning.startswith(count)
-    (note,) = preview(wrong.tin).notes
-    assert note == wrong.caption.warning + "."
-    assert preview(sound.tin).notes == ()
+    assert preview(wrong.tin).notes[-1] == wrong.caption.warning + "."
+    assert not any("far off" in note for note in preview(sound.tin).notes)
 
 
 @pytest.mark.parametrize(

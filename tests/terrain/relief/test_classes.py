@@ -192,8 +192,8 @@ def test_units_of_both_axes_are_taken_into_account():
     assert ts.slope_classes(feet).columns["area"].sum() == pytest.approx(
         measure_plane_areas(feet).sum()
     )
-    assert "foot" in ts.slope_classes(feet).notes[0]
-    assert ts.slope_classes(metres).notes == ()
+    assert "foot" in ts.slope_classes(feet).notes[-1]
+    assert ts.slope_classes(metres).notes == metres.notes
 
 
 # ------------------------------------------------------------------------------ aspect

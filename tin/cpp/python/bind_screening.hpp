@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "conversion.hpp"
 #include "../screening/leave_one_out.hpp"
+#include "conversion.hpp"
 
 namespace tinsmith::python {
 

@@ -19,10 +19,10 @@
 #include "../base/arrays.hpp"
 #include "../base/ids.hpp"
 #include "../base/parallel.hpp"
+#include "../base/pulse.hpp"
 #include "../base/range.hpp"
 #include "../location/surface.hpp"
 #include "../predicates/predicates.hpp"
-#include "../base/pulse.hpp"
 
 namespace tinsmith {
 

@@ -150,7 +150,8 @@ def view(
         else:
             shown.save(output)
     for note in shown.notes:
-        tell_warning(note)
+        if note not in console.notes:
+            tell_warning(note)
     if output is not None:
         note_written(output)
         console.summarise(_summarise_picture(output))
