@@ -162,15 +162,14 @@ def test_build_report_file_equals_the_report(folder):
     arguments = ("build", "sample_data/site_survey.csv", "-o", "out.ply", "--report", "r.json")
     run(*arguments)
     kept = json.loads(Path("r.json").read_text())
-    expected = ts.triangulate(ts.io.read(SURVEY)).report.to_dict()
+    tin = ts.triangulate(ts.io.read(SURVEY))
+    expected = tin.report.to_dict() | {"notes": list(tin.notes)}
     for merge in kept["merges"]:
         merge.pop("numbers")
     assert kept.pop("skipped_lines") == {}
     assert kept.pop("findings") == []
     assert kept.pop("blunders") == []
-    told, kept["notes"] = kept["notes"], kept["notes"][: len(expected["notes"])]
     assert kept == json.loads(json.dumps(expected))
-    assert all("edges of up to" in gap for gap in told[len(expected["notes"]) :])
 
 
 def test_build_duplicates_and_snap_are_passed_on(folder):

@@ -123,7 +123,7 @@ def test_warnings_are_events(run, monkeypatch):
         warnings.warn("odd\nthings", UserWarning, stacklevel=1)
         return []
 
-    monkeypatch.setattr("tinsmith.tin.screening.gaps.describe_gaps", warn)
+    monkeypatch.setattr("tinsmith.tin.screening.notes.describe_gaps", warn)
     found = read_events(run("build", "in.csv", "-o", "a.ply", "--events")[2])
     assert {"event": "warning", "text": "odd things"} in found
     assert "Warning: odd things" in run("build", "in.csv", "-o", "a.ply")[2]

@@ -67,7 +67,7 @@ def build(
     """  # noqa: D301 - click reads the control character
     from ...terrain import mend_flats
     from ..contour_input import as_contours, require_contours
-    from ..files import add_lines, build_tin, read_inputs, write_text
+    from ..files import add_lines, build_tin, note_surfaces, read_inputs, write_text
     from ..output.blunder_summaries import describe_suspects, tell_suspects
     from ..output.console import format_json
     from ..output.summaries import describe_report
@@ -84,12 +84,12 @@ def build(
     if from_contours:
         with request.step("Mending flat triangles") as progress:
             tin = mend_flats(tin, progress=progress)
-    gaps = _find_gaps(tin, request)
+    note_surfaces([tin], console)
     planned.write("TIN", tin)
-    account = describe_report(tin.report, survey, gaps) | describe_suspects(suspects)
+    account = describe_report(tin.report, survey, console.notes) | describe_suspects(suspects)
     if report is not None:
         write_text(report, format_json(account) + "\n")
-    told = [*tell_suspects(suspects), *(("Gaps", gap) for gap in gaps)]
+    told = tell_suspects(suspects)
     rows = _summarise_build(points, survey, tin, told, is_mended=from_contours)
     describe = partial(_describe_build, points, survey, tin, account, planned, request.started)
     request.finish(planned, rows, describe)
@@ -106,16 +106,6 @@ def _find_blunders(tin: TIN, request: Request, *, drop: bool) -> Suspects:
             return Suspects(screen(tin), None)
         table = blunders(tin, progress=progress)
         return Suspects(table, drop_blunders(tin, table))
-
-
-def _find_gaps(tin: TIN, request: Request) -> list[str]:
-    """Describe gaps that the surface spans, unless the user has said how far it may."""
-    from ...tin.screening.gaps import describe_gaps
-
-    if request.how.max_edge is not None:
-        return []
-    with request.step("Looking for gaps"):
-        return describe_gaps(tin)
 
 
 def _require_survey(found: Survey | TIN, path: Path) -> Survey:

@@ -94,10 +94,10 @@ def measure_quality(tin: TIN) -> Quality | None:
     return None if is_geographic(tin.crs) else quality(tin)
 
 
-def describe_report(report: Report, survey: Survey, gaps: Sequence[str] = ()) -> dict[str, Any]:
-    """Return the report, with the gaps found, and the point numbers of merged rows."""
+def describe_report(report: Report, survey: Survey, notes: Sequence[str] = ()) -> dict[str, Any]:
+    """Return the report, with further notes, and the point numbers of merged rows."""
     record = report.to_dict()
-    record["notes"] += gaps
+    record["notes"] = list(dict.fromkeys([*record["notes"], *notes]))
     record["skipped_lines"] = {what: list(rows) for what, rows in survey.skipped_lines.items()}
     record["findings"] = [finding.to_dict() for finding in survey.findings]
     numbers = survey.attributes.get("number")
