@@ -66,11 +66,11 @@ def picture(function: F) -> F:
         figure = function(*given, **options)
         shown = [*given, *options.values()]
         surfaces = [one for one in shown if isinstance(one, Surface)]
-        notes = dict.fromkeys(join_notes(surfaces) if surfaces else ())
-        for one in shown:
-            if one not in surfaces:
-                notes |= dict.fromkeys(getattr(one, "notes", ()))
-        write_notes(figure, list(notes))
+        results = [one for one in shown if not isinstance(one, Surface)]
+        told = [note for one in results for note in getattr(one, "notes", ())]
+        of_surfaces = join_notes(surfaces) if surfaces else ()
+        lacking = [note for note in of_surfaces if not any(one.endswith(note) for one in told)]
+        write_notes(figure, list(dict.fromkeys([*lacking, *told])))
         return figure
 
     return product(cast("F", draw))
