@@ -36,7 +36,7 @@ from .registry.format import Format, require_options, takes_progress
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from .._progress import Tell
     from ..crs import CrsLike, UnitLike
@@ -399,7 +399,7 @@ def _read_file(
     wishes: Mapping[str, Any],
     progress: Tell | None = None,
 ) -> Survey | TIN:
-    chosen = _choose_format(file, name)
+    chosen = _choose_format(file, name, options)
     if chosen.read is None:
         raise FormatError(
             f"'{file}' is {chosen.description}, a format that is written, not read: "
@@ -443,7 +443,7 @@ def _blame_plug_in(one: Format, file: Path, reason: str) -> ReadError:
     )
 
 
-def _choose_format(file: Path, name: str | None) -> Format:
+def _choose_format(file: Path, name: str | None, options: Iterable[str]) -> Format:
     """Return the format of a file that is there and not empty, or of a folder."""
     named = None if name is None else lookup.find_format(name, "read")
     if _is_folder(file):
@@ -451,7 +451,7 @@ def _choose_format(file: Path, name: str | None) -> Format:
     head = _read_head(file)
     if named is not None:
         return named
-    return _find_format_of_part(file) or detect(file, head)
+    return _find_format_of_part(file) or detect(file, head, options)
 
 
 def _find_format_of_part(file: Path) -> Format | None:
@@ -528,7 +528,7 @@ def _name_file(error: CrsError, file: Path) -> CrsError:
     return CrsError(printable(sentence), crs=error.crs)
 
 
-def detect(path: Path, head: bytes) -> Format:
+def detect(path: Path, head: bytes, options: Iterable[str] = ()) -> Format:
     """Choose the format to read a file with.
 
     Parameters
@@ -536,6 +536,8 @@ def detect(path: Path, head: bytes) -> Format:
     path : Path
     head : bytes
         The first bytes of the file.
+    options : iterable of str
+        Names of options for the reader, such as ``layer`` for one layer of a file of several.
 
     Raises
     ------
@@ -545,7 +547,7 @@ def detect(path: Path, head: bytes) -> Format:
     Notes
     -----
     1. A signature in the content decides, whatever the suffix; one that a built-in format knows
-       is not a plug-in's to claim.
+       is not a plug-in's to claim. Of several formats the first is chosen that has the options.
     2. A text that names other files or services, or of a format that is not read, is refused;
        a virtual raster is read under its own suffix.
     3. A table of numbers is delimited text where the suffix names a format that the content
@@ -553,9 +555,14 @@ def detect(path: Path, head: bytes) -> Format:
     4. Otherwise the suffix decides.
     5. A file of unknown suffix is a raster if GDAL says so.
     """
-    shown = [one for one in lookup.known_formats() if _recognises(one, one.sniff, head)]
+    shown = [
+        one
+        for one in lookup.known_formats()
+        if _recognises(one, one.sniff, head) or _recognises(one, one.sniff_file, path)
+    ]
     if shown:
-        return _choose_recognised(shown, path)
+        able = [one for one in shown if one.read and {*options} <= {*one.options("read")}]
+        return _choose_recognised(able or shown, path)
     if is_virtual(path):
         return lookup.find_format("raster")
     _require_not_foreign(path, head)

@@ -35,6 +35,7 @@ FORMATS = (
         ".gpkg",
         module="geopackage",
         sniff=signatures.is_tin_geopackage,
+        sniff_file=signatures.has_tin_among_layers,
     ),
     _make(
         "ply",

@@ -73,6 +73,8 @@ class Format:
         The extra of this package that brings the library it needs.
     sniff : callable, optional
         Whether the first bytes of a file are certainly of this format.
+    sniff_file : callable, optional
+        The same by the path, for files whose first bytes do not tell.
     sniff_folder : callable, optional
         Whether a folder is certainly of this format, by the names in it; a format without it is
         of files.
@@ -122,6 +124,7 @@ class Format:
     loses: tuple[Loss, ...] = ()
     extra: str | None = None
     sniff: Callable[[bytes], bool] | None = None
+    sniff_file: Callable[[Path], bool] | None = None
     sniff_folder: Callable[[Path], bool] | None = None
     part_names: tuple[str, ...] = ()
     distribution: str = _OWN

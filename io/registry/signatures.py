@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import re
+from mmap import ACCESS_READ, mmap
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 __all__ = [
     "HEAD_BYTES",
     "find_foreign_kind",
     "find_reference_kind",
+    "has_tin_among_layers",
     "is_geojson",
     "is_gmsh",
     "is_obj",
@@ -110,9 +116,23 @@ def is_stl(head: bytes) -> bool:
     return words.startswith(b"solid") and re.search(rb"\n\s*facet\s+normal\s", words) is not None
 
 
+_SQLITE = b"SQLite format 3\0"
+
+
 def is_tin_geopackage(head: bytes) -> bool:
     """Whether the file is a GeoPackage with the table that the record of a TIN is in."""
-    return head.startswith(b"SQLite format 3\0") and b"TABLE tinsmith_tin" in head
+    return head.startswith(_SQLITE) and b"TABLE tinsmith_tin" in head
+
+
+def has_tin_among_layers(path: Path) -> bool:
+    """Whether a GeoPackage has that table behind layers of others, far from the first bytes."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        if file.read(len(_SQLITE)) != _SQLITE:
+            return False
+        with mmap(file.fileno(), 0, access=ACCESS_READ) as content:
+            return content.find(b"TABLE tinsmith_tin") >= 0
 
 
 def is_vtk_xml(head: bytes) -> bool:

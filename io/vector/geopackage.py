@@ -2,31 +2,53 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import re
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
 
-from ..._atomic import replacing_files
-from ...errors import WriteError
-from ..mesh.geopackage.journals import require_closed
+from ...errors import OptionError, WriteError
+from ...tin.validation.options import as_flag
+from ..mesh.geopackage.containers import MARK, Placing, adding_layers
 from .ogr import describe, write_layer
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ...terrain.results import Features
 
 __all__ = ["write"]
 
 _OWN_COLUMNS = ("fid", "geom")
+_RESERVED = re.compile(r"(gpkg|rtree|sqlite)_", re.IGNORECASE)
 
 
-def write(features: Features, path: Path) -> None:
-    """Write features as a GeoPackage with one layer, named after the product.
+def write(
+    features: Features,
+    path: Path,
+    *,
+    layer: str | None = None,
+    append: bool = False,
+    overwrite: bool = False,
+) -> None:
+    """Write features as a layer of a GeoPackage; its other layers stay as they are.
+
+    Parameters
+    ----------
+    layer : str, optional
+        Name of the layer; default that of the product. One that tinsmith wrote is replaced.
+    append : bool
+        Add to the features of such a layer, whose columns and CRS must be the same.
+    overwrite : bool
+        Replace the layer also if another program wrote or changed it.
 
     Raises
     ------
+    OptionError
+        If the name of the layer is none, or both to append and to overwrite is asked for.
     WriteError
         If the file cannot be written, is open elsewhere, or a column is called ``fid`` or
-        ``geom``, as GeoPackage calls its own.
+        ``geom``, as GeoPackage calls its own; if there is a layer of the name that tinsmith did
+        not write, or that was changed since.
 
     Notes
     -----
@@ -35,12 +57,31 @@ def write(features: Features, path: Path) -> None:
     and missing texts are NULL.
     """
     _require_free(features, path)
-    with replacing_files(path) as new:
-        write_layer(features, new, path, driver="GPKG", metadata=describe(features))
+    placing = Placing(as_flag("overwrite", overwrite), as_flag("append", append))
+    if placing.append and placing.overwrite:
+        raise OptionError("append", append, "False where overwrite is True")
+    named = features if layer is None else replace(features, name=_as_layer(layer))
+    metadata = describe(features) | {MARK: "tinsmith"}
+    with (
+        adding_layers(path, placing) as beside,
+        TemporaryDirectory(prefix=".", dir=beside.parent) as folder,
+    ):
+        new = Path(folder, path.name)
+        write_layer(named, new, path, driver="GPKG", metadata=metadata)
+        new.replace(beside)
+
+
+def _as_layer(layer: Any) -> str:
+    """Return the name of a layer, or refuse what is none."""
+    if not isinstance(layer, str) or not layer.strip() or _RESERVED.match(layer):
+        raise OptionError(
+            "layer", layer, "a name that does not begin with gpkg_, rtree_ or sqlite_"
+        )
+    return layer
 
 
 def _require_free(features: Features, path: Path) -> None:
-    """Refuse names that are taken, and a file that another program works on."""
+    """Refuse names that are taken."""
     names = [name.casefold() for name in features.columns]
     for name in features.columns:
         if name.casefold() in _OWN_COLUMNS or names.count(name.casefold()) > 1:
@@ -49,4 +90,3 @@ def _require_free(features: Features, path: Path) -> None:
                 f"Cannot write '{path}': a column '{name}' is {why}, capitals aside: rename it.",
                 path=path,
             )
-    require_closed(path)

@@ -30,9 +30,27 @@ __all__ = [
 ]
 
 
-def write_geopackage(surface: Features | Survey, path: Path) -> None:
-    """Write features, or the points of a survey, as :func:`geopackage.write` does."""
-    geopackage.write(make_features(surface, path, None), path)
+def write_geopackage(
+    surface: Features | Survey,
+    path: Path,
+    *,
+    layer: str | None = None,
+    append: bool = False,
+    overwrite: bool = False,
+) -> None:
+    """Write features, or the points of a survey, as :func:`geopackage.write` does.
+
+    Parameters
+    ----------
+    layer : str, optional
+        Name of the layer; default that of the product.
+    append : bool
+        Add to the features of the layer, which tinsmith wrote.
+    overwrite : bool
+        Replace the layer also if another program wrote or changed it.
+    """
+    features = make_features(surface, path, None)
+    geopackage.write(features, path, layer=layer, append=append, overwrite=overwrite)
 
 
 def write_flatgeobuf(surface: Writable, path: Path, *, kind: FeatureKind | None = None) -> None:

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...._atomic import replacing_path
 from ....errors import CrsError, WriteError
 from ....terrain.relief.gradients import aspect, slope
+from ....tin.validation.options import as_flag
 from ..common import format_unit, require_tin
+from .containers import Placing, adding_layers
 from .digests import digest_arrays, digest_lines
 from .geometries import make_chain_blobs, make_point_blobs, make_triangle_blobs
-from .journals import require_closed
 from .records import pack_tin
 from .records.columns import describe_layer_columns
 from .schema import (
@@ -45,13 +45,21 @@ _PAGE = 1 << 15
 """Bytes of a page: a fifth faster than SQLite's own 4096, and all names of tables in the first."""
 
 
-def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
+def write(
+    surface: TIN, path: Path, *, overwrite: bool = False, progress: Tell | None = None
+) -> None:
     """Write all that a TIN is as a GeoPackage; :func:`read` gives it back, bit for bit.
+
+    Parameters
+    ----------
+    overwrite : bool
+        Replace layers of the names below that another program wrote or changed.
 
     Raises
     ------
     WriteError
-        If the file cannot be written, or is open in another program.
+        If the file cannot be written, or is open in another program; if it has layers of the names
+        below that tinsmith did not write.
 
     Notes
     -----
@@ -59,11 +67,11 @@ def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     with the numbers ``a``, ``b``, ``c`` of their vertices, slope and aspect in degrees, and
     ``constrained``, of which bit 0 is that of the edge opposite ``a``), ``lines`` (kind, name and
     source), ``boundary`` (closed lines) and ``water`` (polygons with their elevation). The table
-    ``tinsmith_tin`` holds the rest: the report, and what edits and undoing them need.
+    ``tinsmith_tin`` holds the rest: the report, and what edits and undoing them need. Other layers
+    of a file that is there already stay as they are.
     """
     tin = require_tin(surface, path, format_name="a GeoPackage of a TIN")
-    require_closed(path)
-    with replacing_path(path) as beside:
+    with adding_layers(path, Placing(overwrite=as_flag("overwrite", overwrite))) as beside:
         try:
             with closing(sqlite3.connect(beside, isolation_level=None)) as file:
                 _write_content(file, tin, progress or (lambda _: None))

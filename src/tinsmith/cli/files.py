@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import tempfile
 from dataclasses import asdict, dataclass
@@ -16,7 +17,7 @@ from .flags import name_flags
 from .output.console import emit_file
 from .output.failures import Failure, note_written
 from .parameters import refuse_value
-from .paths import STANDARD, Named, name_file, require_separate
+from .paths import STANDARD, Named, name_file, require_separate, split_output
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -67,6 +68,8 @@ class Output:
     options: dict[str, Any]
     """Options given, of which each format takes its own."""
     suffix: str = ""
+    layer: str | None = None
+    """Name of the layer, of a file of layers; None for that of the product."""
 
     def takes(self, name: str) -> bool:
         """Whether one of the formats has an option."""
@@ -281,7 +284,9 @@ def plan_outputs(
     click.UsageError
         If a file is named twice, or standard output gets more than one thing.
     """
-    outputs = [Named(path, "--output") for path in paths]
+    placed = [split_output(path) for path in paths]
+    outputs = [Named(path, "--output") for path, layer in placed if layer is None]
+    outputs += _list_layered(placed, inputs)
     if report is not None:
         outputs.append(Named(report, "--report"))
     texture = writing.options.get("texture")
@@ -289,16 +294,43 @@ def plan_outputs(
     require_separate([*inputs, *pictures], outputs)
     given = {name: value for name, value in writing.options.items() if value not in (None, False)}
     planned = [
-        Output(path, formats, given, _choose_suffix(formats, writing))
-        for path, formats in (
-            (path, _choose_output_formats(path, writing.output_format, kinds)) for path in paths
+        Output(path, formats, given, _choose_suffix(formats, writing), layer)
+        for path, layer, formats in (
+            (path, layer, _choose_output_formats(path, writing.output_format, kinds))
+            for path, layer in placed
         )
     ]
+    _require_layered(planned)
     for name in given:
-        if not any(one.takes(name) for one in planned):
+        is_for_all = name == "append"  # what takes it not would be replaced
+        able = [one.takes(name) for one in planned]
+        if name != "overwrite" and not (all(able) if is_for_all else any(able)):
             raise _describe_option_not_taken(name)
     _require_free_stdout(planned, console)
     return planned
+
+
+def _list_layered(
+    placed: Sequence[tuple[Path, str | None]], inputs: Sequence[Named]
+) -> list[Named]:
+    """Return outputs that name a layer, but for those in a file that is read: it keeps the rest."""
+    read = {os.path.realpath(one.path) for one in inputs}
+    files = {os.path.realpath(path): path for path, layer in placed if layer is not None}
+    return [Named(path, "--output") for real, path in files.items() if real not in read]
+
+
+def _require_layered(planned: Sequence[Output]) -> None:
+    """Refuse the name of a layer for a format that has none, and two outputs of one layer."""
+    seen = set()
+    for one in planned:
+        if one.layer is None:
+            continue
+        if not one.takes("layer"):
+            what = next(iter(one.formats.values())).description
+            raise click.UsageError(f"'{one.path}:{one.layer}': {what} takes no name of a layer.")
+        if (one.path, one.layer) in seen:
+            raise click.UsageError(f"The layer '{one.layer}' of '{one.path}' is named twice.")
+        seen.add((one.path, one.layer))
 
 
 def require_picture(
@@ -403,6 +435,8 @@ def write_outputs(obj: Product, outputs: Sequence[Output], console: Console) -> 
             with steps.step(f"Writing {output.path.name}") as progress:
                 taken = one.options("write")
                 options = {name: output.options[name] for name in output.options if name in taken}
+                if output.layer is not None:
+                    options["layer"] = output.layer
                 if "progress" in signature(one.load("write")).parameters:
                     options["progress"] = progress
                 if output.path == STANDARD:

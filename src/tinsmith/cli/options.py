@@ -168,6 +168,8 @@ class Writing:
     output_format: str | None = None
     kind: str | None = None
     projected: bool = False
+    append: bool = False
+    overwrite: bool = False
 
     @property
     def options(self) -> dict[str, Any]:
@@ -470,13 +472,28 @@ def _make_projected_option(whose: str) -> Decorator:
     return click.option("--projected", is_flag=True, help=words)
 
 
+_LAYER_OPTIONS = (
+    click.option(
+        "--append",
+        is_flag=True,
+        help="Add features to the layer of a GeoPackage ('-o FILE.gpkg:LAYER' names it).",
+    ),
+    click.option(
+        "--overwrite",
+        is_flag=True,
+        help="Replace a layer of a GeoPackage that another program wrote or changed.",
+    ),
+)
 _VECTOR_WRITING = (_format_option, _kind_option, _make_projected_option("points"))
+_VECTOR_WRITING += _LAYER_OPTIONS
 writing_options = _gather(
     "writing", SurfaceWriting, *under("Output", *_VECTOR_WRITING, *MESH_WRITING)
 )
 vector_options = _gather("writing", Writing, *under("Output", *_VECTOR_WRITING))
 product_options = _gather(
-    "writing", Writing, *under("Output", _format_option, _make_projected_option("TIN"))
+    "writing",
+    Writing,
+    *under("Output", _format_option, _make_projected_option("TIN"), *_LAYER_OPTIONS),
 )
 format_options = _gather("writing", Writing, *under("Output", _format_option))
 

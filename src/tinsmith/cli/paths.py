@@ -26,6 +26,7 @@ __all__ = [
     "name_file",
     "name_files",
     "require_separate",
+    "split_output",
 ]
 
 _SHOWN = 5
@@ -66,6 +67,19 @@ def describe_inputs(paths: Sequence[Path]) -> str | list[str]:
 def make_title(path: Path) -> str:
     """Return the title of a picture of what is in a file."""
     return "" if path == STANDARD else path.stem.replace("_", " ")
+
+
+_LAYERED = (".gpkg",)
+"""Suffixes of files of several layers."""
+
+
+def split_output(path: Path) -> tuple[Path, str | None]:
+    """Split the name of a layer off a file to write (``site.gpkg:contours``), if there is one."""
+    before, colon, layer = str(path).rpartition(":")
+    is_layered = before.lower().endswith(_LAYERED) and not {"/", os.sep} & {*layer}
+    if colon and layer and is_layered and not path.exists():
+        return Path(before), layer
+    return path, None
 
 
 class Named(NamedTuple):

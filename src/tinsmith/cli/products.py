@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from .files import describe_written, plan_outputs, write_figure, write_outputs
 from .output.failures import Failure
-from .paths import STANDARD, Named, require_separate
+from .paths import STANDARD, Named, require_separate, split_output
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -72,10 +72,11 @@ def plan_products(
 
     What there will be is of the ``kinds`` "Table", "Features", "TIN" and "picture".
     """
-    require_separate(inputs, [Named(path, "--output") for path in paths])
+    plain = [path for path in paths if split_output(path)[1] is None]
+    require_separate(inputs, [Named(path, "--output") for path in plain])
     groups: dict[str, list[Path]] = {}
     for path in paths:
-        groups.setdefault(_find_kind(path, writing, kinds), []).append(path)
+        groups.setdefault(_find_kind(split_output(path)[0], writing, kinds), []).append(path)
     pictures = groups.pop("picture", [])
     if sum(path == STANDARD for path in paths) > 1:
         raise Failure("'-o -' is given twice: standard output takes one thing.")
