@@ -331,6 +331,8 @@ class Report(Frozen):
         What lines are called; a draped line that was cut has several parts.
     crossings : Crossings
     overruled : Overruled
+    from_raster : bool
+        Whether the points given are the cells of a raster.
     skipped : mapping of str to int
         What the reader left out and how often.
     notes : sequence of str
@@ -367,6 +369,7 @@ class Report(Frozen):
     line_labels: tuple[str, ...] = ()
     crossings: Crossings = field(default_factory=Crossings.none)
     overruled: Overruled = field(default_factory=_make_none_overruled)
+    from_raster: bool = False
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
     edits: Sequence[Edit] = ()
@@ -575,6 +578,7 @@ class Report(Frozen):
             "lines": self.n_lines,
             "crossings": self._list_crossings(),
             "overruled": self._list_overruled(),
+            "from_raster": self.from_raster,
             "skipped": dict(self.skipped),
             "notes": list(self.notes),
             "edits": [edit.to_dict() for edit in self.edits],

@@ -330,7 +330,8 @@ def _triangulate(
         place = np.searchsorted(cells, ring)
         place[place == len(cells)] = 0
         extent.append(points[place[cells[place] == ring]])
-    return triangulate(Survey(points=points, extent=extent), threads=threads)
+    survey = Survey(points=points, extent=extent, from_raster=True)
+    return triangulate(survey, threads=threads)
 
 
 def _turn_over(cells: Int64Array, shape: tuple[int, int]) -> Int64Array:

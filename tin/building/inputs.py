@@ -78,6 +78,7 @@ class BuildInputs:
     crs: CRS | None
     elevation_unit: Unit | None = None
     has_own_boundary: bool = False
+    from_raster: bool = False
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
 
@@ -162,9 +163,8 @@ def gather_inputs(
     system, unit = _settle_reference(own, CRS.of(crs), Unit.of(z_unit))
     given = (points, breaklines, boundary, holes, erase, water)
     system, told = settle_crs(system, dict(zip(_NAMES, given, strict=True)))
-    xyz, is_masked = as_masked_points(
-        points.points if isinstance(points, Survey) else points, threads=threads
-    )
+    table = points.points if isinstance(points, Survey) else points
+    xyz, is_masked = as_masked_points(table, threads=threads)
     outer = [*own.boundary, *as_sequence(boundary, "boundary")]
     inner = [*own.holes, *as_sequence(holes, "holes")]
     lines = gather_lines(
@@ -193,6 +193,7 @@ def gather_inputs(
         options=LineOptions(thread_count(threads, len(xyz)), duplicates, float(snap), crossing),
         crs=system,
         elevation_unit=require_one_unit(system, unit),
+        from_raster=own.from_raster,
         skipped=own.skipped,
         notes=(*own.notes, *told, *_describe_rings(outer, inner)),
     )
