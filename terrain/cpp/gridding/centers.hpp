@@ -32,7 +32,7 @@ struct SharedCenter {
 // those of the vertices. `of(triangle)` returns what writes the cells of a triangle, by the centre's
 // weights; cells outside the surface become NaN.
 struct ElevationPaint {
-  static constexpr int kNumbers = 1;                  // of a cell
+  static constexpr int kNumbers = 1;                 // of a cell
   static constexpr bool kPutsVerticesFirst = false;  // on edges the same from both sides
   const OrderedSurface& surface;
   double* cells;
@@ -207,8 +207,7 @@ class CenterScan {
       const auto width = static_cast<std::size_t>(tile_.columns.size());
       const auto row = static_cast<std::int32_t>(i / width) + tile_.rows.begin;
       const auto column = static_cast<std::int32_t>(i % width) + tile_.columns.begin;
-      found.push_back(
-          {static_cast<std::int64_t>(place_of(row, column)), holders_[i] & ~kOnEdge});
+      found.push_back({static_cast<std::int64_t>(place_of(row, column)), holders_[i] & ~kOnEdge});
     }
     return found;
   }

@@ -35,9 +35,8 @@ inline Xyz vertex_normals(const GivenXyz& points, const GivenTriples& triangles,
     throw std::invalid_argument("there must be one normal for each triangle");
   }
   auto sums = streamed_array<double>(3 * points.shape(0));
-  run_unlocked(threads, [&](Team& team) {
-    sum_at_vertices(surface, normals.data(), sums.get(), team);
-  });
+  run_unlocked(threads,
+               [&](Team& team) { sum_at_vertices(surface, normals.data(), sums.get(), team); });
   return hand_over<Xyz>(std::move(sums), {points.shape(0), 3});
 }
 

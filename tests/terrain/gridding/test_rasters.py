@@ -10,6 +10,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support import oracles
+from support.clipping import covered_area
 from support.relief_oracle import GradientAt
 
 import tinsmith as ts
@@ -183,6 +184,30 @@ def plane_at(corners, place):
     shifted = corners - corners[0]
     gradient = np.linalg.solve(shifted[1:, :2], shifted[1:, 2])
     return corners[0, 2] + gradient @ (place - corners[0, :2])
+
+
+@pytest.mark.parametrize("mirror", [1.0, -1.0])
+def test_a_cell_that_is_touched_in_a_point_has_no_mean(mirror):
+    """Rounding left it a value in one of two mirror images."""
+    points = np.array([[54.0, 40, 1], [32, 17, 7], [19, 2, 5], [4, 1, 8]]) * [mirror, 1, 1]
+    tin = ts.triangulate(points)
+    raster = ts.rasterize(tin, spacing=0.5, at="mean")
+    found, bounds = elevations(raster), raster.grid.bounds
+    corners = tin.points[tin.triangles, :2]
+    x, y = centers_of(raster.grid).T
+    areas = [
+        covered_area(corners, (east - 0.25, north - 0.25, east + 0.25, north + 0.25))
+        for east, north in zip(x.tolist(), y.tolist(), strict=True)
+    ]
+    np.testing.assert_array_equal(np.isnan(found).ravel(), [area == 0 for area in areas])
+    assert bounds.xmin == points[:, 0].min()
+
+
+def test_a_cell_that_is_hardly_covered_has_a_mean_of_the_surface():
+    tin = ts.triangulate([[0, 0, 10], [1 + 1e-12, 0.5, 20], [0, 1, 10]])
+    found = elevations(ts.rasterize(tin, spacing=1.0, at="mean"))
+    assert found.shape == (1, 2)
+    assert found[0, 1] == pytest.approx(20, abs=1e-6)
 
 
 def test_means_add_up_to_the_volume():
