@@ -7,7 +7,7 @@ from typing import Any, get_args
 import numpy as np
 
 from .....errors import PointsError
-from .....policies import CrossingPolicy, DuplicatePolicy, LineKind, TrimPolicy
+from .....policies import CrossingPolicy, DuplicatePolicy, LineKind, SimplificationHold, TrimPolicy
 from .....tin.building.constrained import LineOptions
 from .....tin.building.inputs import BuildInputs
 from .....tin.constraints.breaklines import Lines
@@ -237,11 +237,13 @@ def _require_simplification(found: Any) -> None:
     if found is None:
         return
     require(isinstance(found, Simplification), "what was simplified")
-    counts = (found.points, found.vertices, found.required, found.needless)
+    counts = (*found[:4], found.forced_edges)
+    require(found.hold in (None, *get_args(SimplificationHold)), "what was simplified")
     require({type(count) for count in counts} == {int}, "what was simplified")
     errors = {
         found.largest_error,
         found.rms_error,
         0.0 if found.tolerance is None else found.tolerance,
+        0.0 if found.surface_error is None else found.surface_error,
     }
     require({type(one) for one in errors} == {float}, "what was simplified")
