@@ -17,7 +17,7 @@ from .bands import SurfaceBand
 
 if TYPE_CHECKING:
     from ..._progress import Tell
-    from ...arrays import Float64Array, Int64Array
+    from ...arrays import Float64Array, Int32Array, Int64Array
     from ...tin import TIN, Grid
     from ..relief.measures import PlaneMeasure
 
@@ -73,7 +73,7 @@ class ReliefBand(SurfaceBand):
         super().__init__(tin, grid, None, method="linear", is_mean=is_mean, threads=threads)
         self._measure = measure
         self._is_smooth = is_smooth
-        self._values = None if is_smooth else measure.of(self._normals)
+        self._values = self._triangle_values if is_mean else None
 
     def _scan_centers(self, rows: slice, columns: slice, progress: Tell | None) -> Float64Array:
         x, y = locate_centers(self._grid, rows, columns)
@@ -84,7 +84,7 @@ class ReliefBand(SurfaceBand):
             normals = self._drawn.vectors_at_centers(*where, unit, threads, progress)
             measure = self._measure._replace(exaggeration=1.0)  # which the normals have
             return measure.of(normals.reshape(-1, 3)).reshape(normals.shape[:2])
-        drawn = self._drawn.triangles_at_centers(*where, self._values, threads, progress)
+        drawn = self._drawn.triangles_at_centers(*where, self._triangle_values, threads, progress)
         cells, places, parts = drawn
         self._mend_shared(cells.reshape(-1), places, parts)
         return np.asarray(cells)
@@ -102,11 +102,16 @@ class ReliefBand(SurfaceBand):
         if len(at):
             cells[places[at]] = self._measure.of(self._average(triangle[at], beyond))
 
-    def _average(self, triangles: Int64Array, others: Int64Array) -> Float64Array:
+    def _average(self, triangles: Int64Array, others: Int32Array) -> Float64Array:
         """Return normals of the mean gradients of two triangles each."""
         one, other = (self._normals[rows] for rows in (triangles, others))
-        gradients = one[:, :2] / one[:, 2:] + other[:, :2] / other[:, 2:]
-        return np.column_stack([0.5 * gradients, np.ones(len(gradients))])
+        with np.errstate(over="ignore"):  # of walls, which have 90 degrees
+            gradients = 0.5 * (one[:, :2] / one[:, 2:]) + 0.5 * (other[:, :2] / other[:, 2:])
+        return np.column_stack([gradients, np.ones(len(gradients))])
+
+    @cached_property
+    def _triangle_values(self) -> Float64Array:
+        return self._measure.of(self._normals)
 
     @cached_property
     def _normals(self) -> Float64Array:
