@@ -16,6 +16,24 @@ class GriddedSurface:
         threads: int = ...,
         progress: Callable[[float], None] | None = ...,
     ) -> Float64Array: ...
+    def triangles_at_centers(
+        self,
+        x: Float64Array,
+        y: Float64Array,
+        spacing: float,
+        values: Float64Array,
+        threads: int = ...,
+        progress: Callable[[float], None] | None = ...,
+    ) -> tuple[Float64Array, Int64Array, Int64Array]: ...
+    def vectors_at_centers(
+        self,
+        x: Float64Array,
+        y: Float64Array,
+        spacing: float,
+        vectors: Float64Array,
+        threads: int = ...,
+        progress: Callable[[float], None] | None = ...,
+    ) -> Float64Array: ...
     def means_of_cells(
         self,
         x: Float64Array,
@@ -118,6 +136,7 @@ def vertex_normals(
     points: Float64Array,
     triangles: Int32Array,
     normals: Float64Array,
+    threads: int = ...,
 ) -> Float64Array: ...
 def fit_quadratics(
     points: Float64Array,

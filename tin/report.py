@@ -264,6 +264,14 @@ class Simplification(NamedTuple):
     largest_error, rms_error : float
         Difference of elevation between the points given and the surface that is left: the largest,
         and the root of the mean square over all points.
+    hold : {"points", "surface"} or None
+        Where the difference is within the tolerance: at the points, or anywhere between the two
+        surfaces. None where a number of points was asked for.
+    surface_error : float or None
+        The largest difference between the two surfaces anywhere; None where it was not measured.
+    forced_edges : int
+        Edges of the given triangles that are no edges of the Delaunay triangulation, kept as soft
+        breaklines so that the surfaces do not differ there.
     """
 
     points: int
@@ -273,15 +281,37 @@ class Simplification(NamedTuple):
     tolerance: float | None
     largest_error: float
     rms_error: float
+    hold: str | None = None
+    surface_error: float | None = None
+    forced_edges: int = 0
 
     def sentence(self) -> str:
         """Tell it in one sentence."""
         share = 100.0 * self.vertices / self.points
+        kept = ""
+        if self.forced_edges:
+            edges = counted(self.forced_edges, "edge")
+            kept = f" {edges} of the given triangles, not Delaunay, stayed as soft breaklines."
         return (
             f"Simplified from {counted(self.points, 'point')} to {self.vertices:,} "
             f"({share:.3g} %): largest error {self.largest_error:.4g}, "
-            f"RMS error {self.rms_error:.4g}."
+            f"RMS error {self.rms_error:.4g} at the points; {self.describe_surface()}.{kept}"
         )
+
+    def describe_surface(self) -> str:
+        """Tell how far the surfaces are apart between the points.
+
+        Examples
+        --------
+        >>> found = Simplification(9, 4, 4, 0, 0.1, 0.05, 0.01, "surface", 0.06)
+        >>> found.describe_surface()
+        'anywhere the surfaces differ by at most 0.06'
+        >>> found._replace(hold="points", surface_error=None).describe_surface()
+        'between them the surfaces may differ by more'
+        """
+        if self.surface_error is None:
+            return "between them the surfaces may differ by more"
+        return f"anywhere the surfaces differ by at most {self.surface_error:.4g}"
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values, ready for JSON."""
@@ -353,6 +383,8 @@ class Report(Frozen):
         What lines are called; a draped line that was cut has several parts.
     crossings : Crossings
     overruled : Overruled
+    from_raster : bool
+        Whether the points given are the cells of a raster.
     skipped : mapping of str to int
         What the reader left out and how often.
     notes : sequence of str
@@ -391,6 +423,7 @@ class Report(Frozen):
     line_labels: tuple[str, ...] = ()
     crossings: Crossings = field(default_factory=Crossings.none)
     overruled: Overruled = field(default_factory=_make_none_overruled)
+    from_raster: bool = False
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
     edits: Sequence[Edit] = ()
@@ -629,6 +662,7 @@ class Report(Frozen):
             "lines": self.n_lines,
             "crossings": self._list_crossings(),
             "overruled": self._list_overruled(),
+            "from_raster": self.from_raster,
             "skipped": dict(self.skipped),
             "notes": list(self.notes),
             "edits": [edit.to_dict() for edit in self.edits],

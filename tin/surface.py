@@ -470,7 +470,10 @@ class Surface:
               bending the edges least [3]_, [4]_: smooth everywhere, but it may overshoot.
         extrapolate : {"nearest"}, optional
             Outside the surface take the elevation at the nearest place of its boundary; with
-            ``method="nearest"`` that of the nearest vertex. Default: NaN.
+            ``method="nearest"`` that of the nearest vertex. Default: NaN. Of several places or
+            vertices at the same distance the westernmost counts, of several of these the
+            southernmost, for ``method="nearest"`` inside too: the order of points and triangles
+            changes nothing.
         threads : int, optional
             Default: every core, where it pays. The result is the same for any number.
 

@@ -212,6 +212,7 @@ def make_survey(
         crs=placed.crs,
         elevation_unit=placed.elevation_unit,
         source=path.name,
+        from_raster=True,
         skipped={
             name: count
             for name, count in (("nodata cells", n_nodata), (LEFT_OUT, left_out))

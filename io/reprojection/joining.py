@@ -70,6 +70,7 @@ def join_surveys(surveys: Sequence[Survey], names: Sequence[str]) -> Survey:
         crs=scaled[0].crs,
         elevation_unit=scaled[0].elevation_unit,
         source=", ".join(names),
+        from_raster=all(one.from_raster for one in scaled),
         skipped=skipped,
         skipped_lines={
             f"{what} of {name}": lines

@@ -134,6 +134,9 @@ OverviewMethod: TypeAlias = Literal["average", "nearest", "none"]
 RasterCompression: TypeAlias = Literal["deflate", "none"]
 """How the cells of a GeoTIFF are packed, without loss."""
 
+SimplificationHold: TypeAlias = Literal["points", "surface"]
+"""Where simplification keeps within a tolerance: at the points given, or between them too."""
+
 CurvatureKind: TypeAlias = Literal["profile", "plan", "tangential", "mean", "gaussian"]
 """In which direction a surface is curved."""
 OutsidePolicy: TypeAlias = Literal["error", "nan", "cut"]

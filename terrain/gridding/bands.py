@@ -82,6 +82,9 @@ class SurfaceBand:
     def _scan(self, rows: slice, columns: slice, progress: Tell | None) -> Float64Array:
         if self._is_mean:
             return self._scan_means(rows, columns, progress)
+        return self._scan_centers(rows, columns, progress)
+
+    def _scan_centers(self, rows: slice, columns: slice, progress: Tell | None) -> Float64Array:
         x, y = locate_centers(self._grid, rows, columns)
         threads = thread_count(self._threads, len(x) * len(y))
         return self._drawn.values_at_centers(

@@ -11,11 +11,12 @@ from ...policies import InterpolationMethod, RasterSample, RasterValue
 from ...tin.validation.options import as_flag, require_count, require_tin
 from ..georeference import describe_unknown
 from ..relief.light import as_light
+from ..relief.measures import PlaneMeasure
 from ..results import Raster
 from .bands import SurfaceBand
 from .coverage import require_covered
 from .grids import as_grid
-from .triangle_values import measure_triangles
+from .relief_bands import ReliefBand, choose_smooth
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -40,6 +41,7 @@ def rasterize(
     at: RasterSample = "center",
     azimuth: float = 315.0,
     altitude: float = 45.0,
+    smooth: bool | None = None,
     lazy: bool = False,
     threads: int | None = None,
     progress: Callable[[float], None] | None = None,
@@ -58,7 +60,7 @@ def rasterize(
     grid : Grid, optional
         Take these cells. One of the three is needed.
     method : {"linear", "nearest", "laplace", "natural", "c1"}
-        As :meth:`tinsmith.TIN.interpolate`; other values than elevations are those of triangles.
+        As :meth:`tinsmith.TIN.interpolate`; other values than elevations follow ``smooth``.
     value : {"elevation", "slope", "aspect", "hillshade"}
         Slope and aspect in degrees as :func:`tinsmith.slope` and :func:`tinsmith.aspect`, hillshade
         from 1 (no light) to 255 as :func:`tinsmith.hillshade`.
@@ -68,6 +70,10 @@ def rasterize(
     azimuth, altitude : float
         Where the light comes from for hillshade: degrees clockwise from north, and above the
         horizon.
+    smooth : bool, optional
+        For slope, aspect and hillshade: let the normals change evenly from vertex to vertex, or
+        take those of the triangles. Default True where the points are the cells of a raster without
+        breaklines, else False; ``notes`` tell which was taken.
     lazy : bool
         Compute cells as they are asked for, such as by :func:`tinsmith.write`, for a raster larger
         than memory.
@@ -103,9 +109,13 @@ def rasterize(
     -----
     The centre of the cell in row r and column c lies at ``xmin + (c + 0.5) * spacing``,
     ``ymax - (r + 0.5) * spacing``. Values there equal those of :meth:`tinsmith.TIN.interpolate` to
-    the last bit; a centre on an edge is the smaller triangle's, as for :meth:`tinsmith.TIN.locate`.
-    Means are integrals over the triangles' parts of a cell, clipped exactly but for rounding.
-    Elevations are in the unit of the TIN's.
+    the last bit; an elevation on an edge is that of the triangle with the smaller number, as for
+    :meth:`tinsmith.TIN.locate`. Slope, aspect and hillshade on an edge are those of the mean
+    gradient of both sides, at a vertex those of ``tinsmith.slope(tin, per="vertex")``: cells of a
+    DEM have the slopes of its vertices. Whether a centre lies on an edge or a vertex is decided
+    exactly, and the order of points and triangles changes nothing. Means are integrals over the
+    triangles' parts of a cell, clipped exactly but for rounding; a cell that the surface touches in
+    points or lines only has none. Elevations are in the unit of the TIN's.
 
     Examples
     --------
@@ -120,14 +130,21 @@ def rasterize(
     """
     require_tin(tin)
     done = Progress(progress)
-    _require_options(method, value, at)
+    _require_options(method, value, at, smooth)
     require_count("threads", threads, or_none=True)
     is_lazy, light = as_flag("lazy", lazy), as_light(azimuth, altitude)
     cells, notes = as_grid(tin, spacing=spacing, like=like, grid=grid, in_memory=not is_lazy)
     is_mean = at == "mean"
     require_covered(tin, cells, is_mean=is_mean)
-    values = measure_triangles(tin, value, light)
-    band = SurfaceBand(tin, cells, values, method=method, is_mean=is_mean, threads=threads)
+    told: tuple[str, ...] = ()
+    if value == "elevation":
+        band = SurfaceBand(tin, cells, None, method=method, is_mean=is_mean, threads=threads)
+    else:
+        is_smooth, how = choose_smooth(tin, smooth, is_mean=is_mean)
+        measure, told = PlaneMeasure(value, light), (how,)
+        band = ReliefBand(
+            tin, cells, measure, is_smooth=is_smooth, is_mean=is_mean, threads=threads
+        )
     held: Any = band if is_lazy else band.compute(done)
     raster = Raster(
         {value: held},
@@ -135,18 +152,20 @@ def rasterize(
         crs=tin.crs if tin.crs is None or value == "elevation" else tin.crs.horizontal,
         units=_list_units(tin, value),
         name=value,
-        notes=[*describe_unknown(tin.crs, tin.elevation_unit), *notes],
+        notes=[*describe_unknown(tin.crs, tin.elevation_unit), *notes, *told],
     )
     done.end()
     return raster
 
 
-def _require_options(method: str, value: str, at: str) -> None:
+def _require_options(method: str, value: str, at: str, smooth: Any) -> None:
     choice("method", method, InterpolationMethod)
     choice("value", value, RasterValue)
     choice("at", at, RasterSample)
     if value != "elevation" and method != "linear":
         raise OptionError("method", method, f"linear for {value}, which triangles have")
+    if value == "elevation" and smooth is not None:
+        raise OptionError("smooth", smooth, "None for elevations, which have a method")
     if at == "mean" and (method != "linear" or value == "aspect"):
         what = "aspect, as directions have no mean" if value == "aspect" else f"method {method}"
         raise OptionError("at", at, f"center for {what}")

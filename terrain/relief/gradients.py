@@ -26,10 +26,12 @@ __all__ = [
     "aspect",
     "compute_normals",
     "measure_areas",
+    "measure_aspects",
     "measure_plane_areas",
     "measure_ring_area",
     "measure_slopes",
     "slope",
+    "sum_at_vertices",
     "sum_normals",
 ]
 
@@ -117,7 +119,12 @@ def aspect(tin: TIN, *, per: SurfacePart = "triangle") -> Float64Array:
     >>> aspect(tin)
     array([270.])
     """
-    east, north, _ = sum_normals(tin, per).T
+    return measure_aspects(sum_normals(tin, per))
+
+
+def measure_aspects(upward: Float64Array) -> Float64Array:
+    """Return the aspect of planes with some upward normals, (k, 3), NaN where they are level."""
+    east, north, _ = upward.T
     azimuth: Float64Array = np.degrees(np.arctan2(east, north)) % 360.0
     # A hair west of north rounds up to the full circle, which is north.
     azimuth[azimuth == 360.0] = 0.0
@@ -208,15 +215,25 @@ def sum_normals(tin: TIN, per: SurfacePart) -> Float64Array:
         For another place.
     """
     choice("per", per, SurfacePart)
-    upward, surface = compute_normals(tin), tin.triangulation
+    upward = compute_normals(tin)
     if per == "triangle":
         return upward
-    return _kernel.vertex_normals(surface.points, surface.triangles, upward)
+    return sum_at_vertices(tin, upward)
+
+
+def sum_at_vertices(tin: TIN, upward: Float64Array) -> Float64Array:
+    """Return the sums at each vertex, (n, 3), of the normals of triangles, (m, 3).
+
+    They do not depend on the order of triangles.
+    """
+    surface = tin.triangulation
+    threads = thread_count(None, len(surface.points))
+    return _kernel.vertex_normals(surface.points, surface.triangles, upward, threads)
 
 
 def _average_northings(tin: TIN) -> Any:
     """Return the northing at the middle of each triangle if scales depend on it, else 0."""
     if tin.crs is None or not tin.crs.is_geographic:
         return 0.0
-    first, second, third = (tin.points[:, 1][corner] for corner in tin.triangles.T)
-    return (first + second + third) / 3.0
+    south, middle, north = np.sort(tin.points[:, 1][tin.triangles], axis=1).T
+    return (south + middle + north) / 3.0

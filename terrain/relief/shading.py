@@ -9,22 +9,17 @@ import numpy as np
 from ..._products import product
 from ...errors import OptionError
 from ...tin.validation.options import is_finite_number, require_tin
-from ...tin.validation.threads import thread_count
-from .. import _kernel
 from ..drawing.rounding import round_down
 from ..georeference import describe_unknown
-from ..gridding.bands import SurfaceBand
 from ..gridding.coverage import require_covered
 from ..gridding.grids import as_grid
+from ..gridding.relief_bands import ReliefBand, choose_smooth
 from ..results import Raster
-from ..results.gridded import locate_centers
-from .gradients import sum_normals
-from .light import as_light, normalise, shade
+from .light import as_light
+from .measures import PlaneMeasure
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, UInt8Array
     from ...tin import TIN, Grid
-    from .light import Light
 
 __all__ = ["hillshade"]
 
@@ -41,7 +36,7 @@ def hillshade(
     azimuth: float = 315.0,
     altitude: float = 45.0,
     exaggeration: float = 1.0,
-    smooth: bool = False,
+    smooth: bool | None = None,
 ) -> Raster:
     """Draw a surface in the light of a low sun, as a raster with a georeference.
 
@@ -59,9 +54,10 @@ def hillshade(
         Of the light above the horizon, 0 to 90.
     exaggeration : float
         Factor on elevations, above 0.
-    smooth : bool
-        Turn the normal evenly from vertex to vertex, so that no edges are seen; default the
-        triangles as they are.
+    smooth : bool, optional
+        Turn the normal evenly from vertex to vertex, so that no edges are seen, or take the
+        triangles as they are. Default True where the points are the cells of a raster without
+        breaklines, else False; ``notes`` tell which was taken.
 
     Returns
     -------
@@ -81,7 +77,8 @@ def hillshade(
     Notes
     -----
     Of the true surface, as :func:`tinsmith.slope`: both units are taken into account. A cell whose
-    centre lies on an edge has the light of the triangle with the smaller number.
+    centre lies on an edge has the light of the mean gradient of both sides, one whose centre is a
+    vertex that of the sum of the normals around it, both decided exactly.
 
     Examples
     --------
@@ -95,21 +92,15 @@ def hillshade(
     light, factor = as_light(azimuth, altitude), _as_positive("exaggeration", exaggeration)
     if spacing is not None and grid is not None:
         raise OptionError("spacing", spacing, allowed="None where a grid is given")
-    if not isinstance(smooth, bool | np.bool_):
-        raise OptionError("smooth", smooth, allowed="True or False")
+    is_smooth, told = choose_smooth(tin, smooth)
     side = _choose_spacing(tin) if spacing is None and grid is None else spacing
     cells, _ = as_grid(tin, spacing=side, grid=grid, in_memory=True)
     require_covered(tin, cells)
-    upward = sum_normals(tin, "vertex" if smooth else "triangle") * (factor, factor, 1.0)
+    lights = ReliefBand(tin, cells, PlaneMeasure("hillshade", light, factor), is_smooth=is_smooth)
     band, height = np.zeros(cells.shape, np.uint8), max(1, _BLOCK_CELLS // cells.shape[1])
-    flat = None if smooth else _as_flat_band(tin, cells, shade(upward, light))
-    parts = _grid_normals(tin, normalise(upward)) if smooth else ()
     for top in range(0, cells.shape[0], height):
         rows = slice(top, min(top + height, cells.shape[0]))
-        if flat is None:
-            band[rows] = _shade_smoothly(parts, light, cells, rows)
-        else:
-            band[rows] = np.nan_to_num(flat[rows, :])
+        band[rows] = np.nan_to_num(lights[rows, :])
     band.flags.writeable = False
     return Raster(
         {"hillshade": band},
@@ -117,41 +108,12 @@ def hillshade(
         crs=None if tin.crs is None else tin.crs.horizontal,
         nodata=0,
         name="hillshade",
-        notes=describe_unknown(tin.crs, tin.elevation_unit),
+        notes=[*describe_unknown(tin.crs, tin.elevation_unit), told],
     )
 
 
 def _choose_spacing(tin: TIN) -> float:
     return round_down(max(tin.bounds.width, tin.bounds.height) / _USUAL_SIDE)
-
-
-def _as_flat_band(tin: TIN, cells: Grid, shades: UInt8Array) -> SurfaceBand:
-    """Return the light of the triangle at each cell's centre, NaN outside."""
-    values = shades.astype(np.float64)
-    return SurfaceBand(tin, cells, values, method="linear", is_mean=False, threads=None)
-
-
-def _grid_normals(tin: TIN, unit: Float64Array) -> tuple[_kernel.GriddedSurface, ...]:
-    """Return surfaces of the three parts of the normals, for elevations those of vertices."""
-    surface = tin.triangulation
-    xy = surface.points[:, :2]
-    return tuple(
-        _kernel.GriddedSurface(np.column_stack([xy, part]), surface.triangles) for part in unit.T
-    )
-
-
-def _shade_smoothly(
-    parts: tuple[_kernel.GriddedSurface, ...], light: Light, cells: Grid, rows: slice
-) -> UInt8Array:
-    """Return the light in the cells of some rows, normals turned evenly between vertices."""
-    x, y = locate_centers(cells, rows, slice(0, cells.shape[1]))
-    threads = thread_count(None, len(x) * len(y))
-    found = [part.values_at_centers(x, y, cells.spacing, None, threads, None) for part in parts]
-    normals = np.stack(found, axis=-1)
-    is_inside = ~np.isnan(normals[..., 2])
-    values = np.zeros(normals.shape[:2], np.uint8)
-    values[is_inside] = shade(normals[is_inside], light)
-    return values
 
 
 def _as_positive(option: str, value: Any) -> float:

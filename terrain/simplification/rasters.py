@@ -17,14 +17,16 @@ import numpy as np
 from ..._progress import Progress
 from ..._sentences import counted
 from ...errors import OptionError, PointsError
-from ...tin import Survey, triangulate
+from ...tin import Survey, topology, triangulate
 from ...tin.meshing.simplification import Errors, Goal, insert_until_near
+from ...tin.meshing.surface_difference import choose_rows
 from ...tin.report import Simplification
 from ...tin.screening.nodata import describe_suspects, find_suspect_elevations
 from ...tin.topology import NO_NEIGHBOR
 from ...tin.validation.threads import thread_count
 from .. import _kernel
 from ..gridding.voids import find_surface
+from .cell_crossings import cross_cells
 from .elevations import Block, Elevations, Heights, cut_blocks
 from .seams import Frame, find_frame, trace_block
 
@@ -80,6 +82,9 @@ def simplify_raster(
     elevations = Elevations(raster)
     count = elevations.shape[0] * elevations.shape[1]
     is_whole = count <= largest_whole or goal.points is not None
+    if goal.hold == "surface" and not is_whole:
+        allowed = f"points for a raster of more than {largest_whole:,} cells"
+        raise OptionError("hold", goal.hold, allowed)
     blocks = list(cut_blocks(elevations.shape, None if is_whole else block_side))
     kept = _as_cells(keep, count)
     work = _Work(elevations, goal, thread_count(threads, count), blocks, kept)
@@ -100,6 +105,8 @@ def simplify_raster(
         tolerance=goal.tolerance,
         largest_error=errors.largest,
         rms_error=errors.rms,
+        hold=None if goal.tolerance is None else goal.hold or "points",
+        surface_error=errors.surface,
     )
     suspects = describe_suspects(find_suspect_elevations(tin.points[:, 2]), "cell")
     notes = [*raster.notes, *tin.report.notes, *suspects, *_describe_blocks(blocks)]
@@ -257,7 +264,26 @@ class _Work:
             far.append(_Measured(places, z.ravel()[cells], error.ravel()[cells]))
         self.n_points = count
         worst = self._choose_worst(tin, _Measured(*map(np.concatenate, zip(*far, strict=True))))
-        return Errors(worst, largest, float(np.sqrt(squares / max(count, 1))))
+        errors = Errors(worst, largest, float(np.sqrt(squares / max(count, 1))))
+        return self._measure_between(tin, errors, limit) if self.goal.hold == "surface" else errors
+
+    def _measure_between(self, tin: TIN, errors: Errors, limit: float) -> Errors:
+        """Add what is beyond the tolerance between the cells, of a raster in one block."""
+        (block,) = self.blocks
+        z = self.elevations.read(block)
+        valid = np.isfinite(z)
+        if not valid.all():
+            z = np.where(find_surface(valid), z, np.nan)
+        across = np.arange(len(tin.triangles), dtype=np.int32)[:, None]
+        inner = np.nonzero(tin.neighbors > across)
+        start, end = (self._cells[ends] for ends in topology.ends(tin.triangles, *inner))
+        found = cross_cells(z, start, end)
+        is_left = np.zeros(z.size + 1, np.bool_)
+        is_left[self._cells] = is_left[-1] = True
+        rows, _ = choose_rows(found, is_left, limit)
+        self._heights = self._heights.join(rows, z.ravel()[rows])
+        surface = max(errors.largest, float(found.errors.max(initial=0.0)))
+        return errors._replace(far=np.union1d(errors.far, rows), surface=surface)
 
     def _choose_worst(self, tin: TIN, far: _Measured) -> Int64Array:
         """Return the cell of each triangle that is farthest from it, of those too far."""
@@ -330,7 +356,8 @@ def _triangulate(
         place = np.searchsorted(cells, ring)
         place[place == len(cells)] = 0
         extent.append(points[place[cells[place] == ring]])
-    return triangulate(Survey(points=points, extent=extent), threads=threads)
+    survey = Survey(points=points, extent=extent, from_raster=True)
+    return triangulate(survey, threads=threads)
 
 
 def _turn_over(cells: Int64Array, shape: tuple[int, int]) -> Int64Array:

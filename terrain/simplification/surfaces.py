@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
+    from ...policies import SimplificationHold
     from ...tin import TIN
 
 __all__ = ["simplify"]
@@ -26,6 +27,7 @@ def simplify(
     tolerance: float | None = None,
     points: int | None = None,
     keep: ArrayLike = (),
+    hold: SimplificationHold | None = None,
     threads: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> TIN:
@@ -40,19 +42,26 @@ def simplify(
     Parameters
     ----------
     surface : TIN or Raster
-        A TIN with its lines, boundary and holes; one that is not Delaunay is made so, which
-        ``report.notes`` tell. Of a raster the centres of cells that are corners of a square or half
-        a square of cells with elevations, in its only band or the band "elevation"; a large one is
-        read in blocks.
+        A TIN with its lines, boundary and holes; one that is not Delaunay is made so but for edges
+        that ``hold="surface"`` needs, which ``report.notes`` tell. Of a raster the centres of cells
+        that are corners of a square or half a square of cells with elevations, in its only band or
+        the band "elevation"; a large one is read in blocks.
     tolerance : float, optional
         No vertex of ``surface`` will be farther than this from the result in elevation, in the
-        unit of elevations. Differences in the last digits of elevations, of 1e-14 of the largest,
-        count as none.
+        unit of elevations; with ``hold="surface"`` no place at all. A difference equal to the
+        tolerance is within it. Differences in the last digits of elevations, of 1e-14 of the
+        largest, count as none.
     points : int, optional
         In its place: the number of vertices that the result has.
     keep : (k,) array of int, optional
         Further vertices of ``surface`` that stay; of a raster cells, row by row from the
         north-west.
+    hold : {"points", "surface"}, optional
+        Hold the tolerance at the points, or anywhere between the two surfaces: where their edges
+        cross between the points, they may differ by more. Default "surface" for a TIN with
+        breaklines or given triangles that are not Delaunay, which tells more than its points, else
+        "points"; ``report.simplification`` and ``report.notes`` tell which. For a raster that is
+        read in blocks it is "points" only.
     threads : int, optional
         For blocks of a raster, and for triangulating what is left. The result is the same for any
         number.
@@ -80,12 +89,13 @@ def simplify(
     Notes
     -----
     With a tolerance none of the vertices inside can be removed alone: without it, a point would be
-    beyond the tolerance. This is not the least number that there is, which is hard to find
-    (NP-hard [3]_). With ``points`` none are removed after the insertion. The result is a function
-    of the surface, not of the order of its vertices. Time grows with n log(m) for n points of which
-    m are left: a second for a million points of a TIN, a tenth to a fifth for as many cells.
-    Memory is 40 bytes a point, 25 a cell; a raster of more than 16.8 million cells is simplified in
-    blocks of 2,048 by 2,048, along whose seams some vertices may be needless.
+    beyond the tolerance; of those that ``hold="surface"`` adds afterwards some may be. This is not
+    the least number that there is, which is hard to find (NP-hard [3]_). With ``points`` none are
+    removed after the insertion. The result is a function of the surface, not of the order of its
+    vertices. Time grows with n log(m) for n points of which m are left: a second for a million
+    points of a TIN, a tenth to a fifth for as many cells. Memory is 40 bytes a point, 25 a cell; a
+    raster of more than 16.8 million cells is simplified in blocks of 2,048 by 2,048, along whose
+    seams some vertices may be needless.
 
     References
     ----------
@@ -108,7 +118,7 @@ def simplify(
     >>> ts.simplify(tin, points=60)
     <TIN: 60 vertices, ...>
     """
-    done, goal = Progress(progress), Goal.of(tolerance, points)
+    done, goal = Progress(progress), Goal.of(tolerance, points, hold)
     if isinstance(surface, Raster):
         from .rasters import simplify_raster
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.simplification import largest_crossing
 
 import tinsmith as ts
 from tinsmith.terrain.simplification.rasters import simplify_raster
@@ -22,6 +23,8 @@ def generate(rng: np.random.Generator) -> Case:
     case["tolerance"] = float(rng.choice([0, 0.01, 0.1, 0.5, 2])) * float(np.ptp(heights))
     case["share"] = float(rng.random())
     case["order"] = int(rng.integers(2**31))
+    case["flips"] = rng.random(int(rng.integers(0, 12))).tolist() if rng.random() < 0.4 else []
+    case["hold"] = [None, "points", "surface"][int(rng.integers(3))]
     return case
 
 
@@ -31,12 +34,15 @@ def examine(case: Case) -> str:
     if isinstance(tin, str):
         return tin
     try:
-        simple = ts.simplify(tin, tolerance=case["tolerance"])
+        simple = ts.simplify(tin, tolerance=case["tolerance"], hold=case["hold"])
     except ts.PointsError:
         return "refused: too near"
     require_sound(tin, simple)
-    rounding = np.abs(tin.points[:, 2]).max() * 1e-13
-    assert simple.report.simplification.largest_error <= max(case["tolerance"], rounding)
+    told = simple.report.simplification
+    assert told.largest_error <= case["tolerance"]
+    assert case["hold"] in (None, told.hold)
+    if told.hold == "surface":
+        require_near(tin, simple, case["tolerance"])
     least = ts.simplify(tin, tolerance=1e300).report.simplification.required
     number = least + int(case["share"] * (len(tin.points) - least))
     if number >= 3:
@@ -45,7 +51,37 @@ def examine(case: Case) -> str:
         assert len(counted.points) == number, "another number of points"
     if not list_lines(case):
         require_same_in_any_order(case, simple)
-    return "simplified"
+        require_given_triangles(tin, case)
+    return f"simplified by {told.hold}"
+
+
+def require_given_triangles(tin: Any, case: Case) -> None:
+    """Of triangles that are not Delaunay the difference is held nevertheless."""
+    edited = tin.replace()
+    for share in case["flips"]:
+        try:
+            edited.flip(*edited.edges[int(share * len(edited.edges))].tolist())
+        except ts.TinsmithError:
+            continue
+    if not case["flips"] or np.array_equal(edited.triangles, tin.triangles):
+        return
+    given = ts.TIN.from_triangles(edited.points, edited.triangles)
+    simple = ts.simplify(given, tolerance=case["tolerance"])
+    found = ts.check(simple)
+    assert found.ok, [one.sentence for one in found.problems]
+    if simple.report.simplification.hold == "surface":
+        require_near(given, simple, case["tolerance"])
+
+
+def require_near(tin: Any, simple: Any, tolerance: float) -> None:
+    """The surfaces differ nowhere by more than is told, in fractions."""
+    told = simple.report.simplification.surface_error
+    rounding = 1e-9 * np.abs(tin.points[:, 2]).max()
+    crossing = float(largest_crossing(tin, simple))
+    assert told <= tolerance
+    assert crossing <= told + rounding, f"{crossing} where edges cross, not {told}"
+    found = max(crossing, simple.report.simplification.largest_error)
+    assert told <= found + rounding, f"{told} is told, not {found}"
 
 
 def require_sound(tin: Any, simple: Any) -> None:
@@ -64,7 +100,8 @@ def require_same_in_any_order(case: Case, simple: Any) -> None:
     if len(np.unique(given[:, :2], axis=0)) < len(given):
         return  # the mean of several elevations depends on their order
     order = np.random.default_rng(case["order"]).permutation(len(given))
-    other = ts.simplify(ts.triangulate(given[order]), tolerance=case["tolerance"])
+    mixed = ts.triangulate(given[order])
+    other = ts.simplify(mixed, tolerance=case["tolerance"], hold=case["hold"])
     sets = [{tuple(point) for point in one.points.tolist()} for one in (simple, other)]
     assert sets[0] == sets[1], "another order of the points, other points are left"
 
@@ -87,6 +124,7 @@ def generate_raster(rng: np.random.Generator) -> Case:
         "spacing": float(rng.choice([1, 0.1, 30, 1 / 3])),
         "tolerance": float(rng.choice([0, 0.01, 0.1, 0.5])) * float(np.ptp(z)),
         "block_side": int(rng.integers(2, 12)) if rng.random() < 0.6 else 0,
+        "hold": str(rng.choice(["points", "surface"])),
         "threads": int(rng.integers(1, 4)),
     }
 
@@ -95,7 +133,8 @@ def examine_raster(case: Case) -> str:
     """Simplify it, and measure every cell; the area is that of the TIN of all cells."""
     raster = make_raster(case)
     whole = 0 if case["block_side"] else 2**24
-    goal = Goal.of(case["tolerance"], None)
+    hold = "points" if case["block_side"] else case["hold"]
+    goal = Goal.of(case["tolerance"], None, hold)
     try:
         simple = simplify_raster(
             raster,
@@ -120,6 +159,8 @@ def examine_raster(case: Case) -> str:
     assert abs(error.max() - told.largest_error) <= rounding, "another error is told"
     assert told.points == len(used)
     assert np.isclose(simple.area, tin.area, rtol=1e-9), "another area"
+    if hold == "surface":
+        require_near(tin, simple, case["tolerance"])
     return "in blocks" if case["block_side"] else "whole"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
@@ -88,18 +89,35 @@ def solve(matrix, right):
 
 def compute_normals(points, triangles):
     """Return upward normals, and the numbers of triangles too thin for doubles."""
-    first, second, third = (points[triangles[:, k]] for k in range(3))
+    turned = [turn_to_first(points, corners) for corners in triangles.tolist()]
+    first, second, third = (points[list(corners)] for corners in zip(*turned, strict=True))
     (ux, uy, uz), (vx, vy, vz) = (second - first).T, (third - first).T
     normals = np.stack([uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx], axis=1)
     sizes = np.maximum(np.abs(ux), np.abs(uy)) * np.maximum(np.abs(vx), np.abs(vy))
     return normals, np.flatnonzero(~(normals[:, 2] > 2.0**-20 * sizes))
 
 
+def turn_to_first(points, corners):
+    """Return the corners of a triangle from the lexicographically first on."""
+    first = min(range(3), key=lambda k: points[corners[k], :2].tolist())
+    return corners[first:] + corners[:first]
+
+
 def sum_at_vertices(triangles, normals, count):
-    """Return the sums of the normals of the triangles at each vertex, in their order."""
-    corners = triangles.ravel()
-    sums = [np.bincount(corners, np.repeat(axis, 3), count) for axis in normals.T]
-    return np.stack(sums, axis=1)
+    """Return the sums of the normals of the triangles at each vertex, the larger ones first."""
+    found = [[[], [], []] for _ in range(count)]
+    for corners, normal in zip(triangles.tolist(), normals.tolist(), strict=True):
+        for vertex in corners:
+            for axis in range(3):
+                found[vertex][axis].append(normal[axis])
+    return np.array([[add_by_size(values) for values in axes] for axes in found])
+
+
+def add_by_size(values):
+    total = 0.0
+    for value in sorted(values, key=lambda value: (-abs(value), -value)):
+        total += value
+    return total
 
 
 def shade(normals, towards):
@@ -115,3 +133,60 @@ def shade_one(normal, towards):
     length = math.sqrt(unit[0] * unit[0] + unit[1] * unit[1] + unit[2] * unit[2])
     toward = unit[0] * towards[0] + unit[1] * towards[1] + unit[2] * towards[2]
     return round(1 + 254 * min(max(toward / length, 0.0), 1.0))
+
+
+class GradientAt:
+    """The gradient of a surface at any place, in fractions: of a triangle, or of several around.
+
+    On an edge it is the mean of the gradients of both sides, at a vertex that of the sum of the
+    normals of its triangles; None where there is no surface.
+    """
+
+    def __init__(self, points, triangles):
+        self.points = [tuple(map(Fraction, row)) for row in points.tolist()]
+        self.triangles = triangles.tolist()
+        self.vertex_at = {row[:2]: v for v, row in enumerate(self.points)}
+        self.normals = [self._find_normal(corners) for corners in self.triangles]
+        corners = points[triangles, :2]
+        self.low, self.high = corners.min(axis=1), corners.max(axis=1)
+
+    def _find_normal(self, corners):
+        a, b, c = (self.points[v] for v in corners)
+        u, v = ([end - start for start, end in zip(a, other, strict=True)] for other in (b, c))
+        turns = ((1, 2), (2, 0), (0, 1))
+        return [u[i] * v[j] - u[j] * v[i] for i, j in turns]
+
+    def __call__(self, x, y):
+        place = Fraction(float(x)), Fraction(float(y))
+        near = ((self.low <= (x, y)) & ((x, y) <= self.high)).all(axis=1)
+        holding = [t for t in np.flatnonzero(near).tolist() if self._holds(t, place)]
+        if not holding:
+            return None
+        vertex = self.vertex_at.get(place)
+        if vertex is not None:
+            around = [n for n, t in zip(self.normals, self.triangles, strict=True) if vertex in t]
+            east, north, up = (sum(axis) for axis in zip(*around, strict=True))
+            return -east / up, -north / up
+        found = [[-n[0] / n[2], -n[1] / n[2]] for n in (self.normals[t] for t in holding)]
+        return tuple(sum(axis) / len(found) for axis in zip(*found, strict=True))
+
+    def _holds(self, t, place):
+        corners = [self.points[v][:2] for v in self.triangles[t]]
+        return all(
+            (b[0] - a[0]) * (place[1] - a[1]) >= (b[1] - a[1]) * (place[0] - a[0])
+            for a, b in pairwise([*corners, corners[0]])
+        )
+
+    def slope(self, x, y):
+        """Return the slope in degrees, NaN where there is no surface."""
+        found = self(x, y)
+        return (
+            math.nan if found is None else math.degrees(math.atan(math.hypot(*map(float, found))))
+        )
+
+    def aspect(self, x, y):
+        """Return the aspect in degrees, NaN where there is none."""
+        found = self(x, y)
+        if found is None or not any(found):
+            return math.nan
+        return math.degrees(math.atan2(-float(found[0]), -float(found[1]))) % 360.0

@@ -88,6 +88,7 @@ def _report(
         n_triangles=n_triangles,
         duplicates=inputs.options.duplicates,
         snap=inputs.options.snap,
+        from_raster=inputs.from_raster,
         skipped=dict(inputs.skipped),
         source=inputs.source,
         **{"notes": tuple(inputs.notes), **account},

@@ -80,6 +80,7 @@ class BuildInputs:
     crs: CRS | None
     elevation_unit: Unit | None = None
     has_own_boundary: bool = False
+    from_raster: bool = False
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
     source: str = ""
@@ -195,6 +196,7 @@ def gather_inputs(
         options=LineOptions(thread_count(threads, len(xyz)), duplicates, float(snap), crossing),
         crs=system,
         elevation_unit=require_one_unit(system, unit),
+        from_raster=own.from_raster,
         skipped=own.skipped,
         notes=(*own.notes, *told, *_describe_rings(outer, inner)),
         source=own.source or "",

@@ -63,6 +63,9 @@ class Survey:
         foot"). Default that of the CRS's vertical axis; None if it is not known.
     source : str, optional
         Name of the file that the points come from.
+    from_raster : bool
+        Whether the points are the cells of a raster: samples of a terrain without edges, over which
+        slopes change evenly (:func:`tinsmith.hillshade`).
     skipped : mapping of str to int
         What the reader left out and how often, for example ``{"nodata cells": 12}``.
     skipped_lines : mapping of str to sequence of int
@@ -99,6 +102,7 @@ class Survey:
     crs: CRS | None = None
     elevation_unit: Unit | None = None
     source: str | None = None
+    from_raster: bool = False
     skipped: Mapping[str, int] = field(default_factory=dict)
     skipped_lines: Mapping[str, Sequence[int]] = field(default_factory=dict)
     notes: Sequence[str] = ()
@@ -172,6 +176,8 @@ def _require_texts(survey: Survey) -> None:
         raise OptionError("notes", notes, "a list of sentences")
     if not isinstance(survey.source, str | None):
         raise OptionError("source", survey.source, "text or None")
+    if not isinstance(survey.from_raster, bool):
+        raise OptionError("from_raster", survey.from_raster, "True or False")
 
 
 def _is_plain(points: Any) -> bool:

@@ -10,7 +10,15 @@ from ..triangulation.illegal_edges import mark_illegal_edges
 if TYPE_CHECKING:
     from ..surface import TIN
 
-__all__ = ["describe_flips"]
+__all__ = ["count_flips", "describe_flips"]
+
+
+def count_flips(tin: TIN) -> int:
+    """Count the edges that a build of the vertices and lines of a TIN cannot keep."""
+    _, origin = tin._settle()
+    if origin.inputs is not None:
+        return 0
+    return int(mark_illegal_edges(tin.triangulation).sum())
 
 
 def describe_flips(tin: TIN) -> tuple[str, ...]:
@@ -18,10 +26,7 @@ def describe_flips(tin: TIN) -> tuple[str, ...]:
 
     A TIN that was built here has none; one of existing triangles, as those of a file, may have.
     """
-    _, origin = tin._settle()
-    if origin.inputs is not None:
-        return ()
-    count = int(mark_illegal_edges(tin.triangulation).sum())
+    count = count_flips(tin)
     if count == 0:
         return ()
     are, them = ("is", "it") if count == 1 else ("are", "them")

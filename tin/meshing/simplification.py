@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..._progress import Progress
-from ...errors import LinesError, OptionError, PointsError
+from ...errors import LinesError, OptionError, PointsError, choice
+from ...policies import SimplificationHold
 from .. import _kernel, topology
 from ..constraints.clipping import Surface
 from ..constraints.pslg import build_mesh_of_growth, find_lines_in
@@ -21,7 +22,8 @@ from ..surface import TIN
 from ..validation.options import is_finite_number, is_whole_number, require_tin
 from ..validation.threads import thread_count
 from ..validation.vertices import as_vertex_array
-from .flips import describe_flips
+from .flips import count_flips, describe_flips
+from .surface_difference import SurfaceMeter
 from .surface_pslg import gather_pslg, list_rings
 
 if TYPE_CHECKING:
@@ -47,13 +49,17 @@ _ROUNDING_BITS = 46
 
 
 class Goal(NamedTuple):
-    """What is asked for: a tolerance, in the unit of elevations, or a number of vertices."""
+    """What is asked for: a tolerance, in the unit of elevations, or a number of vertices.
+
+    ``hold`` tells where the tolerance is held; None for the default, and with a number.
+    """
 
     tolerance: float | None
     points: int | None
+    hold: SimplificationHold | None = None
 
     @classmethod
-    def of(cls, tolerance: Any, points: Any) -> Goal:
+    def of(cls, tolerance: Any, points: Any, hold: Any = None) -> Goal:
         """Return what is asked for.
 
         Raises
@@ -61,6 +67,8 @@ class Goal(NamedTuple):
         OptionError
             If it is not one of the two, or none that can be.
         """
+        if hold is not None:
+            choice("hold", hold, SimplificationHold)
         if (tolerance is None) == (points is None):
             given = "both" if points is not None else "neither"
             allowed = "given, or points; the one or the other, not both"
@@ -68,10 +76,12 @@ class Goal(NamedTuple):
         if points is not None:
             if not is_whole_number(points) or points < 3:
                 raise OptionError("points", points, "a whole number from 3 on")
+            if hold is not None:
+                raise OptionError("hold", hold, "None where a number of points is given")
             return cls(None, int(points))
         if not (is_finite_number(tolerance) and tolerance >= 0):
             raise OptionError("tolerance", tolerance, "an elevation >= 0 in the unit of elevations")
-        return cls(float(tolerance), None)
+        return cls(float(tolerance), None, hold)
 
     def require_count(self, n_required: int, n_points: int) -> None:
         """Refuse a number of vertices that cannot be.
@@ -92,7 +102,18 @@ class Goal(NamedTuple):
         """Return tolerance and most vertices as the core takes them."""
         if self.points is not None:
             return -1.0, self.points
-        return max((self.tolerance or 0.0) - rounding, 0.0), _kernel.MOST_POINTS
+        return self.limit(rounding), _kernel.MOST_POINTS
+
+    def limit(self, rounding: float) -> float:
+        """Return the largest difference that is within the tolerance, as doubles compute it.
+
+        One that is equal to the tolerance is within it, whichever way it is rounded.
+        """
+        return np.inf if self.tolerance is None else self.tolerance + rounding
+
+    def drop_rounding(self, error: float) -> float:
+        """Return an error as it is told: one beyond the tolerance by rounding is equal to it."""
+        return error if self.tolerance is None else min(error, self.tolerance)
 
 
 class Errors(NamedTuple):
@@ -101,13 +122,19 @@ class Errors(NamedTuple):
     Attributes
     ----------
     far : (k,) int array
-        Rows of the points beyond the tolerance.
+        Rows of the points to be added: those beyond the tolerance.
     largest, rms : float
+    surface : float or None
+        The largest difference anywhere between the two surfaces, if it was measured.
+    is_done : bool
+        Whether nothing is to be added.
     """
 
     far: Int64Array
     largest: float
     rms: float
+    surface: float | None = None
+    is_done: bool = True
 
 
 def find_rounding(z: Float64Array) -> float:
@@ -127,11 +154,12 @@ def simplify_tin(
     done(0.05)
     rows, needless = _find_rows(tin, skeleton, goal)
     done(0.75)
+    meter = SurfaceMeter(tin) if _find_hold(tin, goal) == "surface" else None
     part, errors = insert_until_near(
         goal,
         find_rounding(tin.points[:, 2]),
         rows,
-        build=lambda rows: _Part(tin, rows, skeleton.threads),
+        build=lambda rows: _Part(tin, rows, skeleton.threads, meter),
         measure=lambda part, limit: part.measure(limit),
         progress=done,
     )
@@ -143,9 +171,23 @@ def simplify_tin(
         tolerance=goal.tolerance,
         largest_error=errors.largest,
         rms_error=errors.rms,
+        hold=None if goal.tolerance is None else "points" if meter is None else "surface",
+        surface_error=errors.surface,
+        forced_edges=0 if meter is None else len(meter.forced),
     )
     simple: TIN = part.make_tin(found)
     return simple
+
+
+def _find_hold(tin: TIN, goal: Goal) -> str:
+    """Return where the difference is held, or measured: between points where edges are fixed.
+
+    There a surface is more than its points: breaklines, and given triangles that are not Delaunay.
+    """
+    if goal.hold is not None:
+        return goal.hold
+    has_lines = bool((tin.constrained & (tin.neighbors > topology.NO_NEIGHBOR)).any())
+    return "surface" if has_lines or count_flips(tin) else "points"
 
 
 def insert_until_near(
@@ -159,16 +201,22 @@ def insert_until_near(
 ) -> tuple[Any, Errors]:
     """Build the surface of some rows; add those that are beyond the tolerance, until none is.
 
-    The core has left none but where it rounds otherwise than the surface that is built.
+    The core has left none but where it rounds otherwise than the surface that is built, and between
+    the points, where it does not measure.
     """
-    limit = np.inf if goal.tolerance is None else max(goal.tolerance, rounding)
+    limit = goal.limit(rounding)
     while True:
         built = build(rows)
         progress(0.9)
         errors = measure(built, limit)
-        if len(errors.far) == 0:
-            return built, errors
+        if len(errors.far) == 0 and errors.is_done:
+            return built, _tell(errors, goal)
         rows = np.union1d(rows, errors.far)
+
+
+def _tell(errors: Errors, goal: Goal) -> Errors:
+    surface = None if errors.surface is None else goal.drop_rounding(errors.surface)
+    return errors._replace(largest=goal.drop_rounding(errors.largest), surface=surface)
 
 
 # ------------------------------------------------------------------ what must be left
@@ -227,13 +275,22 @@ def _find_rows(tin: TIN, skeleton: _Part, goal: Goal) -> tuple[Int64Array, int]:
 class _Part:
     """The surface of a TIN built of some of its vertices, with its lines and its boundary."""
 
-    def __init__(self, tin: TIN, rows: Int64Array, threads: int) -> None:
-        self.tin, self.rows, self.threads = tin, rows, threads
+    def __init__(
+        self, tin: TIN, rows: Int64Array, threads: int, meter: SurfaceMeter | None = None
+    ) -> None:
+        self.tin, self.rows, self.threads, self._meter = tin, rows, threads, meter
         self._number_of = np.full(len(tin.points) + 1, -1, np.int32)  # and of no vertex
         self._number_of[rows] = np.arange(len(rows), dtype=np.int32)
         points = np.ascontiguousarray(tin.points[rows])
         rings = [self._follow_ring(ring) for ring in list_rings(tin)]
-        self._pslg = gather_pslg(tin, points, self._follow, rings, names_boundary=False)
+        self._pslg = gather_pslg(
+            tin,
+            points,
+            self._follow,
+            rings,
+            names_boundary=False,
+            more_edges=None if meter is None else meter.forced,
+        )
         self.surface, self._order = self._build(points)
 
     def _follow(self, chain: list[int]) -> list[int]:
@@ -269,7 +326,27 @@ class _Part:
         error = np.abs(self._make().interpolate(tin.points[used, :2]) - tin.points[used, 2])
         is_far = ~(error <= limit)
         near = error[~is_far] if is_far.any() else error
-        return Errors(used[is_far], float(near.max()), float(np.sqrt(np.mean(near**2))))
+        errors = Errors(used[is_far], float(near.max()), float(np.sqrt(np.mean(near**2))))
+        return errors if self._meter is None else self._measure_between(self._meter, errors, limit)
+
+    def _measure_between(self, meter: SurfaceMeter, errors: Errors, limit: float) -> Errors:
+        """Add what is beyond the tolerance where edges of the two surfaces cross."""
+        surface, n_forced = self.surface, len(meter.forced)
+        across = np.arange(len(surface.triangles), dtype=np.int32)[:, None]
+        edge = np.nonzero(surface.neighbors > across)  # each inside once
+        ends = self.rows[np.stack(topology.ends(surface.triangles, *edge), axis=1)]
+        beyond = meter.measure(ends, self._tell_left(), limit)
+        return errors._replace(
+            far=np.union1d(errors.far, beyond.rows),
+            surface=max(errors.largest, beyond.largest),
+            is_done=len(meter.forced) == n_forced,
+        )
+
+    def _tell_left(self) -> BoolArray:
+        """Tell which vertices of the TIN are left; and at the end that none is to be added."""
+        is_left = self._number_of >= 0
+        is_left[-1] = True
+        return is_left
 
     def _make(self) -> TIN:
         return TIN.from_triangles(self.surface.points, self.surface.triangles)

@@ -34,6 +34,7 @@ def gather_pslg(
     rings: list[list[int]],
     *,
     names_boundary: bool,
+    more_edges: Int64Array | None = None,
 ) -> Pslg:
     """Return vertices, and the segments of a TIN's lines, of edges of no line, of its boundary.
 
@@ -48,6 +49,8 @@ def gather_pslg(
         The rings of the boundary in the order of :func:`list_rings`, as chains of ``points``.
     names_boundary : bool
         Whether the boundary becomes a line if none is.
+    more_edges : (k, 2) array of int, optional
+        Further edges of the TIN that are segments of no line.
 
     Returns
     -------
@@ -55,7 +58,8 @@ def gather_pslg(
         Its boundary is there (``Clip.has_own_boundary``).
     """
     lines = [chain.tolist() for chain in tin.lines.chains()]
-    nameless = _find_edges_without_line(tin)
+    more: list[list[int]] = [] if more_edges is None else more_edges.tolist()
+    nameless = _find_edges_without_line(tin) + more
     named = rings if names_boundary and "boundary" not in tin.lines.kinds else []
     chains = [follow(chain) for chain in lines + nameless] + named + rings
     return Pslg(

@@ -10,6 +10,7 @@ there is one: only the owner of the cell that holds the place has none [1]_.
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -56,20 +57,32 @@ class NearestVertex:
             topology.edges_at(growth.triangles, growth.neighbors == topology.NO_NEIGHBOR)
         )
 
-    def find(self, xy: Float64Array, *, threads: int = 1) -> Int32Array:
-        """Return the nearest vertex of each place, the smallest number of several; -1 for NaN."""
+    def find(self, xy: Float64Array, *, threads: int = 1, from_west: bool = False) -> Int32Array:
+        """Return the nearest vertex of each place; -1 for NaN.
+
+        Of several the smallest number, or ``from_west`` the lexicographically first place.
+        """
         found = np.full(len(xy), -1, np.int32)
-        nearest = _kernel.nearest_vertices(self._locator, xy, threads)
+        nearest = _kernel.nearest_vertices(self._locator, xy, from_west, threads)
         inside = np.flatnonzero(~np.isnan(nearest))
         found[inside] = self._number[nearest[inside].astype(np.int64)]
         outside = np.flatnonzero(np.isnan(nearest) & ~np.isnan(xy).any(axis=1))
         if len(outside):
-            found[outside] = self._number[self._find_outside(np.ascontiguousarray(xy[outside]))]
+            places = np.ascontiguousarray(xy[outside])
+            found[outside] = self._number[self._find_outside(places, from_west)]
         return found
 
-    def _find_outside(self, xy: Float64Array) -> Int64Array:
+    def _find_outside(self, xy: Float64Array, from_west: bool) -> Int64Array:
         """Return the nearest vertex of places outside the hull."""
-        return self._choose_smallest_of_tied(xy, self._descend(xy, self._find_near_hull(xy)))
+        nearest = self._descend(xy, self._find_near_hull(xy))
+        return self._choose_first_of_tied(xy, nearest, self._ranks if from_west else None)
+
+    @cached_property
+    def _ranks(self) -> Int64Array:
+        """The place of each vertex in the order of eastings and northings."""
+        ranks = np.empty(len(self._xy), np.int64)
+        ranks[np.lexsort(self._xy.T[::-1])] = np.arange(len(self._xy))
+        return ranks
 
     def _find_near_hull(self, xy: Float64Array) -> Int64Array:
         """Return a vertex of the hull near each place outside: by one of the two coordinates."""
@@ -114,8 +127,12 @@ class NearestVertex:
         at[rows[is_nearer]] = best[is_nearer]
         return rows[is_nearer]
 
-    def _choose_smallest_of_tied(self, xy: Float64Array, nearest: Int64Array) -> Int64Array:
-        """Return the smallest of the vertices that are as near; they are joined by edges.
+    def _choose_first_of_tied(
+        self, xy: Float64Array, nearest: Int64Array, ranks: Int64Array | None
+    ) -> Int64Array:
+        """Return the first of the vertices that are as near; they are joined by edges.
+
+        The first by rank, or else by number.
 
         Places are taken once each: all the vertices tied at places of the plane are no more than
         the corners of all triangles.
@@ -128,12 +145,15 @@ class NearestVertex:
         _, first, which = np.unique(pairs, return_index=True, return_inverse=True)
         tied = rows[first]
         smallest = nearest.copy()
-        smallest[rows] = self._spread_ties(xy[tied], nearest[tied])[which]
+        smallest[rows] = self._spread_ties(xy[tied], nearest[tied], ranks)[which]
         return smallest
 
-    def _spread_ties(self, xy: Float64Array, begin: Int64Array) -> Int64Array:
-        """Return the smallest vertex that is reached from one through vertices as near."""
-        smallest = begin.copy()
+    def _spread_ties(
+        self, xy: Float64Array, begin: Int64Array, ranks: Int64Array | None
+    ) -> Int64Array:
+        """Return the first vertex that is reached from one through vertices as near."""
+        first = begin if ranks is None else ranks[begin]
+        smallest = first.copy()
         count = len(self._xy)
         rows, reached = np.arange(len(xy)), begin
         known = rows * count + reached
@@ -142,8 +162,8 @@ class NearestVertex:
             fresh = np.setdiff1d(rows * count + reached, known)
             known = np.union1d(known, fresh)
             rows, reached = fresh // count, fresh % count
-            np.minimum.at(smallest, rows, reached)
-        return smallest
+            np.minimum.at(smallest, rows, reached if ranks is None else ranks[reached])
+        return smallest if ranks is None else np.argsort(ranks)[smallest]
 
     def _find_tied(
         self,

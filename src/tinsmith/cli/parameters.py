@@ -30,6 +30,7 @@ __all__ = [
     "position_option",
     "refuse_value",
     "report_option",
+    "smooth_option",
     "under",
 ]
 
@@ -280,3 +281,11 @@ def report_option(help: str) -> Decorator:  # noqa: A002 - click's name
 def picture_option(help: str) -> Decorator:  # noqa: A002 - click's name
     """Return the option for the one picture that a command writes."""
     return click.option("-o", "--output", metavar="FILE", type=OUTPUT, help=help)
+
+
+smooth_option: Decorator = click.option(
+    "--smooth/--no-smooth",
+    default=None,
+    help="Interpolate the normals of the vertices, or take those of the triangles; default smooth "
+    "for a raster without breaklines.",
+)

@@ -3,7 +3,8 @@
 // Scan conversion: on each row the cells between the crossings of a triangle's sides, one more
 // where rounding leaves it open. Whether a triangle holds a centre is decided exactly, and a centre
 // on an edge or a vertex belongs to the smallest triangle: as point location has it, so that the
-// values are those of interpolation to the last bit.
+// elevations are those of interpolation to the last bit. What has one value on each side of an edge
+// needs to know these centres: they are listed on request.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "../../../tin/cpp/location/ordered_surface.hpp"
@@ -18,32 +20,92 @@
 
 namespace tinsmith {
 
+// A centre on an edge or on a vertex of a triangle.
+struct SharedCenter {
+  static constexpr int kPartBits = 3;  // of the part of a triangle
+
+  std::int64_t place;  // row * columns + column
+  std::int64_t part;   // 8 * triangle + the corner opposite the edge, or 4 + the corner
+};
+
+// What a scan writes: elevations, one value a triangle, or a vector that changes evenly between
+// those of the vertices. `of(triangle)` returns what writes the cells of a triangle, by the centre's
+// weights; cells outside the surface become NaN.
+struct ElevationPaint {
+  static constexpr int kNumbers = 1;                 // of a cell
+  static constexpr bool kPutsVerticesFirst = false;  // on edges the same from both sides
+  const OrderedSurface& surface;
+  double* cells;
+
+  auto of(Triangle t) const {
+    const Surface its = surface.surface();
+    return [to = cells, a = its.elevation(t, 0), b = its.elevation(t, 1), c = its.elevation(t, 2)](
+               const CornerWeights& weights, std::size_t place) {
+      to[place] = weights.mean_of({a, b, c});
+    };
+  }
+};
+
+struct TrianglePaint {
+  static constexpr int kNumbers = 1;
+  static constexpr bool kPutsVerticesFirst = true;
+  const OrderedSurface& surface;
+  const double* values;  // as the caller numbers the triangles
+  double* cells;
+
+  auto of(Triangle t) const {
+    return [to = cells, value = values[number(surface.given_number(t))]](
+               const CornerWeights&, std::size_t place) { to[place] = value; };
+  }
+};
+
+struct VectorPaint {
+  static constexpr int kNumbers = 3;
+  static constexpr bool kPutsVerticesFirst = false;
+  const OrderedSurface& surface;
+  const double* vectors;  // three numbers each, as the caller numbers the vertices
+  double* cells;
+
+  auto of(Triangle t) const {
+    const double* row[3];
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const Vertex v = surface.given_number(surface.surface().vertex(t, k));
+      row[k] = vectors + 3 * static_cast<std::size_t>(number(v));
+    }
+    return [to = cells, a = row[0], b = row[1], c = row[2]](const CornerWeights& weights,
+                                                            std::size_t place) {
+      for (int axis = 0; axis < 3; ++axis) {
+        to[3 * place + axis] = weights.mean_of({a[axis], b[axis], c[axis]});
+      }
+    };
+  }
+};
+
+template <typename Paint>
 class CenterScan {
  public:
-  // `values` holds one value a triangle, as the caller numbers them; nullptr for elevations. Cells
-  // outside become NaN. Check `team.is_stopped()` afterwards.
-  static void run(const OrderedSurface& surface, const CellGrid& grid, const double* values,
-                  double* cells, Team& team) {
+  // Centres on edges and vertices are appended to `shared`, if there is one: each once, on a vertex
+  // if one is there, and of the smallest triangle. Check `team.is_stopped()` afterwards.
+  static void run(const OrderedSurface& surface, const CellGrid& grid, const Paint& paint,
+                  Team& team, std::vector<SharedCenter>* shared = nullptr) {
     const Tiles tiles(surface.surface(), grid);
+    std::vector<std::vector<SharedCenter>> found(shared == nullptr ? 0 : tiles.count());
     tiles.share(team, [&](std::int32_t tile) {
-      CenterScan scan(surface, grid, values, cells, tiles[tile]);
+      CenterScan scan(surface, grid, paint, tiles[tile]);
       tiles.for_each_triangle(tile, [&](Triangle t) { scan.draw(t); });
+      if (shared != nullptr) found[tile] = scan.list_shared();
     });
+    for (const auto& some : found) shared->insert(shared->end(), some.begin(), some.end());
   }
 
  private:
-  CenterScan(const OrderedSurface& ordered, const CellGrid& grid, const double* values,
-             double* cells, const Tile& tile)
-      : ordered_(ordered),
-        surface_(ordered.surface()),
-        grid_(grid),
-        values_(values),
-        cells_(cells),
-        tile_(tile) {
+  CenterScan(const OrderedSurface& ordered, const CellGrid& grid, const Paint& paint,
+             const Tile& tile)
+      : ordered_(ordered), surface_(ordered.surface()), grid_(grid), paint_(paint), tile_(tile) {
     for (std::int32_t row = tile.rows.begin; row < tile.rows.end; ++row) {
-      double* const first = grid.row_of(cells, row);
-      std::fill(first + tile.columns.begin, first + tile.columns.end,
-                std::numeric_limits<double>::quiet_NaN());
+      double* const first = paint.cells + Paint::kNumbers * place_of(row, tile.columns.begin);
+      std::fill_n(first, Paint::kNumbers * static_cast<std::size_t>(tile.columns.size()),
+                  std::numeric_limits<double>::quiet_NaN());
     }
     const double largest = std::max(std::fabs(grid.x[0]), std::fabs(grid.x[grid.columns - 1]));
     slack_ = 1e-9 + 32.0 * std::numeric_limits<double>::epsilon() * largest / grid.spacing;
@@ -59,8 +121,6 @@ class CenterScan {
 
   void draw(Triangle t) {
     const Point corner[3] = {surface_.corner(t, 0), surface_.corner(t, 1), surface_.corner(t, 2)};
-    const double elevation[3] = {surface_.elevation(t, 0), surface_.elevation(t, 1),
-                                 surface_.elevation(t, 2)};
     const double north = std::max({corner[0].y, corner[1].y, corner[2].y});
     const double south = std::min({corner[0].y, corner[1].y, corner[2].y});
     const std::int32_t first = std::max(tile_.rows.begin, clamped(grid_.row_at(north) - 1.0));
@@ -70,7 +130,7 @@ class CenterScan {
     for (std::int32_t row = first; row <= last; ++row) {
       const double y = grid_.y[row];
       if (y < south || y > north) continue;
-      draw_row(t, corner, elevation, row, columns_at(sides, count, y));
+      draw_row(t, corner, row, columns_at(sides, count, y));
     }
   }
 
@@ -103,44 +163,69 @@ class CenterScan {
             std::min(tile_.columns.end, clamped(std::floor(grid_.column_at(east) + slack_) + 1.0))};
   }
 
-  void draw_row(Triangle t, const Point (&corner)[3], const double (&elevation)[3],
-                std::int32_t row, Range columns) {
-    double* const cells = grid_.row_of(cells_, row);
+  void draw_row(Triangle t, const Point (&corner)[3], std::int32_t row, Range columns) {
+    const auto write = paint_.of(t);
     for (std::int32_t column = columns.begin; column < columns.end; ++column) {
       const Point p{grid_.x[column], grid_.y[row]};
       const auto weights = CornerWeights::at(p, corner[0], corner[1], corner[2]);
       const double least = std::min({weights.of[0], weights.of[1], weights.of[2]});
       if (least < 0.0 || (least == 0.0 && !takes_edge(t, weights, row, column))) continue;
-      cells[column] = values_ == nullptr ? weights.mean_of(elevation)
-                                         : values_[number(ordered_.given_number(t))];
+      write(weights, place_of(row, column));
     }
   }
 
-  // A centre on an edge or a vertex is the triangle's with the smallest number. One without area
-  // holds nothing.
+  // A centre on an edge or a vertex is the triangle's with the smallest number, if asked for one
+  // whose vertex it is. A triangle without area holds nothing.
   bool takes_edge(Triangle t, const CornerWeights& weights, std::int32_t row, std::int32_t column) {
     if (weights.total() == 0.0) return false;
     if (holders_.empty()) {
-      holders_.assign(static_cast<std::size_t>(tile_.columns.size()) * tile_.rows.size(),
-                      kNoTriangle);
+      holders_.assign(static_cast<std::size_t>(tile_.columns.size()) * tile_.rows.size(), kNobody);
     }
-    const std::size_t place =
-        static_cast<std::size_t>(row - tile_.rows.begin) * tile_.columns.size() +
-        (column - tile_.columns.begin);
-    const Triangle known_as = ordered_.given_number(t);
-    if (number(holders_[place]) < number(known_as)) return false;
-    holders_[place] = known_as;
+    std::int64_t& holder =
+        holders_[static_cast<std::size_t>(row - tile_.rows.begin) * tile_.columns.size() +
+                 (column - tile_.columns.begin)];
+    const std::int64_t claim = claim_of(t, weights);
+    if (claim > holder) return false;
+    holder = claim;
     return true;
   }
+
+  // What is smaller has the centre.
+  std::int64_t claim_of(Triangle t, const CornerWeights& weights) const {
+    const std::int64_t triangle = number(ordered_.given_number(t));
+    const bool is_zero[3] = {weights.of[0] == 0.0, weights.of[1] == 0.0, weights.of[2] == 0.0};
+    const bool is_vertex = is_zero[0] + is_zero[1] + is_zero[2] == 2;
+    const int corner = is_vertex == is_zero[0] ? is_vertex == is_zero[1] ? 2 : 1 : 0;
+    const std::int64_t part = triangle << SharedCenter::kPartBits | (is_vertex ? 4 : 0) | corner;
+    return Paint::kPutsVerticesFirst && !is_vertex ? part | kOnEdge : part;
+  }
+
+  std::vector<SharedCenter> list_shared() const {
+    std::vector<SharedCenter> found;
+    for (std::size_t i = 0; i < holders_.size(); ++i) {
+      if (holders_[i] == kNobody) continue;
+      const auto width = static_cast<std::size_t>(tile_.columns.size());
+      const auto row = static_cast<std::int32_t>(i / width) + tile_.rows.begin;
+      const auto column = static_cast<std::int32_t>(i % width) + tile_.columns.begin;
+      found.push_back({static_cast<std::int64_t>(place_of(row, column)), holders_[i] & ~kOnEdge});
+    }
+    return found;
+  }
+
+  std::size_t place_of(std::int32_t row, std::int32_t column) const {
+    return static_cast<std::size_t>(row) * grid_.columns + column;
+  }
+
+  static constexpr std::int64_t kNobody = std::numeric_limits<std::int64_t>::max();
+  static constexpr std::int64_t kOnEdge = std::int64_t{1} << 62;
 
   const OrderedSurface& ordered_;
   const Surface surface_;
   const CellGrid& grid_;
-  const double* values_;
-  double* cells_;
+  const Paint& paint_;
   Tile tile_;
   double slack_;
-  std::vector<Triangle> holders_;  // of centres on edges
+  std::vector<std::int64_t> holders_;  // of centres on edges and vertices: claims
 };
 
 }  // namespace tinsmith

@@ -63,6 +63,7 @@ class MeanScan {
 
   void draw(Triangle t) {
     Polygon whole;
+    double reach = 0.0;
     for (std::uint32_t k = 0; k < 3; ++k) {
       const Point p = surface_.corner(t, k);
       const double value =
@@ -72,18 +73,20 @@ class MeanScan {
         is_shifted_ = true;
       }
       whole.add({p.x - origin_.x, p.y - origin_.y, value - shift_});
+      reach = std::max({reach, std::fabs(p.x - origin_.x), std::fabs(p.y - origin_.y)});
     }
+    doubtful_ = kRounding * (reach + grid_.spacing * Tiles::kSide) * grid_.spacing;
     const Box box = surface_.box_of(t);
     const Range rows = cells_between(grid_.row_at(box.north), grid_.row_at(box.south), tile_.rows);
     for (std::int32_t row = rows.begin; row < rows.end; ++row) {
       const double top = y_edges_[row] - origin_.y, bottom = y_edges_[row + 1] - origin_.y;
       const Polygon strip = cut(cut(whole, [top](const Turn& p) { return top - p.y; }),
                                 [bottom](const Turn& p) { return p.y - bottom; });
-      if (strip.size >= 3) draw_strip(strip, row);
+      if (strip.size >= 3) draw_strip(t, strip, row);
     }
   }
 
-  void draw_strip(const Polygon& strip, std::int32_t row) {
+  void draw_strip(Triangle t, const Polygon& strip, std::int32_t row) {
     double west = strip.turns[0].x, east = west;
     for (int i = 1; i < strip.size; ++i) {
       west = std::min(west, strip.turns[i].x);
@@ -93,7 +96,8 @@ class MeanScan {
                                         grid_.column_at(east + origin_.x), tile_.columns);
     for (std::int32_t column = columns.begin; column < columns.end; ++column) {
       const double left = x_edges_[column] - origin_.x, right = x_edges_[column + 1] - origin_.x;
-      add(cut(cut(strip, [left](const Turn& p) { return p.x - left; }),
+      add(t,
+          cut(cut(strip, [left](const Turn& p) { return p.x - left; }),
               [right](const Turn& p) { return right - p.x; }),
           row, column);
     }
@@ -126,14 +130,48 @@ class MeanScan {
     return kept;
   }
 
-  void add(const Polygon& part, std::int32_t row, std::int32_t column) {
-    Sum& sum = sums_[place(row, column)];
+  // Rounding may leave a little of a triangle that only touches the cell: where there is no more,
+  // it is decided exactly whether they overlap, and the mean of the corners stands for the value.
+  void add(Triangle t, const Polygon& part, std::int32_t row, std::int32_t column) {
+    double whole = 0.0, integral = 0.0;
     for (int i = 2; i < part.size; ++i) {
       const Turn &a = part.turns[0], &b = part.turns[i - 1], &c = part.turns[i];
       const double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-      sum.area += area;
-      sum.integral += area * ((a.value + b.value + c.value) / 3.0);
+      whole += area;
+      integral += area * ((a.value + b.value + c.value) / 3.0);
     }
+    if (!(whole > 0.0)) return;
+    if (whole <= doubtful_) {
+      if (!overlap(t, row, column)) return;
+      integral = whole * mean_of_turns(part);
+    }
+    Sum& sum = sums_[place(row, column)];
+    sum.area += whole;
+    sum.integral += integral;
+  }
+
+  static double mean_of_turns(const Polygon& part) {
+    double sum = 0.0;
+    for (int i = 0; i < part.size; ++i) sum += part.turns[i].value;
+    return sum / part.size;
+  }
+
+  // Whether a triangle and a cell have more in common than points or lines: neither a side of the
+  // cell nor one of the triangle parts them.
+  bool overlap(Triangle t, std::int32_t row, std::int32_t column) const {
+    const double west = x_edges_[column], east = x_edges_[column + 1];
+    const double north = y_edges_[row], south = y_edges_[row + 1];
+    const Box box = surface_.box_of(t);
+    if (!(box.west < east && west < box.east && box.south < north && south < box.north)) {
+      return false;
+    }
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const Point a = surface_.corner(t, k), b = surface_.corner(t, corner_after(k));
+      // The corner of the cell that lies furthest to the left of the side.
+      const Point inmost{b.y > a.y ? west : east, b.x > a.x ? north : south};
+      if (orientation(a, b, inmost) <= 0) return false;
+    }
+    return true;
   }
 
   std::size_t place(std::int32_t row, std::int32_t column) const {
@@ -160,6 +198,9 @@ class MeanScan {
   const double* values_;
   Tile tile_;
   Point origin_;
+  static constexpr double kRounding = 0x1p-44;  // of coordinates in the tile, and of cuts
+
+  double doubtful_ = 0.0;  // twice the area that rounding may make of a touch of the triangle
   double shift_ = 0.0;
   bool is_shifted_ = false;
   std::vector<Sum> sums_;

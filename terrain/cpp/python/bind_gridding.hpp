@@ -3,11 +3,14 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/tuple.h>
 
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "../../../tin/cpp/python/conversion.hpp"
 #include "../gridding/centers.hpp"
@@ -16,6 +19,9 @@
 namespace tinsmith::python {
 
 using Cells = Made<double, -1, -1>;
+using CellVectors = Made<double, -1, -1, 3>;
+// Cells, those whose centres lie on edges or vertices, and on which.
+using SharedCells = std::tuple<Cells, Offsets, Offsets>;
 
 inline CellGrid grid_of(const GivenValues& x, const GivenValues& y, double spacing) {
   if (x.shape(0) == 0 || y.shape(0) == 0) throw std::invalid_argument("a grid has cells");
@@ -43,8 +49,47 @@ class GriddedSurface {
     const CellGrid grid = grid_of(x, y, spacing);
     const double* each = values_of(values);
     return draw_cells(grid, threads, tell, [&](double* cells, Team& team) {
-      CenterScan::run(ordered_, grid, each, cells, team);
+      if (each == nullptr) {
+        scan(grid, ElevationPaint{ordered_, cells}, team);
+      } else {
+        scan(grid, TrianglePaint{ordered_, each, cells}, team);
+      }
     });
+  }
+
+  SharedCells triangles_at_centers(const GivenValues& x, const GivenValues& y, double spacing,
+                                   const GivenValues& values, int threads,
+                                   const Listener::Tell& tell) const {
+    const CellGrid grid = grid_of(x, y, spacing);
+    const double* each = values_of(values);
+    std::vector<SharedCenter> shared;
+    Cells drawn = draw_cells(grid, threads, tell, [&](double* cells, Team& team) {
+      scan(grid, TrianglePaint{ordered_, each, cells}, team, &shared);
+    });
+    std::vector<std::int64_t> places(shared.size()), parts(shared.size());
+    for (std::size_t i = 0; i < shared.size(); ++i) {
+      places[i] = shared[i].place;
+      parts[i] = shared[i].part;
+    }
+    return {drawn, copy_over<Offsets, std::int64_t>(places, {places.size()}),
+            copy_over<Offsets, std::int64_t>(parts, {parts.size()})};
+  }
+
+  CellVectors vectors_at_centers(const GivenValues& x, const GivenValues& y, double spacing,
+                                 const GivenXyz& vectors, int threads,
+                                 const Listener::Tell& tell) const {
+    const CellGrid grid = grid_of(x, y, spacing);
+    if (vectors.shape(0) != static_cast<std::size_t>(ordered_.surface().point_count)) {
+      throw std::invalid_argument("there must be one vector for each vertex");
+    }
+    const auto rows = static_cast<std::size_t>(grid.rows);
+    const auto columns = static_cast<std::size_t>(grid.columns);
+    auto cells = streamed_array<double>(3 * rows * columns);
+    run_unlocked(
+        threads,
+        [&](Team& team) { scan(grid, VectorPaint{ordered_, vectors.data(), cells.get()}, team); },
+        tell);
+    return hand_over<CellVectors>(std::move(cells), {rows, columns, 3});
   }
 
   Cells means_of_cells(const GivenValues& x, const GivenValues& y, double spacing,
@@ -62,6 +107,12 @@ class GriddedSurface {
   }
 
  private:
+  template <typename Paint>
+  void scan(const CellGrid& grid, const Paint& paint, Team& team,
+            std::vector<SharedCenter>* shared = nullptr) const {
+    CenterScan<Paint>::run(ordered_, grid, paint, team, shared);
+  }
+
   static OrderedSurface order(const Surface& surface) {
     nb::gil_scoped_release release;
     return OrderedSurface(surface);
@@ -87,6 +138,14 @@ inline void bind_gridding(nb::module_& m) {
            "y"_a.noconvert(), "spacing"_a, "values"_a.none(), "threads"_a = 1,
            "progress"_a = nb::none(),
            "Elevations, or values of triangles, at the centres of cells; NaN outside.")
+      .def("triangles_at_centers", &GriddedSurface::triangles_at_centers, "x"_a.noconvert(),
+           "y"_a.noconvert(), "spacing"_a, "values"_a.noconvert(), "threads"_a = 1,
+           "progress"_a = nb::none(),
+           "Values of triangles at centres; the cells whose centres lie on edges and vertices.")
+      .def("vectors_at_centers", &GriddedSurface::vectors_at_centers, "x"_a.noconvert(),
+           "y"_a.noconvert(), "spacing"_a, "vectors"_a.noconvert(), "threads"_a = 1,
+           "progress"_a = nb::none(),
+           "Vectors of vertices, which change evenly between them, at centres; NaN outside.")
       .def("means_of_cells", &GriddedSurface::means_of_cells, "x"_a.noconvert(), "y"_a.noconvert(),
            "spacing"_a, "x_edges"_a.noconvert(), "y_edges"_a.noconvert(), "values"_a.none(),
            "threads"_a = 1, "progress"_a = nb::none(),

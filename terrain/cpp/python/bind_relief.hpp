@@ -29,16 +29,14 @@ inline std::pair<Xyz, Numbers> triangle_normals(const GivenXyz& points,
 }
 
 inline Xyz vertex_normals(const GivenXyz& points, const GivenTriples& triangles,
-                          const GivenXyz& normals) {
+                          const GivenXyz& normals, int threads) {
   const Surface surface = surface_of(points, triangles);
   if (normals.shape(0) != triangles.shape(0)) {
     throw std::invalid_argument("there must be one normal for each triangle");
   }
   auto sums = streamed_array<double>(3 * points.shape(0));
-  {
-    nb::gil_scoped_release release;
-    sum_at_vertices(surface, normals.data(), sums.get());
-  }
+  run_unlocked(threads,
+               [&](Team& team) { sum_at_vertices(surface, normals.data(), sums.get(), team); });
   return hand_over<Xyz>(std::move(sums), {points.shape(0), 3});
 }
 
@@ -73,7 +71,7 @@ inline void bind_relief(nb::module_& m) {
   m.def("triangle_normals", &triangle_normals, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "threads"_a = 1, "Upward normals of triangles; numbers of those too thin for doubles.");
   m.def("vertex_normals", &vertex_normals, "points"_a.noconvert(), "triangles"_a.noconvert(),
-        "normals"_a.noconvert(), "Sums of the triangles' normals at each vertex.");
+        "normals"_a.noconvert(), "threads"_a = 1, "Sums of the triangles' normals at each vertex.");
   m.def("shade_planes", &shade_planes, "normals"_a.noconvert(), "east"_a, "north"_a, "up"_a,
         "darkest"_a, "brightest"_a, "Brightness of planes under a light from a direction.");
   m.def("fit_quadratics", &fit_quadratics, "points"_a.noconvert(), "triangles"_a.noconvert(),

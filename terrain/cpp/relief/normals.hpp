@@ -11,10 +11,20 @@
 #include "../../../tin/cpp/base/parallel.hpp"
 #include "../../../tin/cpp/base/range.hpp"
 #include "../../../tin/cpp/location/surface.hpp"
+#include "vertex_neighbors.hpp"
 
 namespace tinsmith {
 
-// Three numbers for each triangle. Returns, in ascending order, the slivers among them: triangles
+// The corner that comes first by its coordinates.
+inline std::uint32_t first_corner(const Surface& surface, Triangle t) {
+  std::uint32_t first = 0;
+  for (std::uint32_t k = 1; k < 3; ++k) {
+    if (lexicographically_before(surface.corner(t, k), surface.corner(t, first))) first = k;
+  }
+  return first;
+}
+
+// Three numbers for each triangle, whichever of its corners is named first. Returns, in ascending order, the slivers among them: triangles
 // so thin that the products of their sides cancel, and doubles do not tell their normals. Check
 // `team.is_stopped()` afterwards.
 inline std::vector<std::int32_t> compute_normals(const Surface& surface, double* normals,
@@ -27,8 +37,10 @@ inline std::vector<std::int32_t> compute_normals(const Surface& surface, double*
     for (std::int32_t i = range.begin; i < range.end; ++i) {
       if (i % kBetweenQuestions == 0 && !team.keeps_going(part)) return;
       const Triangle t = triangle_numbered(i);
-      const double* row[3];
-      for (std::uint32_t k = 0; k < 3; ++k) row[k] = surface.row(surface.vertex(t, k));
+      const std::uint32_t first = first_corner(surface, t);
+      const double* const row[3] = {surface.row(surface.vertex(t, first)),
+                                    surface.row(surface.vertex(t, corner_after(first))),
+                                    surface.row(surface.vertex(t, corner_before(first)))};
       double u[3], v[3];
       for (int axis = 0; axis < 3; ++axis) {
         u[axis] = row[1][axis] - row[0][axis];
@@ -48,16 +60,39 @@ inline std::vector<std::int32_t> compute_normals(const Surface& surface, double*
   return all;
 }
 
-// The sums of the normals of the triangles at each vertex, three numbers each, by one thread and
-// in the order of triangles: so they are the same wherever they are computed.
-inline void sum_at_vertices(const Surface& surface, const double* normals, double* sums) {
-  std::fill_n(sums, 3 * static_cast<std::size_t>(surface.point_count), 0.0);
-  for (const Triangle t : Ids<Triangle>(surface.triangle_count)) {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      double* const sum = sums + 3 * static_cast<std::size_t>(number(surface.vertex(t, k)));
-      for (std::uint32_t axis = 0; axis < 3; ++axis) sum[axis] += normals[entry_of(t, axis)];
+// Adds numbers up, the larger ones first: the sum depends on what they are, not on their order, and
+// numbers and their opposites cancel out.
+inline double sum_by_size(std::vector<double>& values) {
+  std::sort(values.begin(), values.end(), [](double a, double b) {
+    const double size = std::fabs(a), other = std::fabs(b);
+    return size > other || (size == other && a > b);
+  });
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum;
+}
+
+// The sums of the normals of the triangles at each vertex, three numbers each, whatever the order of
+// triangles. Check `team.is_stopped()` afterwards.
+inline void sum_at_vertices(const Surface& surface, const double* normals, double* sums,
+                            Team& team) {
+  constexpr std::int32_t kBetweenQuestions = 1 << 16;
+  const VertexTriangles around(surface);
+  team.run([&](int part) {
+    std::vector<double> values;
+    const Range range = part_of(surface.point_count, part, team.size());
+    for (std::int32_t i = range.begin; i < range.end; ++i) {
+      if (i % kBetweenQuestions == 0 && !team.keeps_going(part)) return;
+      const Vertex v{i};
+      for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        values.clear();
+        for (const Triangle* t = around.begin(v); t != around.end(v); ++t) {
+          values.push_back(normals[entry_of(*t, axis)]);
+        }
+        sums[3 * static_cast<std::size_t>(i) + axis] = sum_by_size(values);
+      }
     }
-  }
+  });
 }
 
 }  // namespace tinsmith

@@ -10,6 +10,8 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support import oracles
+from support.clipping import covered_area
+from support.relief_oracle import GradientAt
 
 import tinsmith as ts
 from tinsmith.errors import CrsError, OptionError, PointsError, ReadError
@@ -96,10 +98,14 @@ def test_centres_on_edges_and_vertices_belong_to_the_located_triangle(sites, spa
         return
     raster = ts.rasterize(tin, spacing=spacing)
     np.testing.assert_array_equal(elevations(raster).ravel(), tin.interpolate(xy))
-    triangles = tin.locate(xy)
-    slopes = np.append(ts.slope(tin), np.nan)[triangles]
+    gradient_at = GradientAt(tin.points, tin.triangles)
     found = ts.rasterize(tin, spacing=spacing, value="slope").bands["slope"].ravel()
-    np.testing.assert_array_equal(found, slopes)
+    np.testing.assert_allclose(found, [gradient_at.slope(*place) for place in xy], atol=1e-9)
+    found = ts.rasterize(tin, spacing=spacing, value="aspect").bands["aspect"].ravel()
+    wanted = np.array([gradient_at.aspect(*place) for place in xy])
+    np.testing.assert_array_equal(np.isnan(found), np.isnan(wanted))
+    off = np.abs(found - wanted)
+    assert np.nanmax(np.minimum(off, 360 - off), initial=0.0) < 1e-9
 
 
 def test_a_surface_whose_parts_meet_without_being_neighbours():
@@ -178,6 +184,30 @@ def plane_at(corners, place):
     shifted = corners - corners[0]
     gradient = np.linalg.solve(shifted[1:, :2], shifted[1:, 2])
     return corners[0, 2] + gradient @ (place - corners[0, :2])
+
+
+@pytest.mark.parametrize("mirror", [1.0, -1.0])
+def test_a_cell_that_is_touched_in_a_point_has_no_mean(mirror):
+    """Rounding left it a value in one of two mirror images."""
+    points = np.array([[54.0, 40, 1], [32, 17, 7], [19, 2, 5], [4, 1, 8]]) * [mirror, 1, 1]
+    tin = ts.triangulate(points)
+    raster = ts.rasterize(tin, spacing=0.5, at="mean")
+    found, bounds = elevations(raster), raster.grid.bounds
+    corners = tin.points[tin.triangles, :2]
+    x, y = centers_of(raster.grid).T
+    areas = [
+        covered_area(corners, (east - 0.25, north - 0.25, east + 0.25, north + 0.25))
+        for east, north in zip(x.tolist(), y.tolist(), strict=True)
+    ]
+    np.testing.assert_array_equal(np.isnan(found).ravel(), [area == 0 for area in areas])
+    assert bounds.xmin == points[:, 0].min()
+
+
+def test_a_cell_that_is_hardly_covered_has_a_mean_of_the_surface():
+    tin = ts.triangulate([[0, 0, 10], [1 + 1e-12, 0.5, 20], [0, 1, 10]])
+    found = elevations(ts.rasterize(tin, spacing=1.0, at="mean"))
+    assert found.shape == (1, 2)
+    assert found[0, 1] == pytest.approx(20, abs=1e-6)
 
 
 def test_means_add_up_to_the_volume():
@@ -432,19 +462,36 @@ def test_the_far_edge_of_a_grid_is_its_cells_away():
         ts.rasterize(tin, grid=grid, lazy=True)
 
 
-def test_a_centre_on_an_edge_is_the_smallest_triangle_whatever_its_place():
-    """Triangles in an order that has nothing to do with where they lie."""
+@pytest.mark.parametrize("value", ["slope", "aspect", "hillshade"])
+@pytest.mark.parametrize("smooth", [False, True])
+def test_centres_on_vertices_and_edges_do_not_depend_on_the_order_of_triangles(value, smooth):
+    """To the last bit: an arbitrary triangle of each vertex was taken."""
     side = np.arange(9.0)
     x, y = (axis.ravel() for axis in np.meshgrid(side, side))
     even = ts.triangulate(np.column_stack([x, y, np.zeros(81)]))
     order = rng(4).permutation(len(even.triangles))
     steep = even.points + np.column_stack([np.zeros((81, 2)), rng(5).integers(0, 9, 81)])
-    tin = ts.TIN.from_triangles(steep, even.triangles[order])
-    grid = ts.Grid(ts.Bounds(-0.5, -0.5, 8.5, 8.5), shape=(9, 9), spacing=1.0)
-    found = ts.rasterize(tin, grid=grid, value="slope").bands["slope"]
-    centers = np.column_stack([np.tile(side, 9), np.repeat(side[::-1], 9)])
-    triangle = tin.locate(centers)
-    np.testing.assert_array_equal(found.ravel(), ts.slope(tin)[triangle])
+    grids_asked = [
+        ts.Grid(ts.Bounds(-0.5, -0.5, 8.5, 8.5), shape=(9, 9), spacing=1.0),
+        ts.Grid(ts.Bounds(0.0, 0.0, 8.0, 8.0), shape=(16, 16), spacing=0.5),
+    ]
+    turned = np.roll(even.triangles[order], 1, axis=1)
+    tins = [ts.TIN.from_triangles(steep, one) for one in (even.triangles, turned)]
+    for grid in grids_asked:
+        one, other = (
+            ts.rasterize(tin, grid=grid, value=value, smooth=smooth).bands[value] for tin in tins
+        )
+        np.testing.assert_array_equal(one, other)
+
+
+def test_a_vertex_in_the_middle_of_an_edge_is_the_vertex():
+    points = [[0, 0, 0], [4, 0, 8], [2, 3, 1], [0, -3, 5], [4, -3, 6], [2, 0, 1]]
+    triangles = [[0, 1, 2], [3, 5, 0], [4, 1, 5], [3, 4, 5]]
+    grid = ts.Grid(ts.Bounds(1.5, -0.5, 2.5, 0.5), shape=(1, 1), spacing=1.0)
+    for order in (triangles, triangles[::-1]):
+        tin = ts.TIN.from_triangles(points, order)
+        found = ts.rasterize(tin, grid=grid, value="slope").bands["slope"]
+        assert found[0, 0] == ts.slope(tin, per="vertex")[5]
 
 
 def test_a_lazy_raster_can_be_copied_to_another_process():

@@ -127,6 +127,7 @@ def test_report_is_plain_data():
         ],
         "left_out": {},
         "lines": 0,
+        "from_raster": False,
         "crossings": [],
         "overruled": [],
         "skipped": {},

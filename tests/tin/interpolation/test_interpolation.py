@@ -469,3 +469,35 @@ def test_extrapolation_changes_nothing_inside(method):
     np.testing.assert_array_equal(
         tin.interpolate(xy, method, extrapolate="nearest")[inside], plain[inside]
     )
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_outside_the_westernmost_of_the_nearest_places_counts(method):
+    """In the middle of a hole four places are as near; the order of triangles decided which."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(4.0), np.arange(4.0)))
+    whole = ts.triangulate(np.column_stack([x, y, np.arange(16.0) ** 2]))
+    middles = whole.points[whole.triangles][:, :, :2].mean(axis=1)
+    kept = whole.triangles[~(np.abs(middles - 1.5) < 0.5).all(axis=1)]
+    places = [[1.5, 1.5], [1.25, 1.5], [-1.0, -1.0], [1.5, -2.0]]
+    found = set()
+    for seed in range(40):
+        order = rng(seed).permutation(16)
+        number = np.argsort(order)
+        triangles = number[kept[rng(seed).permutation(len(kept))]]
+        tin = TIN.from_triangles(whole.points[order], triangles)
+        found.add(tuple(tin.interpolate(places, method, extrapolate="nearest").tolist()))
+    assert len(found) == 1
+    (one,) = found
+    if method != "c1":
+        wanted = [25.0, 25.0, 0.0, 1.0] if method == "nearest" else [53.0, 53.0, 0.0, 2.5]
+        assert one == pytest.approx(wanted)
+
+
+def test_the_nearest_vertex_inside_is_the_westernmost_of_several():
+    """Between the points of a lattice, whatever their order."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(5.0), np.arange(5.0)))
+    points = np.column_stack([x, y, np.arange(25.0)])
+    places = np.column_stack([x[x < 4] + 0.5, y[x < 4]])
+    for seed in range(10):
+        tin = ts.triangulate(points[rng(seed).permutation(25)])
+        np.testing.assert_array_equal(tin.interpolate(places, "nearest"), points[x < 4, 2])

@@ -56,56 +56,71 @@ class NearestBoundary {
     return true;
   }
 
-  // Of several at the same distance, as doubles compare, that on the smallest edge. The edge that
-  // was found for a point near by may be given, for a quick start.
+  // Of several places at the same distance, as doubles compare, the westernmost, of several of these
+  // the southernmost, and there the lowest: whatever the numbers of triangles. The edge that was found
+  // for a point near by may be given, for a quick start.
   BoundaryPlace find(Point p, HalfEdge near = kNoHalfEdge) const {
-    BoundaryPlace best;
-    double least = std::numeric_limits<double>::infinity();
+    Candidate best;
     const auto look_at = [&](HalfEdge edge) {
-      const double share = nearest_share(p, edge);
-      const double away = distance(p, edge, share);
-      if (away < least || (away == least && edge < best.edge)) {
-        least = away;
-        best = {edge, share};
-      }
+      const Candidate one = candidate_on(p, edge);
+      if (one.comes_before(best)) best = one;
     };
     look_at(near == kNoHalfEdge ? edges_.front() : near);
     const auto may_be_nearer = [&](const Box& box, std::int64_t) {
       const double x = std::max({box.west - p.x, p.x - box.east, 0.0});
       const double y = std::max({box.south - p.y, p.y - box.north, 0.0});
-      return x * x + y * y <= least;
+      return x * x + y * y <= best.square;
     };
     tree_.visit_leaves_if(may_be_nearer, [&](std::int32_t begin, std::int32_t end) {
       for (std::int32_t i = begin; i < end; ++i) look_at(edges_[i]);
       return false;
     });
-    return best;
+    return best.place;
   }
 
  private:
-  Point start_of(HalfEdge e) const {
-    return surface_.corner(triangle_of(e), corner_after(corner_of(e)));
-  }
-  Point end_of(HalfEdge e) const {
-    return surface_.corner(triangle_of(e), corner_before(corner_of(e)));
-  }
-  Box box_of(HalfEdge e) const { return Box::of(start_of(e), end_of(e)); }
+  struct Candidate {
+    BoundaryPlace place;
+    double square = std::numeric_limits<double>::infinity();  // of the distance
+    Point at{};
+    double elevation = 0.0;
 
-  double nearest_share(Point p, HalfEdge e) const {
-    const Point a = start_of(e), b = end_of(e);
-    const double x = b.x - a.x, y = b.y - a.y;
-    const double share = ((p.x - a.x) * x + (p.y - a.y) * y) / (x * x + y * y);
-    return std::min(std::max(share, 0.0), 1.0);
+    bool comes_before(const Candidate& other) const {
+      if (square != other.square) return square < other.square;
+      if (at.x != other.at.x) return at.x < other.at.x;
+      if (at.y != other.at.y) return at.y < other.at.y;
+      return elevation != other.elevation ? elevation < other.elevation
+                                          : place.edge < other.place.edge;
+    }
+  };
+
+  Vertex start_of(HalfEdge e) const {
+    return surface_.vertex(triangle_of(e), corner_after(corner_of(e)));
+  }
+  Vertex end_of(HalfEdge e) const {
+    return surface_.vertex(triangle_of(e), corner_before(corner_of(e)));
+  }
+  Box box_of(HalfEdge e) const {
+    return Box::of(surface_.point(start_of(e)), surface_.point(end_of(e)));
   }
 
-  double distance(Point p, HalfEdge e, double share) const {
-    const Point a = start_of(e), b = end_of(e);
-    // From the nearer end, so that both ends are met exactly.
+  // From the nearer end, so that both ends are met exactly.
+  Candidate candidate_on(Point p, HalfEdge e) const {
+    const Vertex start = start_of(e), end = end_of(e);
+    const Point a = surface_.point(start), b = surface_.point(end);
+    const double east = b.x - a.x, north = b.y - a.y;
+    const double ratio = ((p.x - a.x) * east + (p.y - a.y) * north) / (east * east + north * north);
+    const double share = std::min(std::max(ratio, 0.0), 1.0);
     const bool is_late = share > 0.5;
-    const Point from = is_late ? b : a;
+    const Vertex near = is_late ? end : start;
+    const Point from = surface_.point(near);
     const double part = is_late ? share - 1.0 : share;
-    const double x = p.x - from.x - part * (b.x - a.x), y = p.y - from.y - part * (b.y - a.y);
-    return x * x + y * y;
+    const double x = p.x - from.x - part * east, y = p.y - from.y - part * north;
+    const double rise = surface_.elevation(end) - surface_.elevation(start);
+    return {{e, share},
+            x * x + y * y,
+            {from.x + part * east, from.y + part * north},
+            surface_.elevation(near) + part * rise};
   }
 
   Surface surface_;

@@ -13,11 +13,11 @@ namespace tinsmith {
 // One for a thread.
 class NearestVertex {
  public:
-  explicit NearestVertex(const OrderedSurface& ordered)
-      : ordered_(ordered), surface_(ordered.surface()) {}
+  NearestVertex(const OrderedSurface& ordered, bool from_west)
+      : ordered_(ordered), surface_(ordered.surface()), from_west_(from_west) {}
 
   // Of the vertices nearest to p, which the triangle holds, the one that the caller calls by the
-  // smallest number; by that number.
+  // smallest number, or the lexicographically first; by that number.
   Vertex find(Point p, Triangle t) { return ordered_.given_number(find_ordered(p, t)); }
 
  private:
@@ -31,6 +31,9 @@ class NearestVertex {
 
   Vertex nearer(Point p, Vertex one, Vertex other) const {
     const int further = compare_distances(p, surface_.point(one), surface_.point(other));
+    if (further == 0 && from_west_) {
+      return lexicographically_before(surface_.point(one), surface_.point(other)) ? one : other;
+    }
     if (further == 0) {
       return ordered_.given_number(one) < ordered_.given_number(other) ? one : other;
     }
@@ -39,6 +42,7 @@ class NearestVertex {
 
   const OrderedSurface& ordered_;
   Surface surface_;
+  bool from_west_;
   NeighborRing ring_;
 };
 

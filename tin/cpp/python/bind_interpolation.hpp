@@ -97,11 +97,12 @@ class HeldNearestBoundary {
 };
 
 // Vertex numbers of a Delaunay triangulation, as doubles; NaN outside.
-inline Elevations nearest_vertices(const HeldLocator& locator, const GivenXy& xy, int threads) {
+inline Elevations nearest_vertices(const HeldLocator& locator, const GivenXy& xy, bool from_west,
+                                   int threads) {
   return elevations_at(locator.locator(), xy, threads, [&] {
-    return [search = NearestVertex(locator.locator().ordered())](Point p, Triangle t) mutable {
-      return static_cast<double>(number(search.find(p, t)));
-    };
+    return
+        [search = NearestVertex(locator.locator().ordered(), from_west)](
+            Point p, Triangle t) mutable { return static_cast<double>(number(search.find(p, t))); };
   });
 }
 
@@ -109,7 +110,8 @@ inline void bind_interpolation(nb::module_& m) {
   nb::enum_<NaturalWeights>(m, "NaturalWeights", "How natural neighbours weigh.")
       .value("SIBSON", NaturalWeights::kSibson)
       .value("LAPLACE", NaturalWeights::kLaplace);
-  m.def("nearest_vertices", &nearest_vertices, "locator"_a, "xy"_a.noconvert(), "threads"_a = 1,
+  m.def("nearest_vertices", &nearest_vertices, "locator"_a, "xy"_a.noconvert(), "from_west"_a,
+        "threads"_a = 1,
         "The nearest vertex of a Delaunay triangulation at each point, NaN outside.");
   nb::class_<HeldNaturalNeighbors>(m, "NaturalNeighbors", "Natural neighbour interpolation.")
       .def(nb::init<const HeldLocator&, const GivenFlags&>(), "locator"_a, "barriers"_a.noconvert(),

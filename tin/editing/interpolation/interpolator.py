@@ -97,7 +97,8 @@ class Interpolator:
         return _interpolate_between(start, end, shares)
 
     def _take_nearest(self, xy: Float64Array, threads: int) -> Float64Array:
-        return self._elevations[self._surface.nearest.find(xy, threads=threads)]
+        nearest = self._surface.nearest.find(xy, threads=threads, from_west=True)
+        return self._elevations[nearest]
 
     @property
     def _elevations(self) -> Float64Array:

@@ -7,7 +7,7 @@ from typing import Any, get_args
 import numpy as np
 
 from .....errors import PointsError
-from .....policies import CrossingPolicy, DuplicatePolicy, LineKind, TrimPolicy
+from .....policies import CrossingPolicy, DuplicatePolicy, LineKind, SimplificationHold, TrimPolicy
 from .....tin.building.constrained import LineOptions
 from .....tin.building.inputs import BuildInputs
 from .....tin.constraints.breaklines import Lines
@@ -121,6 +121,7 @@ def require_inputs(inputs: Any, n_rows: int) -> None:
     require(inputs.trim in get_args(TrimPolicy), "an option")
     require({type(inputs.conforming), type(inputs.has_own_boundary)} == {bool}, "an option")
     _require_options(inputs.options)
+    require(type(inputs.from_raster) is bool, "where points come from")
     _require_counts(inputs.skipped, "what was skipped")
     _require_texts(inputs.notes, "notes")
     require(isinstance(inputs.source, str), "the source")
@@ -192,6 +193,7 @@ def require_report(report: Any, n_rows: int, n_vertices: int, n_triangles: int) 
     require(type(report.line_labels) is tuple, "labels of lines")
     _require_texts(report.line_labels, "labels of lines")
     _require_accounts(report, n_vertices)
+    require(type(report.from_raster) is bool, "where points come from")
     _require_counts(report.skipped, "what was skipped")
     _require_texts(report.notes, "notes")
     require(isinstance(report.source, str), "the source")
@@ -237,11 +239,13 @@ def _require_simplification(found: Any) -> None:
     if found is None:
         return
     require(isinstance(found, Simplification), "what was simplified")
-    counts = (found.points, found.vertices, found.required, found.needless)
+    counts = (*found[:4], found.forced_edges)
+    require(found.hold in (None, *get_args(SimplificationHold)), "what was simplified")
     require({type(count) for count in counts} == {int}, "what was simplified")
     errors = {
         found.largest_error,
         found.rms_error,
         0.0 if found.tolerance is None else found.tolerance,
+        0.0 if found.surface_error is None else found.surface_error,
     }
     require({type(one) for one in errors} == {float}, "what was simplified")

@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-import click
-
-from ..parameters import file_command, number_option
+from ..parameters import file_command, number_option, smooth_option
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -25,11 +23,7 @@ __all__ = ["hillshade"]
 )
 @number_option("--altitude", "DEGREES", "Altitude of the light above the horizon.", default=45.0)
 @number_option("--exaggeration", "FACTOR", "Vertical exaggeration.", default=1.0)
-@click.option(
-    "--smooth",
-    is_flag=True,
-    help="Interpolate normals, so that edges of triangles are not visible.",
-)
+@smooth_option
 @surface_options()
 def hillshade(
     file: Path,
@@ -37,7 +31,7 @@ def hillshade(
     azimuth: float,
     altitude: float,
     exaggeration: float,
-    smooth: bool,
+    smooth: bool | None,
     request: Request,
 ) -> None:
     """Write a georeferenced hillshade raster of the TIN in FILE, or built from the points in it.

@@ -8,7 +8,7 @@ import click
 
 from ...policies import InterpolationMethod, RasterSample, RasterValue
 from ..options import format_options
-from ..parameters import choice_option, file_command, file_option, number_option
+from ..parameters import choice_option, file_command, file_option, number_option, smooth_option
 from ..paths import Named
 from ..request import surface_options
 
@@ -46,6 +46,7 @@ __all__ = ["raster"]
 )
 @number_option("--azimuth", "DEGREES", "Of the light of hillshade.", default=315.0)
 @number_option("--altitude", "DEGREES", "Of the light of hillshade.", default=45.0)
+@smooth_option
 @surface_options(format_options)
 def raster(
     file: Path,
@@ -88,6 +89,7 @@ def _rasterize(
         value=asked["value"],
         method=asked["method"],
         at=asked["sample"],
+        smooth=asked["smooth"],
         azimuth=asked["azimuth"],
         altitude=asked["altitude"],
         lazy=True,

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..._sentences import counted
+from ...policies import SimplificationHold
 from ..options import writing_options
 from ..output.failures import Failure
-from ..parameters import file_command, file_option, number_option
+from ..parameters import choice_option, file_command, file_option, number_option
 from ..paths import INPUT, Named
 from ..request import surface_options
 
@@ -30,9 +31,15 @@ __all__ = ["simplify"]
 @number_option(
     "--tolerance",
     "HEIGHT",
-    "Largest vertical distance of a point from the new surface, in the unit of elevations.",
+    "Largest vertical distance from the new surface, in the unit of elevations.",
 )
 @number_option("--points", "N", "Number of points to keep, instead of a tolerance.", type=int)
+@choice_option(
+    "--hold",
+    SimplificationHold,
+    "Hold the tolerance at the points, or between them too, anywhere on the surface; default "
+    "surface where there are breaklines or triangles that are not Delaunay.",
+)
 @file_option(
     "--keep",
     "File of points to keep, such as benchmarks: each must be a vertex of the surface.",
@@ -43,14 +50,15 @@ def simplify(
     file: Path,
     tolerance: float | None,
     points: int | None,
+    hold: SimplificationHold | None,
     keep: Path | None,
     request: Request,
 ) -> None:
     """Leave out points of the TIN in FILE, or built from the points in it, within a tolerance.
 
-    At every point the elevation of the new surface differs by at most --tolerance. Boundary,
-    holes, breaklines and water are kept, and so are voids of a raster. A raster may be larger than
-    memory: it is read and simplified in blocks.
+    At every point the elevation of the new surface differs by at most --tolerance; with
+    --hold surface between the points too. Boundary, holes, breaklines and water are kept, and so
+    are voids of a raster. A raster may be larger than memory: it is read and simplified in blocks.
 
     \b
     Example:
@@ -76,6 +84,7 @@ def simplify(
             tolerance=tolerance,
             points=points,
             keep=kept,
+            hold=hold,
             threads=request.how.threads,
             progress=progress,
         )
@@ -135,7 +144,11 @@ def _summarise_errors(simple: TIN, given: TIN | Raster) -> list[Row]:
         return []
     before = given.notes if isinstance(given, Raster) else given.report.notes
     return [
-        ("Errors", f"largest {found.largest_error:.4g}, RMS {found.rms_error:.4g}, at all points"),
+        (
+            "Errors",
+            f"largest {found.largest_error:.4g}, RMS {found.rms_error:.4g}, at all points\n"
+            f"{found.describe_surface()}",
+        ),
         ("Kept", f"{counted(found.required, 'point')} of lines, boundary and those to be kept"),
         *summarise_news(simple, [*before, found.sentence()]),
     ]

@@ -1,0 +1,147 @@
+"""How far a TIN lies from the surface of some of its vertices, between the vertices too.
+
+Both are piecewise linear, so the difference is largest at a vertex of one of them or where an edge
+of one crosses an edge of the other. The vertices are measured elsewhere; here the crossings are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...errors import PointsError
+from .. import topology
+
+if TYPE_CHECKING:
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ..surface import TIN
+
+__all__ = ["Beyond", "Crossings", "SurfaceMeter", "choose_rows"]
+
+
+class Crossings(NamedTuple):
+    """Where edges of the new surface cross those of the given one, and the difference there."""
+
+    owners: Int64Array
+    """(k,), ascending: the edge of the new surface."""
+    xy: Float64Array
+    """(k, 2)."""
+    errors: Float64Array
+    """(k,)."""
+    candidates: Int64Array
+    """(k, 4): ends of the edge crossed, the nearer first, then the third corners of its triangles;
+    -1 for none."""
+
+
+class Beyond(NamedTuple):
+    """What is to be added because the difference is beyond the tolerance between vertices."""
+
+    largest: float
+    """Of all crossings."""
+    rows: Int64Array
+    """Vertices of the given surface."""
+    edges: Int64Array
+    """(k, 2), edges of it whose vertices are all there already."""
+
+
+def choose_rows(
+    found: Crossings, is_left: BoolArray, limit: float
+) -> tuple[Int64Array, Int64Array]:
+    """Return the vertices to add, and the edges for which there is none to add.
+
+    At the worst crossing of each edge the first candidate that is not left (``is_left``, (n + 1,),
+    true at its end). If both ends of the edge crossed are left, and the third corners of its
+    triangles, then these triangles would be Delaunay in the new surface: so there is a vertex to
+    add, unless the given triangles are not Delaunay.
+    """
+    order = np.lexsort((*found.xy.T, -found.errors, found.owners))
+    is_first = np.append(True, np.diff(found.owners[order]) != 0)[: len(order)]
+    worst = order[is_first]
+    worst = worst[found.errors[worst] > limit]
+    candidates = found.candidates[worst]
+    is_new = ~is_left[candidates]
+    has_new = is_new.any(axis=1)
+    rows = candidates[has_new, is_new[has_new].argmax(axis=1)]
+    edges = np.unique(np.sort(candidates[~has_new, :2], axis=1), axis=0)
+    return np.unique(rows), edges
+
+
+@dataclass
+class SurfaceMeter:
+    """Measures surfaces of some of a TIN's vertices against it, along their edges.
+
+    An edge has the same difference in each of them, so it is measured once.
+    """
+
+    tin: TIN
+    forced: Int64Array = field(default_factory=lambda: np.empty((0, 2), np.int64))
+    """Edges that are not Delaunay and are to be kept, (k, 2)."""
+
+    def __post_init__(self) -> None:
+        tin = self.tin
+        own = topology.edges(tin.triangles, tin.neighbors)
+        self._keys = np.unique(topology.edge_keys(own, len(tin.points)))
+        self._errors = np.zeros(len(self._keys))
+
+    def measure(self, edges: Int64Array, is_left: BoolArray, limit: float) -> Beyond:
+        """Measure the edges inside a surface, (k, 2) vertices of the TIN."""
+        keys = topology.edge_keys(edges, len(self.tin.points))
+        place = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
+        is_known = self._keys[place] == keys
+        found = self._trace(edges[~is_known])
+        largest = np.zeros(int((~is_known).sum()))
+        np.maximum.at(largest, found.owners, found.errors)
+        whole = max(largest.max(initial=0.0), self._errors[place[is_known]].max(initial=0.0))
+        is_near = largest <= limit
+        self._remember(keys[~is_known][is_near], largest[is_near])
+        rows, forced = choose_rows(found, is_left, limit)
+        if len(forced):
+            self.forced = np.unique(np.concatenate([self.forced, forced]), axis=0)
+        return Beyond(float(whole), rows, forced)
+
+    def _remember(self, keys: Int64Array, errors: Float64Array) -> None:
+        keys, errors = np.append(self._keys, keys), np.append(self._errors, errors)
+        order = np.argsort(keys, kind="stable")
+        self._keys, self._errors = keys[order], errors[order]
+
+    def _trace(self, edges: Int64Array) -> Crossings:
+        """Follow edges of the new surface over the TIN."""
+        start, end = self.tin.points[self._sort(*edges.T)]
+        traced = self.tin.triangulation.locator.trace(
+            np.ascontiguousarray(start[:, :2]), np.ascontiguousarray(end[:, :2])
+        )
+        offsets, xy, elevations, ratios, vertices, crossed, _, _, failed = traced
+        if failed >= 0:
+            raise PointsError("The TIN cannot be simplified: triangles lie over each other.")
+        owners = topology.find_owners(offsets)
+        z, other = start[owners, 2], end[owners, 2]
+        own = np.where(ratios > 0.5, other + (1.0 - ratios) * (z - other), z + ratios * (other - z))
+        errors = np.nan_to_num(np.abs(own - elevations))
+        return Crossings(owners, xy, errors, self._list_candidates(xy, vertices, crossed))
+
+    def _list_candidates(
+        self, xy: Float64Array, vertices: Int32Array, edges: Int32Array
+    ) -> Int64Array:
+        """Return the vertices around each crossing; one that is a vertex alone."""
+        found = np.full((len(xy), 4), -1, np.int64)
+        found[:, 0] = vertices
+        at = np.flatnonzero((vertices < 0) & (edges >= 0))
+        triangle, corner = np.divmod(edges[at], 3)
+        corners = self.tin.triangles[triangle]
+        rows = np.arange(len(at))
+        ends = self._sort(*(corners[rows, (corner + k) % 3] for k in (1, 2)))
+        away = [((self.tin.points[v, :2] - xy[at]) ** 2).sum(axis=1) for v in ends]
+        found[at, :2] = np.where(away[0] <= away[1], ends, ends[::-1]).T
+        apex = corners[rows, corner].astype(np.int64)
+        beyond = self.tin.neighbors[triangle, corner]
+        other = self.tin.triangles[beyond].sum(axis=1) - ends[0] - ends[1]
+        found[at, 2:] = self._sort(apex, np.where(beyond >= 0, other, apex)).T
+        return found
+
+    def _sort(self, one: Int64Array, other: Int64Array) -> Int64Array:
+        """Return pairs of vertices, (2, k), the lexicographically first first."""
+        (x, y), (u, v) = (self.tin.points[which, :2].T for which in (one, other))
+        is_sorted = (x < u) | ((x == u) & (y <= v))
+        return np.where(is_sorted, (one, other), (other, one))
