@@ -10,7 +10,7 @@ import numpy as np
 from ..._progress import Progress
 from .. import _kernel
 from ..topology import find_boundary_vertices, find_owners
-from .residuals import Residuals, fit_plane
+from .residuals import Residuals, fit_planes
 from .scales import find_rounding, measure_scales
 
 if TYPE_CHECKING:
@@ -138,7 +138,7 @@ class _Search:
             striking = np.flatnonzero(np.abs(self.residuals) > self.limits).astype(np.int32)
         if len(striking) == 0:
             return False
-        around = _Reach.of(self.known, striking, *self.known.list_neighbors(striking))
+        around = _Reach.of(self.known, striking)
         rank = np.zeros(len(self.residuals))
         rank[striking] = 1 + _rank(np.abs(self.residuals[striking]))
         is_first = np.ones(len(striking), np.bool_)
@@ -153,9 +153,9 @@ class _Search:
         own = known.xyz[chosen, 2].copy()
         residuals = self.residuals[chosen]
         known.xyz[chosen, 2] -= residuals
-        offsets, near = known.list_neighbors(chosen)
-        reach = _Reach.of(known, chosen, offsets, near)
+        reach = _Reach.of(known, chosen)
         is_wrong = np.abs(residuals) > _APART * reach.measure_most(known)
+        offsets, near = known.list_neighbors(chosen)
         beyond = self._measure_beyond(offsets, near, chosen, own)
         is_wrong &= np.abs(residuals) > _APART * _find_second(offsets, beyond)
         known.xyz[chosen[~is_wrong], 2] = own[~is_wrong]
@@ -173,12 +173,11 @@ class _Search:
         own: Float64Array,
     ) -> Float64Array:
         """Return how far neighbours lie off the plane through them, on the side of the vertex."""
-        beyond = np.zeros(len(near))
-        for i, vertex in enumerate(chosen.tolist()):
-            part = slice(offsets[i], offsets[i + 1])
-            ring, place = self.known.xyz[near[part]], self.known.xyz[vertex]
-            expected, left = fit_plane(ring, place)
-            beyond[part] = left if own[i] > expected else -left
+        xyz, owners = self.known.xyz, find_owners(offsets)
+        planes = fit_planes(xyz, chosen, offsets, near)
+        apart = xyz[near, :2] - xyz[chosen[owners], :2]
+        left = xyz[near, 2] - planes[owners, 0] - (planes[owners, 1:] * apart).sum(axis=1)
+        beyond: Float64Array = np.where((own > planes[:, 0])[owners], left, -left)
         return beyond
 
 
@@ -193,21 +192,9 @@ class _Reach(NamedTuple):
     """(k,)."""
 
     @classmethod
-    def of(
-        cls,
-        known: Residuals,
-        chosen: Int32Array,
-        offsets: Int64Array,
-        near: Int32Array,
-    ) -> _Reach:
-        """Gather them from the neighbours of those chosen."""
-        wide, around = known.list_neighbors(near)
-        owner = find_owners(offsets)
-        owner = np.concatenate([owner, owner[find_owners(wide)]])
-        reach = np.concatenate([near, around])
-        owner, reach = np.divmod(np.unique(owner * len(known.xyz) + reach), len(known.xyz))
-        elsewhere = reach != chosen[owner]
-        return cls(len(chosen), owner[elsewhere], reach[elsewhere].astype(np.int32))
+    def of(cls, known: Residuals, chosen: Int32Array) -> _Reach:
+        wide, around = known.list_wide_neighbors(chosen)
+        return cls(len(chosen), find_owners(wide), around)
 
     def measure_most(self, known: Residuals) -> Float64Array:
         """Return the largest residual around each, when the one that has it is corrected, too.

@@ -21,8 +21,8 @@ def leave_out(surface: Triangulation, vertices: Int32Array) -> Triangulation:
         return surface
     is_gone = np.zeros(len(surface.points), np.bool_)
     is_gone[vertices] = True
-    touches: BoolArray = is_gone[surface.triangles].any(axis=1)
-    return keep_triangles(surface, ~touches)
+    first, second, third = (is_gone[corner] for corner in surface.triangles.T)
+    return keep_triangles(surface, ~(first | second | third))
 
 
 def keep_triangles(surface: Triangulation, stays: BoolArray) -> Triangulation:
