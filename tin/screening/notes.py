@@ -13,9 +13,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ..surface import TIN
+    from .searching import Screening
     from .suspects import Suspect
 
-__all__ = ["describe_findings"]
+__all__ = ["describe_findings", "describe_screening"]
 
 _SHOWN = 3
 
@@ -23,8 +24,9 @@ _SHOWN = 3
 def describe_findings(tin: TIN, *, gaps: bool = True) -> tuple[str, ...]:
     """Tell in a few sentences what looks wrong with a TIN.
 
-    A sentence for each kind of finding: points that look like blunders, of high or medium
-    certainty, and gaps that the surface spans.
+    A sentence for each kind of finding of high or medium certainty: points that look like
+    blunders, lines that the points do not bear out, voids that are filled with an elevation; and
+    for gaps that the surface spans.
 
     Parameters
     ----------
@@ -48,10 +50,20 @@ def describe_findings(tin: TIN, *, gaps: bool = True) -> tuple[str, ...]:
     >>> describe_findings(ts.triangulate(np.column_stack([x, y, z])))
     ('1 point looks like a blunder: row 33 (code).',)
     """
-    found = screen_points(tin)
-    wrong = [one for one in found.suspects if one.reason in DROPPED and one.certainty != "low"]
+    told = describe_screening(screen_points(tin))
+    return (*told, *(describe_gaps(tin) if gaps else ()))
+
+
+def describe_screening(found: Screening) -> tuple[str, ...]:
+    """Tell what was found wrong with points and lines, but for what is of low certainty."""
+    clear = [one for one in found.suspects if one.certainty != "low"]
+    wrong = [one for one in clear if one.reason in DROPPED]
+    lines = [one.explanation for one in clear if one.reason == "line"]
+    voids = [one.explanation for one in clear if one.reason == "void"]
     told = [_describe_blunders(wrong)] if wrong else []
-    return (*told, *found.notes, *(describe_gaps(tin) if gaps else ()))
+    told += _describe_first(lines, "vertex or line", "vertices or lines")
+    told += _describe_first(voids, "void", "voids")
+    return (*told, *found.notes)
 
 
 def _describe_blunders(wrong: Sequence[Suspect]) -> str:
@@ -59,3 +71,11 @@ def _describe_blunders(wrong: Sequence[Suspect]) -> str:
     more = ", ..." if len(wrong) > _SHOWN else ""
     looks = inflect("[looks like a blunder|look like blunders]", len(wrong))
     return f"{counted(len(wrong), 'point')} {looks}: {shown}{more}."
+
+
+def _describe_first(sentences: Sequence[str], noun: str, plural: str) -> list[str]:
+    """Return the first of some sentences, and how many more there are."""
+    if len(sentences) < 2:
+        return list(sentences)
+    more = counted(len(sentences) - 1, noun, plural)
+    return [f"{sentences[0][:-1]}; so {inflect('[does|do]', len(sentences) - 1)} {more} more."]

@@ -10,12 +10,25 @@ from ..topology import NO_NEIGHBOR
 from ..triangulation import Triangulation
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ...arrays import BoolArray, Int32Array
 
-__all__ = ["keep_triangles", "leave_out"]
+__all__ = ["find_clustered", "keep_triangles", "leave_out"]
 
 
-def leave_out(surface: Triangulation, vertices: Int32Array) -> Triangulation:
+def find_clustered(surface: Triangulation, vertices: Int32Array) -> Int32Array:
+    """Return those of some vertices that have another one of them as a neighbour."""
+    if len(vertices) < 2:
+        return vertices[:0]
+    is_one = np.zeros(len(surface.points), np.bool_)
+    is_one[vertices] = True
+    count = is_one[surface.triangles].sum(axis=1)
+    together = surface.triangles[count > 1]
+    return np.unique(together[is_one[together]])
+
+
+def leave_out(surface: Triangulation, vertices: Sequence[int] | Int32Array) -> Triangulation:
     """Return a surface without the triangles at some vertices; these have none any more."""
     if len(vertices) == 0:
         return surface
