@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..._progress import Progress
-from .. import _kernel
 from ..topology import find_boundary_vertices, find_owners
 from .residuals import Residuals, fit_planes
 from .scales import find_rounding, measure_scales
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from ...arrays import Float64Array, Int32Array, Int64Array
     from ..triangulation import Triangulation
 
-__all__ = ["STRICT", "Heights", "Judgement", "find_heights", "find_peaks_and_pits"]
+__all__ = ["STRICT", "Heights", "Judgement", "find_heights"]
 
 STRICT = 10.0
 """A residual is suspicious beyond so many times the scale around it."""
@@ -264,12 +263,3 @@ def _measure_without(
     stays = np.abs(residuals) > limits[vertices]
     vertices = vertices[stays]
     return Heights(vertices, residuals[stays], search.scales[vertices], limits[vertices])
-
-
-def find_peaks_and_pits(surface: Triangulation) -> Int32Array:
-    """Return the vertices further beyond all their neighbours than these are apart."""
-    lowest, highest, _ = _kernel.measure_neighbors(surface.points, surface.triangles).T
-    z = surface.points[:, 2]
-    with np.errstate(invalid="ignore"):
-        beyond = np.maximum(z - highest, lowest - z) > highest - lowest
-    return np.flatnonzero(beyond).astype(np.int32)

@@ -6,15 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .. import _kernel
 from ..topology import NO_NEIGHBOR
 from ..triangulation import Triangulation
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...arrays import BoolArray, Int32Array
+    from ...arrays import BoolArray, Int32Array, Int64Array
+    from ..constraints.clipping import Surface
 
-__all__ = ["find_clustered", "keep_triangles", "leave_out"]
+__all__ = ["find_clustered", "find_parts", "keep_triangles", "leave_out"]
 
 
 def find_clustered(surface: Triangulation, vertices: Int32Array) -> Int32Array:
@@ -36,6 +38,17 @@ def leave_out(surface: Triangulation, vertices: Sequence[int] | Int32Array) -> T
     is_gone[vertices] = True
     first, second, third = (is_gone[corner] for corner in surface.triangles.T)
     return keep_triangles(surface, ~(first | second | third))
+
+
+def find_parts(surface: Surface | Triangulation, chosen: Int64Array) -> Int32Array:
+    """Return for each of some triangles, ascending, the connected part of them that it is of."""
+    number = np.full(len(surface.triangles) + 1, NO_NEIGHBOR, np.int32)
+    number[chosen] = np.arange(len(chosen), dtype=np.int32)
+    corners = np.ascontiguousarray(surface.triangles[chosen])
+    beside = np.ascontiguousarray(number[surface.neighbors[chosen]])
+    barrier = np.zeros(corners.shape, np.bool_)
+    parts: Int32Array = _kernel.regions(surface.points, corners, beside, barrier)[0]
+    return parts
 
 
 def keep_triangles(surface: Triangulation, stays: BoolArray) -> Triangulation:

@@ -152,7 +152,8 @@ def fit_planes(
 
     def average(values: Float64Array) -> Float64Array:
         sums = np.bincount(owners, values, minlength=count)
-        return np.divide(sums, sizes, out=np.full(count, np.nan), where=sizes > 0)
+        means: Float64Array = sums / np.where(sizes > 0, sizes, np.nan)
+        return means
 
     apart = (xyz[around] - xyz[vertices[owners]]).T
     middle = np.array([average(axis) for axis in apart])

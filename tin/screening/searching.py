@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..._progress import Progress
+from ..._sentences import counted, inflect
 from ...crs import assume_elevation_unit
 from ...errors import LinesError, PointsError
-from .heights import STRICT, find_heights, find_peaks_and_pits
+from .. import _kernel
+from .heights import STRICT, find_heights
 from .nodata import find_suspect_elevations, is_customary
 from .parts import find_clustered, leave_out
 from .places import find_places
@@ -180,10 +182,12 @@ def _tell_void(tin: TIN, rows: Rows, void: Void) -> Suspect:
 def _tell_line(tin: TIN, line: WrongLine) -> Suspect:
     name = line.name[:1].upper() + line.name[1:]
     count = len(line.vertices)
-    which = "All" if count == line.count else f"{count:,} of"
+    which = "all" if count == line.n_vertices else f"{count:,} of"
+    words = inflect(line.words, count)
+    vertices = counted(line.n_vertices, "vertex", "vertices")
     sentence = (
-        f"{name}: {which.lower()} {line.count:,} vertices {line.words}; the points around give "
-        f"{line.lowest:.6g} to {line.highest:.6g}."
+        f"{name}: {which} {vertices} {words}; the points around give {line.lowest:.6g} to "
+        f"{line.highest:.6g}."
     )
     place = tuple(tin.points[line.worst].tolist())
     return Suspect(
@@ -211,7 +215,10 @@ def _screen_heights(tin: TIN, ground: _Ground) -> list[Suspect]:
     surface = ground.surface
     count = len(surface.points)
     is_small = count <= _FEW
-    judged = np.arange(count, dtype=np.int32) if is_small else find_peaks_and_pits(surface)
+    if is_small:
+        judged = np.arange(count, dtype=np.int32)
+    else:
+        judged = _kernel.find_peaks_and_pits(surface.points, surface.triangles)
     if not is_small and len(judged) > _MOST_PEAKS * count:
         return []
     sample = None if is_small else _SAMPLE

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .. import _kernel
 from .nodata import CUSTOMARY
-from .parts import keep_triangles
+from .parts import find_parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -86,11 +85,10 @@ def _find_plateaus(surface: Triangulation, is_in: BoolArray, value: float) -> It
 
 def _number_plateaus(surface: Triangulation, is_inside: BoolArray) -> Int64Array:
     """Return for each vertex the connected part of some triangles that it is of, -1 for none."""
-    part = keep_triangles(surface, is_inside)
-    barrier = np.zeros(part.triangles.shape, np.bool_)
-    regions = _kernel.regions(part.points, part.triangles, part.neighbors, barrier)[0]
-    numbers = np.full(len(part.points), -1, np.int64)
-    numbers[part.triangles] = regions[:, None]  # of several that meet in a vertex, one has it
+    inside = np.flatnonzero(is_inside)
+    numbers = np.full(len(surface.points), -1, np.int64)
+    parts = find_parts(surface, inside)
+    numbers[surface.triangles[inside]] = parts[:, None]  # of several that meet, one has the vertex
     return np.where(
         numbers < 0, -1, np.unique(numbers, return_inverse=True)[1] - (numbers < 0).any()
     )

@@ -44,7 +44,7 @@ class WrongLine(NamedTuple):
 
     name: str
     """Such as "boundary 0" or "breakline 2 'kerb'"."""
-    count: int
+    n_vertices: int
     """Vertices that it has in the surface."""
     vertices: Int32Array
     """(k,), vertices judged to be wrong, ascending; of many a sample."""
@@ -114,10 +114,13 @@ def find_wrong_lines(
     if len(lines) == 0 or not is_point.any():
         return []
     line_of = _number_lines(lines)
-    judged = _judge(surface, lines, line_of, is_point, known)
+    owners = line_of[find_owners(lines.offsets)]
+    keys = np.unique(owners * len(surface.points) + lines.vertices)
+    owners, vertices = np.divmod(keys, len(surface.points))
+    counts = np.bincount(owners)
+    judged = _judge(surface, owners, vertices.astype(np.int32), is_point, known)
     ground = surface.points[is_point, 2]
     span = (float(ground.min()), float(ground.max()))
-    counts = np.bincount(line_of, np.diff(lines.offsets)).astype(np.int64)
     chains = np.unique(line_of, return_index=True)[1]
     found = []
     for part in np.split(np.arange(len(judged.lines)), np.flatnonzero(np.diff(judged.lines)) + 1):
@@ -164,22 +167,19 @@ def name_lines_at(lines: Lines, vertices: Int32Array) -> list[str]:
 
 def _judge(
     surface: Triangulation,
-    lines: Lines,
-    line_of: Int64Array,
+    owners: Int64Array,
+    vertices: Int32Array,
     is_point: BoolArray,
     known: Mapping[int, float],
 ) -> _Judged:
     """Return the vertices of lines that points are near enough to judge, line by line."""
-    owners = line_of[find_owners(lines.offsets)]
-    keys = np.unique(owners * len(surface.points) + lines.vertices)
-    every = max(1, len(keys) // _MOST_JUDGED)
-    owners, vertices = np.divmod(keys, len(surface.points))
+    every = max(1, len(vertices) // _MOST_JUDGED)
     z = surface.points[vertices, 2]
-    chosen = np.zeros(len(keys), np.bool_)
+    chosen = np.zeros(len(vertices), np.bool_)
     chosen[::every] = True
     if every > 1:
         chosen |= np.isin(z, CUSTOMARY)
-    owners, vertices, z = owners[chosen], vertices[chosen].astype(np.int32), z[chosen]
+    owners, vertices, z = owners[chosen], vertices[chosen], z[chosen]
     ground, limits, distances = _fit_ground(surface, vertices, is_point)
     at_point = np.flatnonzero(np.isin(vertices, np.fromiter(known, np.int64, len(known))))
     for i in at_point.tolist():
@@ -238,7 +238,7 @@ def _find_wrong(
     is_upright = np.median(sizes[chosen]) > np.median(own.distances[chosen])
     side = f"{np.median(sizes[chosen]):.4g} {'above' if own.offsets[chosen][0] > 0 else 'below'}"
     certainty = "medium" if kind == "boundary" or is_upright else "low"
-    return _Told(chosen, f"lie some {side} the points around", certainty)
+    return _Told(chosen, f"[lies|lie] some {side} what the points around give", certainty)
 
 
 def _find_code(own: _Judged, is_off: BoolArray, span: tuple[float, float]) -> _Told | None:
@@ -251,7 +251,7 @@ def _find_code(own: _Judged, is_off: BoolArray, span: tuple[float, float]) -> _T
             is_far = is_beyond_range(value, *span)
             certainty = "high" if is_far else "medium" if is_upright else "low"
             return _Told(
-                chosen, f"have the elevation {value:g}, which may stand for none", certainty
+                chosen, f"[has|have] the elevation {value:g}, which may stand for none", certainty
             )
     return None
 
@@ -266,14 +266,14 @@ def _find_factor(own: _Judged, is_off: BoolArray) -> _Told | None:
     if len(words) == 0 or counts.max() < max(2, _MOST_OF_LINE * len(is_off)):
         return None
     told = str(words[np.argmax(counts)])
-    return _Told(names == told, f"are {told} what the points around give", "high")
+    return _Told(names == told, f"[is|are] {told} what the points around give", "high")
 
 
 def _describe(wrong: _Judged, told: _Told, name: str, count: int) -> WrongLine:
     sizes = np.abs(wrong.offsets)
     return WrongLine(
         name=name,
-        count=count,
+        n_vertices=count,
         vertices=wrong.vertices,
         worst=int(wrong.vertices[np.argmax(sizes)]),
         offset=float(np.median(wrong.offsets)),
