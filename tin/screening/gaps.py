@@ -25,6 +25,8 @@ _FAR = 5.0
 _EVEN = ((1.6, 1.75), (2.5, 3.0))
 """or fewer times where points are even: where that length is no more than so many times the median,
 as in a grid, and at random."""
+_MOST, _ALIKE, _REGULAR = 80.0, 0.02, 1.1
+"""Points are a regular grid where this percentile is as long to 2 %: then beyond 1.1 times."""
 
 _DEEP = 1.0
 """A bay is as deep, on average, as so many of the usual edges, slivers along the hull are not;"""
@@ -38,8 +40,8 @@ _SHARE = 0.005
 _STEEP = 30.0
 _STEEPER = 5.0
 """A sliver is steep above 30 degrees, if its gradient is 5 times that of 90 % of the triangles."""
-_SLIVERS = 1e-3
-"""Of the area: slivers whose area in space is less of it are those that any hull has."""
+_HIGHER = 8.0
+"""And its third corner is above or below its longest edge by 8 times what half of them rise."""
 
 _SAMPLE = 20_000
 
@@ -64,7 +66,7 @@ def describe_gaps(tin: TIN) -> list[str]:
     the hull; none for edges of lines. Linear in the triangles. Long is an edge of more than five
     times the 95th percentile of edge lengths, so that neither scan lines nor contour lines, whose
     points are dense along them alone, are found to have gaps; where points are even, as in a grid,
-    of less than two times. Connected triangles are a gap if they are as deep and as wide
+    of 1.1 to three times. Connected triangles are a gap if they are as deep and as wide
     as several of these edges, which slivers along a hull are not, and if they matter: half a per
     cent of the area, or room for a hundred points.
 
@@ -113,8 +115,10 @@ def _describe_gaps(tin: TIN, surface: Surface) -> list[str]:
 def _find_limit(surface: Surface) -> _Limit:
     some = slice(None, None, max(1, len(surface.triangles) // _SAMPLE))
     lengths = np.sqrt(_square_lengths(surface, some))
-    median, usual = (float(one) for one in np.percentile(lengths, (50.0, _USUAL)))
+    median, most, usual = (float(one) for one in np.percentile(lengths, (50.0, _MOST, _USUAL)))
     far = next((times for ratio, times in _EVEN if usual <= ratio * median), _FAR)
+    if usual <= _EVEN[0][0] * median and usual <= (1.0 + _ALIKE) * most:
+        far = _REGULAR
     return _Limit(_round_up(far * usual), usual)
 
 
@@ -192,16 +196,33 @@ def _describe_slivers(tin: TIN, surface: Surface, stays: BoolArray) -> list[str]
     some = slice(None, None, max(1, len(stays) // _SAMPLE))
     usual = np.percentile(_compute_gradients(surface, some), 90)
     slivers = outer[_compute_gradients(surface, outer) > _STEEPER * usual]
+    slivers = slivers[_measure_rises(surface, slivers) > _HIGHER * _measure_relief(surface, some)]
     degrees = _measure_slopes(tin, slivers)
     slivers, degrees = slivers[degrees > _STEEP], degrees[degrees > _STEEP]
-    area = float((_measure_areas(surface, slivers) / np.cos(np.radians(degrees))).sum())
-    if len(slivers) == 0 or _measure_share(surface, area) < _SLIVERS:
+    if len(slivers) == 0:
         return []
     shortest = float(np.sqrt(_square_lengths(surface, slivers).max(axis=1).min()))
     return [
         f"{_count_triangles(len(slivers))} along the hull as steep as {degrees.max():.1f} "
         f"degrees, where the ground is not: a max_edge below {shortest:.4g} trims them."
     ]
+
+
+def _measure_relief(surface: Surface, chosen: Any) -> float:
+    """Return what half of some triangles do not rise by."""
+    z = surface.points[surface.triangles[chosen], 2]
+    return float(np.median(np.ptp(z, axis=1)))
+
+
+def _measure_rises(surface: Surface, chosen: Int64Array) -> Float64Array:
+    """Return how far some triangles rise, or fall, from their longest edges to the third corner."""
+    apex = _square_lengths(surface, chosen).argmax(axis=1)
+    corners = surface.points[surface.triangles[chosen]]
+    a, b, c = (corners[np.arange(len(chosen)), (apex + k) % 3] for k in range(3))
+    along = (c - b)[:, :2]
+    share = ((a - b)[:, :2] * along).sum(axis=1) / (along**2).sum(axis=1)
+    rises: Float64Array = np.abs(a[:, 2] - b[:, 2] - share * (c - b)[:, 2])
+    return rises
 
 
 def _compute_gradients(surface: Surface, chosen: Any) -> Float64Array:
