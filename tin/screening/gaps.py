@@ -41,7 +41,9 @@ _STEEP = 30.0
 _STEEPER = 5.0
 """A sliver is steep above 30 degrees, if its gradient is 5 times that of 90 % of the triangles."""
 _HIGHER = 8.0
-"""And its third corner is above or below its longest edge by 8 times what half of them rise."""
+"""And its third corner is above or below its longest edge by 8 times what half of them rise,"""
+_SLIVERS = 1e-2
+"""and the area in space of all such slivers is so much of the plane area of the surface."""
 
 _SAMPLE = 20_000
 
@@ -103,6 +105,8 @@ def _describe_gaps(tin: TIN, surface: Surface) -> list[str]:
     if _matter(surface, outside, limit, is_bay=True):
         what = f"as across a bay: {option} trims them"
         told.append(_describe(surface, outside, unit, "along the boundary", what, limit))
+    else:
+        stays[:] = True  # slivers with long edges are told if they are steep
     if _matter(surface, inside, limit, is_bay=False):
         what = f"as over a void: {option} with trim='everywhere' leaves them out"
         told.append(_describe(surface, inside, unit, "inside", what, limit))
@@ -199,7 +203,8 @@ def _describe_slivers(tin: TIN, surface: Surface, stays: BoolArray) -> list[str]
     slivers = slivers[_measure_rises(surface, slivers) > _HIGHER * _measure_relief(surface, some)]
     degrees = _measure_slopes(tin, slivers)
     slivers, degrees = slivers[degrees > _STEEP], degrees[degrees > _STEEP]
-    if len(slivers) == 0:
+    area = float((_measure_areas(surface, slivers) / np.cos(np.radians(degrees))).sum())
+    if len(slivers) == 0 or _measure_share(surface, area) < _SLIVERS:
         return []
     shortest = float(np.sqrt(_square_lengths(surface, slivers).max(axis=1).min()))
     return [
