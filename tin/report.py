@@ -10,7 +10,7 @@ import numpy as np
 
 from .._methods import make_card
 from .._sentences import counted
-from .types import Frozen
+from .types import Frozen, RowSources
 
 if TYPE_CHECKING:
     from ..arrays import Float64Array, Int8Array, Int32Array, Int64Array
@@ -341,6 +341,8 @@ class Report(Frozen):
         Triangles that refinement had to leave. None after an edit, which numbers triangles anew.
     simplification : Simplification or None
         What :func:`tinsmith.simplify` left out. None after an edit.
+    row_sources : RowSources or None
+        File and line of each row that was given, where they were read from text.
 
     Examples
     --------
@@ -372,6 +374,7 @@ class Report(Frozen):
     edits: Sequence[Edit] = ()
     unmended: Unmended = field(default_factory=Unmended.none)
     simplification: Simplification | None = None
+    row_sources: RowSources | None = None
 
     def after_edits(
         self, vertex_of: Int32Array, n_vertices: int, n_triangles: int, edits: Sequence[Edit]

@@ -89,6 +89,7 @@ def _report(
         duplicates=inputs.options.duplicates,
         snap=inputs.options.snap,
         skipped=dict(inputs.skipped),
+        row_sources=inputs.row_sources,
         **{"notes": tuple(inputs.notes), **account},
     )
 

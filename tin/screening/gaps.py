@@ -61,16 +61,16 @@ class _Limit(NamedTuple):
     """What 95 % of the edges do not exceed."""
 
 
-def describe_gaps(tin: TIN) -> list[str]:
+def describe_gaps(tin: TIN, *, slivers: bool = True) -> list[str]:
     """Tell of triangles that span places without points.
 
-    A sentence for triangles along the boundary, one for those inside, one for steep slivers along
-    the hull; none for edges of lines. Linear in the triangles. Long is an edge of more than five
-    times the 95th percentile of edge lengths, so that neither scan lines nor contour lines, whose
-    points are dense along them alone, are found to have gaps; where points are even, as in a grid,
-    of 1.1 to three times. Connected triangles are a gap if they are as deep and as wide
-    as several of these edges, which slivers along a hull are not, and if they matter: half a per
-    cent of the area, or room for a hundred points.
+    A sentence for triangles along the boundary, one for those inside, and if it is asked for, one
+    for steep slivers along the hull; none for edges of lines. Linear in the triangles. Long is an
+    edge of more than five times the 95th percentile of edge lengths, so that neither scan lines nor
+    contour lines, whose points are dense along them alone, are found to have gaps; where points are
+    even, as in a grid, of 1.1 to three times. Connected triangles are a gap if they are as deep and
+    as wide as several of these edges, which slivers along a hull are not, and if they matter: half
+    a per cent of the area, or room for a hundred points.
 
     Examples
     --------
@@ -83,10 +83,10 @@ def describe_gaps(tin: TIN) -> list[str]:
     if len(surface.triangles) == 0:
         return []
     with np.errstate(all="ignore"):
-        return _describe_gaps(tin, surface)
+        return _describe_gaps(tin, surface, slivers=slivers)
 
 
-def _describe_gaps(tin: TIN, surface: Surface) -> list[str]:
+def _describe_gaps(tin: TIN, surface: Surface, *, slivers: bool) -> list[str]:
     limit = _find_limit(surface)
     stays = np.ones(len(surface.triangles), np.bool_)
     if not 0.0 < limit.length < np.inf:
@@ -110,7 +110,7 @@ def _describe_gaps(tin: TIN, surface: Surface) -> list[str]:
     if _matter(surface, inside, limit, is_bay=False):
         what = f"as over a void: {option} with trim='everywhere' leaves them out"
         told.append(_describe(surface, inside, unit, "inside", what, limit))
-    return [*told, *_describe_slivers(tin, surface, stays)]
+    return [*told, *(_describe_slivers(tin, surface, stays) if slivers else ())]
 
 
 # ---------------------------------------------------------------- how long edges may be

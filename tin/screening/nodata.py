@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..._sentences import counted, inflect
 from ...errors import OptionError
+from .slips import BEYOND, find_multiplied
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -15,7 +17,6 @@ if TYPE_CHECKING:
     from ...arrays import Float64Array
 
 __all__ = [
-    "BEYOND",
     "CUSTOMARY",
     "SuspectElevation",
     "describe_elevations",
@@ -40,8 +41,6 @@ _MOST = 3
 _REPEATS = 3
 _FAR = 10.0
 _SOME = 1_000
-BEYOND = 50_000.0
-"""No elevation of the earth is larger, in feet or in metres."""
 
 
 def parse_nodata(nodata: float | Sequence[float] | None) -> Float64Array:
@@ -190,6 +189,8 @@ def describe_suspects(suspects: Iterable[SuspectElevation], what: str = "point")
 def describe_elevations(z: Float64Array, what: str = "point") -> list[str]:
     """Say which finite elevations may stand for no data, or that all of them may.
 
+    And which are in another unit than most.
+
     Examples
     --------
     >>> describe_elevations(np.zeros(4))
@@ -200,4 +201,14 @@ def describe_elevations(z: Float64Array, what: str = "point") -> list[str]:
             f"All {len(z):,} {what}s have the elevation {z[0]:g}: check that it stands not for no "
             "data."
         ]
-    return describe_suspects(find_suspect_elevations(z), what)
+    told = []
+    multiplied = find_multiplied(z)
+    if multiplied is not None:
+        count = int(multiplied.is_wrong.sum())
+        told.append(
+            f"{counted(count, what)} {inflect('[has an elevation|have elevations]', count)} "
+            f"{multiplied.words} those of the others ({multiplied.lowest:g} to "
+            f"{multiplied.highest:g}): check {inflect('[its|their]', count)} unit."
+        )
+        z = z[~multiplied.is_wrong]
+    return [*told, *describe_suspects(find_suspect_elevations(z), what)]

@@ -6,12 +6,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .nodata import BEYOND
-
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array
 
-__all__ = ["FACTORS", "Multiplied", "find_multiplied", "name_factor"]
+__all__ = ["BEYOND", "FACTORS", "Multiplied", "find_multiplied", "name_factor"]
 
 FACTORS = {
     10.0: "ten times",
@@ -27,6 +25,8 @@ FACTORS = {
 
 _SHARE = 0.1
 """The factor must explain all but so much of what is wrong."""
+BEYOND = 50_000.0
+"""No elevation of the earth is larger, in feet or in metres."""
 _GROUPS = {1000.0: FACTORS[1000.0], 0.001: "a thousandth of"}
 """Factors that many elevations may have at a time, as where files in two units are joined."""
 _PAD = 1.0
