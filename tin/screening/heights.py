@@ -9,7 +9,7 @@ import numpy as np
 
 from ..._progress import Progress
 from ..topology import find_boundary_vertices, find_owners
-from .residuals import Residuals, fit_planes
+from .residuals import Residuals, fit_planes, measure_offsets
 from .scales import find_rounding, measure_scales
 
 if TYPE_CHECKING:
@@ -25,6 +25,8 @@ STRICT = 10.0
 """A residual is suspicious beyond so many times the scale around it."""
 _CARE = 2.0
 """So many times more on lines and at the boundary, where less is known."""
+_ROUGH = 5.0
+"""On the boundary also beyond so many times what the points around are off their plane."""
 _APART = 2.5
 """And if it is so many times as large as those of its neighbours once it is corrected."""
 _STARTED = 0.3
@@ -124,7 +126,10 @@ class _Search:
                 known.xyz[group, :2], residuals[group], moments[group], least
             )
         limits = STRICT * scales
-        limits[_find_care(known, chosen)] *= _CARE
+        care = _find_care(known, chosen)
+        limits[care] *= _CARE
+        rim = care[~known.on_line[care]]
+        limits[rim] = np.fmax(limits[rim], _ROUGH * known.measure_roughness(rim))
         is_judged = np.zeros(count, np.bool_)
         is_judged[judged] = True
         is_judged[wrong] = False
@@ -174,8 +179,7 @@ class _Search:
         """Return how far neighbours lie off the plane through them, on the side of the vertex."""
         xyz, owners = self.known.xyz, find_owners(offsets)
         planes = fit_planes(xyz, chosen, offsets, near)
-        apart = xyz[near, :2] - xyz[chosen[owners], :2]
-        left = xyz[near, 2] - planes[owners, 0] - (planes[owners, 1:] * apart).sum(axis=1)
+        left = measure_offsets(xyz, chosen, planes, owners, near)
         beyond: Float64Array = np.where((own > planes[:, 0])[owners], left, -left)
         return beyond
 

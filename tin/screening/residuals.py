@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..triangulation import Triangulation
 
-__all__ = ["Residuals", "fit_planes"]
+__all__ = ["Residuals", "fit_planes", "measure_offsets"]
 
 _TERMS = 3
 """Of a plane: fewer neighbours than these and one more say nothing about a point."""
@@ -121,6 +121,18 @@ class Residuals:
         found[has_enough, 0], found[has_enough, 1] = planes[has_enough, 0], most[has_enough]
         return found
 
+    def measure_roughness(self, vertices: Int32Array) -> Float64Array:
+        """Return how far at most the vertices within two edges of some are off their plane.
+
+        As much as curved ground beside it may be off where the plane is extrapolated.
+        """
+        offsets, around = self.list_wide_neighbors(vertices)
+        planes, owners = fit_planes(self.xyz, vertices, offsets, around), find_owners(offsets)
+        left = measure_offsets(self.xyz, vertices, planes, owners, around)
+        most = np.zeros(len(vertices))
+        np.maximum.at(most, owners, np.abs(left))
+        return most
+
     def list_wide_neighbors(self, vertices: Int32Array) -> tuple[Int64Array, Int32Array]:
         """Return the vertices within two edges of some, as offsets and vertices."""
         offsets, near = self.list_neighbors(vertices)
@@ -164,6 +176,21 @@ def fit_planes(
     slopes = _solve(xx, xy, yy, xz, yz) / scale
     level = xyz[vertices, 2] + middle[2] - slopes[0] * middle[0] - slopes[1] * middle[1]
     return np.column_stack([level, *slopes])
+
+
+def measure_offsets(
+    xyz: Float64Array,
+    vertices: Int32Array,
+    planes: Float64Array,
+    owners: Int64Array,
+    around: Int32Array,
+) -> Float64Array:
+    """Return how far points around some vertices, ``owners``, are above the planes at these."""
+    apart = xyz[around, :2] - xyz[vertices[owners], :2]
+    offsets: Float64Array = (
+        xyz[around, 2] - planes[owners, 0] - (planes[owners, 1:] * apart).sum(axis=1)
+    )
+    return offsets
 
 
 def _solve(

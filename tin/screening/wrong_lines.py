@@ -8,7 +8,7 @@ import numpy as np
 
 from ..topology import find_offsets, find_owners
 from .nodata import CUSTOMARY, is_beyond_range, is_customary
-from .residuals import Residuals, fit_planes
+from .residuals import Residuals, fit_planes, measure_offsets
 from .scales import find_rounding
 from .slips import name_factor
 
@@ -202,8 +202,8 @@ def _fit_ground(
     owners, around = owners[is_point[around]], around[is_point[around]]
     offsets = find_offsets(np.bincount(owners, minlength=len(vertices)))
     planes = fit_planes(xyz, vertices, offsets, around)
+    left = measure_offsets(xyz, vertices, planes, owners, around)
     apart = xyz[around, :2] - xyz[vertices[owners], :2]
-    left = xyz[around, 2] - planes[owners, 0] - (planes[owners, 1:] * apart).sum(axis=1)
     rough, nearest = np.zeros(len(vertices)), np.full(len(vertices), np.inf)
     np.maximum.at(rough, owners, np.abs(left))
     np.minimum.at(nearest, owners, np.hypot(*apart.T))
