@@ -34,6 +34,8 @@ __all__ = [
     "contacts",
     "count_work",
     "crossings",
+    "find_long_edges",
+    "find_peaks_and_pits",
     "grow",
     "in_circle",
     "intersections",
@@ -85,6 +87,8 @@ vertices_at = _core.vertices_at
 places_in_rings = _core.points_in_polygons
 LeaveOneOut = _core.LeaveOneOut
 measure_neighbors = _core.measure_neighbors
+find_long_edges = _core.find_long_edges
+find_peaks_and_pits = _core.find_peaks_and_pits
 Method = _core.Method
 
 

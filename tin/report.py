@@ -11,7 +11,7 @@ import numpy as np
 
 from .._methods import make_card
 from .._sentences import counted
-from .types import Frozen
+from .types import Frozen, RowSources
 
 if TYPE_CHECKING:
     from ..arrays import Float64Array, Int8Array, Int32Array, Int64Array
@@ -395,6 +395,8 @@ class Report(Frozen):
         Triangles that refinement had to leave. None after an edit, which numbers triangles anew.
     simplification : Simplification or None
         What :func:`tinsmith.simplify` left out. None after an edit.
+    row_sources : RowSources or None
+        File and line of each row that was given, where they were read from text.
     source : str
         Name of the file that the points or triangles come from; empty if there is none.
 
@@ -429,6 +431,7 @@ class Report(Frozen):
     edits: Sequence[Edit] = ()
     unmended: Unmended = field(default_factory=Unmended.none)
     simplification: Simplification | None = None
+    row_sources: RowSources | None = None
     source: str = ""
 
     def sentences(self) -> tuple[str, ...]:

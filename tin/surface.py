@@ -1079,6 +1079,7 @@ class TIN(Editable, Surface):
             moved = move_points(self.points.copy(), function)
             return self._keep_triangles(moved, system, unit)
         rows = self._list_rows()
+        inputs = inputs.with_sources_of(rows)
         inputs = move_inputs(inputs, function, length=length, crs=system, elevation_unit=unit)
         built = assemble(inputs)
         return type(self)(

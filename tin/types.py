@@ -10,11 +10,11 @@ import numpy as np
 from ..errors import OptionError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
-    from ..arrays import Float64Array
+    from ..arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = [
     "Bounds",
@@ -23,6 +23,7 @@ __all__ = [
     "GeometriesLike",
     "Grid",
     "PointsLike",
+    "RowSources",
     "SupportsGeoInterface",
     "seal",
 ]
@@ -61,6 +62,56 @@ class Finding(NamedTuple):
     def to_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON."""
         return {"kind": self.kind, "rows": list(self.rows), "sentence": self.sentence}
+
+
+class RowSources(NamedTuple):
+    """Where the rows of points come from: files, and lines of text in them.
+
+    Attributes
+    ----------
+    files : tuple of str
+    file_of : (n,) int32 array
+        The file of each row, as an index.
+    lines : (n,) int64 array
+        Its line, counted from 1 as an editor does; 0 where that is not known.
+    """
+
+    files: tuple[str, ...]
+    file_of: Int32Array
+    lines: Int64Array
+
+    @classmethod
+    def of_file(cls, name: str, lines: Int64Array) -> RowSources:
+        """Return the sources of rows that are lines of one file."""
+        return cls((name,), np.zeros(len(lines), np.int32), np.asarray(lines, np.int64))
+
+    @classmethod
+    def join(
+        cls, parts: Sequence[RowSources | None], names: Sequence[str], counts: Sequence[int]
+    ) -> RowSources:
+        """Return the sources of the rows of several surveys with these names, one by one."""
+        known = [
+            part or cls.of_file(name, np.zeros(count, np.int64))
+            for part, name, count in zip(parts, names, counts, strict=True)
+        ]
+        starts = np.cumsum([0, *(len(one.files) for one in known)]).tolist()
+        return cls(
+            tuple(name for one in known for name in one.files),
+            np.concatenate(
+                [one.file_of + start for one, start in zip(known, starts, strict=False)]
+            ),
+            np.concatenate([one.lines for one in known]),
+        )
+
+    def take(self, rows: Int64Array | BoolArray) -> RowSources:
+        """Return the sources of some rows."""
+        return self._replace(file_of=self.file_of[rows], lines=self.lines[rows])
+
+    def find(self, row: int) -> tuple[str, int]:
+        """Return file and line of a row; an empty text and 0 if they are not known."""
+        if not 0 <= row < len(self.lines):
+            return "", 0
+        return self.files[int(self.file_of[row])], int(self.lines[row])
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ from ...errors import OptionError, ReadError, WriteError
 from ...tin import TIN, Survey
 from ...tin.screening.area_of_use import AreaOfUse
 from ...tin.screening.nodata import parse_nodata
+from ...tin.types import RowSources
 from ..registry.losses import keep_on_one_line
 from ..reprojection.placement import place, settle_unit
 from ..reprojection.transformation import is_geographic
@@ -167,6 +168,7 @@ def read(
         skipped={**layout.skipped, **{what: len(at) for what, at in told.lines.items()}},
         skipped_lines=told.lines,
         notes=[*notes, *placed.notes],
+        row_sources=RowSources.of_file(path.name, told.rows + 1),
     )
 
 

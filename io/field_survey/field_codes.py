@@ -371,6 +371,7 @@ class _Builder:
             survey,
             points=survey.points[kept],
             attributes=attributes,
+            row_sources=None if survey.row_sources is None else survey.row_sources.take(kept),
             skipped={**survey.skipped, what: int(is_out.sum())},
         )
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...errors import LinesError
+from ...tin.types import RowSources
 from ..reprojection.joining import SOURCE_FILE
 
 if TYPE_CHECKING:
@@ -73,6 +74,7 @@ def _choose_rows(survey: Survey, rows: Int64Array) -> Survey:
         attributes={name: column[rows] for name, column in survey.attributes.items()},
         skipped={},
         skipped_lines={},
+        row_sources=None if survey.row_sources is None else survey.row_sources.take(rows),
         **nothing,
     )
 
@@ -95,6 +97,7 @@ def _join(survey: Survey, made: dict[str, Survey], rows: Sequence[Int64Array]) -
             for name in survey.attributes
         },
         skipped=skipped,
+        row_sources=_join_sources(parts),
         notes=[
             *survey.notes,
             *(f"'{name}': {note}" for name, part in made.items() for note in part.notes),
@@ -110,6 +113,15 @@ def _join(survey: Survey, made: dict[str, Survey], rows: Sequence[Int64Array]) -
         ],
         **lines,
     )
+
+
+def _join_sources(parts: Sequence[Survey]) -> RowSources | None:
+    """Return the sources of the rows of parts of one survey, all of which name its files."""
+    known = [part.row_sources for part in parts if part.row_sources is not None]
+    if len(known) < len(parts):
+        return None
+    file_of, lines = (np.concatenate([one[k] for one in known]) for k in (1, 2))
+    return RowSources(known[0].files, file_of, lines)
 
 
 def _describe_shared_names(made: dict[str, Survey]) -> list[str]:

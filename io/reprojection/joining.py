@@ -12,6 +12,7 @@ from ...errors import CrsError, ReadError
 from ...terrain.georeference import agree
 from ...tin import Survey
 from ...tin.building.attributes import join_columns
+from ...tin.types import RowSources
 from .surfaces import scale_survey
 
 if TYPE_CHECKING:
@@ -84,6 +85,7 @@ def join_surveys(surveys: Sequence[Survey], names: Sequence[str]) -> Survey:
             *_describe_shared_numbers(scaled, names),
         ],
         findings=_join_findings(scaled, counts),
+        row_sources=RowSources.join([one.row_sources for one in scaled], names, counts),
         **{kind: [line for one in scaled for line in getattr(one, kind)] for kind in _LINES},
     )
 

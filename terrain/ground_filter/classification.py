@@ -112,6 +112,7 @@ class GroundPoints:
             attributes={name: values[rows] for name, values in whole.attributes.items()},
             skipped={**whole.skipped, **{what: n for what, n in left_out.items() if n}},
             findings=(),
+            row_sources=None if whole.row_sources is None else whole.row_sources.take(rows),
         )
 
     @cached_property

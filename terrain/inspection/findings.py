@@ -11,6 +11,7 @@ from ..._progress import Progress
 from ...errors import OptionError
 from ...tin import TIN, Surface, Survey, triangulate
 from ...tin.screening.gaps import describe_gaps
+from ...tin.screening.naming import find_number
 from ...tin.screening.searching import inspect_points, screen_points
 from ..results import Table
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from ..._progress import Tell
-    from ...arrays import AnyArray, Int64Array
+    from ...arrays import Int64Array
     from ...tin.screening.suspects import Suspect
 
 __all__ = ["blunders", "screen"]
@@ -43,17 +44,20 @@ def blunders(points: Survey | TIN, *, progress: Callable[[float], None] | None =
     Returns
     -------
     Table
-        The most certain first: ``row`` of the points, counted from 0 (-1 for a crossing of lines),
-        ``number`` of the point (an empty text if it has none), ``x``, ``y``, ``z``; ``residual``,
-        above the surface without any of these, and robust ``scale`` of residuals around it (NaN
-        where no height is told); ``reason``, ``certainty`` ("high", "medium", "low") and an
-        ``explanation`` in a sentence. Notes tell what cannot be told, and a ``max_edge`` that
-        trims slivers along the boundary.
+        The most certain first: ``row`` of the points, counted from 0 (-1 for what is about lines),
+        ``number`` of the point (an empty text if it has none), ``file`` and ``line`` that it was
+        read from, counted from 1 (an empty text and 0 if that is not known), ``x``, ``y``, ``z``;
+        ``residual``, above the surface without any of these, and robust ``scale`` of residuals
+        around it (NaN where no height is told); ``reason``, ``certainty`` ("high", "medium",
+        "low") and an ``explanation`` in a sentence. Notes tell what cannot be told, and of gaps
+        that the surface spans, with the ``max_edge`` that opens them.
 
         Reasons: "spike", "pit" (too high, too low), "code" (an elevation that stands for none, such
         as -9999), "factor" (ten times, a tenth, feet for metres), "swapped" (easting and northing),
-        "isolated" (far from all others), "outside" (of the CRS's area of use), "number" and "place"
-        (that another row has, too), "crossing" (of lines at different elevations).
+        "isolated" (far from all others), "outside" (of the CRS's area of use), "line" (whose
+        elevations the points around do not bear out), "void" (filled with an elevation that stands
+        for none), "number" and "place" (that another row has, too), "crossing" (of lines at
+        different elevations).
 
     Raises
     ------
@@ -108,11 +112,14 @@ def _as_tin(points: Any, progress: Tell | None) -> TIN:
 def _tabulate(tin: TIN, suspects: Sequence[Suspect], notes: Sequence[str]) -> Table:
     rows = np.array([one.row for one in suspects], np.int64)
     places = np.array([one.place for one in suspects], np.float64).reshape(-1, 3)
+    attributes, sources = tin.row_attributes, _find_sources(tin, rows)
     elevation = tin.elevation_unit
     length = None if tin.crs is None else tin.crs.horizontal_unit
     columns: dict[str, Any] = {
         "row": rows,
-        "number": _find_numbers(tin, rows),
+        "number": np.array([find_number(attributes, row) for row in rows.tolist()], object),
+        "file": np.array([file for file, _ in sources], object),
+        "line": np.array([line for _, line in sources], np.int64),
         **dict(zip("xyz", places.T, strict=True)),
         "residual": np.array([one.residual for one in suspects], np.float64),
         "scale": np.array([one.scale for one in suspects], np.float64),
@@ -124,9 +131,7 @@ def _tabulate(tin: TIN, suspects: Sequence[Suspect], notes: Sequence[str]) -> Ta
     return Table(columns, units=units, name="blunders", notes=tuple(notes))
 
 
-def _find_numbers(tin: TIN, rows: Int64Array) -> AnyArray:
-    numbers = tin.row_attributes.get("number")
-    found = np.full(len(rows), "", object)
-    if numbers is not None:
-        found[:] = ["" if row < 0 else str(numbers[row]) for row in rows.tolist()]
-    return found
+def _find_sources(tin: TIN, rows: Int64Array) -> list[tuple[str, int]]:
+    """Return file and line of some rows; an empty text and 0 where they are not known."""
+    sources = tin.report.row_sources
+    return [("", 0) if sources is None else sources.find(row) for row in rows.tolist()]

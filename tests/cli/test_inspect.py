@@ -46,14 +46,14 @@ def test_findings_to_tables_a_map_and_json(site, tmp_path):
     assert rows["number"].tolist() == [one["row"] + 1 for one in facts["blunders"]]
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert record.stat().st_size > 100
-    assert "Row 50 (point 51)" in result.stderr
+    assert "Point 51 (line 52 of 'site.csv')" in result.stderr
     assert "max-edge" not in result.stderr or "--max-edge" in result.stderr
 
 
 def test_a_build_tells_of_blunders_and_leaves_them_in(site, tmp_path):
     result = run("build", site, "--crs", "EPSG:32616", "-o", tmp_path / "a.ply")
     line = next(line for line in result.stderr.splitlines() if line.startswith("Blunders"))
-    assert "3 points look like blunders: rows 40, 50, 60" in line
+    assert "3 points look like blunders: point 41 (line 42 of 'site.csv'); point 51 (" in line
     assert "'tinsmith inspect' lists them" in line
     assert len(ts.read(tmp_path / "a.ply").points) == COUNT
 

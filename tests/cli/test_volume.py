@@ -119,6 +119,26 @@ def test_the_difference_goes_to_files_of_every_kind(files, tmp_path):
     assert (tmp_path / "d.png").read_bytes().startswith(PNG)
 
 
+def test_the_longest_edge_is_for_each_of_two_files_of_points(tmp_path):
+    """An L of 7,500 square units, whose bay a surface of all points would span."""
+    x, y = np.meshgrid(np.arange(0.0, 101.0, 10.0), np.arange(0.0, 101.0, 10.0))
+    inside = ~((x > 50) & (y > 50))
+    for name, z in (("low.xyz", 10.0), ("high.xyz", 11.0)):
+        np.savetxt(
+            tmp_path / name, np.column_stack([x[inside], y[inside], np.full(inside.sum(), z)])
+        )
+    names = [tmp_path / "low.xyz", tmp_path / "high.xyz"]
+    assert "Fill        8,750.00" in run("volume", *names).stderr
+    # A half of the cell in the corner is left: its edges are no longer than others.
+    assert "Fill        7,550.00" in run("volume", *names, "--max-edge", "16").stderr
+    tins = []
+    for name in names:
+        run("build", name, "-o", name.with_suffix(".ply"))
+        tins.append(name.with_suffix(".ply"))
+    refused = run("volume", *tins, "--max-edge", "16", code=1)
+    assert "--max-edge needs a file of points" in refused.stderr
+
+
 def test_the_zero_line_is_written_in_place_of_zones(files, tmp_path):
     run("diff", *files, "--zero-line", "-o", tmp_path / "line.geojson")
     (feature,) = json.loads((tmp_path / "line.geojson").read_text(encoding="utf-8"))["features"]

@@ -91,6 +91,7 @@ def _report(
         from_raster=inputs.from_raster,
         skipped=dict(inputs.skipped),
         source=inputs.source,
+        row_sources=inputs.row_sources,
         **{"notes": tuple(inputs.notes), **account},
     )
 

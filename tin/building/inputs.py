@@ -34,10 +34,10 @@ from .survey import Survey
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...arrays import BoolArray, Float64Array
+    from ...arrays import BoolArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ..constraints.breaklines import Breakline, Water
-    from ..types import GeometriesLike, PointsLike
+    from ..types import GeometriesLike, PointsLike, RowSources
 
 __all__ = ["BuildInputs", "TrimPolicy", "gather_inputs"]
 
@@ -82,6 +82,7 @@ class BuildInputs:
     has_own_boundary: bool = False
     from_raster: bool = False
     skipped: Mapping[str, int] = field(default_factory=dict)
+    row_sources: RowSources | None = None
     notes: Sequence[str] = ()
     source: str = ""
 
@@ -96,6 +97,16 @@ class BuildInputs:
         """Whether only a part of the hull may be the surface."""
         has_rings = bool(self.boundary or self.extent or self.holes or self.has_own_boundary)
         return has_rings or bool(np.isfinite(self.max_edge))
+
+    def with_sources_of(self, rows: Int64Array | None) -> BuildInputs:
+        """Return the same inputs, whose rows are these of all rows ever given; None for all."""
+        if rows is None or self.row_sources is None:
+            return self
+        sources = self.row_sources
+        is_known = rows < len(sources.lines)
+        taken = sources.take(np.where(is_known, rows, 0))
+        lines = np.where(is_known, taken.lines, 0)
+        return replace(self, row_sources=taken._replace(lines=lines))
 
     def with_lines(self, lines: LineSet) -> BuildInputs:
         """Return the same inputs with other lines, rings among them.
@@ -198,6 +209,7 @@ def gather_inputs(
         elevation_unit=require_one_unit(system, unit),
         from_raster=own.from_raster,
         skipped=own.skipped,
+        row_sources=own.row_sources,
         notes=(*own.notes, *told, *_describe_rings(outer, inner)),
         source=own.source or "",
     )

@@ -14,7 +14,7 @@ from ...crs import CRS, Unit, require_one_unit, shorten_crs
 from ...errors import OptionError
 from ..constraints.breaklines import Breakline, Water
 from ..constraints.constraint_set import as_sequence
-from ..types import Bounds, Finding
+from ..types import Bounds, Finding, RowSources
 from ..validation.geometries import is_plain
 from ..validation.tables import Table, as_table
 from .attributes import as_columns, as_mapping
@@ -74,6 +74,8 @@ class Survey:
         What the reader assumed, in sentences.
     findings : sequence of Finding
         What was found odd, each with the rows that it is about; ``notes`` counts them.
+    row_sources : RowSources, optional
+        File and line of each point, where they were read from text.
 
     Raises
     ------
@@ -107,6 +109,7 @@ class Survey:
     skipped_lines: Mapping[str, Sequence[int]] = field(default_factory=dict)
     notes: Sequence[str] = ()
     findings: Sequence[Finding] = ()
+    row_sources: RowSources | None = None
 
     def __post_init__(self) -> None:
         given = {"points": self.points} | {name: getattr(self, name) for name in _LINES}
@@ -125,6 +128,7 @@ class Survey:
         object.__setattr__(self, "points", table.values)
         columns = as_columns(self.attributes, table.values.shape[:1])
         object.__setattr__(self, "attributes", columns)
+        _require_sources(self)
         if table.is_masked is not None:
             self._leave_out(table.is_masked)
 
@@ -132,6 +136,8 @@ class Survey:
         columns = {name: values[~is_masked] for name, values in self.attributes.items()}
         object.__setattr__(self, "points", self.points[~is_masked])
         object.__setattr__(self, "attributes", columns)
+        if self.row_sources is not None:
+            object.__setattr__(self, "row_sources", self.row_sources.take(~is_masked))
         masked = {"masked points": int(is_masked.sum())}
         object.__setattr__(self, "skipped", {**self.skipped, **masked})
 
@@ -178,6 +184,15 @@ def _require_texts(survey: Survey) -> None:
         raise OptionError("source", survey.source, "text or None")
     if not isinstance(survey.from_raster, bool):
         raise OptionError("from_raster", survey.from_raster, "True or False")
+
+
+def _require_sources(survey: Survey) -> None:
+    """Refuse sources that are none; where points were left out nothing is known of the others."""
+    sources = survey.row_sources
+    if not isinstance(sources, RowSources | None):
+        raise OptionError("row_sources", sources, "RowSources or None")
+    if sources is not None and len(sources.lines) != len(survey.points):
+        object.__setattr__(survey, "row_sources", None)
 
 
 def _is_plain(points: Any) -> bool:

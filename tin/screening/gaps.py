@@ -1,14 +1,17 @@
-"""Gaps that a TIN spans without a word: voids between points, slivers along the hull."""
+"""Gaps that a TIN spans without a word: voids between points, bays and slivers along the hull."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..._sentences import counted
 from ...crs import assume_elevation_unit, scale_elevations
+from .. import _kernel
 from ..constraints.clipping import Surface, trim
 from ..topology import NO_NEIGHBOR
+from .parts import find_parts
 
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array, Int64Array
@@ -18,11 +21,29 @@ __all__ = ["describe_gaps"]
 
 _USUAL = 95.0
 _FAR = 5.0
-"""An edge is long beyond so many times the length that 95 % of the edges do not exceed."""
+"""An edge is long beyond so many times the length that 95 % of the edges do not exceed,"""
+_EVEN = ((1.6, 1.75), (2.5, 3.0))
+"""or fewer times where points are even: where that length is no more than so many times the median,
+as in a grid, and at random."""
+_MOST, _ALIKE, _REGULAR = 80.0, 0.02, 1.1
+"""Points are a regular grid where this percentile is as long to 2 %: then beyond 1.1 times."""
+
+_DEEP = 1.0
+"""A bay is as deep, on average, as so many of the usual edges, slivers along the hull are not;"""
+_WIDE_BAY, _WIDE_VOID = 4.0, 10.0
+"""the area of a bay, or of a void, is that of so many squares of them."""
+_LARGE = 100.0
+"""Where it is that of so many it is told of in a surface of any size,"""
+_SHARE = 0.005
+"""else where all of them are so much of the area."""
 
 _STEEP = 30.0
 _STEEPER = 5.0
 """A sliver is steep above 30 degrees, if its gradient is 5 times that of 90 % of the triangles."""
+_HIGHER = 8.0
+"""And its third corner is above or below its longest edge by 8 times what half of them rise,"""
+_SLIVERS = 1e-2
+"""and the area in space of all such slivers is so much of the plane area of the surface."""
 
 _SAMPLE = 20_000
 
@@ -32,13 +53,24 @@ _POLE = 1e-3
 """Meridians are no nearer to each other than this share of their distance at the equator."""
 
 
-def describe_gaps(tin: TIN) -> list[str]:
+class _Limit(NamedTuple):
+    """How long edges may be."""
+
+    length: float
+    usual: float
+    """What 95 % of the edges do not exceed."""
+
+
+def describe_gaps(tin: TIN, *, slivers: bool = True) -> list[str]:
     """Tell of triangles that span places without points.
 
-    A sentence for long edges along the boundary, one for those inside, one for steep slivers along
-    the hull; none for edges of lines. Linear in the triangles. Long is an edge of more than five
-    times the 95th percentile of edge lengths, so that neither scan lines nor contour lines, whose
-    points are dense along them alone, are found to have gaps.
+    A sentence for triangles along the boundary, one for those inside, and if it is asked for, one
+    for steep slivers along the hull; none for edges of lines. Linear in the triangles. Long is an
+    edge of more than five times the 95th percentile of edge lengths, so that neither scan lines nor
+    contour lines, whose points are dense along them alone, are found to have gaps; where points are
+    even, as in a grid, of 1.1 to three times. Connected triangles are a gap if they are as deep and
+    as wide as several of these edges, which slivers along a hull are not, and if they matter: half
+    a per cent of the area, or room for a hundred points.
 
     Examples
     --------
@@ -47,82 +79,162 @@ def describe_gaps(tin: TIN) -> list[str]:
     >>> describe_gaps(triangulate(square))
     []
     """
-    squares = _square_lengths(tin)
-    some = squares[:: max(1, len(squares) // _SAMPLE)]
-    limit = _round_up(_FAR * float(np.sqrt(np.percentile(some, _USUAL))))
-    is_long = ((squares > limit**2) & ~tin.constrained).any(axis=1)
-    stays = np.ones(len(squares), np.bool_)
-    if is_long.any():
-        surface = Surface(tin.points, tin.triangles, tin.neighbors, tin.constrained)
-        stays = trim(surface, stays, limit, everywhere=False)
+    surface = Surface(tin.points, tin.triangles, tin.neighbors, tin.constrained)
+    if len(surface.triangles) == 0:
+        return []
+    with np.errstate(all="ignore"):
+        return _describe_gaps(tin, surface, slivers=slivers)
+
+
+def _describe_gaps(tin: TIN, surface: Surface, *, slivers: bool) -> list[str]:
+    limit = _find_limit(surface)
+    stays = np.ones(len(surface.triangles), np.bool_)
+    if not 0.0 < limit.length < np.inf:
+        return []
+    is_long = _kernel.find_long_edges(surface.points, surface.triangles, limit.length)
+    is_long &= ~surface.constrained
+    first, second, third = is_long.T
+    inside = np.flatnonzero(first | second | third)
+    if len(inside):
+        stays = trim(surface, stays, limit.length, everywhere=False)
+        inside = inside[stays[inside]]
+    outside = np.flatnonzero(~stays)
     unit = "units" if tin.crs is None else tin.crs.horizontal_unit.symbol
-    return [
-        *_describe_long(
-            squares[~stays],
-            unit,
-            "along the boundary",
-            f"far longer than usual: max_edge={limit:g} trims them.",
-        ),
-        *_describe_long(
-            squares[is_long & stays],
-            unit,
-            "inside",
-            f"as over a void: max_edge={limit:g} with trim='everywhere' leaves them out.",
-        ),
-        *_describe_slivers(tin, squares, stays),
-    ]
+    option = f"max_edge={limit.length:g}"
+    told = []
+    if _matter(surface, outside, limit, is_bay=True):
+        what = f"as across a bay: {option} trims them"
+        told.append(_describe(surface, outside, unit, "along the boundary", what, limit))
+    else:
+        stays[:] = True  # slivers with long edges are told if they are steep
+    if _matter(surface, inside, limit, is_bay=False):
+        what = f"as over a void: {option} with trim='everywhere' leaves them out"
+        told.append(_describe(surface, inside, unit, "inside", what, limit))
+    return [*told, *(_describe_slivers(tin, surface, stays) if slivers else ())]
 
 
-def _square_lengths(tin: TIN) -> Float64Array:
-    """Return the squares of the lengths of the edges opposite the corners, (m, 3), in the plane."""
-    x, y = (np.ascontiguousarray(axis)[tin.triangles] for axis in tin.points[:, :2].T)
-    squares = np.empty(tin.triangles.shape)
-    for k in range(3):
-        start, end = (k + 1) % 3, (k + 2) % 3
-        squares[:, k] = (x[:, end] - x[:, start]) ** 2 + (y[:, end] - y[:, start]) ** 2
+# ---------------------------------------------------------------- how long edges may be
+
+
+def _find_limit(surface: Surface) -> _Limit:
+    some = slice(None, None, max(1, len(surface.triangles) // _SAMPLE))
+    lengths = np.sqrt(_square_lengths(surface, some))
+    median, most, usual = (float(one) for one in np.percentile(lengths, (50.0, _MOST, _USUAL)))
+    far = next((times for ratio, times in _EVEN if usual <= ratio * median), _FAR)
+    if usual <= _EVEN[0][0] * median and usual <= (1.0 + _ALIKE) * most:
+        far = _REGULAR
+    return _Limit(_round_up(far * usual), usual)
+
+
+def _square_lengths(surface: Surface, chosen: Any) -> Float64Array:
+    """Return the squares of the lengths of the edges opposite the corners, (k, 3), in the plane."""
+    corners = surface.points[surface.triangles[chosen], :2]
+    sides = corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]]
+    squares: Float64Array = (sides**2).sum(axis=2)
     return squares
 
 
 def _round_up(length: float) -> float:
     """Round up to two digits."""
+    if not 0.0 < length < np.inf:
+        return length
     unit = 10.0 ** (np.floor(np.log10(length)) - 1)
     return float(f"{np.ceil(length / unit) * unit:.6g}")
 
 
-def _describe_long(squares: Float64Array, unit: str, where: str, what: str) -> list[str]:
-    """Tell of triangles with long edges, given as squares: where they are, and what to do."""
-    if len(squares) == 0:
-        return []
-    longest = f"{np.sqrt(squares.max()):.6g} {unit}"
-    return [f"{_count_triangles(len(squares))} {where} with edges of up to {longest}, {what}"]
+# ---------------------------------------------------------------- what is a gap
 
 
-def _describe_slivers(tin: TIN, squares: Float64Array, stays: BoolArray) -> list[str]:
-    """Tell of triangles along the hull that are far steeper than the ground."""
-    is_outer = (tin.neighbors == NO_NEIGHBOR) & ~tin.constrained
-    outer = np.flatnonzero(is_outer.any(axis=1) & stays)
-    usual = np.percentile(
-        _compute_gradients(tin, slice(None, None, max(1, len(stays) // _SAMPLE))), 90
+def _matter(surface: Surface, chosen: Int64Array, limit: _Limit, *, is_bay: bool) -> bool:
+    """Tell whether some triangles make gaps that are worth telling."""
+    if len(chosen) == 0:
+        return False
+    parts = find_parts(surface, chosen)
+    areas = np.bincount(parts, _measure_areas(surface, chosen))
+    is_gap = areas >= (_WIDE_BAY if is_bay else _WIDE_VOID) * limit.usual**2
+    if is_bay:
+        lengths = np.sqrt(_square_lengths(surface, chosen))
+        outer = np.where(surface.neighbors[chosen] == NO_NEIGHBOR, lengths, 0.0).sum(axis=1)
+        is_gap &= 2.0 * areas >= _DEEP * limit.usual * np.bincount(parts, outer)
+    if not is_gap.any():
+        return False
+    is_large = areas.max(where=is_gap, initial=0.0) >= _LARGE * limit.usual**2
+    return bool(is_large) or _measure_share(surface, areas[is_gap].sum()) >= _SHARE
+
+
+def _measure_areas(surface: Surface, chosen: Any) -> Float64Array:
+    a, b, c = (surface.points[surface.triangles[chosen, k], :2] for k in range(3))
+    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
+    areas: Float64Array = (ux * vy - uy * vx) / 2.0
+    return areas
+
+
+def _measure_share(surface: Surface, area: float) -> float:
+    """Return the share of the whole area, of which a sample of triangles tells."""
+    some = slice(None, None, max(1, len(surface.triangles) // _SAMPLE))
+    mean = float(_measure_areas(surface, some).mean())
+    return area / max(area, mean * len(surface.triangles))
+
+
+# ---------------------------------------------------------------- sentences
+
+
+def _describe(
+    surface: Surface, chosen: Int64Array, unit: str, where: str, what: str, limit: _Limit
+) -> str:
+    """Tell of triangles with long edges: where they are, and what to do."""
+    squares = np.where(surface.constrained[chosen], 0.0, _square_lengths(surface, chosen))
+    share = 100.0 * _measure_share(surface, float(_measure_areas(surface, chosen).sum()))
+    return (
+        f"{_count_triangles(len(chosen))} {where} with edges of up to "
+        f"{np.sqrt(squares.max()):.6g} {unit}, far longer than the usual {limit.usual:.3g} "
+        f"({share:.2g} % of the area), {what}."
     )
-    slivers = outer[_compute_gradients(tin, outer) > _STEEPER * usual]
+
+
+def _describe_slivers(tin: TIN, surface: Surface, stays: BoolArray) -> list[str]:
+    """Tell of triangles along the hull that are far steeper than the ground."""
+    is_outer = (surface.neighbors == NO_NEIGHBOR) & ~surface.constrained
+    first, second, third = is_outer.T
+    outer = np.flatnonzero((first | second | third) & stays)
+    some = slice(None, None, max(1, len(stays) // _SAMPLE))
+    usual = np.percentile(_compute_gradients(surface, some), 90)
+    slivers = outer[_compute_gradients(surface, outer) > _STEEPER * usual]
+    slivers = slivers[_measure_rises(surface, slivers) > _HIGHER * _measure_relief(surface, some)]
     degrees = _measure_slopes(tin, slivers)
     slivers, degrees = slivers[degrees > _STEEP], degrees[degrees > _STEEP]
-    if len(slivers) == 0:
+    area = float((_measure_areas(surface, slivers) / np.cos(np.radians(degrees))).sum())
+    if len(slivers) == 0 or _measure_share(surface, area) < _SLIVERS:
         return []
-    shortest = float(np.sqrt(squares[slivers].max(axis=1).min()))
+    shortest = float(np.sqrt(_square_lengths(surface, slivers).max(axis=1).min()))
     return [
         f"{_count_triangles(len(slivers))} along the hull as steep as {degrees.max():.1f} "
         f"degrees, where the ground is not: a max_edge below {shortest:.4g} trims them."
     ]
 
 
-def _compute_gradients(tin: TIN, chosen: Any) -> Float64Array:
+def _measure_relief(surface: Surface, chosen: Any) -> float:
+    """Return what half of some triangles do not rise by."""
+    z = surface.points[surface.triangles[chosen], 2]
+    return float(np.median(np.ptp(z, axis=1)))
+
+
+def _measure_rises(surface: Surface, chosen: Int64Array) -> Float64Array:
+    """Return how far some triangles rise, or fall, from their longest edges to the third corner."""
+    apex = _square_lengths(surface, chosen).argmax(axis=1)
+    corners = surface.points[surface.triangles[chosen]]
+    a, b, c = (corners[np.arange(len(chosen)), (apex + k) % 3] for k in range(3))
+    along = (c - b)[:, :2]
+    share = ((a - b)[:, :2] * along).sum(axis=1) / (along**2).sum(axis=1)
+    rises: Float64Array = np.abs(a[:, 2] - b[:, 2] - share * (c - b)[:, 2])
+    return rises
+
+
+def _compute_gradients(surface: Surface, chosen: Any) -> Float64Array:
     """Return the gradients of some triangles, in whatever units there are."""
-    a, b, c = (tin.points[tin.triangles[chosen, k]] for k in range(3))
+    a, b, c = (surface.points[surface.triangles[chosen, k]] for k in range(3))
     east, north, up = np.cross(b - a, c - a).T
-    with np.errstate(divide="ignore", invalid="ignore"):
-        gradients = np.hypot(east, north) / up
-    steep: Float64Array = np.nan_to_num(gradients, nan=0.0)  # infinite is the largest
+    steep: Float64Array = np.nan_to_num(np.hypot(east, north) / up, nan=0.0)  # infinite is largest
     return steep
 
 
@@ -147,4 +259,4 @@ def _find_factors(tin: TIN) -> Float64Array:
 
 
 def _count_triangles(count: int) -> str:
-    return f"There {'is 1 triangle' if count == 1 else f'are {count:,} triangles'}"
+    return f"There {'is' if count == 1 else 'are'} {counted(count, 'triangle')}"

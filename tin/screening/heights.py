@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..._progress import Progress
-from .. import _kernel
 from ..topology import find_boundary_vertices, find_owners
-from .residuals import Residuals, fit_plane
+from .residuals import Residuals, fit_planes, measure_offsets
 from .scales import find_rounding, measure_scales
 
 if TYPE_CHECKING:
@@ -20,12 +19,14 @@ if TYPE_CHECKING:
     from ...arrays import Float64Array, Int32Array, Int64Array
     from ..triangulation import Triangulation
 
-__all__ = ["STRICT", "Heights", "Judgement", "find_heights", "find_peaks_and_pits"]
+__all__ = ["STRICT", "Heights", "Judgement", "find_heights"]
 
 STRICT = 10.0
 """A residual is suspicious beyond so many times the scale around it."""
 _CARE = 2.0
 """So many times more on lines and at the boundary, where less is known."""
+_ROUGH = 5.0
+"""On the boundary also beyond so many times what the points around are off their plane."""
 _APART = 2.5
 """And if it is so many times as large as those of its neighbours once it is corrected."""
 _STARTED = 0.3
@@ -125,7 +126,10 @@ class _Search:
                 known.xyz[group, :2], residuals[group], moments[group], least
             )
         limits = STRICT * scales
-        limits[_find_care(known, chosen)] *= _CARE
+        care = _find_care(known, chosen)
+        limits[care] *= _CARE
+        rim = care[~known.on_line[care]]
+        limits[rim] = np.fmax(limits[rim], _ROUGH * known.measure_roughness(rim))
         is_judged = np.zeros(count, np.bool_)
         is_judged[judged] = True
         is_judged[wrong] = False
@@ -138,7 +142,7 @@ class _Search:
             striking = np.flatnonzero(np.abs(self.residuals) > self.limits).astype(np.int32)
         if len(striking) == 0:
             return False
-        around = _Reach.of(self.known, striking, *self.known.list_neighbors(striking))
+        around = _Reach.of(self.known, striking)
         rank = np.zeros(len(self.residuals))
         rank[striking] = 1 + _rank(np.abs(self.residuals[striking]))
         is_first = np.ones(len(striking), np.bool_)
@@ -153,9 +157,9 @@ class _Search:
         own = known.xyz[chosen, 2].copy()
         residuals = self.residuals[chosen]
         known.xyz[chosen, 2] -= residuals
-        offsets, near = known.list_neighbors(chosen)
-        reach = _Reach.of(known, chosen, offsets, near)
+        reach = _Reach.of(known, chosen)
         is_wrong = np.abs(residuals) > _APART * reach.measure_most(known)
+        offsets, near = known.list_neighbors(chosen)
         beyond = self._measure_beyond(offsets, near, chosen, own)
         is_wrong &= np.abs(residuals) > _APART * _find_second(offsets, beyond)
         known.xyz[chosen[~is_wrong], 2] = own[~is_wrong]
@@ -173,12 +177,10 @@ class _Search:
         own: Float64Array,
     ) -> Float64Array:
         """Return how far neighbours lie off the plane through them, on the side of the vertex."""
-        beyond = np.zeros(len(near))
-        for i, vertex in enumerate(chosen.tolist()):
-            part = slice(offsets[i], offsets[i + 1])
-            ring, place = self.known.xyz[near[part]], self.known.xyz[vertex]
-            expected, left = fit_plane(ring, place)
-            beyond[part] = left if own[i] > expected else -left
+        xyz, owners = self.known.xyz, find_owners(offsets)
+        planes = fit_planes(xyz, chosen, offsets, near)
+        left = measure_offsets(xyz, chosen, planes, owners, near)
+        beyond: Float64Array = np.where((own > planes[:, 0])[owners], left, -left)
         return beyond
 
 
@@ -193,21 +195,9 @@ class _Reach(NamedTuple):
     """(k,)."""
 
     @classmethod
-    def of(
-        cls,
-        known: Residuals,
-        chosen: Int32Array,
-        offsets: Int64Array,
-        near: Int32Array,
-    ) -> _Reach:
-        """Gather them from the neighbours of those chosen."""
-        wide, around = known.list_neighbors(near)
-        owner = find_owners(offsets)
-        owner = np.concatenate([owner, owner[find_owners(wide)]])
-        reach = np.concatenate([near, around])
-        owner, reach = np.divmod(np.unique(owner * len(known.xyz) + reach), len(known.xyz))
-        elsewhere = reach != chosen[owner]
-        return cls(len(chosen), owner[elsewhere], reach[elsewhere].astype(np.int32))
+    def of(cls, known: Residuals, chosen: Int32Array) -> _Reach:
+        wide, around = known.list_wide_neighbors(chosen)
+        return cls(len(chosen), find_owners(wide), around)
 
     def measure_most(self, known: Residuals) -> Float64Array:
         """Return the largest residual around each, when the one that has it is corrected, too.
@@ -277,12 +267,3 @@ def _measure_without(
     stays = np.abs(residuals) > limits[vertices]
     vertices = vertices[stays]
     return Heights(vertices, residuals[stays], search.scales[vertices], limits[vertices])
-
-
-def find_peaks_and_pits(surface: Triangulation) -> Int32Array:
-    """Return the vertices further beyond all their neighbours than these are apart."""
-    lowest, highest, _ = _kernel.measure_neighbors(surface.points, surface.triangles).T
-    z = surface.points[:, 2]
-    with np.errstate(invalid="ignore"):
-        beyond = np.maximum(z - highest, lowest - z) > highest - lowest
-    return np.flatnonzero(beyond).astype(np.int32)

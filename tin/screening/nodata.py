@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..._sentences import counted, inflect
 from ...errors import OptionError
+from .slips import BEYOND, find_multiplied
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -15,15 +17,17 @@ if TYPE_CHECKING:
     from ...arrays import Float64Array
 
 __all__ = [
+    "CUSTOMARY",
     "SuspectElevation",
     "describe_elevations",
     "describe_suspects",
     "find_suspect_elevations",
+    "is_beyond_range",
     "is_customary",
     "parse_nodata",
 ]
 
-_CUSTOMARY = (
+CUSTOMARY = (
     *(-9999.0, -99999.0, -999999.0, -999.0, -9999.9, -999.9, -99.0, -99.9, -32768.0, -32767.0),
     *(-3.4028234663852886e38, -3.402823e38, -3.4e38, -1e38, -1e30, -1e20, -1.7976931348623157e308),
     *(0.0, 9999.0, 99999.0, 999999.0, 32767.0, 1e10, 1e20, 1e30, 1e38, 3.4e38),
@@ -31,12 +35,12 @@ _CUSTOMARY = (
 )
 """What programs write where they have no elevation: Surfer 1.70141e38, GDAL -9999, Esri -3.4e38."""
 
+_CUSTOMARY_SET = frozenset(CUSTOMARY)
+
 _MOST = 3
 _REPEATS = 3
 _FAR = 10.0
 _SOME = 1_000
-_BEYOND = 50_000.0
-"""No elevation of the earth is larger, in feet or in metres."""
 
 
 def parse_nodata(nodata: float | Sequence[float] | None) -> Float64Array:
@@ -68,9 +72,10 @@ def find_suspect_elevations(z: Float64Array) -> list[SuspectElevation]:
 
     From the outside inwards the lowest or highest value is suspected if a gap parts it from all
     others: one that programs write for no data by a gap wider than the range of the others, any
-    value that three points or more share by ten times this range, and any beyond the earth's. Zero
-    among elevations around the sea lies in no gap, and is left alone. Elevations are finite;
-    ``lowest`` and ``highest`` of a result are of the others.
+    value that three points or more share by ten times this range, and any beyond the earth's. Of
+    several such marks none counts among the others of another. Zero among elevations around the
+    sea lies in no gap, and is left alone. Elevations are finite; ``lowest`` and ``highest`` of a
+    result are of the others.
 
     Examples
     --------
@@ -79,16 +84,31 @@ def find_suspect_elevations(z: Float64Array) -> list[SuspectElevation]:
     """
     found: list[SuspectElevation] = []
     rest = z
+    ground = _leave_out_marks(z) if len(z) else z
     while len(found) < _MOST and len(rest):
-        suspect = next(
-            filter(None, (_find_suspect(rest, end) for end in _find_extremes(rest))), None
-        )
+        ends = _find_extremes(rest)
+        suspect = next(filter(None, (_find_suspect(rest, ground, end) for end in ends)), None)
         if suspect is None:
             break
         found.append(suspect)
         rest = rest[rest != suspect.value]
     # What lies beyond the last of them is the range of the true ones.
     return [replace(one, lowest=float(rest.min()), highest=float(rest.max())) for one in found]
+
+
+def _leave_out_marks(z: Float64Array) -> Float64Array:
+    """Return the elevations but for those that programs write for none and that lie far from all.
+
+    Two such marks would hide each other.
+    """
+    lowest, highest = float(z.min()), float(z.max())
+    known = [value for value in CUSTOMARY if lowest <= value <= highest and (z == value).any()]
+    others = z[~np.isin(z, known)] if known else z
+    if len(others) == 0:
+        return z
+    span = float(others.min()), float(others.max())
+    marks = [value for value in known if is_beyond_range(value, *span)]
+    return z[~np.isin(z, marks)] if marks else z
 
 
 def is_customary(value: float) -> bool:
@@ -99,7 +119,7 @@ def is_customary(value: float) -> bool:
     >>> is_customary(-9999.0), is_customary(318.2)
     (True, False)
     """
-    return value in _CUSTOMARY
+    return value in _CUSTOMARY_SET
 
 
 def _find_extremes(z: Float64Array) -> tuple[float, float]:
@@ -108,30 +128,52 @@ def _find_extremes(z: Float64Array) -> tuple[float, float]:
     return (high, low) if abs(high) > abs(low) else (low, high)
 
 
-def _find_suspect(z: Float64Array, value: float) -> SuspectElevation | None:
+def _find_suspect(z: Float64Array, ground: Float64Array, value: float) -> SuspectElevation | None:
     """Return the lowest or highest value if it may stand for no data."""
+    is_known = value in _CUSTOMARY_SET
     # Fewer others make gap and range look no less suspicious: most values are cleared by some.
-    for others in (z[:: max(1, len(z) // _SOME)], z):
+    for step in (max(1, len(z) // _SOME), 1):
+        others = z[::step]
         others = others[others != value]
-        if len(others) and not _is_far_from(value, others, len(z) - len(others)):
+        count = len(z[::step]) - len(others)
+        if not len(others):
+            continue
+        some = ground[::step]
+        is_far = is_known and is_beyond_range(value, float(some.min()), float(some.max()))
+        if not is_far and not _is_far_from(value, others, count if step == 1 else len(z)):
             return None
     if len(others) == 0:
         return None
     count = len(z) - len(others)
-    if 2 * count > len(z) and (value == 0.0 or value not in _CUSTOMARY):
+    if 2 * count > len(z) and (value == 0.0 or value not in _CUSTOMARY_SET):
         return None
     return SuspectElevation(value, count, float(others.min()), float(others.max()))
+
+
+def is_beyond_range(value: float, low: float, high: float) -> bool:
+    """Tell whether a gap wider than their range parts a value from others.
+
+    Examples
+    --------
+    >>> is_beyond_range(0.0, 318.2, 331.0), is_beyond_range(0.0, 5.0, 331.0)
+    (True, False)
+    """
+    return _find_half_gap(value, low, high) > high / 2 - low / 2
+
+
+def _find_half_gap(value: float, low: float, high: float) -> float:
+    """Return half of how far a value is beyond others; the halves cannot overflow."""
+    return low / 2 - value / 2 if value < low else value / 2 - high / 2
 
 
 def _is_far_from(value: float, others: Float64Array, count: int) -> bool:
     low, high = float(others.min()), float(others.max())
     size = max(abs(low), abs(high))
-    half_gap = low / 2 - value / 2 if value < low else value / 2 - high / 2
-    half_range = high / 2 - low / 2  # the halves cannot overflow
-    is_customary = value in _CUSTOMARY and half_gap > half_range
+    half_gap, half_range = _find_half_gap(value, low, high), high / 2 - low / 2
+    is_known = value in _CUSTOMARY_SET and half_gap > half_range
     is_shared = count >= _REPEATS and half_gap > _FAR * max(half_range, size / 1000)
-    is_beyond = abs(value) > _BEYOND >= 2.0 * float(np.median(np.abs(others) / 2.0))
-    return is_customary or is_shared or is_beyond
+    is_beyond = abs(value) > BEYOND >= 2.0 * float(np.median(np.abs(others) / 2.0))
+    return is_known or is_shared or is_beyond
 
 
 def describe_suspects(suspects: Iterable[SuspectElevation], what: str = "point") -> list[str]:
@@ -147,6 +189,8 @@ def describe_suspects(suspects: Iterable[SuspectElevation], what: str = "point")
 def describe_elevations(z: Float64Array, what: str = "point") -> list[str]:
     """Say which finite elevations may stand for no data, or that all of them may.
 
+    And which are in another unit than most.
+
     Examples
     --------
     >>> describe_elevations(np.zeros(4))
@@ -157,4 +201,14 @@ def describe_elevations(z: Float64Array, what: str = "point") -> list[str]:
             f"All {len(z):,} {what}s have the elevation {z[0]:g}: check that it stands not for no "
             "data."
         ]
-    return describe_suspects(find_suspect_elevations(z), what)
+    told = []
+    multiplied = find_multiplied(z)
+    if multiplied is not None:
+        count = int(multiplied.is_wrong.sum())
+        told.append(
+            f"{counted(count, what)} {inflect('[has an elevation|have elevations]', count)} "
+            f"{multiplied.words} those of the others ({multiplied.lowest:g} to "
+            f"{multiplied.highest:g}): check {inflect('[its|their]', count)} unit."
+        )
+        z = z[~multiplied.is_wrong]
+    return [*told, *describe_suspects(find_suspect_elevations(z), what)]

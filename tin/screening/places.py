@@ -27,6 +27,8 @@ _NEAR = 0.5
 _SITE = 4
 """So many points together are a site of their own."""
 _MOST_FAR = 2_000
+_SOME = 20_000
+"""So many points tell where most of them lie."""
 
 
 class _Box(NamedTuple):
@@ -37,13 +39,22 @@ class _Box(NamedTuple):
 
     @classmethod
     def of(cls, xy: Float64Array) -> _Box:
-        low, high = np.percentile(xy, _CENTRE, axis=0)
+        some = xy[:: max(1, len(xy) // _SOME)]
+        low, high = np.percentile(some, _CENTRE, axis=0)
         pad = (high - low) * (1 / _WHOLE - 1) / 2
         return cls(low - pad, high + pad)
 
     @property
     def diagonal(self) -> float:
         return float(np.hypot(*(self.high - self.low)))
+
+    def find_beyond(self, xy: Float64Array, diagonals: float) -> Int64Array:
+        """Return which places are further from the box than so many diagonals of it."""
+        pad = diagonals * self.diagonal
+        low, high = (np.array([f(axis) for axis in xy.T]) for f in (np.min, np.max))
+        if np.hypot(*np.maximum(self.low - low, high - self.high).clip(0.0)) <= pad:
+            return np.empty(0, np.int64)
+        return np.flatnonzero(self.measure_distances(xy) > diagonals)
 
     def measure_distances(self, xy: Float64Array) -> Float64Array:
         """Return how far places are beyond the box, in diagonals of it."""
@@ -65,8 +76,7 @@ def find_places(rows: Rows, crs: CRS | None) -> tuple[list[Suspect], list[str]]:
     box = _Box.of(rows.xyz[:, :2])
     if not 0.0 < box.diagonal < np.inf:
         return list(found.values()), notes
-    distances = box.measure_distances(rows.xyz[:, :2])
-    far = np.flatnonzero(distances > _FAR)
+    far = box.find_beyond(rows.xyz[:, :2], _FAR)
     if len(far) > _MOST_FAR:
         notes.append(f"{counted(len(far), 'point')} far from the others: taken for other sites.")
         return list(found.values()), notes
@@ -75,7 +85,8 @@ def find_places(rows: Rows, crs: CRS | None) -> tuple[list[Suspect], list[str]]:
         if told is not None:
             found[i] = rows.suspect(i, *told, "high")
         elif i not in found and not _is_in_company(rows, i, far, box):
-            found[i] = _tell_isolated(rows, i, float(distances[i]))
+            distance = box.measure_distances(rows.xyz[i : i + 1, :2])[0]
+            found[i] = _tell_isolated(rows, i, float(distance))
     return list(found.values()), notes
 
 

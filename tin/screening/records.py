@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .naming import make_namer, write_number
 from .suspects import Suspect
 
 if TYPE_CHECKING:
@@ -37,7 +38,9 @@ def find_repeated_numbers(tin: TIN, rows: Rows) -> tuple[list[Suspect], list[str
     for i in repeated.tolist():
         groups.setdefault(str(own[i]), []).append(i)
     return [
-        rows.suspect(i, "number", _name_others(text, rows.numbers[same], rows.numbers[i]), "high")
+        rows.suspect(
+            i, "number", _name_others(tin, text, rows.numbers[same], rows.numbers[i]), "high"
+        )
         for text, same in groups.items()
         for i in same
     ], []
@@ -47,24 +50,27 @@ def _as_names(numbers: AnyArray) -> AnyArray:
     """Return whole numbers as they are, others as texts."""
     if numbers.dtype.kind in "iu":
         return numbers
-    return np.array([_write(value) for value in numbers.tolist()], str)
+    return np.array([write_number(value) for value in numbers.tolist()], str)
 
 
-def _write(value: Any) -> str:
-    """Return a number as text; an empty one for none."""
-    is_none = value is None or (isinstance(value, float) and np.isnan(value))
-    return "" if is_none else str(value).strip()
-
-
-def _name_others(text: str, same: Int64Array, own: int) -> str:
+def _name_others(tin: TIN, text: str, same: Int64Array, own: int) -> str:
     others = same[same != own].tolist()
-    shown = ", ".join(map(str, others[:_SHOWN])) + (", ..." if len(others) > _SHOWN else "")
-    return f"Point number {text} is also that of row {shown}."
+    sources = tin.report.row_sources
+    names = [f"row {row}" for row in others[:_SHOWN]]
+    if sources is not None:
+        found = [sources.find(row) for row in others[:_SHOWN]]
+        names = [
+            f"line {line} of '{file}'" if line else name
+            for name, (file, line) in zip(names, found, strict=True)
+        ]
+    more = ", ..." if len(others) > _SHOWN else ""
+    return f"Point number {text} is also that of {', '.join(names)}{more}."
 
 
 def find_repeated_places(tin: TIN, rows: Rows, scale: float) -> list[Suspect]:
     """Find rows at one place whose elevations differ by more than heights do around."""
     found = []
+    name = make_namer(tin)
     for merge in tin.report.merges():
         spread = max(merge.elevations) - min(merge.elevations)
         if spread <= scale:
@@ -78,7 +84,10 @@ def find_repeated_places(tin: TIN, rows: Rows, scale: float) -> list[Suspect]:
             suspect = rows.suspect(
                 i,
                 "place",
-                f"Row {others[0]} has the same place, and elevations there differ by {spread:.6g}.",
+                _start(
+                    f"{name(others[:1])} has the same place, and elevations there differ by "
+                    f"{spread:.6g}."
+                ),
                 certainty,
             )
             residual = elevation - merge.elevation
@@ -103,6 +112,9 @@ def find_crossings(tin: TIN, scale: float, limit: float) -> list[Suspect]:
             sentence = f"{names} cross here, and their elevations differ by {apart:.6g}."
             certainty = "high" if apart > 3 * limit else "medium"
             place = (*xy, taken)
-            sentence = sentence[:1].upper() + sentence[1:]
-            found.append(Suspect(-1, place, "crossing", sentence, certainty, apart, scale))
+            found.append(Suspect(-1, place, "crossing", _start(sentence), certainty, apart, scale))
     return found
+
+
+def _start(sentence: str) -> str:
+    return sentence[:1].upper() + sentence[1:]

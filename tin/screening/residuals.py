@@ -8,17 +8,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import _kernel
-from ..topology import edges_at
+from ..topology import NO_NEIGHBOR, edges_at, find_offsets, find_owners
 from ..validation.threads import thread_count
 
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..triangulation import Triangulation
 
-__all__ = ["Residuals", "fit_plane"]
+__all__ = ["Residuals", "fit_planes", "measure_offsets"]
 
 _TERMS = 3
 """Of a plane: fewer neighbours than these and one more say nothing about a point."""
+_FLAT = 1e-12
+"""Points are as good as on a line where they spread so little across it, as a share of squares."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,7 +31,7 @@ class Residuals:
     xyz: Float64Array
     """(n, 3), its points; elevations of blunders are replaced by those of the others' surface."""
     on_line: BoolArray
-    """(n,), whether edges of lines or of a boundary meet in the vertex."""
+    """(n,), whether edges of lines within the surface meet in the vertex."""
     chords: Int32Array
     """(n, 2), the vertices before and behind it where exactly two such edges meet, else -1."""
     _without: _kernel.LeaveOneOut = field(init=False)
@@ -44,9 +46,10 @@ class Residuals:
         """Prepare a surface."""
         count = len(surface.points)
         chords = np.full((count, 2), -1, np.int32)
-        if not surface.constrained.any():
+        is_inner = surface.constrained & (surface.neighbors != NO_NEIGHBOR)
+        if not is_inner.any():
             return cls(surface, surface.points.copy(), np.zeros(count, np.bool_), chords)
-        pairs = np.unique(np.sort(edges_at(surface.triangles, surface.constrained), axis=1), axis=0)
+        pairs = np.unique(np.sort(edges_at(surface.triangles, is_inner), axis=1), axis=0)
         start, end = np.concatenate([pairs, pairs[:, ::-1]]).T
         degree = np.bincount(start, minlength=count)
         order = np.argsort(start, kind="stable")
@@ -69,7 +72,8 @@ class Residuals:
         Within the surface, and on straight parts of its boundary, it is the elevation less that of
         the constrained Delaunay triangulation without the vertex. A vertex of a line is compared
         with the chord between the vertices before and behind it, for a line is surveyed where the
-        ground breaks; where lines end or meet nothing is told. Other vertices of the boundary are
+        ground breaks; beside the chord the ground goes on as the plane that fits the neighbours
+        best falls. Where lines end or meet nothing is told. Other vertices of the boundary are
         compared with the plane that fits the vertices within two edges of them best.
         """
         found = self._interpolate(vertices)
@@ -90,37 +94,118 @@ class Residuals:
     def _interpolate_chords(self, vertices: Int32Array) -> Float64Array:
         before, behind = (self.xyz[self.chords[vertices, k]] for k in range(2))
         place = self.xyz[vertices]
-        to_before = np.hypot(*(place - before)[:, :2].T)
-        to_behind = np.hypot(*(place - behind)[:, :2].T)
-        share = to_before / (to_before + to_behind)
-        expected = (1 - share) * before[:, 2] + share * behind[:, 2]
-        return np.column_stack([expected, to_before * to_behind])
+        along = behind - before
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = ((place - before) * along)[:, :2].sum(axis=1) / (along[:, :2] ** 2).sum(axis=1)
+        share = np.clip(np.nan_to_num(share), 0.0, 1.0)
+        foot = before + share[:, None] * along
+        expected = foot[:, 2]
+        beside = place[:, :2] - foot[:, :2]
+        bends = np.flatnonzero(beside.any(axis=1))
+        if len(bends):
+            planes = fit_planes(self.xyz, vertices[bends], *self.list_neighbors(vertices[bends]))
+            expected[bends] += (planes[:, 1:] * beside[bends]).sum(axis=1)
+        to_ends = (np.hypot(*(place - end)[:, :2].T) for end in (before, behind))
+        return np.column_stack([expected, np.multiply(*to_ends)])
 
     def _extrapolate(self, vertices: Int32Array) -> Float64Array:
         """Return elevations of planes through the vertices within two edges of some."""
         found = np.full((len(vertices), 2), np.nan)
-        for i, vertex in enumerate(vertices.tolist()):
-            ring = self.list_neighbors(vertices[i : i + 1])[1]
-            around = np.setdiff1d(np.append(ring, self.list_neighbors(ring)[1]), [vertex])
-            if len(around) > _TERMS:
-                apart = self.xyz[around, :2] - self.xyz[vertex, :2]
-                expected, _ = fit_plane(self.xyz[around], self.xyz[vertex])
-                found[i] = expected, (apart**2).sum(axis=1).max()
+        offsets, around = self.list_wide_neighbors(vertices)
+        has_enough = np.diff(offsets) > _TERMS
+        planes = fit_planes(self.xyz, vertices, offsets, around)
+        owners = find_owners(offsets)
+        apart = self.xyz[around, :2] - self.xyz[vertices[owners], :2]
+        most = np.zeros(len(vertices))
+        np.maximum.at(most, owners, (apart**2).sum(axis=1))
+        found[has_enough, 0], found[has_enough, 1] = planes[has_enough, 0], most[has_enough]
         return found
+
+    def measure_roughness(self, vertices: Int32Array) -> Float64Array:
+        """Return how far at most the vertices within two edges of some are off their plane.
+
+        As much as curved ground beside it may be off where the plane is extrapolated.
+        """
+        offsets, around = self.list_wide_neighbors(vertices)
+        planes, owners = fit_planes(self.xyz, vertices, offsets, around), find_owners(offsets)
+        left = measure_offsets(self.xyz, vertices, planes, owners, around)
+        most = np.zeros(len(vertices))
+        np.maximum.at(most, owners, np.abs(left))
+        return most
+
+    def list_wide_neighbors(self, vertices: Int32Array) -> tuple[Int64Array, Int32Array]:
+        """Return the vertices within two edges of some, as offsets and vertices."""
+        offsets, near = self.list_neighbors(vertices)
+        wide, around = self.list_neighbors(near)
+        owner = find_owners(offsets)
+        owner = np.concatenate([owner, owner[find_owners(wide)]])
+        reach = np.concatenate([near, around])
+        owner, reach = np.divmod(np.unique(owner * len(self.xyz) + reach), len(self.xyz))
+        elsewhere = reach != vertices[owner]
+        owner, reach = owner[elsewhere], reach[elsewhere].astype(np.int32)
+        return find_offsets(np.bincount(owner, minlength=len(vertices))), reach
 
     def list_neighbors(self, vertices: Int32Array) -> tuple[Int64Array, Int32Array]:
         """Return the vertices joined to some by edges, as offsets and vertices."""
         return self._without.list_neighbors(np.ascontiguousarray(vertices))
 
 
-def fit_plane(points: Float64Array, place: Float64Array) -> tuple[float, Float64Array]:
-    """Return the elevation at a place of the plane that fits points best.
+def fit_planes(
+    xyz: Float64Array, vertices: Int32Array, offsets: Int64Array, around: Int32Array
+) -> Float64Array:
+    """Fit a plane to the points around each of some vertices, by least squares.
 
-    The second array are the elevations of the points, (k,), above the plane.
+    The points around vertex ``vertices[i]`` are ``around[offsets[i]:offsets[i + 1]]``. Returns the
+    elevation of each plane at the vertex, and its slopes to the east and north, (k, 3); where the
+    points lie on a line, the slope along it; NaN where there is none.
     """
-    xy = points[:, :2] - place[:2]
-    size = np.abs(xy).max()
-    level = float(np.median(points[:, 2]))
-    terms = np.column_stack([np.ones(len(xy)), xy / size])
-    found = np.linalg.lstsq(terms, points[:, 2] - level, rcond=1e-6)[0]
-    return level + float(found[0]), points[:, 2] - level - terms @ found
+    count, owners = len(vertices), find_owners(offsets)
+    sizes = np.diff(offsets).astype(np.float64)
+
+    def average(values: Float64Array) -> Float64Array:
+        sums = np.bincount(owners, values, minlength=count)
+        means: Float64Array = sums / np.where(sizes > 0, sizes, np.nan)
+        return means
+
+    apart = (xyz[around] - xyz[vertices[owners]]).T
+    middle = np.array([average(axis) for axis in apart])
+    x, y, z = apart - middle[:, owners]
+    scale = np.sqrt(np.fmax(average(x * x) + average(y * y), np.finfo(float).tiny))
+    x, y = x / scale[owners], y / scale[owners]
+    xx, xy, yy, xz, yz = (average(one) for one in (x * x, x * y, y * y, x * z, y * z))
+    slopes = _solve(xx, xy, yy, xz, yz) / scale
+    level = xyz[vertices, 2] + middle[2] - slopes[0] * middle[0] - slopes[1] * middle[1]
+    return np.column_stack([level, *slopes])
+
+
+def measure_offsets(
+    xyz: Float64Array,
+    vertices: Int32Array,
+    planes: Float64Array,
+    owners: Int64Array,
+    around: Int32Array,
+) -> Float64Array:
+    """Return how far points around some vertices, ``owners``, are above the planes at these."""
+    apart = xyz[around, :2] - xyz[vertices[owners], :2]
+    offsets: Float64Array = (
+        xyz[around, 2] - planes[owners, 0] - (planes[owners, 1:] * apart).sum(axis=1)
+    )
+    return offsets
+
+
+def _solve(
+    xx: Float64Array, xy: Float64Array, yy: Float64Array, xz: Float64Array, yz: Float64Array
+) -> Float64Array:
+    """Return the shortest vectors that solve many pairs of equations, (2, k)."""
+    angle = 0.5 * np.arctan2(2 * xy, xx - yy)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    widths = np.array(
+        [
+            xx * cosine**2 + 2 * xy * cosine * sine + yy * sine**2,
+            xx * sine**2 - 2 * xy * cosine * sine + yy * cosine**2,
+        ]
+    )
+    sides = np.array([xz * cosine + yz * sine, yz * cosine - xz * sine])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        u, v = np.where(widths > _FLAT * widths[0], sides / widths, 0.0)
+    return np.array([u * cosine - v * sine, u * sine + v * cosine])

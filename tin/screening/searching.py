@@ -7,23 +7,30 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..._progress import Progress
+from ..._sentences import counted, inflect
+from ...crs import assume_elevation_unit
 from ...errors import LinesError, PointsError
-from .heights import STRICT, find_heights, find_peaks_and_pits
+from .. import _kernel
+from .heights import STRICT, find_heights
 from .nodata import find_suspect_elevations, is_customary
-from .parts import leave_out
+from .parts import find_clustered, leave_out
 from .places import find_places
 from .records import find_crossings, find_repeated_numbers, find_repeated_places
-from .slips import name_factor
-from .suspects import CERTAINTIES, DROPPED, REASONS, Rows, Suspect
+from .slips import find_multiplied, name_factor
+from .suspects import CERTAINTIES, DROPPED, REASONS, Rows, Suspect, list_overruled_points
+from .voids import find_voids
+from .wrong_lines import find_wrong_lines, name_lines_at
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from ..._progress import Tell
-    from ...arrays import Float64Array, Int32Array
+    from ...arrays import BoolArray, Float64Array, Int32Array
     from ..surface import TIN
     from ..triangulation import Triangulation
     from .heights import Heights
+    from .voids import Void
+    from .wrong_lines import WrongLine
 
 __all__ = ["Screening", "inspect_points", "screen_points"]
 
@@ -43,20 +50,40 @@ class Screening(NamedTuple):
     """What cannot be told of single points."""
 
 
+class _Ground(NamedTuple):
+    """What is left of a surface without what is wrong as a whole, and what that is."""
+
+    surface: Triangulation
+    """Without triangles at vertices of wrong lines, filled voids and the like."""
+    rows: Rows
+    wrong: Int32Array
+    """Single vertices of it whose elevations count for nothing."""
+    suspects: list[Suspect]
+    is_whole: bool
+    """Whether no triangles were left out."""
+
+
 def inspect_points(tin: TIN, progress: Tell | None = None) -> Screening:
     """Judge every point of a TIN; what :func:`tinsmith.blunders` tells, but for gaps."""
     done = Progress(progress)
-    rows = Rows.of(tin)
-    misplaced, notes = find_places(rows, tin.crs)
-    codes = _find_codes(rows)
-    done(0.2)
-    heights, scale = _inspect_heights(tin, misplaced, codes, done.stage(0.2, 0.9))
-    done(0.9)
-    suspects = [*misplaced, *codes, *heights]
-    repeated, more = find_repeated_numbers(tin, rows)
-    suspects += repeated
-    suspects += find_repeated_places(tin, rows, scale)
-    suspects += find_crossings(tin, scale, STRICT * scale)
+    with np.errstate(all="ignore"):
+        rows = Rows.of(tin)
+        misplaced, notes = find_places(rows, tin.crs)
+        done(0.2)
+        rest = _take_out(tin, misplaced)
+        ground = _find_ground(rest, Rows.of(rest), ())
+
+        def interpolate_without(vertices: Int32Array) -> Float64Array:
+            return _interpolate_without(rest, vertices)
+
+        without = interpolate_without if ground.is_whole else None
+        heights, scale = _inspect_heights(rest, ground, without, done.stage(0.2, 0.9))
+        done(0.9)
+        suspects = [*misplaced, *ground.suspects, *heights]
+        repeated, more = find_repeated_numbers(tin, rows)
+        suspects += repeated
+        suspects += find_repeated_places(tin, rows, scale)
+        suspects += find_crossings(tin, scale, STRICT * scale)
     return _order(suspects, [*notes, *more])
 
 
@@ -64,72 +91,142 @@ def screen_points(tin: TIN) -> Screening:
     """Look for blunders in little time: as :func:`inspect_points`, but of many points in part.
 
     Of more than 10,000 points only those further beyond all their neighbours than these are apart
-    are judged, with scales from a sample; repeated numbers and places are left to others.
+    are judged, with scales from a sample; repeated numbers and places are left to others. Nothing
+    is removed from the TIN meanwhile, but triangles are looked away from.
     """
-    rows = Rows.of(tin)
-    misplaced, notes = find_places(rows, tin.crs)
-    codes = _find_codes(rows)
-    heights = _screen_heights(tin, rows, misplaced, codes)
-    return _order([*misplaced, *codes, *heights], notes)
+    with np.errstate(all="ignore"):
+        rows = Rows.of(tin)
+        misplaced, notes = find_places(rows, tin.crs)
+        ground = _find_ground(tin, rows, _find_vertices(rows, misplaced))
+        heights = _screen_heights(tin, ground)
+    return _order([*misplaced, *ground.suspects, *heights], notes)
+
+
+# ---------------------------------------------------------------- what is wrong as a whole
+
+
+def _find_ground(tin: TIN, rows: Rows, misplaced: Sequence[int] | Int32Array) -> _Ground:
+    """Find codes, groups in another unit, filled voids and wrong lines, and leave them out."""
+    surface = leave_out(tin.triangulation, misplaced)
+    suspects = _find_marks(rows)
+    marked = _find_vertices(rows, suspects)
+    clustered = find_clustered(surface, marked)
+    surface = leave_out(surface, clustered)
+    wrong = np.setdiff1d(marked, clustered)
+    voids = find_voids(surface)
+    filled = np.concatenate([np.empty(0, np.int32), *(void.vertices for void in voids)])
+    surface = leave_out(surface, filled)
+    lines = _find_wrong_lines(tin, surface, rows, marked)
+    off = [line.vertices for line in lines if line.certainty != "low"]
+    surface = leave_out(surface, np.concatenate([np.empty(0, np.int32), *off]))
+    suspects += [_tell_void(tin, rows, void) for void in voids]
+    suspects += [_tell_line(tin, line) for line in lines]
+    is_whole = surface is tin.triangulation
+    return _Ground(surface, rows, wrong.astype(np.int32), suspects, is_whole)
+
+
+def _find_marks(rows: Rows) -> list[Suspect]:
+    """Find elevations that stand for none, or are in another unit than most."""
+    z = rows.xyz[:, 2]
+    found = []
+    chosen = np.ones(len(z), np.bool_)
+    multiplied = find_multiplied(z)
+    if multiplied is not None:
+        chosen = ~multiplied.is_wrong
+        sentence = (
+            f"Its elevation is {multiplied.words} those of the others, "
+            f"{multiplied.lowest:.6g} to {multiplied.highest:.6g}."
+        )
+        for i in np.flatnonzero(multiplied.is_wrong).tolist():
+            found.append(rows.suspect(i, "factor", sentence, "high"))
+    for one in find_suspect_elevations(z[chosen]):
+        sentence = (
+            f"An elevation of {one.value:g} may stand for none: the others are "
+            f"{one.lowest:g} to {one.highest:g}."
+        )
+        for i in np.flatnonzero(z == one.value).tolist():
+            found.append(rows.suspect(i, "code", sentence, "high"))
+    return found
+
+
+def _find_wrong_lines(
+    tin: TIN, surface: Triangulation, rows: Rows, marked: Int32Array
+) -> list[WrongLine]:
+    """Find lines that the points on none of them do not bear out."""
+    lines = tin.lines
+    if len(lines) == 0:
+        return []
+    is_point = np.zeros(len(surface.points), np.bool_)
+    is_point[rows.vertices] = True
+    is_point[marked] = False
+    is_point[lines.vertices] = False
+    known = list_overruled_points(tin.report)
+    unit = assume_elevation_unit(tin.crs, tin.elevation_unit)
+    metre = 1.0 if unit is None or unit.metres is None else 1.0 / unit.metres
+    return find_wrong_lines(surface, lines, is_point, known, metre=metre)
+
+
+def _tell_void(tin: TIN, rows: Rows, void: Void) -> Suspect:
+    at = np.flatnonzero(np.isin(rows.vertices, void.vertices))
+    sentence = (
+        f"{len(void.vertices):,} points that lie together have the elevation {void.value:g}, and "
+        f"{void.lowest:.6g} to {void.highest:.6g} is all around: it may stand for none."
+    )
+    if len(at):
+        return rows.suspect(int(at[0]), "void", sentence, "medium")
+    place = tuple(tin.points[void.vertices[0]].tolist())
+    return Suspect(-1, place, "void", sentence, "medium")
+
+
+def _tell_line(tin: TIN, line: WrongLine) -> Suspect:
+    name = line.name[:1].upper() + line.name[1:]
+    count = len(line.vertices)
+    which = "all" if count == line.n_vertices else f"{count:,} of"
+    words = inflect(line.words, count)
+    vertices = counted(line.n_vertices, "vertex", "vertices")
+    sentence = (
+        f"{name}: {which} {vertices} {words}; the points around give {line.lowest:.6g} to "
+        f"{line.highest:.6g}."
+    )
+    place = tuple(tin.points[line.worst].tolist())
+    return Suspect(
+        -1, place, "line", sentence, line.certainty, line.offset, line.limit / STRICT, line.name
+    )
 
 
 # ---------------------------------------------------------------- elevations
 
 
-def _find_codes(rows: Rows) -> list[Suspect]:
-    """Find elevations that stand for none."""
-    found = []
-    for one in find_suspect_elevations(rows.xyz[:, 2]):
-        sentence = (
-            f"An elevation of {one.value:g} may stand for none: the others are "
-            f"{one.lowest:g} to {one.highest:g}."
-        )
-        for i in np.flatnonzero(rows.xyz[:, 2] == one.value).tolist():
-            found.append(rows.suspect(i, "code", sentence, "high"))
-    return found
-
-
 def _inspect_heights(
-    tin: TIN, misplaced: Sequence[Suspect], codes: Sequence[Suspect], progress: Tell | None
+    tin: TIN,
+    ground: _Ground,
+    without: Callable[[Int32Array], Float64Array] | None,
+    progress: Tell | None,
 ) -> tuple[list[Suspect], float]:
-    """Return the rows that are too high or too low, and the usual scale of residuals.
-
-    What is in a wrong place is taken out first; what is a code has no say.
-    """
-    ground = _take_out(tin, misplaced)
-    rows = Rows.of(ground)
-    wrong = _find_vertices(rows, codes)
-    every = np.arange(len(ground.points), dtype=np.int32)
-
-    def interpolate_without(vertices: Int32Array) -> Float64Array:
-        return _interpolate_without(ground, vertices)
-
-    heights = find_heights(
-        ground.triangulation, every, wrong, without=interpolate_without, progress=progress
-    )
-    return _judge_rows(ground.triangulation, rows, heights.found), heights.scale
+    """Return the rows that are too high or too low, and the usual scale of residuals."""
+    every = np.arange(len(ground.surface.points), dtype=np.int32)
+    heights = find_heights(ground.surface, every, ground.wrong, without=without, progress=progress)
+    return _judge_vertices(tin, ground, heights.found), heights.scale
 
 
-def _screen_heights(
-    tin: TIN, rows: Rows, misplaced: Sequence[Suspect], codes: Sequence[Suspect]
-) -> list[Suspect]:
-    """Return the rows that are too high or too low, of many points those that stand out most.
-
-    Nothing is removed, but triangles at what is in a wrong place.
-    """
-    surface = leave_out(tin.triangulation, _find_vertices(rows, misplaced))
+def _screen_heights(tin: TIN, ground: _Ground) -> list[Suspect]:
+    """Return the rows that are too high or too low, of many points those that stand out most."""
+    surface = ground.surface
     count = len(surface.points)
-    is_whole = count <= _FEW
-    judged = np.arange(count, dtype=np.int32) if is_whole else find_peaks_and_pits(surface)
-    if not is_whole and len(judged) > _MOST_PEAKS * count:
+    is_small = count <= _FEW
+    if is_small:
+        judged = np.arange(count, dtype=np.int32)
+    else:
+        judged = _kernel.find_peaks_and_pits(surface.points, surface.triangles)
+    if not is_small and len(judged) > _MOST_PEAKS * count:
         return []
-    sample = None if is_whole else _SAMPLE
-    heights = find_heights(surface, judged, _find_vertices(rows, codes), sample=sample)
-    return _judge_rows(surface, rows, heights.found)
+    sample = None if is_small else _SAMPLE
+    heights = find_heights(surface, judged, ground.wrong, sample=sample)
+    return _judge_vertices(tin, ground, heights.found)
 
 
 def _find_vertices(rows: Rows, suspects: Sequence[Suspect]) -> Int32Array:
-    """Return the vertices of some suspects that are among some rows."""
+    """Return the vertices of some suspects that are among some rows, ascending."""
     numbers = np.unique([one.row for one in suspects]).astype(np.int64)
     numbers = numbers[np.isin(numbers, rows.numbers)]
     return np.unique(rows.vertices[np.searchsorted(rows.numbers, numbers)])
@@ -158,10 +255,21 @@ def _interpolate_without(tin: TIN, vertices: Int32Array) -> Float64Array:
     return elevations
 
 
-def _judge_rows(surface: Triangulation, rows: Rows, found: Heights) -> list[Suspect]:
-    """Return the rows of vertices that are too high or too low, each by its own elevation."""
+def _judge_vertices(tin: TIN, ground: _Ground, found: Heights) -> list[Suspect]:
+    """Return the rows of vertices that are too high or too low, and vertices of lines alone."""
     if len(found.vertices) == 0:
         return []
+    rows = ground.rows
+    has_row = np.isin(found.vertices, rows.vertices)
+    return [
+        *_judge_rows(ground, found),
+        *_judge_vertices_of_lines(tin, ground.surface, found, ~has_row),
+    ]
+
+
+def _judge_rows(ground: _Ground, found: Heights) -> list[Suspect]:
+    """Return the rows of vertices that are too high or too low, each by its own elevation."""
+    rows, surface = ground.rows, ground.surface
     place = np.searchsorted(found.vertices, rows.vertices)
     place = np.minimum(place, len(found.vertices) - 1)
     suspects = []
@@ -174,6 +282,25 @@ def _judge_rows(surface: Triangulation, rows: Rows, found: Heights) -> list[Susp
             one = rows.suspect(i, *told, _rate(abs(own - expected) / limit))
             scale = float(found.scales[at])
             suspects.append(one._replace(residual=own - expected, scale=scale))
+    return suspects
+
+
+def _judge_vertices_of_lines(
+    tin: TIN, surface: Triangulation, found: Heights, chosen: BoolArray
+) -> list[Suspect]:
+    """Return vertices that are on lines alone, and too high or too low."""
+    suspects = []
+    at = np.flatnonzero(chosen)
+    names = name_lines_at(tin.lines, found.vertices[at])
+    for i, name in zip(at.tolist(), names, strict=True):
+        place = tuple(surface.points[found.vertices[i]].tolist())
+        own, residual, limit = place[2], float(found.residuals[i]), float(found.limits[i])
+        _, sentence = _describe_height(own, own - residual, limit)
+        subject = f"A vertex of {name}: " if name else "A vertex of no point: "
+        certainty, scale = _rate(abs(residual) / limit), float(found.scales[i])
+        suspects.append(
+            Suspect(-1, place, "line", subject + sentence, certainty, residual, scale, name)
+        )
     return suspects
 
 
@@ -207,7 +334,8 @@ def _choose_reasons(suspects: Sequence[Suspect]) -> list[Suspect]:
     chosen: dict[Any, Suspect] = {}
     for one in sorted(suspects, key=lambda one: REASONS.index(one.reason)):
         kind = "wrong" if one.reason in DROPPED else one.reason
-        chosen.setdefault((one.row, kind) if one.row >= 0 else one.place, one)
+        place = () if one.row >= 0 else (*one.place, one.line)
+        chosen.setdefault((one.row, kind, *place), one)
     return list(chosen.values())
 
 

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 if TYPE_CHECKING:
     from ...arrays import Float64Array, Int32Array, Int64Array
+    from ..report import Report
     from ..surface import TIN
 
-__all__ = ["CERTAINTIES", "DROPPED", "REASONS", "Rows", "Suspect"]
+__all__ = ["CERTAINTIES", "DROPPED", "REASONS", "Rows", "Suspect", "list_overruled_points"]
 
 CERTAINTIES = ("high", "medium", "low")
 REASONS = (
@@ -22,6 +23,8 @@ REASONS = (
     "code",
     "spike",
     "pit",
+    "line",
+    "void",
     "place",
     "number",
     "crossing",
@@ -48,6 +51,8 @@ class Suspect(NamedTuple):
     residual: float = np.nan
     scale: float = np.nan
     """Both NaN where no height is told."""
+    line: str = ""
+    """What the line is called, if it is about one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,19 +72,11 @@ class Rows:
         vertex_of, report = tin.vertex_of, tin.report
         numbers = np.flatnonzero(vertex_of >= 0)
         xyz = tin.points[vertex_of[numbers]]
+        _restore_overruled(xyz, vertex_of[numbers], report)
         own = np.isin(report.merged_rows, numbers)
         at = np.searchsorted(numbers, report.merged_rows[own])
         xyz[at, 2] = report.merged_elevations[own]
         return cls(numbers, vertex_of[numbers], xyz)
-
-    def choose(self, chosen: Any) -> Rows:
-        """Return some of the rows."""
-        return replace(
-            self,
-            numbers=self.numbers[chosen],
-            vertices=self.vertices[chosen],
-            xyz=self.xyz[chosen],
-        )
 
     def suspect(self, i: int, reason: str, explanation: str, certainty: str) -> Suspect:
         """Return the row at a place among these as suspicious."""
@@ -88,3 +85,19 @@ class Rows:
 
     def __len__(self) -> int:
         return len(self.numbers)
+
+
+def _restore_overruled(xyz: Float64Array, vertices: Int32Array, report: Report) -> None:
+    """Give rows that a line overruled, whose vertex has its elevation, back their own."""
+    own = list_overruled_points(report)
+    if own:
+        at = np.flatnonzero(np.isin(vertices, list(own)))
+        xyz[at, 2] = [own[vertex] for vertex in vertices[at].tolist()]
+
+
+def list_overruled_points(report: Report) -> dict[int, float]:
+    """Return the vertices where a line has overruled points, and the elevation of these."""
+    overruled = report.overruled
+    of_points = (overruled.lines < 0) & (overruled.vertices >= 0)
+    vertices, elevations = overruled.vertices[of_points], overruled.elevations[of_points]
+    return dict(zip(vertices.tolist(), elevations.tolist(), strict=True))

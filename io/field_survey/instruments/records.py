@@ -12,6 +12,7 @@ from ...._sentences import counted, inflect
 from ....crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit, require_same_unit
 from ....errors import CrsError, OptionError, ReadError
 from ....tin import Survey
+from ....tin.types import RowSources
 from ....tin.validation.options import is_finite_number
 from ...delimited.findings import find_odd_elevations, find_repeated_numbers
 from ...reprojection.placement import place, settle_unit
@@ -101,6 +102,7 @@ class Book:
             crs=placed.crs,
             elevation_unit=placed.elevation_unit,
             source=self.path.name,
+            row_sources=RowSources.of_file(self.path.name, rows + 1),
             skipped={what: len(lines) for what, lines in self.left_out.items()},
             skipped_lines={what: tuple(lines) for what, lines in self.left_out.items()},
             notes=[

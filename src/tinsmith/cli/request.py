@@ -85,6 +85,8 @@ class Request:
     def read_tins(self, files: Sequence[Path]) -> list[TIN]:
         """Read TINs, or points and build theirs; files of lines are for the one file of points.
 
+        Codes, and the longest edge, are for each file of points.
+
         Raises
         ------
         Failure
@@ -104,10 +106,11 @@ class Request:
         return surfaces
 
     def _require_points(self, n_surveys: int) -> None:
-        of_codes = [f"--{name.replace('_', '-')}" for name in CODE_FLAGS]
-        named = [flag for flag in self.how.shaping if flag not in of_codes]
-        if (named and n_surveys != 1) or (self.how.has_codes and n_surveys == 0):
-            flag = (named or self.how.shaping)[0]
+        of_each = [f"--{name.replace('_', '-')}" for name in ("max_edge", *CODE_FLAGS)]
+        given = self.how.shaping
+        named = [flag for flag in given if flag not in of_each]
+        if (named and n_surveys != 1) or (given and n_surveys == 0):
+            flag = (named or given)[0]
             raise Failure(
                 f"{flag} needs {'a' if n_surveys == 0 else 'one'} file of points, and there are "
                 f"{n_surveys}: 'tinsmith build' makes TINs of them first."

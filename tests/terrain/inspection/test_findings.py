@@ -70,7 +70,7 @@ def test_a_clean_survey_has_an_empty_table_with_all_columns():
     table = ts.blunders(survey_of(*make(3)))
     assert len(table) == 0
     assert list(table.columns) == [
-        *("row", "number", "x", "y", "z", "residual", "scale"),
+        *("row", "number", "file", "line", "x", "y", "z", "residual", "scale"),
         *("reason", "certainty", "explanation"),
     ]
 

@@ -68,8 +68,8 @@ def test_an_edge_is_usual_if_more_than_five_percent_are_as_long(n_wide, n_senten
     x, y = np.meshgrid(np.cumsum([0.0, *steps]), np.arange(8.0))
     sentences = describe_gaps(ts.triangulate(ground(np.column_stack([x.ravel(), y.ravel()]))))
     assert len(sentences) == n_sentences
-    # Of the short edges the diagonals are the 95th percentile: 5 times 1.42, rounded up.
-    assert all("max_edge=7.1 " in sentence for sentence in sentences)
+    # Of the short edges the diagonals are the 95th percentile: 1.1 times 1.415, rounded up.
+    assert all("max_edge=1.6 " in sentence for sentence in sentences)
 
 
 def test_edges_of_lines_are_no_gaps():
@@ -95,10 +95,10 @@ def test_build_tells_of_gaps_with_its_flags_unless_told_how_far_to_span(tmp_path
     arguments = ["build", str(tmp_path / "a.xyz"), "-o", str(tmp_path / "a.ply")]
     result = CliRunner().invoke(main, [*arguments, "--report", str(tmp_path / "r.json")])
     assert re.search(
-        r"^Gaps +There are \d+ triangles inside .* --max-edge 71 with --trim 'everywhere'",
+        r"^Gaps +There are \d+ triangles inside .* --max-edge 16 with --trim 'everywhere'",
         result.stderr,
         re.MULTILINE,
     )
     notes = json.loads((tmp_path / "r.json").read_text())["notes"]
     assert any("over a void" in note for note in notes)
-    assert "Gaps" not in CliRunner().invoke(main, [*arguments, "--max-edge", "71"]).stderr
+    assert "Gaps" not in CliRunner().invoke(main, [*arguments, "--max-edge", "16"]).stderr

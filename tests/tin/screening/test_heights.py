@@ -155,4 +155,6 @@ def test_a_kerb_of_a_breakline_is_no_blunder_and_its_neighbours_are_none():
     assert len(ts.blunders(tin)) == 0
     top[10, 2] += 1.0
     found = ts.blunders(ts.triangulate(points, breaklines=[bottom, top]))
-    assert len(found) == 0  # the vertex has no row of points: a line's own
+    assert found["reason"].tolist() == ["line"]  # the vertex is the line's own, and no row's
+    assert found["row"].tolist() == [-1]
+    assert found["explanation"][0].startswith("A vertex of breakline 1: It is 1 above")

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../screening/leave_one_out.hpp"
+#include "../screening/quick_looks.hpp"
 #include "conversion.hpp"
 
 namespace tinsmith::python {
@@ -87,6 +88,26 @@ inline Xyz measure_neighbors(const GivenXyz& points, const GivenTriples& triangl
   return hand_over<Xyz>(std::move(found), {points.shape(0), 3});
 }
 
+inline TripleFlags find_long_edges(const GivenXyz& points, const GivenTriples& triangles,
+                                   double length) {
+  const Surface surface = surface_of(points, triangles);
+  auto found = streamed_array<bool>(3 * triangles.shape(0));
+  {
+    nb::gil_scoped_release release;
+    tinsmith::find_long_edges(surface, length * length, found.get());
+  }
+  return hand_over<TripleFlags>(std::move(found), {triangles.shape(0), 3});
+}
+
+inline Numbers find_peaks_and_pits(const GivenXyz& points, const GivenTriples& triangles) {
+  const Surface surface = surface_of(points, triangles);
+  const std::vector<std::int32_t> found = [&] {
+    nb::gil_scoped_release release;
+    return tinsmith::find_peaks_and_pits(surface);
+  }();
+  return hand_over(found);
+}
+
 inline void bind_screening(nb::module_& m) {
   nb::class_<HeldLeaveOneOut>(m, "LeaveOneOut", "Tells of a surface without single vertices.")
       .def(nb::init<const GivenXyz&, const GivenTriples&, const GivenTriples&>(),
@@ -97,6 +118,11 @@ inline void bind_screening(nb::module_& m) {
            "The vertices that edges join to some, counter-clockwise: offsets and vertices.");
   m.def("measure_neighbors", &measure_neighbors, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "Lowest and highest neighbour of each vertex, and the squared distance to the nearest.");
+  m.def("find_long_edges", &find_long_edges, "points"_a.noconvert(), "triangles"_a.noconvert(),
+        "length"_a, "Whether the edge opposite each corner is longer in the plane.");
+  m.def("find_peaks_and_pits", &find_peaks_and_pits, "points"_a.noconvert(),
+        "triangles"_a.noconvert(),
+        "The vertices further beyond all their neighbours than these are apart.");
 }
 
 }  // namespace tinsmith::python

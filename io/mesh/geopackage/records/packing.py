@@ -129,5 +129,6 @@ class _Packer:
 
 
 def _list_keys(value: Any) -> list[str]:
-    """Return the names of what a record holds."""
-    return [one.name for one in fields(value)] if is_dataclass(value) else list(value._fields)
+    """Return the names of what a record holds; lines of the text that was read are left there."""
+    names = [one.name for one in fields(value)] if is_dataclass(value) else list(value._fields)
+    return [name for name in names if name != "row_sources"]

@@ -48,10 +48,15 @@ def list_findings(table: Table, most: int) -> list[Row]:
 
 
 def _name_point(table: Table, i: int) -> str:
+    """Name a point as people find it again: by its number, and the line of its file."""
     row, number = int(table["row"][i]), table["number"][i]
     if row < 0:
         return "Lines"
-    return f"Row {row}" + (f" (point {number})" if number else "")
+    file, line = table["file"][i], int(table["line"][i])
+    place = f"line {line} of '{file}'" if line else ""
+    if number:
+        return f"Point {number}" + (f" ({place})" if place else "")
+    return place[:1].upper() + place[1:] or f"Row {row}"
 
 
 def list_records(table: Table) -> list[dict[str, Any]]:
@@ -73,18 +78,26 @@ class Suspects(NamedTuple):
 
 
 def tell_suspects(found: Suspects) -> list[Row]:
-    """Return the line of a build on points that look like blunders, but for doubtful ones."""
+    """Return the lines of a build on what looks like a blunder, but for what is doubtful."""
     from ...terrain.inspection.dropping import list_wrong_rows
 
-    rows = list_wrong_rows(found.table).tolist()
-    if not rows:
-        return []
-    names = ", ".join(map(str, rows[:_SHOWN])) + (", ..." if len(rows) > _SHOWN else "")
+    table = found.table
+    rows = list_wrong_rows(table)
+    is_clear = table["certainty"].astype(str) != "low"
+    is_other = is_clear & np.isin(table["reason"].astype(str), ("line", "void"))
+    others = [("Blunders", table["explanation"][i]) for i in np.flatnonzero(is_other)[:_SHOWN]]
+    if len(rows) == 0:
+        return others
+    first = {int(row): i for i, row in reversed(list(enumerate(table["row"].tolist())))}
+    shown = [_name_point(table, first[row]) for row in rows[:_SHOWN].tolist()]
+    names = "; ".join(one[:1].lower() + one[1:] for one in shown)
+    more = "; ..." if len(rows) > _SHOWN else ""
     looks = "looks like a blunder" if len(rows) == 1 else "look like blunders"
-    told = f"{counted(len(rows), 'point')} {looks}: row{'s' * (len(rows) > 1)} {names}"
-    if found.dropped is None:
-        return [("Blunders", f"{told}; 'tinsmith inspect' lists them")]
-    return [("Blunders", f"{told}; {len(found.dropped):,} left out")]
+    told = f"{counted(len(rows), 'point')} {looks}: {names}{more}"
+    done = "'tinsmith inspect' lists them"
+    if found.dropped is not None:
+        done = f"{len(found.dropped):,} left out"
+    return [("Blunders", f"{told}; {done}"), *others]
 
 
 def describe_suspects(found: Suspects) -> dict[str, Any]:
