@@ -443,7 +443,7 @@ def _blame_plug_in(one: Format, file: Path, reason: str) -> ReadError:
     )
 
 
-def _choose_format(file: Path, name: str | None, options: Iterable[str]) -> Format:
+def _choose_format(file: Path, name: str | None, options: Iterable[str] = ()) -> Format:
     """Return the format of a file that is there and not empty, or of a folder."""
     named = None if name is None else lookup.find_format(name, "read")
     if _is_folder(file):

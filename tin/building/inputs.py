@@ -172,8 +172,7 @@ def gather_inputs(
         As :func:`tinsmith.triangulate`.
     """
     _require_options(duplicates, snap, trim, crossing, max_edge)
-    survey = points if isinstance(points, Survey) else None
-    own = survey if survey is not None else _make_empty_survey()
+    own = points if isinstance(points, Survey) else _make_empty_survey()
     system, unit = _settle_reference(own, CRS.of(crs), Unit.of(z_unit))
     given = (points, breaklines, boundary, holes, erase, water)
     system, told = settle_crs(system, dict(zip(_NAMES, given, strict=True)))
@@ -181,12 +180,9 @@ def gather_inputs(
     xyz, is_masked = as_masked_points(rows, threads=threads)
     outer = [*own.boundary, *as_sequence(boundary, "boundary")]
     inner = [*own.holes, *as_sequence(holes, "holes")]
-    lines = gather_lines(
-        [*own.breaklines, *as_sequence(breaklines, "breaklines")],
-        outer,
-        inner,
-        [*own.water, *as_sequence(water, "water")],
-    )
+    open_lines = [*own.breaklines, *as_sequence(breaklines, "breaklines")]
+    flat = [*own.water, *as_sequence(water, "water")]
+    lines = gather_lines(open_lines, outer, inner, flat)
     if not lines.kinds:
         require_three(len(xyz))
     _require_simple_rings(lines)

@@ -58,7 +58,8 @@ PRODUCTS = {
     ],
 )
 def test_what_is_not_known_is_told_once_by_every_product(product, crs, unit, told):
-    assert tuple(PRODUCTS[product](SITE.replace(crs=crs, elevation_unit=unit))) == told
+    notes = PRODUCTS[product](SITE.replace(crs=crs, elevation_unit=unit))
+    assert tuple(note for note in notes if "Slopes are" not in note) == told
 
 
 AREAS = {

@@ -95,10 +95,10 @@ def test_build_tells_of_gaps_with_its_flags_unless_told_how_far_to_span(tmp_path
     arguments = ["build", str(tmp_path / "a.xyz"), "-o", str(tmp_path / "a.ply")]
     result = CliRunner().invoke(main, [*arguments, "--report", str(tmp_path / "r.json")])
     assert re.search(
-        r"^Gaps +There are \d+ triangles inside .* --max-edge 16 with --trim 'everywhere'",
+        r"^Note +There are \d+ triangles inside .* --max-edge 16 with --trim 'everywhere'",
         result.stderr,
         re.MULTILINE,
     )
     notes = json.loads((tmp_path / "r.json").read_text())["notes"]
     assert any("over a void" in note for note in notes)
-    assert "Gaps" not in CliRunner().invoke(main, [*arguments, "--max-edge", "16"]).stderr
+    assert "over a void" not in CliRunner().invoke(main, [*arguments, "--max-edge", "16"]).stderr
