@@ -6,7 +6,6 @@ of one crosses an edge of the other. The vertices are measured elsewhere; here t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -68,19 +67,16 @@ def choose_rows(
     return np.unique(rows), edges
 
 
-@dataclass
 class SurfaceMeter:
     """Measures surfaces of some of a TIN's vertices against it, along their edges.
 
-    An edge has the same difference in each of them, so it is measured once.
+    An edge has the same difference in each of them, so it is measured once. ``forced``, (k, 2),
+    are the edges of the TIN that are not Delaunay and are to be kept.
     """
 
-    tin: TIN
-    forced: Int64Array = field(default_factory=lambda: np.empty((0, 2), np.int64))
-    """Edges that are not Delaunay and are to be kept, (k, 2)."""
-
-    def __post_init__(self) -> None:
-        tin = self.tin
+    def __init__(self, tin: TIN) -> None:
+        self.tin = tin
+        self.forced = np.empty((0, 2), np.int64)
         own = topology.edges(tin.triangles, tin.neighbors)
         self._keys = np.unique(topology.edge_keys(own, len(tin.points)))
         self._errors = np.zeros(len(self._keys))
