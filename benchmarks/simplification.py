@@ -14,11 +14,12 @@ import resource
 import time
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
 import tinsmith as ts
+from tinsmith.policies import SimplificationHold
 
 from .measure import is_installed
 
@@ -163,16 +164,18 @@ def measure_peak_memory() -> int:
 
 
 def time_points(count: int) -> None:
-    """Print how long it takes to leave about a hundredth of random points."""
+    """Print how long it takes to leave about a hundredth of random points, by each ``hold``."""
     rng = np.random.default_rng(1)
     x, y = rng.uniform(0, 10 * np.sqrt(count), (2, count))
     z = 50 * np.sin(x / 700) * np.cos(y / 900) + 8 * np.sin(x / 90 + y / 130)
     surface = ts.triangulate(np.column_stack([x, y, z + rng.normal(0, 0.05, count)]), threads=1)
-    begin = time.process_time()
-    simple = ts.simplify(surface, tolerance=1.0, threads=1)
-    seconds = time.process_time() - begin
-    share = 100 * len(simple.points) / count
-    print(f"{count:,} points to {len(simple.points):,} ({share:.1f} %): {seconds:.2f} s")
+    for hold in get_args(SimplificationHold):
+        begin = time.process_time()
+        simple = ts.simplify(surface, tolerance=1.0, hold=hold, threads=1)
+        seconds = time.process_time() - begin
+        share = 100 * len(simple.points) / count
+        kept = f"{len(simple.points):,} ({share:.1f} %)"
+        print(f"{count:,} points to {kept}, held by {hold}: {seconds:.2f} s")
 
 
 def main() -> None:

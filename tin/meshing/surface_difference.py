@@ -70,13 +70,13 @@ def choose_rows(
 class SurfaceMeter:
     """Measures surfaces of some of a TIN's vertices against it, along their edges.
 
-    An edge has the same difference in each of them, so it is measured once.
+    An edge has the same difference in each of them, so it is measured once. ``forced``, (k, 2),
+    are the edges of the TIN that are not Delaunay and are to be kept.
     """
 
     def __init__(self, tin: TIN) -> None:
         self.tin = tin
-        self.forced: Int64Array = np.empty((0, 2), np.int64)
-        """Edges that are not Delaunay and are to be kept, (k, 2)."""
+        self.forced = np.empty((0, 2), np.int64)
         own = topology.edges(tin.triangles, tin.neighbors)
         self._keys = np.unique(topology.edge_keys(own, len(tin.points)))
         self._errors = np.zeros(len(self._keys))

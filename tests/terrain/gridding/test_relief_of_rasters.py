@@ -183,3 +183,12 @@ def test_points_in_another_order_have_the_same_slopes():
     )
     assert np.isfinite(one).all()
     np.testing.assert_array_equal(one, other)
+
+
+def test_only_rasters_joined_are_a_raster(tmp_path):
+    west = write_dem(tmp_path / "west.tif", quadratic(12, 12))
+    east = write_dem(tmp_path / "east.tif", quadratic(12, 12), west_north=(500_024.0, 4_000_000.0))
+    points = tmp_path / "points.csv"
+    points.write_text("x,y,z\n500003.5,3999990.5,260\n500013.5,3999980.5,261\n500009,3999985,262\n")
+    assert ts.read([west, east]).from_raster
+    assert not ts.read([west, points], crs="EPSG:32616").from_raster
