@@ -68,9 +68,9 @@ qgis-plugin: ## Pack the QGIS plugin as a zip into build/
 
 .PHONY: page
 page: ## Build the code of the 3D page anew from its sources; needs Node.js
-	cd terrain/preview/page && npm ci --silent && npm run --silent check && npm run --silent build
-	@cd terrain/preview/page && rm -rf node_modules
-	PYTHONPATH=tests $(BIN)/python -m support.pages > terrain/preview/page/viewer.sha256
+	cd terrain/viewer/page && npm ci --silent && npm run --silent check && npm run --silent build
+	@cd terrain/viewer/page && rm -rf node_modules
+	PYTHONPATH=tests $(BIN)/python -m support.pages > terrain/viewer/page/viewer.sha256
 
 .PHONY: slow
 slow: $(READY) ## Run the tests of many seconds that `make test` leaves to CI

@@ -36,8 +36,6 @@ from .isolines import check_contours as check_contours
 from .isolines import contour_bands as contour_bands
 from .isolines import contour_labels as contour_labels
 from .isolines import contours as contours
-from .preview import Preview as Preview
-from .preview import preview as preview
 from .relief.classes import aspect_classes as aspect_classes
 from .relief.classes import slope_classes as slope_classes
 from .relief.curvatures import curvature as curvature
@@ -58,3 +56,5 @@ from .sight import line_of_sight as line_of_sight
 from .sight import viewshed as viewshed
 from .sight import visible_vertices as visible_vertices
 from .simplification import simplify as simplify
+from .viewer import Preview as Preview
+from .viewer import preview as preview

@@ -12,7 +12,7 @@ from support.no_skips import (  # noqa: F401 - hooks
     pytest_runtest_makereport,
 )
 
-from tinsmith.terrain.preview import opengl
+from tinsmith.terrain.viewer import opengl
 from tinsmith.tin import TinsmithError
 
 # A timing is never a test; a test that hangs ends at pytest's own limit. The same commit is tested

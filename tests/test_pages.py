@@ -22,7 +22,7 @@ from support.orthos import write_grey
 import tinsmith as ts
 from tinsmith.cli import main
 from tinsmith.cli.paths import split_output
-from tinsmith.terrain.preview import picture
+from tinsmith.terrain.viewer import picture
 
 PLUG_IN = ROOT / "docs/examples/tinsmith-ifc/README.md"  # run by its own test, once installed
 README = ROOT / "README.md"  # run by test_repository, as a user runs it

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ...errors import LossWarning, OptionError, ReadError
-from ...terrain.preview.ortho import Ortho
+from ...terrain.viewer.ortho import Ortho
 from ..raster.ortho import as_picture_path, read_ortho
 from .common import read_content
 

@@ -13,7 +13,7 @@ import numpy as np
 from ... import _optional
 from ...crs import CRS
 from ...errors import LossWarning, OptionError, ReadError
-from ...terrain.preview.ortho import Ortho
+from ...terrain.viewer.ortho import Ortho
 from ..isolated import Limits, choose_limits, run_isolated
 from ..isolated.local_files import require_local
 from ..reprojection.transformation import reproject

@@ -12,8 +12,8 @@ from ._methods import register_methods
 # What tin cannot do itself, for it knows no pictures, features and files.
 register_methods(
     {
-        "TIN._repr_html_": "tinsmith.terrain.preview.card:make_card",
-        "Snapshot._repr_html_": "tinsmith.terrain.preview.card:make_card",
+        "TIN._repr_html_": "tinsmith.terrain.viewer.card:make_card",
+        "Snapshot._repr_html_": "tinsmith.terrain.viewer.card:make_card",
         "Surface.findings": "tinsmith.tin.screening:describe_findings",
         "Survey._repr_html_": "tinsmith.terrain.drawing.cards.survey:make_survey_card",
         "Report._repr_html_": "tinsmith.terrain.drawing.cards.survey:make_report_card",

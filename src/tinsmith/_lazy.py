@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import ast
-import sys
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec, resolve_name
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from ._optional import describe_missing
@@ -18,19 +16,6 @@ if TYPE_CHECKING:
 __all__ = ["lazy_names"]
 
 
-class _Package(ModuleType):
-    """A package whose public names are not hidden by modules of the same names.
-
-    Python binds a module to its package as soon as it is loaded: ``preview``, once the function
-    ``preview`` of the package ``preview`` is used.
-    """
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        is_hiding = isinstance(value, ModuleType) and name in self.__dict__.get("_lazy_names", ())
-        if not is_hiding:
-            super().__setattr__(name, value)
-
-
 def lazy_names(
     package: str, instead: Mapping[str, str] | None = None
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
@@ -39,7 +24,7 @@ def lazy_names(
     Its stub, ``__init__.pyi``, is the one list of its public names, for type checkers and for use:
     lines ``from .module import name as name``, or ``from .package import *`` for all names of the
     stub of another package. The modules of the package that are named there can be used as
-    attributes, too.
+    attributes, too. No name is that of a module of the package, which would hide it once loaded.
 
     Parameters
     ----------
@@ -53,9 +38,6 @@ def lazy_names(
     names = module_of.keys() - modules
     near = {module_of[name] for name in names if not module_of[name].startswith("..")}
     modules.update(module.split(".")[1] for module in near)
-    this = sys.modules[package]
-    this.__dict__["_lazy_names"] = frozenset(names)
-    this.__class__ = _Package
 
     def load(name: str) -> Any:
         if name in names:

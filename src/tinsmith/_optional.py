@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
 from .errors import MissingExtraError
 
-__all__ = ["describe_missing", "is_installed", "load", "require"]
+__all__ = ["describe_missing", "find_loaded", "is_installed", "load", "require"]
 
 _INCLUDED = ("numpy", "pyproj", "pyvista", "rasterio", "shapely")
 """What every ordinary installation has; one without dependencies may lack what it does not use."""
@@ -83,3 +84,14 @@ def is_installed(extra: str) -> bool:
 
 def _describe_missing(library: str, purpose: str) -> MissingExtraError:
     return MissingExtraError(library, extra=_EXTRA_OF.get(library, ""), purpose=purpose)
+
+
+def find_loaded(name: str, *needed: str) -> Any:
+    """Return a module that is loaded, with the names that are needed of it; else None.
+
+    A module that another thread is importing is listed before it has its names; until then nobody
+    has objects of its classes.
+    """
+    module = sys.modules.get(name)
+    is_whole = module is not None and all(hasattr(module, one) for one in needed)
+    return module if is_whole else None

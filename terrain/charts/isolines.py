@@ -9,7 +9,7 @@ import numpy as np
 from ... import _optional
 from ...tin.validation.options import require_tin
 from ..isolines.labels import contour_labels
-from ..preview.tints import interpolate_tints
+from ..viewer.tints import interpolate_tints
 from .arguments import parse_title, require_features
 from .figures import picture
 from .maps import draw_scale, draw_shade, find_paths, shade_for_map, start_map

@@ -16,7 +16,7 @@ import tinsmith as ts
 from tinsmith.cli import group, main
 from tinsmith.cli.output.summaries import describe_file_size
 from tinsmith.policies import CrossingPolicy, DuplicatePolicy, FeatureKind, TrimPolicy
-from tinsmith.terrain.preview import picture as drawing
+from tinsmith.terrain.viewer import picture as drawing
 
 SAMPLES = Path(__file__).parents[2] / "sample_data"
 SURVEY = str(SAMPLES / "site_survey.csv")

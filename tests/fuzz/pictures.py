@@ -10,12 +10,12 @@ import numpy as np
 
 import tinsmith as ts
 from tinsmith.crs import METRE
-from tinsmith.terrain.preview.annotations import Caption, annotate
-from tinsmith.terrain.preview.camera import View, aim
-from tinsmith.terrain.preview.corridor import STRIP_GAP
-from tinsmith.terrain.preview.look import make_look
-from tinsmith.terrain.preview.stage import fit_sheet, make_stage
-from tinsmith.terrain.preview.strips import place_strips
+from tinsmith.terrain.viewer.annotations import Caption, annotate
+from tinsmith.terrain.viewer.camera import View, aim
+from tinsmith.terrain.viewer.corridor import STRIP_GAP
+from tinsmith.terrain.viewer.look import make_look
+from tinsmith.terrain.viewer.stage import fit_sheet, make_stage
+from tinsmith.terrain.viewer.strips import place_strips
 
 from .campaign import Campaign, Case
 

@@ -79,7 +79,7 @@ def test_the_wheel_holds_the_packages_and_nothing_else(distributions):
     ]  # fmt: skip
     kept = {Path(name).name for name in rest - cores}
     assert kept == {"METADATA", "WHEEL", "RECORD", "entry_points.txt", "LICENSE"}
-    assert {"tinsmith/py.typed", "tinsmith/terrain/preview/page/viewer.js"} <= names
+    assert {"tinsmith/py.typed", "tinsmith/terrain/viewer/page/viewer.js"} <= names
     assert sizes < 12_000_000
 
 

@@ -74,5 +74,5 @@ def digest_sources(folder):
 if __name__ == "__main__":
     from pathlib import Path
 
-    folder = Path(__file__).parents[2] / "terrain" / "preview" / "page"
+    folder = Path(__file__).parents[2] / "terrain" / "viewer" / "page"
     print(digest_sources(folder))  # noqa: T201

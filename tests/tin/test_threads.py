@@ -331,3 +331,47 @@ def test_an_interrupt_while_the_core_is_loaded_waits(interrupts_raise):
     assert done == ["loaded"]
     with pytest.raises(KeyboardInterrupt):
         signal.raise_signal(signal.SIGINT)
+
+
+INSIDE = """
+import threading, time
+import numpy as np
+import tinsmith as ts
+points = np.random.default_rng(0).random((20000, 3))
+tin = ts.triangulate(points)
+def go():
+    while True:
+        {call}
+threading.Thread(target=go, daemon=True).start()
+time.sleep(0.2)
+"""
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "ts.triangulate(points, threads=2)",
+        "ts.contours(tin, interval=0.1)",
+        "tin.interpolate(points[:, :2])",
+        "ts.volume(tin, base=0.5, progress=lambda done: None)",
+    ],
+)
+def test_the_interpreter_exits_while_a_daemon_thread_is_inside(call):
+    for _ in range(3):
+        done = subprocess.run([sys.executable, "-c", INSIDE.format(call=call)], capture_output=True)
+        assert (done.returncode, done.stderr) == (0, b"")
+
+
+@pytest.mark.parametrize("name", ["numpy.ma", "shapely"])
+@pytest.mark.parametrize("has", [(), ("Geometry",)])
+def test_a_module_that_another_thread_is_importing_does_no_harm(name, has, monkeypatch):
+    """It is listed already, with some of its names."""
+    tin = ts.triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0.0]])
+    half = type(sys)(name)
+    for one in has:
+        setattr(half, one, type(one, (), {}))
+    monkeypatch.setitem(sys.modules, name, half)
+    tin.move(0, [0.1, 0.1, 1.0])
+    assert tin.interpolate([[0.5, 0.5]]).shape == (1,)
+    assert len(ts.triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0]])) == 1
+    assert len(ts.triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0]], breaklines=[[[0, 0], [0, 1]]]))

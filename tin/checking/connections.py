@@ -11,7 +11,7 @@ from ..predicates import EXACT_RANGE, blocks
 from ..report import LEFT_OUT
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...arrays import BoolArray, Float64Array, Int32Array
     from ..surface import TIN
     from .findings import Findings
 
@@ -171,7 +171,7 @@ def _find_one_sided(tin: TIN) -> tuple[BoolArray, BoolArray]:
     count = len(tin.triangles)
     lonely, unequal = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
     for block in blocks(count):
-        own = np.arange(block.start, block.stop)
+        own = np.arange(block.start, block.stop, dtype=np.int32)  # as neighbors: nothing is cast
         for corner in range(3):
             across = tin.neighbors[block, corner]
             is_met, is_flagged = _look_back(tin, own, across, corner)
@@ -182,7 +182,7 @@ def _find_one_sided(tin: TIN) -> tuple[BoolArray, BoolArray]:
 
 
 def _look_back(
-    tin: TIN, own: Int64Array, across: Int32Array, corner: int
+    tin: TIN, own: Int32Array, across: Int32Array, corner: int
 ) -> tuple[BoolArray, BoolArray]:
     """Look back over the edge opposite ``corner``: tell if it is met, and if flagged, there."""
     start = tin.triangles[own, _NEXT[corner]]

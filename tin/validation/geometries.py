@@ -10,11 +10,12 @@ S. Gillies, "A Python Protocol for Geospatial Data", 2008, https://gist.github.c
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+
+from ..._optional import find_loaded
 
 __all__ = ["MISSING", "Geometries", "Geometry", "find_geometries", "find_shapely", "is_plain"]
 
@@ -96,7 +97,7 @@ def find_geometries(given: Any) -> Geometries | None:
 
 def find_shapely() -> Any:
     """Return the module of shapely if it is loaded."""
-    return sys.modules.get("shapely")
+    return find_loaded("shapely", "Geometry", "get_type_id", "is_empty", "get_coordinates")
 
 
 def _list_rows(shapely: Any, given: Any) -> Sequence[Any] | None:

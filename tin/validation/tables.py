@@ -7,12 +7,12 @@ attributes.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..._optional import find_loaded
 from ...errors import PointsError
 from .geometries import find_geometries, find_shapely
 
@@ -107,7 +107,7 @@ def _require_no_raster(given: Any, what: str) -> None:
 
 def is_masked_array(given: Any) -> bool:
     """Whether values are a masked array, which nobody can have without its module loaded."""
-    masked = sys.modules.get("numpy.ma")
+    masked = find_loaded("numpy.ma", "MaskedArray")
     return masked is not None and isinstance(given, masked.MaskedArray)
 
 

@@ -19,7 +19,7 @@ from ...._atomic import replacing
 from ...._sentences import counted
 from ....crs import assume_elevation_unit
 from ....errors import CrsError, WriteError
-from ....terrain.preview.tints import interpolate_tints
+from ....terrain.viewer.tints import interpolate_tints
 from ..common import format_crs, format_unit, require_factor, require_tin
 from ..texture import choose_picture, load_texture
 

@@ -114,7 +114,7 @@ class GriddedSurface {
   }
 
   static OrderedSurface order(const Surface& surface) {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     return OrderedSurface(surface);
   }
 

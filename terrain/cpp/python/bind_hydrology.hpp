@@ -60,7 +60,7 @@ class FallingSurface {
     require(signs_.shape(0) == count && values_.shape(0) == count,
             "there must be a row of signs and of values for each triangle");
     if (levels_) fill();
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     bases_.reserve(count);
     for (const Triangle t : Ids<Triangle>(falls_.surface.triangle_count)) {
       bases_.push_back(falls_.base(t));
@@ -108,7 +108,7 @@ class FallingSurface {
     require(areas.shape(0) == bases_.size(), "there must be one area for each triangle");
     auto sizes = streamed_array<double>(starts.shape(0));
     {
-      nb::gil_scoped_release release;
+      ReleasedLock release;
       hydrology::measure_strips(strips, bases_.data(), areas.data(), triangle_count(), sizes.get());
     }
     return hand_over<Elevations>(std::move(sizes), {starts.shape(0)});
@@ -232,7 +232,7 @@ inline std::pair<Pairs, Elevations> sum_channels(const GivenNumbers& uppers,
           "nodes must be strips and vertices");
   const auto nodes = static_cast<std::int32_t>(count);
   const std::vector<hydrology::Channel> found = [&] {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     return hydrology::ChannelSums(uppers.data(), nexts.data(), nodes, nodes - vertex_count,
                                   vertex_count)
         .sum(totals.data(), vertex_count);
@@ -267,7 +267,7 @@ inline std::tuple<Offsets, Offsets, Numbers> cut_cells(
   const hydrology::CutTriangles given{count,          corners.data(), ranges.data(), first_place,
                                       offsets.data(), lower.data(),   upper.data()};
   const hydrology::CutCells cells = [&] {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     return hydrology::CellCutter(given).run();
   }();
   return {copy_over<Offsets, std::int64_t>(cells.numbers, {cells.numbers.size()}),

@@ -46,7 +46,7 @@ inline auto simplify_cell_arrays(const GivenValues& x, const GivenValues& y, con
   }
   MeshEditor editor = editor_from(vertices, triangles, neighbors, fixed);
   const Simplified found = [&] {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     CellMesh mesh(editor, grid, vertex_cells.data(), tolerance, vectors);
     if (!mesh.measure_all(no_signal)) return Simplified{{}, 0, false};
     const Vertex first{editor.slots()};
@@ -66,7 +66,7 @@ inline auto measure_cell_arrays(const GivenRows& z, const GivenPairs& cells,
   row_count(std::max(rows, columns));
   auto errors = streamed_array<double>(rows * columns);
   {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     std::fill(errors.get(), errors.get() + rows * columns, kNoElevation);
     CellErrors(z.data(), static_cast<std::int32_t>(columns), static_cast<std::int32_t>(rows),
                errors.get())

@@ -60,7 +60,7 @@ inline Shades shade_planes(const GivenXyz& normals, double east, double north, d
   const std::size_t count = normals.shape(0);
   auto shades = streamed_array<std::uint8_t>(count);
   {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     tinsmith::shade_planes(normals.data(), count, {east, north, up}, darkest, brightest,
                            shades.get());
   }

@@ -11,6 +11,7 @@
 #include "bind_sight.hpp"
 
 NB_MODULE(_core, m) {
+  nanobind::set_leak_warnings(false);  // daemon threads keep what they use at exit
   using namespace tinsmith::python;
   m.doc() = "Compiled core of tinsmith.terrain: what is derived from a TIN.";
   bind_isolines(m);

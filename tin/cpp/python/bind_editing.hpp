@@ -141,7 +141,7 @@ class HeldEdits {
     const std::int32_t count = row_count(rows.shape(0));
     auto result = streamed_array<std::int32_t>(count);
     {
-      nb::gil_scoped_release release;
+      ReleasedLock release;
       edited_.insert_all(rows.data(), count, result.get());
     }
     return hand_over<Numbers>(std::move(result), {rows.shape(0)});

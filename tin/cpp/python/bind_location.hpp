@@ -85,7 +85,7 @@ class HeldLocator {
 
  private:
   Locator index() const {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     const Surface surface = surface_of(points_, triangles_, &neighbors_);
     require_exact_points(surface);
     return Locator(surface);

@@ -33,7 +33,7 @@ inline MeshEditor editor_from(const GivenRows& points, const GivenTriples& trian
                        static_cast<std::int64_t>(points.shape(1))};
   const GivenTriangles given{triangles.data(), neighbors.data(), fixed ? fixed->data() : nullptr,
                              static_cast<std::int32_t>(triangles.shape(0))};
-  nb::gil_scoped_release release;
+  ReleasedLock release;
   return editor_of(rows, given);
 }
 
@@ -61,7 +61,7 @@ class HeldMesh {
     const std::int32_t count = row_count(xy.shape(0));
     auto result = streamed_array<std::int32_t>(count);
     {
-      nb::gil_scoped_release release;
+      ReleasedLock release;
       held_->insert(points_of(xy), count, result.get());
     }
     return hand_over<Numbers>(std::move(result), {xy.shape(0)});
@@ -77,7 +77,7 @@ class HeldMesh {
 
   auto force(const GivenPairs& segments) {
     const CheckedMesh::Forced forced = [&] {
-      nb::gil_scoped_release release;
+      ReleasedLock release;
       return held_->force(pairs_of(segments), no_signal);
     }();
     if (!forced.is_complete) throw nb::python_error();
@@ -91,7 +91,7 @@ class HeldMesh {
 
   Numbers illegal_fixed_edges() {
     const auto illegal = [&] {
-      nb::gil_scoped_release release;
+      ReleasedLock release;
       return held_->illegal_fixed_edges();
     }();
     return hand_over(illegal);
@@ -108,7 +108,7 @@ class HeldMesh {
 
   auto arrays(int threads) const {
     MeshArrays made = [&] {
-      nb::gil_scoped_release release;
+      ReleasedLock release;
       Team team(threads, [] { return true; });
       return MeshArrays(held_->editor(), team);
     }();
@@ -130,7 +130,7 @@ inline auto regions(const GivenXyz& points, const GivenTriples& triangles,
     throw std::invalid_argument("neighbors and barriers must be those of the triangles");
   }
   const Regions found = [&] {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     return RegionSearch(surface, barrier.data()).find();
   }();
   return std::make_tuple(hand_over(found.region_of), hand_over(found.largest));
@@ -141,7 +141,7 @@ inline auto join_triangles(const GivenTriples& triangles, std::int32_t vertex_co
   const Surface surface = corners_of(triangles, vertex_count);
   auto neighbors = streamed_array<std::int32_t>(3 * triangles.shape(0));
   const bool is_sound = [&] {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     return TriangleJoining(surface).join(neighbors.get());
   }();
   return std::make_tuple(hand_over<Triples>(std::move(neighbors), {triangles.shape(0), 3}),
@@ -154,7 +154,7 @@ inline Signs turns_of_triangles(const GivenXyz& points, const GivenTriples& tria
   require_exact_points(surface);
   auto result = streamed_array<std::int8_t>(surface.triangle_count);
   {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     write_turns(surface, result.get());
   }
   return hand_over<Signs>(std::move(result), {surface.triangle_count});

@@ -23,7 +23,7 @@ inline auto clean(const GivenXyz& points, int threads) {
   auto copy = streamed_array<double>(3 * size);
   bool is_sound = false;
   {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     Team team(threads, [] { return true; });
     is_sound = copy_clean(points.data(), static_cast<std::int64_t>(size), copy.get(), team);
   }
@@ -33,7 +33,7 @@ inline auto clean(const GivenXyz& points, int threads) {
 inline Numbers snap(const GivenXyz& points, double distance) {
   const PointRows rows = rows_of(points);
   const std::vector<std::int32_t> kept_row = [&] {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     return snap_rows(rows, distance);
   }();
   return hand_over(kept_row);
@@ -41,7 +41,7 @@ inline Numbers snap(const GivenXyz& points, double distance) {
 
 // Whether predicates are exact for every coordinate but those that are not a number.
 inline bool are_in_exact_range(const GivenXy& xy) {
-  nb::gil_scoped_release release;
+  ReleasedLock release;
   return are_all(xy, [](double c) { return std::isnan(c) || is_in_exact_range(c); });
 }
 

@@ -44,7 +44,7 @@ class HeldLeaveOneOut {
     std::vector<std::int64_t> offsets{0};
     std::vector<std::int32_t> found;
     {
-      nb::gil_scoped_release release;
+      ReleasedLock release;
       const LeaveOneOut local(surface_, corners_.get());
       for (std::size_t i = 0; i < vertices.shape(0); ++i) {
         local.list_neighbors(Vertex{vertices.data()[i]}, found);
@@ -82,7 +82,7 @@ inline Xyz measure_neighbors(const GivenXyz& points, const GivenTriples& triangl
   const Surface surface = surface_of(points, triangles);
   auto found = streamed_array<double>(3 * points.shape(0));
   {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     tinsmith::measure_neighbors(surface, found.get());
   }
   return hand_over<Xyz>(std::move(found), {points.shape(0), 3});
@@ -93,7 +93,7 @@ inline TripleFlags find_long_edges(const GivenXyz& points, const GivenTriples& t
   const Surface surface = surface_of(points, triangles);
   auto found = streamed_array<bool>(3 * triangles.shape(0));
   {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     tinsmith::find_long_edges(surface, length * length, found.get());
   }
   return hand_over<TripleFlags>(std::move(found), {triangles.shape(0), 3});
@@ -102,7 +102,7 @@ inline TripleFlags find_long_edges(const GivenXyz& points, const GivenTriples& t
 inline Numbers find_peaks_and_pits(const GivenXyz& points, const GivenTriples& triangles) {
   const Surface surface = surface_of(points, triangles);
   const std::vector<std::int32_t> found = [&] {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     return tinsmith::find_peaks_and_pits(surface);
   }();
   return hand_over(found);

@@ -31,7 +31,7 @@ inline auto simplify_arrays(const GivenXyz& points, const GivenNumbers& vertex_r
                   "each point must lie in a triangle");
   MeshEditor editor = editor_from(vertices, triangles, neighbors, fixed);
   const Simplified found = [&] {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     return simplify(editor, {points.data(), count, vertex_rows.data(), holders.data()},
                     {tolerance, most}, prunes, no_signal);
   }();

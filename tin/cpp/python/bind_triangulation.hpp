@@ -25,7 +25,7 @@ inline Triangulation triangulate(const GivenXyz& points, Method method, int thre
   if (threads < 1) throw std::invalid_argument("at least one thread is needed");
   const Options options{method, threads, vector_path_named(path)};
   Triangulation made = [&] {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     Listener listener(tell);
     const auto keep_going = [&] { return listener.keeps_going(); };
     return Triangulator(rows, options, keep_going, listener.progress()).run();

@@ -22,6 +22,7 @@
 #include "../base/point.hpp"
 #include "../location/surface.hpp"
 #include "../predicates/predicates.hpp"
+#include "gil.hpp"
 
 namespace tinsmith::python {
 
@@ -145,7 +146,7 @@ inline void require_exact_points(const Surface& surface) {
 
 // Ask Python whether Ctrl-C was pressed.
 inline bool no_signal() {
-  nb::gil_scoped_acquire gil;
+  HeldLock gil;
   return PyErr_CheckSignals() == 0;
 }
 
@@ -164,7 +165,7 @@ class Listener {
     const double fraction = progress_.fraction();
     if (!tell_ || fraction < told_ + kFineness) return true;
     told_ = fraction;
-    nb::gil_scoped_acquire gil;
+    HeldLock gil;
     try {
       (*tell_)(fraction);
       return true;
@@ -188,7 +189,7 @@ void run_unlocked(int threads, Work&& work, const Listener::Tell& tell = {}) {
   if (threads < 1) throw std::invalid_argument("at least one thread is needed");
   bool is_stopped = false;
   {
-    nb::gil_scoped_release release;
+    ReleasedLock release;
     Listener listener(tell);
     Team team(threads, [&] { return listener.keeps_going(); }, listener.progress());
     work(team);

@@ -13,6 +13,7 @@
 #include "bind_triangulation.hpp"
 
 NB_MODULE(_core, m) {
+  nanobind::set_leak_warnings(false);  // daemon threads keep what they use at exit
   using namespace tinsmith::python;
   m.doc() = "Compiled core of tinsmith.tin: exact predicates, growth, point location.";
   bind_points(m);

@@ -124,7 +124,7 @@ def view(
       tinsmith view sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.html
     """  # noqa: D301 - click reads the control character
     from ...terrain import preview
-    from ...terrain.preview.presentation import PREVIEW_SUFFIXES
+    from ...terrain.viewer.presentation import PREVIEW_SUFFIXES
     from ..files import list_inputs, read_tin_of_files, require_picture
 
     inputs = list_inputs(*files, how=how)

@@ -7,9 +7,9 @@ import pytest
 
 from tinsmith import triangulate
 from tinsmith.terrain import preview
-from tinsmith.terrain.preview.elevations import find_elevation_range
-from tinsmith.terrain.preview.look import make_look
-from tinsmith.terrain.preview.stage import make_stage
+from tinsmith.terrain.viewer.elevations import find_elevation_range
+from tinsmith.terrain.viewer.look import make_look
+from tinsmith.terrain.viewer.stage import make_stage
 
 pytest.importorskip("pyvista")
 

@@ -15,14 +15,14 @@ import pytest
 from support.pages import open_page
 
 import tinsmith as ts
-from tinsmith.terrain.preview.page.packing import (
+from tinsmith.terrain.viewer.page.packing import (
     pack_counts,
     pack_rows,
     pack_triangles,
     sort_in_morton_order,
 )
 
-PAGE = Path(__file__).parents[3] / "terrain" / "preview" / "page"
+PAGE = Path(__file__).parents[3] / "terrain" / "viewer" / "page"
 CORNER = np.array([742_000.0, 4_030_000.0, 0.0])
 
 

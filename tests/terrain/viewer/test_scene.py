@@ -11,7 +11,7 @@ import pytest
 from tinsmith import TIN, Breakline, Water, triangulate
 from tinsmith.terrain.drawing.linework import add_lines
 from tinsmith.terrain.georeference.units import find_ground
-from tinsmith.terrain.preview.scene import (
+from tinsmith.terrain.viewer.scene import (
     _average_normals,
     add_terrain,
     choose_exaggeration,
@@ -19,7 +19,7 @@ from tinsmith.terrain.preview.scene import (
     measure_relief,
     place_vertices,
 )
-from tinsmith.terrain.preview.tints import interpolate_tints
+from tinsmith.terrain.viewer.tints import interpolate_tints
 
 pv = pytest.importorskip("pyvista")
 

@@ -11,23 +11,23 @@ import pytest
 
 from tinsmith import triangulate
 from tinsmith.terrain.georeference.units import METRE, find_ground
-from tinsmith.terrain.preview.annotations import (
+from tinsmith.terrain.viewer.annotations import (
     Caption,
     Sheet,
     annotate,
     scale_bar_length,
 )
-from tinsmith.terrain.preview.camera import (
+from tinsmith.terrain.viewer.camera import (
     VIEWS,
     View,
     aim,
     measure_pixels_per_unit,
     project_ground_axes,
 )
-from tinsmith.terrain.preview.overlay import Overlay, _find_wide_font
-from tinsmith.terrain.preview.palette import Palette
-from tinsmith.terrain.preview.scene import add_lights, place_vertices
-from tinsmith.terrain.preview.tints import interpolate_tints
+from tinsmith.terrain.viewer.overlay import Overlay, _find_wide_font
+from tinsmith.terrain.viewer.palette import Palette
+from tinsmith.terrain.viewer.scene import add_lights, place_vertices
+from tinsmith.terrain.viewer.tints import interpolate_tints
 from tinsmith.tin import Bounds
 
 pv = pytest.importorskip("pyvista")
@@ -383,7 +383,7 @@ def test_the_sun_stands_in_the_northwest_and_the_sky_around():
 def test_the_settings_of_vtk_come_back_after_drawing():
     from vtkmodules.vtkRenderingFreeType import vtkMathTextFreeTypeTextRenderer
 
-    drawing = importlib.import_module("tinsmith.terrain.preview.picture")
+    drawing = importlib.import_module("tinsmith.terrain.viewer.picture")
     words = vtkMathTextFreeTypeTextRenderer.GetInstance()
     before = words.GetDefaultBackend()
     try:

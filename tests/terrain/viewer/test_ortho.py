@@ -19,8 +19,8 @@ from support.orthos import (
 from support.pages import open_page
 
 import tinsmith as ts
-from tinsmith.terrain.preview import ortho as ortho_module
-from tinsmith.terrain.preview.ortho import read_ortho
+from tinsmith.terrain.viewer import ortho as ortho_module
+from tinsmith.terrain.viewer.ortho import read_ortho
 
 rasterio = pytest.importorskip("rasterio")
 pytest.importorskip("PIL")

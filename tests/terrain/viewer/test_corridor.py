@@ -12,17 +12,17 @@ from PIL import Image
 from tinsmith import triangulate
 from tinsmith.terrain import preview
 from tinsmith.terrain.georeference.units import find_ground
-from tinsmith.terrain.preview.annotations import Sheet
-from tinsmith.terrain.preview.camera import View
-from tinsmith.terrain.preview.corridor import (
+from tinsmith.terrain.viewer.annotations import Sheet
+from tinsmith.terrain.viewer.camera import View
+from tinsmith.terrain.viewer.corridor import (
     STRIP_GAP,
     cut_into_strips,
     find_corridor,
     measure_mean_width,
 )
-from tinsmith.terrain.preview.look import make_look
-from tinsmith.terrain.preview.stage import make_stage
-from tinsmith.terrain.preview.strips import place_strips
+from tinsmith.terrain.viewer.look import make_look
+from tinsmith.terrain.viewer.stage import make_stage
+from tinsmith.terrain.viewer.strips import place_strips
 
 SHEET = Sheet(1600.0, 1000.0)
 

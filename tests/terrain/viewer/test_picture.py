@@ -16,11 +16,11 @@ from tinsmith.crs import FOOT, METRE
 from tinsmith.terrain import OptionError, RenderError, preview, slope
 from tinsmith.terrain.drawing.rounding import choose_ticks, format_number, round_down
 from tinsmith.terrain.georeference.units import NOT_KNOWN, find_ground
-from tinsmith.terrain.preview import opengl
-from tinsmith.terrain.preview.annotations import Sheet, scale_bar_length
-from tinsmith.terrain.preview.picture import PICTURE_SUFFIXES
-from tinsmith.terrain.preview.scene import choose_exaggeration, measure_relief
-from tinsmith.terrain.preview.tints import compute_lightness, interpolate_tints
+from tinsmith.terrain.viewer import opengl
+from tinsmith.terrain.viewer.annotations import Sheet, scale_bar_length
+from tinsmith.terrain.viewer.picture import PICTURE_SUFFIXES
+from tinsmith.terrain.viewer.scene import choose_exaggeration, measure_relief
+from tinsmith.terrain.viewer.tints import compute_lightness, interpolate_tints
 
 pv = pytest.importorskip("pyvista")
 
@@ -189,7 +189,7 @@ class TestPicture:
         assert list(tmp_path.iterdir()) == [path]
 
     def test_annotations_follow_the_camera(self, monkeypatch):
-        module = sys.modules["tinsmith.terrain.preview.stage"]
+        module = sys.modules["tinsmith.terrain.viewer.stage"]
         written = []
         monkeypatch.setattr(opengl, "require_window", lambda: None)
         monkeypatch.setattr(opengl, "require_on_screen", lambda kind: None)

@@ -12,12 +12,12 @@ from support.pictures import make_dipping_plane, read_pixels
 from tinsmith import triangulate
 from tinsmith.terrain import OptionError, preview
 from tinsmith.terrain.georeference.units import METRE
-from tinsmith.terrain.preview.annotations import Caption, Sheet, annotate
-from tinsmith.terrain.preview.camera import View, aim, measure_pixels_per_unit, project_ground_axes
-from tinsmith.terrain.preview.look import make_look
-from tinsmith.terrain.preview.palette import choose_palette
-from tinsmith.terrain.preview.scene import add_lights
-from tinsmith.terrain.preview.tints import compute_lightness
+from tinsmith.terrain.viewer.annotations import Caption, Sheet, annotate
+from tinsmith.terrain.viewer.camera import View, aim, measure_pixels_per_unit, project_ground_axes
+from tinsmith.terrain.viewer.look import make_look
+from tinsmith.terrain.viewer.palette import choose_palette
+from tinsmith.terrain.viewer.scene import add_lights
+from tinsmith.terrain.viewer.tints import compute_lightness
 
 pv = pytest.importorskip("pyvista")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tinsmith.terrain.preview import camera as views
+from tinsmith.terrain.viewer import camera as views
 from tinsmith.tin import Bounds
 
 pv = pytest.importorskip("pyvista")

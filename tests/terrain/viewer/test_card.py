@@ -14,8 +14,8 @@ from support.processes import run_alone
 
 import tinsmith as ts
 from tinsmith.terrain.drawing.cards.frame import encode_png
-from tinsmith.terrain.preview.card import draw_map
-from tinsmith.terrain.preview.tints import compute_lightness
+from tinsmith.terrain.viewer.card import draw_map
+from tinsmith.terrain.viewer.tints import compute_lightness
 
 CORNER = np.array([742_000.0, 4_030_000.0])
 

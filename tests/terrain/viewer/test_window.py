@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.terrain.preview.camera import measure_pixels_per_unit
-from tinsmith.terrain.preview.look import make_look
-from tinsmith.terrain.preview.picture import keep_vtk_plain
-from tinsmith.terrain.preview.stage import place_on_stage
-from tinsmith.terrain.preview.window import Window
+from tinsmith.terrain.viewer.camera import measure_pixels_per_unit
+from tinsmith.terrain.viewer.look import make_look
+from tinsmith.terrain.viewer.picture import keep_vtk_plain
+from tinsmith.terrain.viewer.stage import place_on_stage
+from tinsmith.terrain.viewer.window import Window
 
 pv = pytest.importorskip("pyvista")
 pytestmark = pytest.mark.usefixtures("can_draw")
@@ -100,7 +100,7 @@ def test_lines_and_marks_are_not_picked(opened):
     ],
 )
 def test_readings_are_written_in_the_units_of_the_crs(opened, crs, z_unit, words):
-    from tinsmith.terrain.preview.window import Reading
+    from tinsmith.terrain.viewer.window import Reading
 
     window = opened(hills(crs=crs, z_unit=z_unit))
     said = window.describe(Reading(742_120.5, 4_030_100.25, 312.25, 12.34))
