@@ -180,8 +180,7 @@ class _Search:
         xyz, owners = self.known.xyz, find_owners(offsets)
         planes = fit_planes(xyz, chosen, offsets, near)
         left = measure_offsets(xyz, chosen, planes, owners, near)
-        beyond: Float64Array = np.where((own > planes[:, 0])[owners], left, -left)
-        return beyond
+        return np.nan_to_num(np.where((own > planes[:, 0])[owners], left, -left))
 
 
 class _Reach(NamedTuple):

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..constraints.breaklines import Lines
     from ..triangulation import Triangulation
 
-__all__ = ["WrongLine", "find_wrong_lines", "name_lines_at"]
+__all__ = ["WrongLine", "find_wrong_lines", "fit_ground", "mark_rings", "name_lines_at"]
 
 _MOST_JUDGED = 20_000
 """Vertices of lines that are judged, where there are more those of one in so many."""
@@ -147,6 +147,14 @@ def _name(lines: Lines, chain: int) -> str:
     return f"{_NOUNS.get(kind, kind)} {int(lines.sources[chain])}{quoted}"
 
 
+def mark_rings(lines: Lines, count: int) -> BoolArray:
+    """Mark which of so many vertices are on a boundary, a hole or water."""
+    is_ring = np.array([kind not in ("hard", "soft") for kind in lines.kinds], np.bool_)
+    marked = np.zeros(count, np.bool_)
+    marked[lines.vertices[is_ring[find_owners(lines.offsets)]]] = True
+    return marked
+
+
 def name_lines_at(lines: Lines, vertices: Int32Array) -> list[str]:
     """Return for each of some vertices what the first line through it is called, "" for none."""
     if len(vertices) == 0 or len(lines) == 0:
@@ -180,7 +188,7 @@ def _judge(
     if every > 1:
         chosen |= np.isin(z, CUSTOMARY)
     owners, vertices, z = owners[chosen], vertices[chosen], z[chosen]
-    ground, limits, distances = _fit_ground(surface, vertices, is_point)
+    ground, limits, distances = fit_ground(surface, vertices, is_point)
     at_point = np.flatnonzero(np.isin(vertices, np.fromiter(known, np.int64, len(known))))
     for i in at_point.tolist():
         ground[i], limits[i], distances[i] = known[int(vertices[i])], 0.0, 0.0
@@ -189,7 +197,7 @@ def _judge(
     return judged.choose(np.isfinite(ground) & np.isfinite(limits))
 
 
-def _fit_ground(
+def fit_ground(
     surface: Triangulation, vertices: Int32Array, is_point: BoolArray
 ) -> tuple[Float64Array, Float64Array, Float64Array]:
     """Return elevations of the planes through the points around some vertices; NaN for none.
