@@ -176,12 +176,13 @@ def _find_wrong_lines(
         return []
     is_point = np.zeros(len(surface.points), np.bool_)
     is_point[rows.vertices] = True
+    has_row = is_point.copy()
     is_point[marked] = False
     is_point[lines.vertices] = False
     known = list_overruled_points(tin.report)
     unit = assume_elevation_unit(tin.crs, tin.elevation_unit)
     metre = 1.0 if unit is None or unit.metres is None else 1.0 / unit.metres
-    return find_wrong_lines(surface, lines, is_point, known, metre=metre)
+    return find_wrong_lines(surface, lines, is_point, has_row, known, metre=metre)
 
 
 def _tell_void(tin: TIN, rows: Rows, void: Void) -> Suspect:

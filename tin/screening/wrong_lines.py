@@ -34,6 +34,8 @@ _CLEAR = 3.0
 """A line is told of beyond so many times what it may be off,"""
 _METRE = 1.0
 """and if it is a metre off, or a unit of what is measured in other ones."""
+_NEAR = 0.01
+"""A factor must explain all but so much of what a vertex is off."""
 _FEWEST = 3
 """Points that a plane is fitted to."""
 _NOUNS = {"hard": "breakline", "soft": "breakline"}
@@ -86,6 +88,7 @@ def find_wrong_lines(
     surface: Triangulation,
     lines: Lines,
     is_point: BoolArray,
+    has_row: BoolArray,
     known: Mapping[int, float],
     *,
     metre: float = 1.0,
@@ -106,6 +109,8 @@ def find_wrong_lines(
         Of it.
     is_point : (n,) bool array
         Whether a vertex is a point that may bear witness.
+    has_row : (n,) bool array
+        Whether it is one, right or wrong, on a line or not.
     known : mapping of int to float
         Vertices of lines where a point is, and its elevation.
     metre : float, optional
@@ -117,6 +122,8 @@ def find_wrong_lines(
     owners = line_of[find_owners(lines.offsets)]
     keys = np.unique(owners * len(surface.points) + lines.vertices)
     owners, vertices = np.divmod(keys, len(surface.points))
+    chosen = _choose_own(owners, vertices, has_row, known)
+    owners, vertices = owners[chosen], vertices[chosen]
     counts = np.bincount(owners)
     judged = _judge(surface, owners, vertices.astype(np.int32), is_point, known)
     ground = surface.points[is_point, 2]
@@ -139,6 +146,19 @@ def _number_lines(lines: Lines) -> Int64Array:
     pairs = np.stack([np.unique(kinds, return_inverse=True)[1], lines.sources], axis=1)
     numbers: Int64Array = np.unique(pairs, axis=0, return_inverse=True)[1].ravel()
     return numbers
+
+
+def _choose_own(
+    owners: Int64Array, vertices: Int64Array, has_row: BoolArray, known: Mapping[int, float]
+) -> BoolArray:
+    """Choose the vertices whose elevations are those of lines; of a line of points alone, all.
+
+    A line bends at points that lie on it, which keep their own.
+    """
+    is_own = ~has_row[vertices] | np.isin(vertices, np.fromiter(known, np.int64, len(known)))
+    has_own = np.bincount(owners, is_own) > 0
+    chosen: BoolArray = is_own | ~has_own[owners]
+    return chosen
 
 
 def _name(lines: Lines, chain: int) -> str:
@@ -268,7 +288,7 @@ def _find_factor(own: _Judged, is_off: BoolArray) -> _Told | None:
     """Tell whether most vertices of a line are a factor of what they should be."""
     names = np.full(len(is_off), "", object)
     for i in np.flatnonzero(is_off).tolist():
-        tolerance = _CLEAR * float(own.limits[i])
+        tolerance = max(_CLEAR * float(own.limits[i]), _NEAR * abs(float(own.offsets[i])))
         names[i] = name_factor(float(own.z[i]), float(own.ground[i]), tolerance) or ""
     words, counts = np.unique(names[names != ""].astype(str), return_counts=True)
     if len(words) == 0 or counts.max() < max(2, _MOST_OF_LINE * len(is_off)):
