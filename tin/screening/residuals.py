@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import _kernel
-from ..topology import NO_NEIGHBOR, edges_at, find_offsets, find_owners
+from ..topology import NO_NEIGHBOR, edge_keys, edges_at, find_offsets, find_owners
 from ..validation.threads import thread_count
 
 if TYPE_CHECKING:
@@ -49,13 +49,21 @@ class Residuals:
         is_inner = surface.constrained & (surface.neighbors != NO_NEIGHBOR)
         if not is_inner.any():
             return cls(surface, surface.points.copy(), np.zeros(count, np.bool_), chords)
-        pairs = np.unique(np.sort(edges_at(surface.triangles, is_inner), axis=1), axis=0)
-        start, end = np.concatenate([pairs, pairs[:, ::-1]]).T
+        keys = np.unique(edge_keys(edges_at(surface.triangles, is_inner), count))
+        first, second = np.divmod(keys, count)
+        start, end = np.concatenate([first, second]), np.concatenate([second, first])
         degree = np.bincount(start, minlength=count)
         order = np.argsort(start, kind="stable")
         inner = degree[start[order]] == 2
         chords[degree == 2] = end[order][inner].reshape(-1, 2)
         return cls(surface, surface.points.copy(), degree > 0, chords)
+
+    @classmethod
+    def without_lines(cls, surface: Triangulation) -> Residuals:
+        """Prepare a surface whose lines are not looked at."""
+        count = len(surface.points)
+        chords = np.broadcast_to(np.int32(-1), (count, 2))
+        return cls(surface, surface.points, np.zeros(count, np.bool_), chords)
 
     def measure(self, vertices: Int32Array) -> Float64Array:
         """Return the residuals of some vertices, as :meth:`measure_with_moments`."""

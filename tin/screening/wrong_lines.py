@@ -225,7 +225,7 @@ def fit_ground(
     And how far off them a line may be, and how far away the nearest point is.
     """
     xyz = surface.points
-    offsets, around = Residuals.of(surface).list_wide_neighbors(vertices)
+    offsets, around = Residuals.without_lines(surface).list_wide_neighbors(vertices)
     owners = find_owners(offsets)
     owners, around = owners[is_point[around]], around[is_point[around]]
     offsets = find_offsets(np.bincount(owners, minlength=len(vertices)))
