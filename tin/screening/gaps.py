@@ -46,6 +46,8 @@ _SLIVERS = 1e-2
 """and the area in space of all such slivers is so much of the plane area of the surface."""
 
 _SAMPLE = 20_000
+_FLAT = 1e-3
+"""Triangles of so much of the median area tell nothing of how long edges usually are."""
 
 _EARTH_RADIUS = 6_371_000.0
 """Metres."""
@@ -123,7 +125,11 @@ def _describe_gaps(tin: TIN, surface: Surface, *, slivers: bool) -> list[str]:
 
 def _find_limit(surface: Surface) -> _Limit:
     some = slice(None, None, max(1, len(surface.triangles) // _SAMPLE))
-    lengths = np.sqrt(_square_lengths(surface, some))
+    areas = _measure_areas(surface, some)
+    is_wide = areas > _FLAT * np.median(areas)  # not those along a hull that is straight but for
+    lengths = np.sqrt(_square_lengths(surface, some)[is_wide])  # rounding, which have no area
+    if len(lengths) == 0:
+        return _Limit(np.inf, np.inf, np.inf)
     median, most, usual = (float(one) for one in np.percentile(lengths, (50.0, _MOST, _USUAL)))
     far = next((times for ratio, times in _EVEN if usual <= ratio * median), _FAR)
     inside = _FAR
