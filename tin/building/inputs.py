@@ -173,9 +173,8 @@ def gather_inputs(
     system, unit = _settle_reference(own, CRS.of(crs), Unit.of(z_unit))
     given = (points, breaklines, boundary, holes, erase, water)
     system, told = settle_crs(system, dict(zip(_NAMES, given, strict=True)))
-    xyz, is_masked = as_masked_points(
-        points.points if isinstance(points, Survey) else points, threads=threads
-    )
+    table = points.points if isinstance(points, Survey) else points
+    xyz, is_masked = as_masked_points(table, threads=threads)
     outer = [*own.boundary, *as_sequence(boundary, "boundary")]
     inner = [*own.holes, *as_sequence(holes, "holes")]
     lines = gather_lines(

@@ -281,7 +281,7 @@ def _judge_vertices(tin: TIN, ground: _Ground, found: Heights) -> list[Suspect]:
     has_row = np.isin(found.vertices, ground.rows.vertices)
     clear = _confirm_beside_rings(tin, ground, found.vertices)
     clear &= has_row
-    confirmed = Heights(*(values[clear] for values in found))
+    confirmed = found.choose(clear)
     return [
         *(_judge_rows(ground, confirmed) if clear.any() else ()),
         *_judge_vertices_of_lines(tin, ground.surface, found, ~has_row),
