@@ -279,12 +279,12 @@ def _judge_vertices(tin: TIN, ground: _Ground, found: Heights) -> list[Suspect]:
     if len(found.vertices) == 0:
         return []
     has_row = np.isin(found.vertices, ground.rows.vertices)
-    clear = _confirm_beside_rings(tin, ground, found.vertices)
-    clear &= has_row
+    is_confirmed = _confirm_beside_rings(tin, ground, found.vertices)
+    clear = is_confirmed & has_row
     confirmed = found.choose(clear)
     return [
         *(_judge_rows(ground, confirmed) if clear.any() else ()),
-        *_judge_vertices_of_lines(tin, ground.surface, found, ~has_row),
+        *_judge_vertices_of_lines(tin, ground.surface, found, is_confirmed & ~has_row),
     ]
 
 
