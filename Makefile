@@ -123,7 +123,7 @@ fuzz: $(READY) ## Run random campaigns: MINUTES= or CASES=, SEED=, CAMPAIGN=
 # TSan. SANITIZE_CASES= makes the slice longer. Python alone captures: reports go past it.
 SANITIZE_CASES ?= 200
 SANITIZE_CAMPAIGNS ?= points lines edits refine voronoi contours volumes sections interpolation rasters \
-  blunders ground sight simplify hydrology
+  blunders screens screened ground sight simplify hydrology
 SANITIZE_PRODUCTS := $(addprefix tests/terrain/,isolines earthwork gridding relief sections inspection \
   ground_filter sight hydrology test_simplification.py test_raster_simplification.py)
 SANITIZE := tests/sanitizers/run.sh $(BIN)/python

@@ -22,7 +22,7 @@ __all__ = ["describe_gaps"]
 _USUAL = 95.0
 _FAR = 5.0
 """An edge is long beyond so many times the length that 95 % of the edges do not exceed,"""
-_EVEN = ((1.6, 1.75), (2.5, 3.0))
+_EVEN = ((1.6, 2.5), (2.5, 3.0))
 """or fewer times where points are even: where that length is no more than so many times the median,
 as in a grid, and at random."""
 _MOST, _ALIKE, _REGULAR = 80.0, 0.02, 1.1
@@ -46,6 +46,8 @@ _SLIVERS = 1e-2
 """and the area in space of all such slivers is so much of the plane area of the surface."""
 
 _SAMPLE = 20_000
+_FLAT = 1e-3
+"""Triangles of so much of the median area tell nothing of how long edges usually are."""
 
 _EARTH_RADIUS = 6_371_000.0
 """Metres."""
@@ -57,6 +59,9 @@ class _Limit(NamedTuple):
     """How long edges may be."""
 
     length: float
+    """Along the boundary."""
+    inside: float
+    """Where points are even surveyors leave out what is flat: no less than five times."""
     usual: float
     """What 95 % of the edges do not exceed."""
 
@@ -68,9 +73,9 @@ def describe_gaps(tin: TIN, *, slivers: bool = True) -> list[str]:
     for steep slivers along the hull; none for edges of lines. Linear in the triangles. Long is an
     edge of more than five times the 95th percentile of edge lengths, so that neither scan lines nor
     contour lines, whose points are dense along them alone, are found to have gaps; where points are
-    even, as in a grid, of 1.1 to three times. Connected triangles are a gap if they are as deep and
-    as wide as several of these edges, which slivers along a hull are not, and if they matter: half
-    a per cent of the area, or room for a hundred points.
+    even, as in a grid, of 1.1 to three times along the boundary. Connected triangles are a gap if
+    they are as deep and as wide as several of these edges, which slivers along a hull are not, and
+    if they matter: half a per cent of the area, or room for a hundred points.
 
     Examples
     --------
@@ -98,17 +103,19 @@ def _describe_gaps(tin: TIN, surface: Surface, *, slivers: bool) -> list[str]:
     if len(inside):
         stays = trim(surface, stays, limit.length, everywhere=False)
         inside = inside[stays[inside]]
+        longest = _find_longest(surface, inside)
+        inside = inside[longest > limit.inside]
     outside = np.flatnonzero(~stays)
     unit = "units" if tin.crs is None else tin.crs.horizontal_unit.symbol
-    option = f"max_edge={limit.length:g}"
     told = []
     if _matter(surface, outside, limit, is_bay=True):
-        what = f"as across a bay: {option} trims them"
+        what = f"as across a bay: max_edge={limit.length:g} trims them"
         told.append(_describe(surface, outside, unit, "along the boundary", what, limit))
     else:
         stays[:] = True  # slivers with long edges are told if they are steep
     if _matter(surface, inside, limit, is_bay=False):
-        what = f"as over a void: {option} with trim='everywhere' leaves them out"
+        option = f"max_edge={limit.inside:g} with trim='everywhere'"
+        what = f"as over a void: {option} leaves them out"
         told.append(_describe(surface, inside, unit, "inside", what, limit))
     return [*told, *(_describe_slivers(tin, surface, stays) if slivers else ())]
 
@@ -118,12 +125,17 @@ def _describe_gaps(tin: TIN, surface: Surface, *, slivers: bool) -> list[str]:
 
 def _find_limit(surface: Surface) -> _Limit:
     some = slice(None, None, max(1, len(surface.triangles) // _SAMPLE))
-    lengths = np.sqrt(_square_lengths(surface, some))
+    areas = _measure_areas(surface, some)
+    is_wide = areas > _FLAT * np.median(areas)  # not those along a hull that is straight but for
+    lengths = np.sqrt(_square_lengths(surface, some)[is_wide])  # rounding, which have no area
+    if len(lengths) == 0:
+        return _Limit(np.inf, np.inf, np.inf)
     median, most, usual = (float(one) for one in np.percentile(lengths, (50.0, _MOST, _USUAL)))
     far = next((times for ratio, times in _EVEN if usual <= ratio * median), _FAR)
+    inside = _FAR
     if usual <= _EVEN[0][0] * median and usual <= (1.0 + _ALIKE) * most:
-        far = _REGULAR
-    return _Limit(_round_up(far * usual), usual)
+        far = inside = _REGULAR
+    return _Limit(_round_up(far * usual), _round_up(inside * usual), usual)
 
 
 def _square_lengths(surface: Surface, chosen: Any) -> Float64Array:
@@ -132,6 +144,13 @@ def _square_lengths(surface: Surface, chosen: Any) -> Float64Array:
     sides = corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]]
     squares: Float64Array = (sides**2).sum(axis=2)
     return squares
+
+
+def _find_longest(surface: Surface, chosen: Int64Array) -> Float64Array:
+    """Return the length of the longest edge of some triangles that is on no line."""
+    squares = np.where(surface.constrained[chosen], 0.0, _square_lengths(surface, chosen))
+    longest: Float64Array = np.sqrt(squares.max(axis=1, initial=0.0))
+    return longest
 
 
 def _round_up(length: float) -> float:
@@ -183,11 +202,11 @@ def _describe(
     surface: Surface, chosen: Int64Array, unit: str, where: str, what: str, limit: _Limit
 ) -> str:
     """Tell of triangles with long edges: where they are, and what to do."""
-    squares = np.where(surface.constrained[chosen], 0.0, _square_lengths(surface, chosen))
+    longest = _find_longest(surface, chosen).max()
     share = 100.0 * _measure_share(surface, float(_measure_areas(surface, chosen).sum()))
     return (
         f"{_count_triangles(len(chosen))} {where} with edges of up to "
-        f"{np.sqrt(squares.max()):.6g} {unit}, far longer than the usual {limit.usual:.3g} "
+        f"{longest:.6g} {unit}, far longer than the usual {limit.usual:.3g} "
         f"({share:.2g} % of the area), {what}."
     )
 

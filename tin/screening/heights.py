@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ..._progress import Tell
-    from ...arrays import Float64Array, Int32Array, Int64Array
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..triangulation import Triangulation
 
 __all__ = ["STRICT", "Heights", "Judgement", "find_heights"]
@@ -46,6 +46,12 @@ class Heights(NamedTuple):
     """(k,), how large residuals are around each."""
     limits: Float64Array
     """(k,), beyond which a residual is suspicious: more on a line and on the boundary."""
+
+    def choose(self, chosen: BoolArray) -> Heights:
+        """Return some of them."""
+        return Heights(
+            self.vertices[chosen], self.residuals[chosen], self.scales[chosen], self.limits[chosen]
+        )
 
 
 class Judgement(NamedTuple):
@@ -180,8 +186,7 @@ class _Search:
         xyz, owners = self.known.xyz, find_owners(offsets)
         planes = fit_planes(xyz, chosen, offsets, near)
         left = measure_offsets(xyz, chosen, planes, owners, near)
-        beyond: Float64Array = np.where((own > planes[:, 0])[owners], left, -left)
-        return beyond
+        return np.nan_to_num(np.where((own > planes[:, 0])[owners], left, -left))
 
 
 class _Reach(NamedTuple):

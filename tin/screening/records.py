@@ -26,7 +26,8 @@ def find_repeated_numbers(tin: TIN, rows: Rows) -> tuple[list[Suspect], list[str
     numbers = tin.row_attributes.get("number")
     if numbers is None:
         return [], []
-    own = _as_names(numbers[rows.numbers])
+    given = rows.numbers[rows.numbers < len(numbers)]  # edits insert rows without one behind them
+    own = _as_names(numbers[given])
     named = np.flatnonzero(own != "") if own.dtype.kind == "U" else np.arange(len(own))
     if len(named) == 0:
         return [], []

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import _kernel
-from ..topology import NO_NEIGHBOR, edges_at, find_offsets, find_owners
+from ..topology import NO_NEIGHBOR, edge_keys, edges_at, find_offsets, find_owners
 from ..validation.threads import thread_count
 
 if TYPE_CHECKING:
@@ -19,8 +19,8 @@ __all__ = ["Residuals", "fit_planes", "measure_offsets"]
 
 _TERMS = 3
 """Of a plane: fewer neighbours than these and one more say nothing about a point."""
-_FLAT = 1e-12
-"""Points are as good as on a line where they spread so little across it, as a share of squares."""
+_MOST_LEVERAGE = 16.0
+"""A plane tells elevations within so much, which is the square of four standard deviations."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,13 +49,21 @@ class Residuals:
         is_inner = surface.constrained & (surface.neighbors != NO_NEIGHBOR)
         if not is_inner.any():
             return cls(surface, surface.points.copy(), np.zeros(count, np.bool_), chords)
-        pairs = np.unique(np.sort(edges_at(surface.triangles, is_inner), axis=1), axis=0)
-        start, end = np.concatenate([pairs, pairs[:, ::-1]]).T
+        keys = np.unique(edge_keys(edges_at(surface.triangles, is_inner), count))
+        first, second = np.divmod(keys, count)
+        start, end = np.concatenate([first, second]), np.concatenate([second, first])
         degree = np.bincount(start, minlength=count)
         order = np.argsort(start, kind="stable")
         inner = degree[start[order]] == 2
         chords[degree == 2] = end[order][inner].reshape(-1, 2)
         return cls(surface, surface.points.copy(), degree > 0, chords)
+
+    @classmethod
+    def without_lines(cls, surface: Triangulation) -> Residuals:
+        """Prepare a surface whose lines are not looked at."""
+        count = len(surface.points)
+        chords = np.broadcast_to(np.int32(-1), (count, 2))
+        return cls(surface, surface.points, np.zeros(count, np.bool_), chords)
 
     def measure(self, vertices: Int32Array) -> Float64Array:
         """Return the residuals of some vertices, as :meth:`measure_with_moments`."""
@@ -156,8 +164,8 @@ def fit_planes(
     """Fit a plane to the points around each of some vertices, by least squares.
 
     The points around vertex ``vertices[i]`` are ``around[offsets[i]:offsets[i + 1]]``. Returns the
-    elevation of each plane at the vertex, and its slopes to the east and north, (k, 3); where the
-    points lie on a line, the slope along it; NaN where there is none.
+    elevation of each plane at the vertex, and its slopes to the east and north, (k, 3). NaN where
+    there is no point, or the vertex lies so far beside them all that they do not tell the plane.
     """
     count, owners = len(vertices), find_owners(offsets)
     sizes = np.diff(offsets).astype(np.float64)
@@ -173,7 +181,8 @@ def fit_planes(
     scale = np.sqrt(np.fmax(average(x * x) + average(y * y), np.finfo(float).tiny))
     x, y = x / scale[owners], y / scale[owners]
     xx, xy, yy, xz, yz = (average(one) for one in (x * x, x * y, y * y, x * z, y * z))
-    slopes = _solve(xx, xy, yy, xz, yz) / scale
+    slopes, leverage = _solve((xx, xy, yy), (xz, yz), middle[:2] / scale)
+    slopes = np.where(leverage <= _MOST_LEVERAGE, slopes / scale, np.nan)
     level = xyz[vertices, 2] + middle[2] - slopes[0] * middle[0] - slopes[1] * middle[1]
     return np.column_stack([level, *slopes])
 
@@ -194,18 +203,27 @@ def measure_offsets(
 
 
 def _solve(
-    xx: Float64Array, xy: Float64Array, yy: Float64Array, xz: Float64Array, yz: Float64Array
-) -> Float64Array:
-    """Return the shortest vectors that solve many pairs of equations, (2, k)."""
+    squares: tuple[Float64Array, Float64Array, Float64Array],
+    sides: tuple[Float64Array, Float64Array],
+    middle: Float64Array,
+) -> tuple[Float64Array, Float64Array]:
+    """Return the slopes that solve pairs of equations, (2, k), and how far away middles are.
+
+    ``squares`` are the means of x x, x y and y y, ``sides`` those of x z and y z. The leverage is
+    the squared distance of a middle in standard deviations of the points along their axes;
+    infinite where they lie on a line, and NaN where there is no point.
+    """
+    xx, xy, yy = squares
     angle = 0.5 * np.arctan2(2 * xy, xx - yy)
     cosine, sine = np.cos(angle), np.sin(angle)
-    widths = np.array(
-        [
-            xx * cosine**2 + 2 * xy * cosine * sine + yy * sine**2,
-            xx * sine**2 - 2 * xy * cosine * sine + yy * cosine**2,
-        ]
-    )
-    sides = np.array([xz * cosine + yz * sine, yz * cosine - xz * sine])
+
+    def turn(x: Float64Array, y: Float64Array) -> Float64Array:
+        return np.array([x * cosine + y * sine, y * cosine - x * sine])
+
+    along = xx * cosine**2 + 2 * xy * cosine * sine + yy * sine**2
+    across = xx * sine**2 - 2 * xy * cosine * sine + yy * cosine**2
+    widths = np.maximum(np.array([along, across]), np.finfo(float).eps * along)
     with np.errstate(divide="ignore", invalid="ignore"):
-        u, v = np.where(widths > _FLAT * widths[0], sides / widths, 0.0)
-    return np.array([u * cosine - v * sine, u * sine + v * cosine])
+        u, v = turn(*sides) / widths
+        leverage: Float64Array = (turn(*middle) ** 2 / widths).sum(axis=0)
+    return np.array([u * cosine - v * sine, u * sine + v * cosine]), leverage

@@ -71,11 +71,17 @@ def _order_in_strips(xy: Float64Array, axis: int) -> Int64Array:
 
 
 def _find_medians(values: Float64Array) -> Float64Array:
-    """Return for each value the median of the 64 that it is one of, without NaN; NaN of none."""
+    """Return for each value the median of the 64 that it is one of, without NaN; NaN of none.
+
+    Values that are left over at the end belong to the last 64.
+    """
     blocks = -(-len(values) // _BLOCK)
     padded = np.full(blocks * _BLOCK, np.nan)
     padded[: len(values)] = values
-    ordered = np.sort(padded.reshape(blocks, _BLOCK), axis=1)  # NaN comes last
+    table = padded.reshape(blocks, _BLOCK)
+    if len(values) > _BLOCK:
+        table[-1] = values[-_BLOCK:]
+    ordered = np.sort(table, axis=1)  # NaN comes last
     counts = np.isfinite(ordered).sum(axis=1)
     lower, upper = (
         ordered[np.arange(blocks), np.maximum(at, 0)] for at in ((counts - 1) // 2, counts // 2)

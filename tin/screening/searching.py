@@ -11,7 +11,8 @@ from ..._sentences import counted, inflect
 from ...crs import assume_elevation_unit
 from ...errors import LinesError, PointsError
 from .. import _kernel
-from .heights import STRICT, find_heights
+from ..topology import find_boundary_vertices
+from .heights import STRICT, Heights, find_heights
 from .nodata import find_suspect_elevations, is_customary
 from .parts import find_clustered, leave_out
 from .places import find_places
@@ -19,7 +20,7 @@ from .records import find_crossings, find_repeated_numbers, find_repeated_places
 from .slips import find_multiplied, name_factor
 from .suspects import CERTAINTIES, DROPPED, REASONS, Rows, Suspect, list_overruled_points
 from .voids import find_voids
-from .wrong_lines import find_wrong_lines, name_lines_at
+from .wrong_lines import find_wrong_lines, fit_ground, mark_rings, name_lines_at
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array, Int32Array
     from ..surface import TIN
     from ..triangulation import Triangulation
-    from .heights import Heights
     from .voids import Void
     from .wrong_lines import WrongLine
 
@@ -57,7 +57,9 @@ class _Ground(NamedTuple):
     """Without triangles at vertices of wrong lines, filled voids and the like."""
     rows: Rows
     wrong: Int32Array
-    """Single vertices of it whose elevations count for nothing."""
+    """Single vertices within it whose elevations count for nothing."""
+    marked: Int32Array
+    """Those and others of the kind."""
     suspects: list[Suspect]
     is_whole: bool
     """Whether no triangles were left out."""
@@ -74,7 +76,7 @@ def inspect_points(tin: TIN, progress: Tell | None = None) -> Screening:
         ground = _find_ground(rest, Rows.of(rest), ())
 
         def interpolate_without(vertices: Int32Array) -> Float64Array:
-            return _interpolate_without(rest, vertices)
+            return _interpolate_without(rest, vertices, ground.wrong)
 
         without = interpolate_without if ground.is_whole else None
         heights, scale = _inspect_heights(rest, ground, without, done.stage(0.2, 0.9))
@@ -110,19 +112,34 @@ def _find_ground(tin: TIN, rows: Rows, misplaced: Sequence[int] | Int32Array) ->
     surface = leave_out(tin.triangulation, misplaced)
     suspects = _find_marks(rows)
     marked = _find_vertices(rows, suspects)
-    clustered = find_clustered(surface, marked)
-    surface = leave_out(surface, clustered)
-    wrong = np.setdiff1d(marked, clustered)
+    surface, wrong = _leave_out_unless_alone(surface, marked)
     voids = find_voids(surface)
     filled = np.concatenate([np.empty(0, np.int32), *(void.vertices for void in voids)])
     surface = leave_out(surface, filled)
     lines = _find_wrong_lines(tin, surface, rows, marked)
     off = [line.vertices for line in lines if line.certainty != "low"]
     surface = leave_out(surface, np.concatenate([np.empty(0, np.int32), *off]))
+    surface, wrong = _leave_out_unless_alone(surface, wrong)
     suspects += [_tell_void(tin, rows, void) for void in voids]
     suspects += [_tell_line(tin, line) for line in lines]
     is_whole = surface is tin.triangulation
-    return _Ground(surface, rows, wrong.astype(np.int32), suspects, is_whole)
+    return _Ground(surface, rows, wrong, marked, suspects, is_whole)
+
+
+def _leave_out_unless_alone(
+    surface: Triangulation, vertices: Int32Array
+) -> tuple[Triangulation, Int32Array]:
+    """Leave vertices out that lie together or on the boundary; return the others, too.
+
+    The elevation of a vertex alone within the surface can be corrected by its neighbours.
+    """
+    if len(vertices) == 0:
+        return surface, vertices
+    count = len(surface.points)
+    on_rim = find_boundary_vertices(surface.triangles, surface.neighbors, count)
+    together = np.union1d(find_clustered(surface, vertices), vertices[on_rim[vertices]])
+    alone = np.setdiff1d(vertices, together).astype(np.int32)
+    return leave_out(surface, together), alone
 
 
 def _find_marks(rows: Rows) -> list[Suspect]:
@@ -158,12 +175,13 @@ def _find_wrong_lines(
         return []
     is_point = np.zeros(len(surface.points), np.bool_)
     is_point[rows.vertices] = True
+    has_row = is_point.copy()
     is_point[marked] = False
     is_point[lines.vertices] = False
     known = list_overruled_points(tin.report)
     unit = assume_elevation_unit(tin.crs, tin.elevation_unit)
     metre = 1.0 if unit is None or unit.metres is None else 1.0 / unit.metres
-    return find_wrong_lines(surface, lines, is_point, known, metre=metre)
+    return find_wrong_lines(surface, lines, is_point, has_row, known, metre=metre)
 
 
 def _tell_void(tin: TIN, rows: Rows, void: Void) -> Suspect:
@@ -244,11 +262,11 @@ def _take_out(tin: TIN, misplaced: Sequence[Suspect]) -> TIN:
     return ground
 
 
-def _interpolate_without(tin: TIN, vertices: Int32Array) -> Float64Array:
-    """Return the elevation at some vertices of the surface without them; NaN outside of it."""
+def _interpolate_without(tin: TIN, vertices: Int32Array, others: Int32Array) -> Float64Array:
+    """Return the elevation at vertices of the surface without these and others; NaN outside."""
     rest = tin.to_tin()
     try:
-        rest.remove(vertices)
+        rest.remove(np.union1d(vertices, others))
     except (PointsError, LinesError):  # what is left has no triangle, or a line goes through
         return np.full(len(vertices), np.nan)
     elevations: Float64Array = rest.interpolate(tin.points[vertices, :2])
@@ -259,12 +277,37 @@ def _judge_vertices(tin: TIN, ground: _Ground, found: Heights) -> list[Suspect]:
     """Return the rows of vertices that are too high or too low, and vertices of lines alone."""
     if len(found.vertices) == 0:
         return []
-    rows = ground.rows
-    has_row = np.isin(found.vertices, rows.vertices)
+    has_row = np.isin(found.vertices, ground.rows.vertices)
+    is_confirmed = _confirm_beside_rings(tin, ground, found.vertices)
+    clear = is_confirmed & has_row
+    confirmed = found.choose(clear)
     return [
-        *_judge_rows(ground, found),
-        *_judge_vertices_of_lines(tin, ground.surface, found, ~has_row),
+        *(_judge_rows(ground, confirmed) if clear.any() else ()),
+        *_judge_vertices_of_lines(tin, ground.surface, found, is_confirmed & ~has_row),
     ]
+
+
+def _confirm_beside_rings(tin: TIN, ground: _Ground, vertices: Int32Array) -> BoolArray:
+    """Tell which vertices stay wrong where rings without points beside them are not looked at.
+
+    Draped rings are made of the surface, which near its hull may be far from the ground.
+    """
+    stays = np.ones(len(vertices), np.bool_)
+    lines = tin.lines
+    if len(lines) == 0:
+        return stays
+    surface = ground.surface
+    is_point = np.zeros(len(surface.points), np.bool_)
+    is_point[ground.rows.vertices] = True
+    is_point[ground.marked] = False
+    is_ring = mark_rings(lines, len(surface.points)) & ~is_point
+    beside = is_ring[surface.triangles].any(axis=1)
+    is_near = np.zeros(len(surface.points), np.bool_)
+    is_near[surface.triangles[beside]] = True
+    at = np.flatnonzero(is_near[vertices])
+    expected, limits, _ = fit_ground(surface, vertices[at], is_point)
+    stays[at] = np.abs(surface.points[vertices[at], 2] - expected) > limits
+    return stays
 
 
 def _judge_rows(ground: _Ground, found: Heights) -> list[Suspect]:

@@ -29,6 +29,8 @@ BEYOND = 50_000.0
 """No elevation of the earth is larger, in feet or in metres."""
 _GROUPS = {1000.0: FACTORS[1000.0], 0.001: "a thousandth of"}
 """Factors that many elevations may have at a time, as where files in two units are joined."""
+_FEWEST = 3
+"""So many others at least tell what elevations there are."""
 _PAD = 1.0
 """Elevations that were multiplied are right again within so many ranges of the others."""
 
@@ -75,13 +77,18 @@ def find_multiplied(z: Float64Array) -> Multiplied | None:
     """
     if len(z) == 0 or not _may_be_apart(float(z.min()), float(z.max())):
         return None
+    with np.errstate(over="ignore", invalid="ignore"):  # elevations may be as large as doubles are
+        return _find_multiplied(z)
+
+
+def _find_multiplied(z: Float64Array) -> Multiplied | None:
     ordered = np.sort(z)
     at = int(np.argmax(np.diff(ordered))) + 1
     low, high = ordered[:at], ordered[at:]
     is_high = float(high[0]) > BEYOND or (len(high) <= len(low) and not float(-low[-1]) > BEYOND)
     fewer, more = (high, low) if is_high else (low, high)
     gap, widest = float(high[0] - low[-1]), max(float(np.ptp(low)), float(np.ptp(high)))
-    if not gap > widest:
+    if not gap > widest or len(more) < _FEWEST:
         return None
     lowest, highest = float(more[0]), float(more[-1])
     pad = _PAD * (highest - lowest)
@@ -96,4 +103,4 @@ def find_multiplied(z: Float64Array) -> Multiplied | None:
 def _may_be_apart(lowest: float, highest: float) -> bool:
     """Whether two elevations may be a hundred times each other: others need no further look."""
     small, large = sorted((abs(lowest), abs(highest)))
-    return lowest * highest > 0 and large > 100.0 * small
+    return (lowest > 0.0) == (highest > 0.0) and 0.0 < 100.0 * small < large

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..constraints.breaklines import Lines
     from ..triangulation import Triangulation
 
-__all__ = ["WrongLine", "find_wrong_lines", "name_lines_at"]
+__all__ = ["WrongLine", "find_wrong_lines", "fit_ground", "mark_rings", "name_lines_at"]
 
 _MOST_JUDGED = 20_000
 """Vertices of lines that are judged, where there are more those of one in so many."""
@@ -34,6 +34,8 @@ _CLEAR = 3.0
 """A line is told of beyond so many times what it may be off,"""
 _METRE = 1.0
 """and if it is a metre off, or a unit of what is measured in other ones."""
+_NEAR = 0.01
+"""A factor must explain all but so much of what a vertex is off."""
 _FEWEST = 3
 """Points that a plane is fitted to."""
 _NOUNS = {"hard": "breakline", "soft": "breakline"}
@@ -86,6 +88,7 @@ def find_wrong_lines(
     surface: Triangulation,
     lines: Lines,
     is_point: BoolArray,
+    has_row: BoolArray,
     known: Mapping[int, float],
     *,
     metre: float = 1.0,
@@ -106,6 +109,8 @@ def find_wrong_lines(
         Of it.
     is_point : (n,) bool array
         Whether a vertex is a point that may bear witness.
+    has_row : (n,) bool array
+        Whether it is one, right or wrong, on a line or not.
     known : mapping of int to float
         Vertices of lines where a point is, and its elevation.
     metre : float, optional
@@ -117,6 +122,8 @@ def find_wrong_lines(
     owners = line_of[find_owners(lines.offsets)]
     keys = np.unique(owners * len(surface.points) + lines.vertices)
     owners, vertices = np.divmod(keys, len(surface.points))
+    chosen = _choose_own(owners, vertices, has_row, known)
+    owners, vertices = owners[chosen], vertices[chosen]
     counts = np.bincount(owners)
     judged = _judge(surface, owners, vertices.astype(np.int32), is_point, known)
     ground = surface.points[is_point, 2]
@@ -141,10 +148,31 @@ def _number_lines(lines: Lines) -> Int64Array:
     return numbers
 
 
+def _choose_own(
+    owners: Int64Array, vertices: Int64Array, has_row: BoolArray, known: Mapping[int, float]
+) -> BoolArray:
+    """Choose the vertices whose elevations are those of lines; of a line of points alone, all.
+
+    A line bends at points that lie on it, which keep their own.
+    """
+    is_own = ~has_row[vertices] | np.isin(vertices, np.fromiter(known, np.int64, len(known)))
+    has_own = np.bincount(owners, is_own) > 0
+    chosen: BoolArray = is_own | ~has_own[owners]
+    return chosen
+
+
 def _name(lines: Lines, chain: int) -> str:
     kind, name = lines.kinds[chain], lines.names[chain]
     quoted = f" '{name}'" if name else ""
     return f"{_NOUNS.get(kind, kind)} {int(lines.sources[chain])}{quoted}"
+
+
+def mark_rings(lines: Lines, count: int) -> BoolArray:
+    """Mark which of so many vertices are on a boundary, a hole or water."""
+    is_ring = np.array([kind not in ("hard", "soft") for kind in lines.kinds], np.bool_)
+    marked = np.zeros(count, np.bool_)
+    marked[lines.vertices[is_ring[find_owners(lines.offsets)]]] = True
+    return marked
 
 
 def name_lines_at(lines: Lines, vertices: Int32Array) -> list[str]:
@@ -180,7 +208,7 @@ def _judge(
     if every > 1:
         chosen |= np.isin(z, CUSTOMARY)
     owners, vertices, z = owners[chosen], vertices[chosen], z[chosen]
-    ground, limits, distances = _fit_ground(surface, vertices, is_point)
+    ground, limits, distances = fit_ground(surface, vertices, is_point)
     at_point = np.flatnonzero(np.isin(vertices, np.fromiter(known, np.int64, len(known))))
     for i in at_point.tolist():
         ground[i], limits[i], distances[i] = known[int(vertices[i])], 0.0, 0.0
@@ -189,7 +217,7 @@ def _judge(
     return judged.choose(np.isfinite(ground) & np.isfinite(limits))
 
 
-def _fit_ground(
+def fit_ground(
     surface: Triangulation, vertices: Int32Array, is_point: BoolArray
 ) -> tuple[Float64Array, Float64Array, Float64Array]:
     """Return elevations of the planes through the points around some vertices; NaN for none.
@@ -197,7 +225,7 @@ def _fit_ground(
     And how far off them a line may be, and how far away the nearest point is.
     """
     xyz = surface.points
-    offsets, around = Residuals.of(surface).list_wide_neighbors(vertices)
+    offsets, around = Residuals.without_lines(surface).list_wide_neighbors(vertices)
     owners = find_owners(offsets)
     owners, around = owners[is_point[around]], around[is_point[around]]
     offsets = find_offsets(np.bincount(owners, minlength=len(vertices)))
@@ -260,7 +288,7 @@ def _find_factor(own: _Judged, is_off: BoolArray) -> _Told | None:
     """Tell whether most vertices of a line are a factor of what they should be."""
     names = np.full(len(is_off), "", object)
     for i in np.flatnonzero(is_off).tolist():
-        tolerance = _CLEAR * float(own.limits[i])
+        tolerance = max(_CLEAR * float(own.limits[i]), _NEAR * abs(float(own.offsets[i])))
         names[i] = name_factor(float(own.z[i]), float(own.ground[i]), tolerance) or ""
     words, counts = np.unique(names[names != ""].astype(str), return_counts=True)
     if len(words) == 0 or counts.max() < max(2, _MOST_OF_LINE * len(is_off)):

@@ -34,8 +34,9 @@ def inspect(points: tuple[Path, ...], title: str | None, request: Request) -> No
 
     Each point is compared with the surface of all others. Reported are spikes and pits, codes for
     missing elevations, factors of ten and of feet, exchanged axes, points far from all others,
-    repeated point numbers and positions, and lines that cross at different elevations. Nothing is
-    changed; 'tinsmith build --drop-blunders' leaves such points out.
+    lines that the points do not bear out, filled voids, repeated point numbers and positions, and
+    lines that cross at different elevations. Nothing is changed; 'tinsmith build --drop-blunders'
+    leaves such points out.
 
     \b
     Example:
