@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 from numbers import Integral, Real
@@ -70,13 +71,17 @@ _READ = 0.8
 
 _COLOURS = ("red", "green", "blue", "palette", "cyan", "magenta", "yellow", "black")
 
+_COORDINATES = "Bounds, or four finite numbers: west, south, east and north limit"
+_CELLS_ARE = "; a part in cells (column, row, width, height) is the option cells"
+
 
 @dataclass(frozen=True, slots=True)
 class Choice:
     """What of a raster is taken, in the words of :func:`read`."""
 
     band: int | None
-    window: Sequence[int] | Bounds | None
+    window: Sequence[float] | Bounds | None
+    cells: Sequence[int] | None
     stride: int | None
     nodata: float | Sequence[float] | None
     fill: bool
@@ -114,7 +119,8 @@ def read(
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
     band: int | None = None,
-    window: Sequence[int] | Bounds | None = None,
+    window: Sequence[float] | Bounds | None = None,
+    cells: Sequence[int] | None = None,
     stride: int | None = None,
     most_cells: int | None = None,
     nodata: float | Sequence[float] | None = None,
@@ -130,9 +136,12 @@ def read(
     ----------
     band : int, optional
         Band to read, from 1; default the first.
-    window : (4,) sequence of int, or Bounds, optional
-        Part to read: column and row of the first cell (from 0), width and height in cells; or
-        bounds in the raster's own CRS, which hold the centres of the cells wanted.
+    window : Bounds or (4,) sequence of float, optional
+        Part to read: west, south, east and north limit in the raster's own CRS, which hold the
+        centres of the cells wanted.
+    cells : (4,) sequence of int, optional
+        Part to read in cells: column and row of the first (from 0), width and height. Not with
+        ``window``.
     stride : int, optional
         Read every ``stride``-th row and column only; default all.
     most_cells : int, optional
@@ -155,7 +164,7 @@ def read(
         If GDAL cannot read the file, it is a picture or has no georeference, its CRS is in
         degrees and no other is wanted, or no cell has an elevation.
     OptionError
-        If band, window or stride is not one that the raster has, nodata is no number, or
+        If band, window, cells or stride is not one that the raster has, nodata is no number, or
         ``z_unit`` is unknown, or another than the raster's own.
     CrsError
         If the points cannot be transformed.
@@ -168,7 +177,7 @@ def read(
     for each valid cell at most, and a strip.
     """
     header = read_header(path)
-    choice = Choice(band, window, stride, nodata, fill, most_cells)
+    choice = Choice(band, window, cells, stride, nodata, fill, most_cells)
     return make_survey(
         header, partial(stream_strips, header), choice, crs=crs, z_unit=z_unit, progress=progress
     )
@@ -193,6 +202,7 @@ def make_survey(
     target, source = CRS.of(crs), CRS.of(dataset.crs)
     unit, said = find_elevation_unit(dataset, number, source, Unit.of(z_unit))
     cells = _choose_cells(dataset, choice, path)
+    said = [*said, *_describe_window(dataset, choice)]
     left_out = 0 if choice.most_cells is None else cells.width * cells.height - cells.count
     marks = parse_nodata(choice.nodata)
     _require_few_cells(cells, path)
@@ -452,14 +462,15 @@ def find_middle(dataset: Header) -> Float64Array:
 
 
 def _choose_cells(dataset: Header, choice: Choice, path: Path) -> _Cells:
-    window, stride, bounds = choice.window, choice.stride, None
-    if window is None:
-        part = (0, 0, dataset.width, dataset.height)
-    elif isinstance(window, Bounds):
-        bounds = window
+    stride, bounds = choice.stride, None
+    part = (0, 0, dataset.width, dataset.height)
+    if choice.window is not None and choice.cells is not None:
+        raise OptionError("cells", choice.cells, "None where a window is given")
+    if choice.window is not None:
+        bounds = _parse_window(choice.window)
         part = _cut_bounds(dataset, bounds, path)
-    else:
-        part = _cut_window(dataset, window, path)
+    elif choice.cells is not None:
+        part = _cut_cells(dataset, choice.cells, path)
     if choice.most_cells is not None:
         return _Cells(*part, _choose_stride(part[2], part[3], stride, choice.most_cells), bounds)
     smaller, stride = min(part[2:]), 1 if stride is None else stride
@@ -495,43 +506,76 @@ def _describe_sample(cells: _Cells, left_out: int) -> list[str]:
     ]
 
 
-def _cut_window(dataset: Header, window: Sequence[int], path: Path) -> tuple[int, int, int, int]:
+def _parse_window(window: Sequence[float] | Bounds) -> Bounds:
+    """Return bounds in coordinates; what cannot be any may be cells, for which ``cells`` is."""
+    if isinstance(window, Bounds):
+        window = (window.xmin, window.ymin, window.xmax, window.ymax)
+    limits = _list_numbers(window, Real)
+    if limits is None or not all(map(math.isfinite, limits)):
+        raise OptionError("window", window, _COORDINATES)
+    bounds = Bounds(*map(float, limits))
+    if bounds.width < 0 or bounds.height < 0:
+        raise OptionError("window", limits, f"{_COORDINATES}, the lower ones first{_CELLS_ARE}")
+    return bounds
+
+
+def _list_numbers(given: object, kind: type) -> tuple[Any, ...] | None:
+    """Return four numbers of a kind as a tuple, None if they are something else."""
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        return None
+    numbers = tuple(given)
+    are_numbers = all(isinstance(one, kind) and not isinstance(one, bool) for one in numbers)
+    return numbers if len(numbers) == 4 and are_numbers else None
+
+
+def _cut_cells(dataset: Header, cells: Sequence[int], path: Path) -> tuple[int, int, int, int]:
     size = f"the raster has {counted(dataset.width, 'column')} and {counted(dataset.height, 'row')}"
-    try:
-        numbers = tuple(window)
-    except TypeError:
-        numbers = ()
-    if len(numbers) != 4 or not all(isinstance(one, Integral) for one in numbers):
+    numbers = _list_numbers(cells, Integral)
+    if numbers is None:
         raise OptionError(
-            "window",
-            window,
-            f"four whole numbers (first column, first row, width, height) or Bounds; {size}",
+            "cells",
+            cells,
+            f"four whole numbers (first column, first row, width, height); {size}",
         )
     column, row, width, height = (int(one) for one in numbers)
-    fits = 0 <= column < column + width <= dataset.width
-    if not (fits and 0 <= row < row + height <= dataset.height):
-        raise OptionError("window", numbers, f"a part of '{path}': {size}")
+    if not _has_cells(dataset, numbers):
+        raise OptionError("cells", numbers, f"a part of '{path}': {size}")
     return column, row, width, height
+
+
+def _has_cells(dataset: Header, cells: tuple[Any, ...]) -> bool:
+    column, row, width, height = cells
+    fits = 0 <= column < column + width <= dataset.width
+    return fits and 0 <= row < row + height <= dataset.height
+
+
+def _describe_window(dataset: Header, choice: Choice) -> list[str]:
+    """Say what a window is taken as that could be cells as well."""
+    numbers = _list_numbers(choice.window, Integral)
+    if numbers is None or not _has_cells(dataset, numbers):
+        return []
+    shown = ", ".join(map(str, numbers))
+    return [
+        f"The window {shown} is in coordinates (west, south, east, north); cells by column, row, "
+        "width and height are the option cells."
+    ]
 
 
 def _cut_bounds(dataset: Header, bounds: Bounds, path: Path) -> tuple[int, int, int, int]:
     """Return the cells of the smallest upright window that covers the bounds."""
-    limits = (bounds.xmin, bounds.ymin, bounds.xmax, bounds.ymax)
-    if not all(isinstance(one, Real) and np.isfinite(one) for one in limits):
-        raise OptionError("window", limits, "four finite numbers")
     x = np.array([bounds.xmin, bounds.xmin, bounds.xmax, bounds.xmax])
     y = np.array([bounds.ymin, bounds.ymax, bounds.ymin, bounds.ymax])
     columns, rows = dataset.transform.invert().apply(x, y)
     column, row = max(0, int(np.floor(columns.min()))), max(0, int(np.floor(rows.min())))
     right = min(dataset.width, int(np.ceil(columns.max())))
     bottom = min(dataset.height, int(np.ceil(rows.max())))
-    if column >= right or row >= bottom or bounds.width < 0 or bounds.height < 0:
+    if column >= right or row >= bottom:
         left, low, east, high = dataset.bounds
         raise OptionError(
             "window",
-            limits,
-            f"an area that meets '{path}', which spans easting {left:g} to {east:g} and northing "
-            f"{low:g} to {high:g}",
+            (bounds.xmin, bounds.ymin, bounds.xmax, bounds.ymax),
+            f"an area that meets '{path}', which spans easting {left:.10g} to {east:.10g} and "
+            f"northing {low:.10g} to {high:.10g}{_CELLS_ARE}",
         )
     return column, row, right - column, bottom - row
 
@@ -588,7 +632,9 @@ def _read_points(
             n_nodata += missing
             done(_READ * len(found) / len(strips))
     if not any(map(len, found)) and n_nodata == 0:
-        raise OptionError("window", cells.bounds, f"an area with a cell centre of '{dataset.path}'")
+        raise OptionError(
+            "window", cells.bounds, f"an area with a cell centre of '{dataset.path}'{_CELLS_ARE}"
+        )
     return np.concatenate(found), np.concatenate(kept), n_nodata
 
 

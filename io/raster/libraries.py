@@ -42,7 +42,8 @@ def from_raster(
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
     band: int | str | None = None,
-    window: Sequence[int] | Bounds | None = None,
+    window: Sequence[float] | Bounds | None = None,
+    cells: Sequence[int] | None = None,
     stride: int | None = None,
     nodata: float | Sequence[float] | None = None,
     fill: bool = False,
@@ -64,7 +65,7 @@ def from_raster(
     band : int or str, optional
         Number of the band, from 1; of a Dataset or a Raster the name. Default the first, but a
         Dataset or a Raster of several must be told which.
-    window, stride, nodata, fill
+    window, cells, stride, nodata, fill
         As of :func:`tinsmith.read` for rasters: the part and every how many of the cells are
         taken, further values without data, and whether the surface spans voids.
 
@@ -102,7 +103,7 @@ def from_raster(
         limits=None,
         **{**(about := describe(dataset)), "transform": Affine(*about["transform"])},
     )
-    choice = Choice(number, window, stride, nodata, fill)
+    choice = Choice(number, window, cells, stride, nodata, fill)
     return make_survey(header, partial(_cut, dataset), choice, crs=crs, z_unit=z_unit)
 
 

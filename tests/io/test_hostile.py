@@ -236,7 +236,7 @@ def test_a_geotiff_of_ten_thousand_million_cells_is_refused(tmp_path):
     with rasterio.open(path, "w", driver="GTiff", **size, **place):
         pass
     assert "10,000,000,000 cells" in refused(read, path, ReadError)
-    assert len(read(path, window=(5, 7, 3, 2))) == 6
+    assert len(read(path, cells=(5, 7, 3, 2))) == 6
 
 
 # ------------------------------------------------------------------ references in vector files

@@ -28,8 +28,9 @@ def header(**given):
     return dem.Header(**{**usual, **given})
 
 
-def choose_cells(window, stride):
-    choice = dem.Choice(band=None, window=window, stride=stride, nodata=None, fill=False)
+def choose_cells(stride=1, **part):
+    part = {"window": None, "cells": None, **part}
+    choice = dem.Choice(band=None, **part, stride=stride, nodata=None, fill=False)
     return dem._choose_cells(header(), choice, PATH)
 
 
@@ -113,62 +114,109 @@ def test_strips_are_whole_blocks_of_some_cells(monkeypatch, block, width, height
     ],
 )
 def test_bounds_choose_the_cells_that_they_touch(bounds, part):
-    cells = choose_cells(Bounds(*map(float, bounds)), 1)
+    cells = choose_cells(window=Bounds(*map(float, bounds)))
+    assert choose_cells(window=bounds) == cells
     assert (cells.column, cells.row, cells.width, cells.height) == part
     assert cells.bounds == Bounds(*bounds)
 
 
+NAMING = "; a part in cells (column, row, width, height) is the option cells."
+
+
+def refuse(**part):
+    with pytest.raises(OptionError) as caught:
+        choose_cells(**part)
+    return str(caught.value)
+
+
 @pytest.mark.parametrize(
     "bounds",
-    [(114, 485, 120, 500), (0, 485, 100, 500), (100, 500, 114, 501), (100, 0, 114, 485),
-     (110, 485, 105, 500), (100, 495, 114, 490)],
-)  # fmt: skip
-def test_bounds_beyond_the_raster_or_turned_are_refused(bounds):
-    said = sentence_of(OptionError, choose_cells, Bounds(*map(float, bounds)), 1)
+    [(114, 485, 120, 500), (0, 485, 100, 500), (100, 500, 114, 501), (100, 0, 114, 485)],
+)
+def test_bounds_beyond_the_raster_are_refused(bounds):
+    said = refuse(window=Bounds(*map(float, bounds)))
     assert said == (
         f"Invalid window {list(map(float, bounds))}: it must be an area that meets 'ground.tif', "
-        "which spans easting 100 to 114 and northing 485 to 500."
+        f"which spans easting 100 to 114 and northing 485 to 500{NAMING}"
     )
 
 
-@pytest.mark.parametrize("window", [(0, 0, 7, 5), (6, 4, 1, 1), [1, 1, 2, 3]])
-def test_a_window_in_cells_is_taken_as_it_is(window):
-    cells = choose_cells(window, 1)
-    assert (cells.column, cells.row, cells.width, cells.height) == tuple(window)
-    assert cells.bounds is None
+@pytest.mark.parametrize("bounds", [(110, 485, 105, 500), (100, 495, 114, 490), (4, 2, 3, 3)])
+def test_turned_bounds_are_refused(bounds):
+    said = refuse(window=bounds)
+    assert said == (
+        f"Invalid window {list(bounds)}: it must be Bounds, or four finite numbers: west, south, "
+        f"east and north limit, the lower ones first{NAMING}"
+    )
+
+
+@pytest.mark.parametrize("window", [(0, 0, 7), (0, 0, 7, 5, 1), (0, 0, np.nan, 5), 7, "abcd"])
+def test_a_window_is_four_numbers(window):
+    assert "four finite numbers: west, south, east and north limit" in refuse(window=window)
+
+
+@pytest.mark.parametrize("cells", [(0, 0, 7, 5), (6, 4, 1, 1), [1, 1, 2, 3]])
+def test_cells_are_taken_as_they_are(cells):
+    found = choose_cells(cells=cells)
+    assert (found.column, found.row, found.width, found.height) == tuple(cells)
+    assert found.bounds is None
+
+
+@pytest.mark.parametrize("cells", [(0, 0, 7, 5), (6, 4, 1, 1), (1, 1, 2, 3)])
+def test_cells_given_as_a_window_are_refused_with_the_option_to_use(cells):
+    assert refuse(window=cells).endswith(NAMING)
+
+
+def test_a_window_that_may_be_meant_as_cells_is_told():
+    raster = header(transform=dem.Affine(1.0, 0.0, 0.0, 0.0, -1.0, 5.0))
+    choice = {"band": None, "cells": None, "stride": None, "nodata": None, "fill": False}
+    for window, is_told in [((1, 1, 3, 4), True), ((1, 1, 3.0, 4), False), ((1, 1, 7, 5), False),
+                            (Bounds(1, 1, 3, 4), False), (None, False)]:  # fmt: skip
+        notes = dem._describe_window(raster, dem.Choice(window=window, **choice))
+        assert bool(notes) == is_told
+    notes = dem._describe_window(raster, dem.Choice(window=(1, 1, 3, 4), **choice))
+    assert notes == [
+        "The window 1, 1, 3, 4 is in coordinates (west, south, east, north); cells by column, row, "
+        "width and height are the option cells."
+    ]
+
+
+def test_a_part_is_a_window_or_cells():
+    said = refuse(window=Bounds(100, 485, 114, 500), cells=(0, 0, 2, 2))
+    assert said == "Invalid cells [0, 0, 2, 2]: it must be None where a window is given."
 
 
 @pytest.mark.parametrize(
-    "window",
+    "cells",
     [(0, 0, 8, 5), (0, 0, 7, 6), (-1, 0, 3, 3), (0, -1, 3, 3), (0, 0, 0, 5), (0, 0, 7, 0),
      (6, 0, 2, 1), (0, 4, 1, 2)],
 )  # fmt: skip
-def test_a_window_must_lie_in_the_raster(window):
-    said = sentence_of(OptionError, choose_cells, window, 1)
-    assert said == (
-        f"Invalid window {list(window)}: it must be a part of 'ground.tif': the raster has 7 "
+def test_cells_must_lie_in_the_raster(cells):
+    assert refuse(cells=cells) == (
+        f"Invalid cells {list(cells)}: it must be a part of 'ground.tif': the raster has 7 "
         "columns and 5 rows."
     )
 
 
-@pytest.mark.parametrize("window", [(0, 0, 7), (0, 0, 7, 5, 1), (0.0, 0, 7, 5), 7, "abcd"])
-def test_a_window_is_four_whole_numbers(window):
-    said = sentence_of(OptionError, choose_cells, window, 1)
-    shown = list(window) if isinstance(window, tuple) else window
-    assert said == (
-        f"Invalid window {shown!r}: it must be four whole numbers (first column, first row, width, "
-        "height) or Bounds; the raster has 7 columns and 5 rows."
+@pytest.mark.parametrize(
+    "cells", [(0, 0, 7), (0, 0, 7, 5, 1), (0.0, 0, 7, 5), 7, "abcd", (0, 0, 7, True)]
+)
+def test_cells_are_four_whole_numbers(cells):
+    shown = list(cells) if isinstance(cells, tuple) else cells
+    assert refuse(cells=cells) == (
+        f"Invalid cells {shown!r}: it must be four whole numbers (first column, first row, width, "
+        "height); the raster has 7 columns and 5 rows."
     )
 
 
 @pytest.mark.parametrize(
-    ("window", "stride", "most"),
+    ("cells", "stride", "most"),
     [(None, 5, 4), (None, 0, 4), (None, 1.5, 4), ((0, 0, 3, 5), 3, 2), ((0, 0, 1, 1), 2, 1)],
 )
-def test_a_stride_leaves_two_rows_and_columns_at_least(window, stride, most):
-    said = sentence_of(OptionError, choose_cells, window, stride)
+def test_a_stride_leaves_two_rows_and_columns_at_least(cells, stride, most):
+    said = refuse(cells=cells, stride=stride)
     assert f"Invalid stride {stride!r}: it must be a whole number from 1 to {most} for the" in said
-    assert choose_cells(window, most).stride == most
+    assert choose_cells(most, cells=cells).stride == most
 
 
 # --------------------------------------------------------------------- room

@@ -152,9 +152,9 @@ def test_strips_join_without_a_seam(raster, monkeypatch):
     array = heights(61, 37)
     array[10:20, 5:9] = -1
     path = raster(array, nodata=-1, tiled=True, blockxsize=16, blockysize=16)
-    plain = [read(path), read(path, stride=3), read(path, window=(3, 7, 30, 50), stride=4)]
+    plain = [read(path), read(path, stride=3), read(path, cells=(3, 7, 30, 50), stride=4)]
     monkeypatch.setattr(module, "_STRIP_CELLS", 1)
-    strips = [read(path), read(path, stride=3), read(path, window=(3, 7, 30, 50), stride=4)]
+    strips = [read(path), read(path, stride=3), read(path, cells=(3, 7, 30, 50), stride=4)]
     for one, other in zip(plain, strips, strict=True):
         assert np.array_equal(one.points, other.points)
         assert one.skipped == other.skipped
@@ -164,11 +164,11 @@ def test_strips_join_without_a_seam(raster, monkeypatch):
 
 
 @pytest.mark.parametrize("stride", [1, 2, 3, 4])
-@pytest.mark.parametrize("window", [None, (2, 1, 6, 5), (0, 0, 9, 6)])
-def test_window_in_cells_and_stride(raster, window, stride):
+@pytest.mark.parametrize("cells", [None, (2, 1, 6, 5), (0, 0, 9, 6)])
+def test_part_in_cells_and_stride(raster, cells, stride):
     array = heights()
-    survey = read(raster(array, transform=ROTATED), window=window, stride=stride)
-    column, row, width, height = window or (0, 0, 9, 6)
+    survey = read(raster(array, transform=ROTATED), cells=cells, stride=stride)
+    column, row, width, height = cells or (0, 0, 9, 6)
     expected = [
         (*centre(ROTATED, i, j), array[i, j])
         for i in range(row, row + height, stride)
@@ -183,7 +183,10 @@ def test_window_in_coordinates_holds_the_centres_within(raster, transform):
     everything = points_by_loop(array, transform)
     middle, reach = everything[:, :2].mean(axis=0), np.ptp(everything[:, :2], axis=0) / 5
     bounds = ts.Bounds(*(middle - reach), *(middle + reach))
-    survey = read(raster(array, transform=transform), window=bounds)
+    path = raster(array, transform=transform)
+    survey = read(path, window=bounds)
+    limits = (bounds.xmin, bounds.ymin, bounds.xmax, bounds.ymax)
+    assert np.array_equal(read(path, window=limits).points, survey.points)
     inside = (np.abs(everything[:, :2] - middle) <= reach).all(axis=1)
     assert 0 < inside.sum() < 400
     assert np.allclose(survey.points, everything[inside], rtol=0, atol=1e-9)

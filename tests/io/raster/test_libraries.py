@@ -85,7 +85,8 @@ def test_windows_strides_bands_and_a_crs_that_is_wanted(tmp_path):
     path = write(tmp_path / "dem.tif", HEIGHTS, HEIGHTS + 1000)
     for options in (
         {"band": 2},
-        {"window": (1, 2, 5, 4), "stride": 2},
+        {"cells": (1, 2, 5, 4), "stride": 2},
+        {"window": (740_010, 4_029_985, 740_040, 4_029_998)},
         {"window": ts.Bounds(740_010, 4_029_985, 740_040, 4_029_998)},
         {"crs": "EPSG:32617"},
         {"nodata": 107, "z_unit": "ft"},

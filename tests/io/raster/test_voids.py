@@ -98,7 +98,7 @@ def test_voids_stay_through_windows_strides_and_other_systems(tmp_path):
     elevations[10:20, 10:20] = NODATA
     path = write(tmp_path / "a.tif", elevations)
     valid = elevations != NODATA
-    window = ts.triangulate(ts.read(path, window=(5, 5, 20, 20)))
+    window = ts.triangulate(ts.read(path, cells=(5, 5, 20, 20)))
     assert window.area == pytest.approx(expected_area(valid[5:25, 5:25]))
     thin = ts.triangulate(ts.read(path, stride=3))
     assert thin.area == pytest.approx(expected_area(valid[::3, ::3], 900.0))
