@@ -9,7 +9,7 @@ import numpy as np
 
 from .._methods import call_method, make_card
 from .._sentences import counted
-from ..crs import CRS, Unit, require_one_unit, scale_elevations, shorten_crs
+from ..crs import CRS, Unit, require_lengths, require_one_unit, scale_elevations, shorten_crs
 from ..errors import choice
 from ..policies import Extrapolation, FeatureKind, InterpolationMethod
 from . import topology
@@ -25,6 +25,7 @@ from .report import Report
 from .triangulation import Triangulation
 from .types import seal
 from .validation.points import as_pairs, as_places, as_points, as_xy
+from .validation.ranges import describe_span, require_degrees
 from .validation.triangles import as_flags, as_triangles, turn_counter_clockwise
 from .validation.vertices import as_vertex, as_vertex_pairs
 
@@ -326,7 +327,11 @@ class Surface:
 
     @property
     def triangle_areas(self) -> Float64Array:
-        """Area of each triangle in the plane, (m,) array, CRS units squared."""
+        """Area of each triangle in the plane, (m,) array, CRS units squared.
+
+        Raises CrsError where coordinates are longitude and latitude.
+        """
+        require_lengths(self.crs)
         return self._current.triangulation.triangle_areas
 
     @property
@@ -340,8 +345,12 @@ class Surface:
 
     @property
     def area(self) -> float:
-        """Area in the plane, CRS units squared."""
-        return float(self.triangle_areas.sum())
+        """Area in the plane, CRS units squared.
+
+        Raises CrsError where coordinates are longitude and latitude.
+        """
+        require_lengths(self.crs)
+        return self._current.triangulation.area
 
     @property
     def surface_area(self) -> float:
@@ -947,6 +956,8 @@ class TIN(Editable, Surface):
         triangulation = Triangulation(
             points=points, triangles=triangles, neighbors=neighbors, constrained=constrained
         )
+        require_degrees(triangulation.points, system, "Points")
+        describe_span(triangulation.points, system, "Points")
         version = Version(
             triangulation=triangulation,
             vertex_of=vertex_of,
@@ -1014,7 +1025,12 @@ class TIN(Editable, Surface):
             neighbors=topology.neighbors_of(corners, len(xyz)),
             constrained=flags,
             vertex_of=np.arange(len(xyz), dtype=np.int32),
-            report=Report(n_rows=len(xyz), n_vertices=len(xyz), n_triangles=len(corners)),
+            report=Report(
+                n_rows=len(xyz),
+                n_vertices=len(xyz),
+                n_triangles=len(corners),
+                notes=describe_span(xyz, system, "Points"),
+            ),
             crs=system,
             elevation_unit=unit,
             row_attributes=as_columns(attributes or {}, (len(xyz),)),

@@ -8,14 +8,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..._products import product
+from ...crs import measure_angular_unit
 from ...errors import OptionError
+from ...terrain.georeference import find_plane_units
+from ...terrain.isolines.measures import measure_ring_areas
 from ...terrain.results import Features
 from ...tin import TIN, Surface, Survey, Voronoi
 from ...tin.topology import find_offsets
 from .surface_features import make_features
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, Int64Array
+    from ...arrays import AnyArray, Float64Array, Int64Array
     from ...policies import FeatureKind
 
 __all__ = ["build_collection", "build_frame", "build_stream", "to_features"]
@@ -93,18 +96,28 @@ def _make_cells(diagram: Voronoi) -> Features:
     sizes = np.diff(diagram.part_offsets)
     starts = diagram.part_offsets[:-1]
     closed = np.repeat(starts, sizes + 1) + _count_within(sizes + 1) % np.repeat(sizes, sizes + 1)
+    rings = find_offsets(sizes + 1)
     parts = find_offsets(np.bincount(diagram.cell_of_part, minlength=len(diagram)))
     vertices = np.flatnonzero(np.diff(parts))
     has_parts = len(vertices) < len(sizes)
     return Features.of_polygons(
         diagram.coords[closed],
-        find_offsets(sizes + 1),
+        rings,
         np.arange(len(sizes) + 1),
         np.append(parts[vertices], len(sizes)) if has_parts else None,
-        columns={"vertex": vertices, "area": diagram.areas[vertices]},
+        columns={"vertex": vertices, "area": _measure_cells(diagram, closed, rings)[vertices]},
+        units={"area": find_plane_units(diagram.crs).area},
         crs=diagram.crs,
         name="cells",
     )
+
+
+def _measure_cells(diagram: Voronoi, closed: Int64Array, offsets: Int64Array) -> Float64Array:
+    """Return areas of cells in the units of products: of longitudes and latitudes square metres."""
+    if measure_angular_unit(diagram.crs) is None:
+        return diagram.areas
+    parts = measure_ring_areas(diagram.crs, diagram.coords[closed], offsets)
+    return np.bincount(diagram.cell_of_part, parts, len(diagram))
 
 
 def _count_within(sizes: Int64Array) -> Int64Array:

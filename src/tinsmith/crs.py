@@ -7,6 +7,7 @@ in the order easting, northing (longitude, latitude), whatever the authority say
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from functools import lru_cache
@@ -32,6 +33,8 @@ __all__ = [
     "US_SURVEY_FOOT",
     "Unit",
     "assume_elevation_unit",
+    "measure_angular_unit",
+    "require_lengths",
     "require_one_unit",
     "require_same_unit",
     "scale_elevations",
@@ -492,6 +495,19 @@ def require_same_unit(known: Unit, declared: Unit, why: str) -> None:
         raise OptionError("unit of elevations", declared.name, f"{known.name}, {why}")
 
 
+def measure_angular_unit(crs: CRS | None) -> float | None:
+    """Return the degrees of a unit of longitude and latitude; None where these are lengths.
+
+    Examples
+    --------
+    >>> measure_angular_unit(CRS(4326)), measure_angular_unit(CRS(32616))
+    (1.0, None)
+    """
+    if crs is None or not crs.is_geographic:
+        return None
+    return math.degrees(_parsed(str(crs)).axis_info[0].unit_conversion_factor)
+
+
 def assume_elevation_unit(crs: CRS | None, unit: Unit | None) -> Unit | None:
     """Return the unit that elevations are taken to have; None if nothing tells.
 
@@ -502,6 +518,21 @@ def assume_elevation_unit(crs: CRS | None, unit: Unit | None) -> Unit | None:
         The one that is known.
     """
     return unit if unit is not None or crs is None else crs.usual_elevation_unit
+
+
+def require_lengths(crs: CRS | None) -> None:
+    """Refuse to measure areas in the plane where coordinates are longitude and latitude.
+
+    Raises
+    ------
+    CrsError
+    """
+    if crs is not None and crs.is_geographic:
+        raise CrsError(
+            f"Coordinates in {crs.label} are angles, and areas cannot be measured in their "
+            "squares: a projected CRS is needed.",
+            crs=crs,
+        )
 
 
 def scale_elevations(crs: CRS | None, unit: Unit | None) -> float:

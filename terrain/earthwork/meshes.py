@@ -108,7 +108,7 @@ def _is_inside(tin: TIN, holds: Callable[[Any], Any]) -> BoolArray:
     is_open = np.zeros(int(cell.max()) + 1, bool)
     is_open[cell[((tin.neighbors < 0) & ~tin.constrained).any(axis=1)]] = True
     largest = np.empty(len(is_open), np.int64)
-    order = np.argsort(tin.triangle_areas, kind="stable")
+    order = np.argsort(tin.triangulation.triangle_areas, kind="stable")
     largest[cell[order]] = order
     centers = tin.points[tin.triangles[largest], :2].mean(axis=1)
     inside: BoolArray = (holds(centers) & ~is_open)[cell]

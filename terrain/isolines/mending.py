@@ -99,7 +99,8 @@ def is_whole(tin: TIN, parts: PolygonParts) -> bool:
     found = float(measure_ring_areas(None, parts.points, parts.ring_offsets).sum())
     length = float(measure_lengths(None, parts.points, parts.ring_offsets).sum())
     rounding = float(np.spacing(np.abs(parts.points).max(initial=0.0)))
-    return bool(abs(found - tin.area) <= _SHARE * tin.area + _ROUNDINGS * rounding * length)
+    area = tin.triangulation.area
+    return bool(abs(found - area) <= _SHARE * area + _ROUNDINGS * rounding * length)
 
 
 def require_whole(tin: TIN, parts: PolygonParts) -> None:
@@ -112,7 +113,8 @@ def require_whole(tin: TIN, parts: PolygonParts) -> None:
     """
     if not is_whole(tin, parts):
         found = float(measure_ring_areas(None, parts.points, parts.ring_offsets).sum())
+        area = tin.triangulation.area
         raise PointsError(
-            f"The bands add up to an area of {found:g}, the surface has {tin.area:g}: its "
+            f"The bands add up to an area of {found:g}, the surface has {area:g}: its "
             "triangles are too thin for coordinates of this size; subtract an origin from them."
         )

@@ -57,7 +57,7 @@ def rebuild_wrong_bands(
 def _find_wrong(tin: TIN, levels: Float64Array, parts: PolygonParts) -> BoolArray:
     """Tell which bands have another area than the surface has between their levels."""
     under = _kernel.stage_sums(tin.points, tin.triangles, levels, 1.0)[:, 0]
-    true = np.diff(np.concatenate([[0.0], under, [float(tin.area)]]))
+    true = np.diff(np.concatenate([[0.0], under, [float(tin.triangulation.area)]]))
     rings = measure_ring_areas(None, parts.points, parts.ring_offsets)
     lengths = measure_lengths(None, parts.points, parts.ring_offsets)
     found, around = (
@@ -66,7 +66,7 @@ def _find_wrong(tin: TIN, levels: Float64Array, parts: PolygonParts) -> BoolArra
     )
     rounding = float(np.spacing(np.abs(tin.points[:, :2]).max(initial=0.0)))
     extent = float(np.ptp(tin.points[:, :2], axis=0).sum())
-    slack = _SHARE * tin.area + _ROUNDINGS * rounding * (around + extent)
+    slack = _SHARE * tin.triangulation.area + _ROUNDINGS * rounding * (around + extent)
     wrong: BoolArray = np.abs(found - true) > slack
     return wrong
 

@@ -139,7 +139,7 @@ def measure_plane_areas(tin: TIN) -> Float64Array:
     metres.
     """
     scales = find_scales(tin.crs, None, _average_northings(tin))
-    measured: Float64Array = tin.triangle_areas * scales.east * scales.north
+    measured: Float64Array = tin.triangulation.triangle_areas * scales.east * scales.north
     return measured
 
 
@@ -148,7 +148,8 @@ def measure_areas(tin: TIN) -> Float64Array:
 
     In CRS units squared where those are not known.
     """
-    measured: Float64Array = tin.triangle_areas * find_area_scale(tin.crs, _average_northings(tin))
+    scale = find_area_scale(tin.crs, _average_northings(tin))
+    measured: Float64Array = tin.triangulation.triangle_areas * scale
     return measured
 
 

@@ -12,6 +12,7 @@ from ..._sentences import counted
 from ...crs import CRS, Unit, require_one_unit, shorten_crs
 from ...errors import OptionError
 from ...tin.types import Bounds, Frozen
+from ...tin.validation.ranges import require_degrees
 from .columns import as_columns, as_name, as_notes, as_units, frozen_copy, join_notes
 
 if TYPE_CHECKING:
@@ -92,6 +93,7 @@ class Features(Frozen):
         keep(self, "columns", as_columns(self.columns, len(self), "feature"))
         keep(self, "units", as_units(self.units, self.columns))
         crs = CRS.of(self.crs)
+        require_degrees(self.coordinates, crs, "Coordinates")
         keep(self, "crs", crs)
         keep(self, "elevation_unit", require_one_unit(crs, Unit.of(self.elevation_unit)))
         keep(self, "name", as_name(self.name))

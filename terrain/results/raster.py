@@ -13,6 +13,7 @@ from ..._sentences import counted
 from ...crs import CRS, shorten_crs
 from ...errors import OptionError
 from ...tin.types import Frozen, Grid
+from ...tin.validation.ranges import require_degrees
 from .columns import (
     FrozenMapping,
     as_name,
@@ -26,7 +27,7 @@ from .columns import (
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ...arrays import AnyArray
+    from ...arrays import AnyArray, Float64Array
     from .columns import Units
 
 __all__ = ["Raster", "require_grid"]
@@ -88,7 +89,9 @@ class Raster(Frozen):
         shape = tuple(self.grid.shape)
         bands = {name: _as_band(name, values, shape) for name, values in items.items()}
         keep(self, "bands", FrozenMapping(bands))
-        keep(self, "crs", CRS.of(self.crs))
+        crs = CRS.of(self.crs)
+        require_degrees(_list_corner_cells(self.grid), crs, "Corners")
+        keep(self, "crs", crs)
         keep(self, "nodata", _as_nodata(self.nodata))
         keep(self, "units", as_units(self.units, bands))
         keep(self, "name", as_name(self.name))
@@ -151,6 +154,13 @@ class Raster(Frozen):
 
     def _repr_html_(self) -> str:
         return make_card(self)
+
+
+def _list_corner_cells(grid: Grid) -> Float64Array:
+    """Return the centres of the first and the last cell of the last and the first row."""
+    box, (rows, columns) = grid.bounds, grid.shape
+    across, up = box.width / columns / 2, box.height / rows / 2
+    return np.array([[box.xmin + across, box.ymin + up], [box.xmax - across, box.ymax - up]])
 
 
 def _as_band(name: str, values: Any, shape: tuple[int, ...]) -> Any:

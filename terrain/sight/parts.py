@@ -76,7 +76,8 @@ def _join_thin(tin: TIN, cells: _Cells, parts: UInt8Array) -> tuple[_Cells, UInt
     """Leave triangles whole that are thinner than coordinates can tell: seen if a part is."""
     a, b, c = (tin.points[tin.triangles[:, k], :2] for k in range(3))
     squares = [((q - p) ** 2).sum(axis=1) for p, q in ((a, b), (b, c), (c, a))]
-    is_thin = (tin.triangle_areas <= _THINNEST * np.max(squares, axis=0)) & (parts == _DIVIDED)
+    areas = tin.triangulation.triangle_areas
+    is_thin = (areas <= _THINNEST * np.max(squares, axis=0)) & (parts == _DIVIDED)
     joined = parts.copy()
     joined[is_thin] = 0
     joined[cells.owners[is_thin[cells.owners] & cells.is_seen]] = _SEEN

@@ -92,7 +92,7 @@ def measure_mean_width(tin: TIN, ground: Ground) -> float:
     scale = np.array(ground.scale[:2])
     rings = [tin.points[ring, :2] * scale for ring in tin.rings]
     sides = [np.hypot(*(np.roll(ring, -1, axis=0) - ring).T).sum() for ring in rings]
-    return 2.0 * tin.area * float(scale.prod()) / float(sum(sides))
+    return 2.0 * tin.triangulation.area * float(scale.prod()) / float(sum(sides))
 
 
 def cut_into_strips(points: Float64Array, edges: Int32Array, view: View, frame: Bounds) -> Strips:

@@ -184,7 +184,7 @@ def fade_edges(actor: Any, tin: TIN, ground: Ground, pixels: float) -> None:
 
     A length of 1 in the scene has so many design pixels.
     """
-    area = tin.area * ground.scale[0] * ground.scale[1] / len(tin.triangles)
+    area = tin.triangulation.area * ground.scale[0] * ground.scale[1] / len(tin.triangles)
     side = math.sqrt(2 * area) * pixels
     strength = min(side / _CLEAR_SIDE, 1.0)
     actor.prop.edge_opacity = max(_EDGE_OPACITY * strength, _FAINTEST_EDGE)

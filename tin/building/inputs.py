@@ -26,6 +26,7 @@ from ..constraints.constraint_set import (
 from ..constraints.polygons import starts_with_elevations
 from ..validation.options import as_flag, require_distance, require_positive
 from ..validation.points import as_masked_points, require_three
+from ..validation.ranges import describe_span, require_degrees
 from ..validation.threads import thread_count
 from .constrained import LineOptions
 from .reference import adds_to, settle_crs
@@ -174,10 +175,11 @@ def gather_inputs(
     _require_options(duplicates, snap, trim, crossing, max_edge)
     own = points if isinstance(points, Survey) else _make_empty_survey()
     system, unit = _settle_reference(own, CRS.of(crs), Unit.of(z_unit))
-    given = (points, breaklines, boundary, holes, erase, water)
-    system, told = settle_crs(system, dict(zip(_NAMES, given, strict=True)))
+    given = zip(_NAMES, (points, breaklines, boundary, holes, erase, water), strict=True)
+    system, told = settle_crs(system, dict(given))
     rows = points.points if isinstance(points, Survey) else points
     xyz, is_masked = as_masked_points(rows, threads=threads)
+    told += _look_at_degrees(xyz, is_masked, system)
     outer = [*own.boundary, *as_sequence(boundary, "boundary")]
     inner = [*own.holes, *as_sequence(holes, "holes")]
     open_lines = [*own.breaklines, *as_sequence(breaklines, "breaklines")]
@@ -186,6 +188,7 @@ def gather_inputs(
     if not lines.kinds:
         require_three(len(xyz))
     _require_simple_rings(lines)
+    require_degrees(lines.xy, system, "Vertices of lines")
     rings = gather_rings(outer, "boundary")
     if own.extent:
         lines = LineSet.join([lines, gather_extent(own.extent, len(rings))])
@@ -209,6 +212,12 @@ def gather_inputs(
         notes=(*own.notes, *told, *_describe_rings(outer, inner)),
         source=own.source or "",
     )
+
+
+def _look_at_degrees(xyz: Float64Array, is_masked: BoolArray | None, crs: CRS | None) -> list[str]:
+    """Refuse points that are no longitudes and latitudes; tell of a wide span."""
+    require_degrees(xyz, crs, "Points")
+    return describe_span(xyz if is_masked is None else xyz[~is_masked], crs, "Points")
 
 
 def _describe_rings(boundary: Sequence[Any], holes: Sequence[Any]) -> list[str]:

@@ -16,6 +16,7 @@ from ..constraints.breaklines import Breakline, Water
 from ..constraints.constraint_set import as_sequence
 from ..types import Bounds, Finding, RowSources
 from ..validation.geometries import is_plain
+from ..validation.ranges import require_degrees
 from ..validation.tables import Table, as_table
 from .attributes import as_columns, as_mapping
 from .reference import settle_crs
@@ -81,6 +82,8 @@ class Survey:
     ------
     CrsError
         If the CRS is unknown, or another than that of points or lines given.
+    PointsError
+        If points in a geographic CRS are no longitudes and latitudes.
     OptionError
         If the unit is unknown, or another than that of the CRS's vertical axis, or something has
         another type.
@@ -125,6 +128,8 @@ class Survey:
         if told:
             object.__setattr__(self, "notes", [*self.notes, *told])
         table = Table(self.points) if _is_plain(self.points) else as_table(self.points, "Points")
+        if table.values.ndim == 2 and table.values.shape[1] >= 2:
+            require_degrees(table.values, crs, "Points")
         object.__setattr__(self, "points", table.values)
         columns = as_columns(self.attributes, table.values.shape[:1])
         object.__setattr__(self, "attributes", columns)

@@ -15,8 +15,13 @@ from __future__ import annotations
 from threading import RLock
 from typing import TYPE_CHECKING, Any, Self, cast
 
+import numpy as np
+
+from ...crs import measure_angular_unit
 from ..building.reference import require_crs
 from ..validation.geometries import is_plain
+from ..validation.ranges import require_degrees
+from ..validation.tables import as_table
 from .arguments import as_array
 from .origin import Origin
 from .single_edits import make_vertices
@@ -34,8 +39,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Editable"]
 
-_PLACES = frozenset({"points", "point", "coords"})
-"""Arguments of edits that are coordinates."""
+_PLACES = {"points": "Points", "point": "Points", "coords": "Vertices of the breakline"}
+"""Arguments of edits that are coordinates, and what errors call them."""
 
 
 class Editable:
@@ -404,17 +409,30 @@ class Editable:
             self._version = None
 
     def _edit(self, operation: str, **arguments: Any) -> Any:
-        for name in _PLACES & arguments.keys():
+        for name in _PLACES.keys() & arguments.keys():
             if not is_plain(arguments[name]):
                 require_crs(arguments[name], self._reference["crs"], f"{name} of the edit")
                 arguments[name] = as_array(arguments[name])
+            self._require_degrees(arguments[name], name)
         with self._lock:
             session = self._open_session()
             result = session.do(operation, arguments)
             if self._version is not None:
                 self._version = None
-            self._lent = session.lend()
+            if not self._is_in_degrees:  # the core knows no CRS
+                self._lent = session.lend()
             return result
+
+    @property
+    def _is_in_degrees(self) -> bool:
+        return measure_angular_unit(self._reference["crs"]) is not None
+
+    def _require_degrees(self, given: Any, name: str) -> None:
+        """Refuse what is no longitude and latitude; what is no coordinates, the operation does."""
+        if self._is_in_degrees:
+            rows = np.array(as_table(given, "Points", least=2).values, ndmin=2)
+            if rows.ndim == 2 and rows.shape[1] >= 2:
+                require_degrees(rows, self._reference["crs"], _PLACES[name])
 
     def _open_session(self) -> Session:
         """Return the session, which nobody else has until the lock is let go."""

@@ -179,7 +179,7 @@ def _require_limits(
 
 def _require_room(tin: TIN, max_area: float | None, max_vertices: int) -> None:
     """Refuse at once what cannot be: a vertex has two triangles, but for those on the boundary."""
-    least = 0.0 if max_area is None else tin.area / max_area / 2.0
+    least = 0.0 if max_area is None else tin.triangulation.area / max_area / 2.0
     if max(least, len(tin.points)) > max_vertices:
         raise PointsError(_explain_too_many(max_vertices))
 

@@ -77,6 +77,11 @@ class Triangulation(Frozen):
         (ux, vx), (uy, vy) = self._edge_components(2)
         return seal(0.5 * (ux * vy - uy * vx))
 
+    @property
+    def area(self) -> float:
+        """Area in the plane, CRS units squared."""
+        return float(self.triangle_areas.sum())
+
     def surface_areas(self, elevation_scale: float = 1.0) -> Float64Array:
         """Measure each triangle in space, (m,) array; elevations times a factor."""
         (ux, vx), (uy, vy), (uz, vz) = self._edge_components(3)

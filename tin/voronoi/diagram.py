@@ -10,6 +10,7 @@ import numpy as np
 
 from ... import _optional
 from ..._sentences import counted
+from ...crs import require_lengths
 from ...errors import LinesError, OptionError
 from .. import _kernel
 from ..constraints.breaklines import as_ring
@@ -77,7 +78,11 @@ class Voronoi:
 
     @cached_property
     def areas(self) -> Float64Array:
-        """Area of each cell, (n,) float64 array, CRS units squared; 0 outside the boundary."""
+        """Area of each cell, (n,) float64 array, CRS units squared; 0 outside the boundary.
+
+        Raises CrsError where coordinates are longitude and latitude.
+        """
+        require_lengths(self.crs)
         parts = measure_signed_areas(Rings(self.coords, self.part_offsets))
         areas: Float64Array = np.zeros(len(self))
         np.add.at(areas, self.cell_of_part, parts)
@@ -122,11 +127,10 @@ class Voronoi:
         return filled[np.searchsorted(self.offsets[filled + 1], self.part_offsets[1:])]
 
     def __repr__(self) -> str:
-        count = len(self)
-        return (
-            f"<Voronoi: {counted(count, 'cell')}, {len(self.coords):,} corners, "
-            f"area {self.areas.sum():g}>"
-        )
+        cells, corners = counted(len(self), "cell"), counted(len(self.coords), "corner")
+        is_in_degrees = self.crs is not None and self.crs.is_geographic
+        measured = "in degrees" if is_in_degrees else f"area {self.areas.sum():g}"
+        return f"<Voronoi: {cells}, {corners}, {measured}>"
 
 
 def divide_plane(

@@ -203,7 +203,7 @@ def _write_definition(
     total = len(points) + len(tin.triangles)
     low, high = float(points[:, 2].min()), float(points[:, 2].max())
     file.write(
-        f'<Definition surfType="TIN" area2DSurf="{tin.area!r}" elevMax="{high!r}" '
+        f'<Definition surfType="TIN" area2DSurf="{tin.triangulation.area!r}" elevMax="{high!r}" '
         f'elevMin="{low!r}">\n<Pnts>\n'
     )
     for start in range(0, len(points), _BATCH):

@@ -84,7 +84,7 @@ def test_a_window_of_a_dem_has_the_cells_of_the_whole(value, smooth):
     """Inside: at the edge of the window a vertex has fewer triangles."""
     column, row, width, height = 97, 220, 133, 134
     whole = ts.triangulate(ts.read(JACKSBORO))
-    part = ts.triangulate(ts.read(JACKSBORO, window=(column, row, width, height)))
+    part = ts.triangulate(ts.read(JACKSBORO, cells=(column, row, width, height)))
     one, other = (
         ts.rasterize(tin, like=JACKSBORO, value=value, smooth=smooth).bands[value]
         for tin in (whole, part)
@@ -163,7 +163,7 @@ def test_means_are_those_of_triangles_and_cannot_be_smooth(tmp_path):
 
 @pytest.mark.parametrize("smooth", [False, True])
 def test_blocks_and_threads_give_the_same_bits(smooth):
-    tin = ts.triangulate(ts.read(JACKSBORO, window=(0, 0, 300, 300)))
+    tin = ts.triangulate(ts.read(JACKSBORO, cells=(0, 0, 300, 300)))
     whole = ts.rasterize(tin, like=JACKSBORO, value="slope", smooth=smooth, threads=1)
     lazy = ts.rasterize(tin, like=JACKSBORO, value="slope", smooth=smooth, lazy=True, threads=3)
     rows, columns = slice(40, 290), slice(130, 270)

@@ -384,8 +384,9 @@ def test_no_crs_says_how_to_declare_it(tmp_path):
     refused(CrsError, words, hills(crs=None), tmp_path / "a.geojson")
 
 
-def test_metres_declared_as_degrees(tmp_path):
-    refused(CrsError, "300 points", hills(crs="EPSG:4326"), tmp_path / "a.geojson")
+def test_metres_declared_as_degrees():
+    with pytest.raises(ts.PointsError, match="no longitude and latitude"):
+        hills(crs="EPSG:4326")
 
 
 def test_points_outside_the_domain_of_the_projection(tmp_path):
