@@ -19,6 +19,7 @@ from . import zones as parts
 from .cells import fan_out
 from .meshes import as_mesh, cut_at_zero, mend, part_places, rebuild
 from .reference import Reference, Surface, find_common_reference, require_finite
+from .slivers import leave_out_slivers, measure_rounding
 from .statistics import percentiles
 
 if TYPE_CHECKING:
@@ -211,9 +212,11 @@ def difference(
     Notes
     -----
     Vertices are those of both TINs and the places where their edges cross, rounded once: a cell
-    that is thinner than the rounding is merged with the next. Two TINs of n vertices each have an
-    overlay of some 8 n vertices; memory goes with it, about 2 kB for each of the n. Statistics are
-    those of the surfaces as they are; the TIN is refused if its volumes differ from theirs.
+    that is thinner than the rounding is merged with the next. Triangles along the boundary that are
+    as thin, as between the points of a slanted line, are left out of the TIN. Two TINs of n
+    vertices each have an overlay of some 8 n vertices; memory goes with it, about 2 kB for each of
+    the n. Statistics are those of the surfaces as they are; the TIN is refused if its volumes
+    differ from theirs.
 
     Examples
     --------
@@ -227,7 +230,8 @@ def difference(
     done = Progress(progress)
     reference, first, second = find_common_reference(tin, other, "Differences")
     done(0.05)
-    made = _overlay(first, second)
+    trimmed = _trim((tin, other), (first, second))
+    made = _overlay(*trimmed)
     done(0.3)
     if len(made.triangles) == 0:
         raise PointsError(
@@ -239,7 +243,7 @@ def difference(
     if not sums["area"] > 0.0:
         raise PointsError("The surfaces overlap only in what is thinner than coordinates can tell.")
     triangles, cells = fan_out(made.offsets, made.corners)
-    slack = _measure_rounding(first, second, made.vertices, triangles, made.triangles[cells])
+    slack = _measure_rounding(*trimmed, made.vertices, triangles, made.triangles[cells])
     given = cut_at_zero(made.vertices, triangles)
     done(0.6)
     made_sound = _make_sound(*given, _make_holder(tin, other))
@@ -276,6 +280,23 @@ def _choose_surface(
         "What both surfaces cover is thinner than coordinates can tell: round the points of both "
         "to a unit that they are surveyed in, such as a millimetre."
     )
+
+
+def _trim(tins: Sequence[TIN], surfaces: Sequence[Surface]) -> tuple[Surface, Surface]:
+    """Return two surfaces without the triangles that lie along a boundary by rounding only.
+
+    Their planes have any slope: what is interpolated in them at a rounded place is wrong by much
+    more than they have area.
+    """
+    rounding = max(measure_rounding(surface.points) for surface in surfaces)
+    first, second = (
+        Surface(
+            surface.points,
+            leave_out_slivers(surface.points, surface.triangles, tin.neighbors, rounding)[0],
+        )
+        for tin, surface in zip(tins, surfaces, strict=True)
+    )
+    return first, second
 
 
 def _overlay(first: Surface, second: Surface) -> _kernel.OverlayMesh:
