@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
@@ -40,6 +40,8 @@ _ROUNDINGS = 4.0
 
 _MOST_VERTICES = (2**31 - 1) // 4
 """Of an overlay: the kernel numbers them in 32 bits."""
+
+_TOO_THIN = "The surfaces overlap only in what is thinner than coordinates can tell."
 
 _SHARES = {"p05": 5.0, "p25": 25.0, "median": 50.0, "p75": 75.0, "p95": 95.0}
 
@@ -234,14 +236,11 @@ def difference(
     made = _overlay(*trimmed)
     done(0.3)
     if len(made.triangles) == 0:
-        raise PointsError(
-            f"The surfaces do not overlap: one covers {_describe_extent(first)}, the other "
-            f"{_describe_extent(second)}."
-        )
+        _refuse_empty(first, second)
     require_finite(made.vertices)
     sums = _sum_differences(first, second, done.stage(0.3, 0.5))
     if not sums["area"] > 0.0:
-        raise PointsError("The surfaces overlap only in what is thinner than coordinates can tell.")
+        raise PointsError(_TOO_THIN)
     triangles, cells = fan_out(made.offsets, made.corners)
     slack = _measure_rounding(*trimmed, made.vertices, triangles, made.triangles[cells])
     given = cut_at_zero(made.vertices, triangles)
@@ -297,6 +296,21 @@ def _trim(tins: Sequence[TIN], surfaces: Sequence[Surface]) -> tuple[Surface, Su
         for tin, surface in zip(tins, surfaces, strict=True)
     )
     return first, second
+
+
+def _refuse_empty(first: Surface, second: Surface) -> NoReturn:
+    """Refuse surfaces that do not overlap, or only in triangles that were left out.
+
+    Raises
+    ------
+    PointsError
+    """
+    if len(_overlay(first, second).triangles):
+        raise PointsError(_TOO_THIN)
+    raise PointsError(
+        f"The surfaces do not overlap: one covers {_describe_extent(first)}, the other "
+        f"{_describe_extent(second)}."
+    )
 
 
 def _overlay(first: Surface, second: Surface) -> _kernel.OverlayMesh:
