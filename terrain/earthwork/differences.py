@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from . import zones as parts
 from .cells import fan_out
 from .meshes import as_mesh, cut_at_zero, mend, part_places, rebuild
 from .reference import Reference, Surface, find_common_reference, require_finite
+from .slivers import leave_out_slivers, measure_rounding
 from .statistics import percentiles
 
 if TYPE_CHECKING:
@@ -39,6 +40,8 @@ _ROUNDINGS = 4.0
 
 _MOST_VERTICES = (2**31 - 1) // 4
 """Of an overlay: the kernel numbers them in 32 bits."""
+
+_TOO_THIN = "The surfaces overlap only in what is thinner than coordinates can tell."
 
 _SHARES = {"p05": 5.0, "p25": 25.0, "median": 50.0, "p75": 75.0, "p95": 95.0}
 
@@ -211,9 +214,11 @@ def difference(
     Notes
     -----
     Vertices are those of both TINs and the places where their edges cross, rounded once: a cell
-    that is thinner than the rounding is merged with the next. Two TINs of n vertices each have an
-    overlay of some 8 n vertices; memory goes with it, about 2 kB for each of the n. Statistics are
-    those of the surfaces as they are; the TIN is refused if its volumes differ from theirs.
+    that is thinner than the rounding is merged with the next. Triangles along the boundary that are
+    as thin, as between the points of a slanted line, are left out of the TIN. Two TINs of n
+    vertices each have an overlay of some 8 n vertices; memory goes with it, about 2 kB for each of
+    the n. Statistics are those of the surfaces as they are; the TIN is refused if its volumes
+    differ from theirs.
 
     Examples
     --------
@@ -227,19 +232,17 @@ def difference(
     done = Progress(progress)
     reference, first, second = find_common_reference(tin, other, "Differences")
     done(0.05)
-    made = _overlay(first, second)
+    trimmed = _trim((tin, other), (first, second))
+    made = _overlay(*trimmed)
     done(0.3)
     if len(made.triangles) == 0:
-        raise PointsError(
-            f"The surfaces do not overlap: one covers {_describe_extent(first)}, the other "
-            f"{_describe_extent(second)}."
-        )
+        _refuse_empty(first, second)
     require_finite(made.vertices)
     sums = _sum_differences(first, second, done.stage(0.3, 0.5))
     if not sums["area"] > 0.0:
-        raise PointsError("The surfaces overlap only in what is thinner than coordinates can tell.")
+        raise PointsError(_TOO_THIN)
     triangles, cells = fan_out(made.offsets, made.corners)
-    slack = _measure_rounding(first, second, made.vertices, triangles, made.triangles[cells])
+    slack = _measure_rounding(*trimmed, made.vertices, triangles, made.triangles[cells])
     given = cut_at_zero(made.vertices, triangles)
     done(0.6)
     made_sound = _make_sound(*given, _make_holder(tin, other))
@@ -275,6 +278,38 @@ def _choose_surface(
     raise PointsError(
         "What both surfaces cover is thinner than coordinates can tell: round the points of both "
         "to a unit that they are surveyed in, such as a millimetre."
+    )
+
+
+def _trim(tins: Sequence[TIN], surfaces: Sequence[Surface]) -> tuple[Surface, Surface]:
+    """Return two surfaces without the triangles that lie along a boundary by rounding only.
+
+    Their planes have any slope: what is interpolated in them at a rounded place is wrong by much
+    more than they have area.
+    """
+    rounding = max(measure_rounding(surface.points) for surface in surfaces)
+    first, second = (
+        Surface(
+            surface.points,
+            leave_out_slivers(surface.points, surface.triangles, tin.neighbors, rounding)[0],
+        )
+        for tin, surface in zip(tins, surfaces, strict=True)
+    )
+    return first, second
+
+
+def _refuse_empty(first: Surface, second: Surface) -> NoReturn:
+    """Refuse surfaces that do not overlap, or only in triangles that were left out.
+
+    Raises
+    ------
+    PointsError
+    """
+    if len(_overlay(first, second).triangles):
+        raise PointsError(_TOO_THIN)
+    raise PointsError(
+        f"The surfaces do not overlap: one covers {_describe_extent(first)}, the other "
+        f"{_describe_extent(second)}."
     )
 
 

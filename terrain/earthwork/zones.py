@@ -128,7 +128,8 @@ def _close_rings(
 ) -> tuple[Int64Array, Int64Array, Int64Array]:
     """Return the closed rings of the parts, each part's exterior first."""
     cut = np.where(barrier, np.int32(topology.NO_NEIGHBOR), mesh.neighbors)
-    rings = topology.boundary_rings(mesh.triangles, cut)
+    walks = topology.boundary_rings(mesh.triangles, cut)
+    rings = [ring for walk in walks for ring in _split_where_it_touches_itself(walk)]
     owner = _find_owners(mesh, barrier, part, rings)
     is_hole = np.array([_measure_doubled_area(mesh.points[ring, :2]) < 0 for ring in rings])
     order = np.lexsort((is_hole, owner))
@@ -138,6 +139,28 @@ def _close_rings(
         np.cumsum([0, *map(len, closed)]),
         np.append(0, np.cumsum(np.bincount(owner, minlength=count))),
     )
+
+
+def _split_where_it_touches_itself(walk: Int32Array) -> list[Int32Array]:
+    """Return the rings of a walk that goes through vertices more than once.
+
+    A part that surrounds another one up to a vertex has an exterior and a hole that touch there.
+    """
+    if len(np.unique(walk)) == len(walk):
+        return [walk]
+    rings: list[Int32Array] = []
+    way: list[int] = []
+    place: dict[int, int] = {}
+    for vertex in walk.tolist():
+        if vertex in place:
+            ring = way[place[vertex] :]
+            del way[place[vertex] :]
+            rings.append(np.array(ring, np.int32))
+            for passed in ring:
+                del place[passed]
+        place[vertex] = len(way)
+        way.append(vertex)
+    return [*rings, np.array(way, np.int32)]
 
 
 def _find_owners(

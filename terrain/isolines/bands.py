@@ -10,6 +10,7 @@ from ..._products import product
 from ...tin.types import seal
 from ...tin.validation.options import require_tin
 from .. import _kernel
+from ..earthwork.slivers import leave_out_slivers
 from ..georeference import describe_unknown, find_plane_units
 from ..results import Features
 from .levels import LevelOptions
@@ -60,9 +61,9 @@ def contour_bands(
     -----
     A band has its lower level and not its upper one, so that a flat area at a level belongs to the
     band above. The polygons are valid, share every vertex along their common boundaries, tile the
-    surface and nothing else; their areas add up to that of the TIN, up to rounding. Where triangles
-    are thinner than the rounding of their coordinates a polygon may meet itself: it is made valid,
-    and a note tells it.
+    surface and nothing else; their areas add up to that of the TIN, up to rounding. Triangles along
+    the boundary that are thinner than the rounding of their coordinates are left out. Where others
+    are, a polygon may meet itself: it is made valid, and a note tells it.
 
     Examples
     --------
@@ -76,7 +77,8 @@ def contour_bands(
     options = LevelOptions(interval, levels, base)
     chosen = options.for_bands(tin)
     try:
-        filled = _kernel.fill_bands(tin.points, tin.triangles, tin.neighbors, chosen.values)
+        kept = leave_out_slivers(tin.points, tin.triangles, tin.neighbors)
+        filled = _kernel.fill_bands(tin.points, *kept, chosen.values)
     except OverflowError as error:
         raise options.refuse_count(int(str(error)), "parts of triangles") from None
     parts, notes = mend_polygons(PolygonParts(*filled))

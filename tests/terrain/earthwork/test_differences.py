@@ -139,6 +139,18 @@ def test_the_zero_line_is_the_border_between_zones():
     assert found.zero_line.columns["length"].sum() == pytest.approx(border, rel=1e-6)
 
 
+def test_a_zone_that_surrounds_another_up_to_a_vertex_is_valid():
+    """Its boundary was one ring that went through this vertex twice."""
+    flat = square([0] * 4)
+    rim = [[0, 0, 1], [2, 0, 0], [4, 0, 1], [4, 4, 1], [0, 4, 1]]
+    same = [[2, 0, 0], [3, 2, 0], [1, 2, 0], [2, 0, 0]]
+    zones = ts.difference(flat, ts.triangulate(rim, breaklines=[same])).zones
+    found = dict(zip(zones.columns["kind"].tolist(), polygons_of(zones), strict=True))
+    assert all(shape.is_valid for shape in found.values())
+    assert {kind: shape.area for kind, shape in found.items()} == {"fill": 14.0, "unchanged": 2.0}
+    assert len(found["fill"].interiors) == 1
+
+
 # ---------------------------------------------------------------------- statistics
 
 
@@ -335,3 +347,77 @@ def test_surfaces_that_agree_but_for_rounding_have_a_difference(points, share):
     assert ts.check(found.tin).ok
     assert found.tin.area == pytest.approx(tin.area, rel=1e-9)
     assert max(found.cut, found.fill) < 1e-4
+
+
+# --------------------------------------------------------------------- turned grids
+
+
+def turned_grid(side, degrees, *, origin=(0.0, 0.0), digits=None):
+    """A design grid whose boundary points are collinear, but for the rounding of coordinates."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(float(side)), np.arange(float(side))))
+    turn = np.deg2rad(degrees)
+    east = x * np.cos(turn) - y * np.sin(turn) + origin[0]
+    north = x * np.sin(turn) + y * np.cos(turn) + origin[1]
+    z = np.sin(x / 9) * 3 + np.cos(y / 7) * 2
+    points = np.column_stack([east, north, z])
+    return ts.triangulate(points if digits is None else points.round(digits))
+
+
+@pytest.mark.parametrize("digits", [None, 3, 2])
+@pytest.mark.parametrize("origin", [(0.0, 0.0), (500_000.0, 4_000_000.0)])
+@pytest.mark.parametrize("degrees", [3.0, 30.0, 45.0, 71.1])
+def test_turned_grids_are_subtracted(degrees, origin, digits):
+    """They were refused: elevations on the slivers of their hulls are those of no wall."""
+    tin = turned_grid(17, degrees, origin=origin, digits=digits)
+    shifted = (origin[0] + 0.37, origin[1] + 2.1)
+    other = turned_grid(23, degrees + 17.0, origin=shifted, digits=digits)
+    table, found = ts.volume(tin, other), ts.difference(tin, other)
+    require_agreement(found, table)
+    places = tin.points[:, :2] + [0.2, 0.1]
+    both = (tin.locate(places) >= 0) & (other.locate(places) >= 0)
+    expected = other.interpolate(places) - tin.interpolate(places)
+    np.testing.assert_allclose(found.tin.interpolate(places)[both], expected[both], atol=1e-7)
+
+
+def require_agreement(found, table):
+    area = table["area"][0]
+    assert ts.check(found.tin).ok
+    assert (found.cut, found.fill) == (table["cut"][0], table["fill"][0])
+    assert found.statistics["area"][0] == area
+    assert found.tin.area == pytest.approx(area, rel=1e-7)
+    zones = found.zones.columns
+    for kind in ("cut", "fill"):
+        assert zones["volume"][zones["kind"] == kind].sum() == pytest.approx(
+            table[kind][0], abs=1e-6 * area
+        )
+    shapes = polygons_of(found.zones)
+    assert all(shape.is_valid for shape in shapes)
+    assert sum(shape.area for shape in shapes) == pytest.approx(area, rel=1e-7)
+    assert shapely.union_all(shapes).area == pytest.approx(area, rel=1e-7)
+    lowest, highest = (found.statistics[name][0] for name in ("lowest", "highest"))
+    heights = found.tin.points[:, 2]
+    assert lowest - 1e-6 <= heights.min() <= heights.max() <= highest + 1e-6
+
+
+def test_four_points_in_centimetres_three_of_them_on_a_slanted_line_are_subtracted():
+    ground = [[0.96, 0.29, 2.33], [1.91, 0.58, 2.66], [1.62, 1.54, 2.64], [1.33, 2.5, 2.58]]
+    design = [[2.12, 0.66, 2.66], [1.29, 1.22, 2.64], [-0.1, 0.95, 2.25], [0.46, 1.78, 2.58]]
+    tin, other = ts.triangulate(ground), ts.triangulate(design)
+    require_agreement(ts.difference(tin, other), ts.volume(tin, other))
+
+
+def test_a_surface_along_a_slanted_line_is_subtracted():
+    """The points of y = x / 3 in doubles make slivers behind slivers."""
+    x = np.arange(120.0)
+    points = np.vstack([np.column_stack([x, x / 3, np.sin(x)]), [[60.0, 240.0, 0.0]]])
+    tin, other = ts.triangulate(points), ts.triangulate(points + np.array([0.125, 0.125, 0.0]))
+    require_agreement(ts.difference(tin, other), ts.volume(tin, other))
+
+
+def test_surfaces_that_overlap_in_a_sliver_alone_are_too_thin():
+    above = [2.0, np.nextafter(1.0, 2.0), 5.0]
+    upper = ts.triangulate([[1, 1, 0], [3, 1, 0], [2, 3, 0]])
+    lower = ts.triangulate([[1, 1, 2], [2, -1, 2], [3, 1, 2], above])
+    assert 0.0 < ts.volume(upper, lower)["area"][0] < 1e-15
+    with pytest.raises(ts.PointsError, match="overlap only in what is thinner"):
+        ts.difference(upper, lower)

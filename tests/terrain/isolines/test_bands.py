@@ -166,3 +166,31 @@ def test_a_sliver_along_which_the_surface_jumps_loses_no_band():
     found = dict(zip(bands.columns["from"].tolist(), bands.columns["area"].tolist(), strict=True))
     for level, area in enumerate(np.diff(under).tolist()):
         assert found.get(float(level), 0.0) == pytest.approx(area, abs=1e-6)
+
+
+@pytest.mark.parametrize("origin", [(0.0, 0.0), (500_000.0, 4_000_000.0)])
+@pytest.mark.parametrize("digits", [None, 2])
+@pytest.mark.parametrize("degrees", [30.0, 71.1])
+def test_bands_of_a_turned_grid_tile_it(degrees, digits, origin):
+    """They were refused: slivers of the hull made rings that were mended to other areas."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(60.0), np.arange(60.0)))
+    turn = np.deg2rad(degrees)
+    east = x * np.cos(turn) - y * np.sin(turn) + origin[0]
+    north = x * np.sin(turn) + y * np.cos(turn) + origin[1]
+    points = np.column_stack([east, north, np.sin(x / 9) * 3 + np.cos(y / 7) * 2])
+    tin = ts.triangulate(points if digits is None else points.round(digits))
+    bands = ts.contour_bands(tin, interval=0.2)
+    require_a_partition(tin, bands)
+    assert not any("met themselves" in note or "crossed" in note for note in bands.notes)
+    under = ts.stage_storage(tin, levels=[*bands.columns["from"], 100.0])["area"]
+    np.testing.assert_allclose(bands.columns["area"], np.diff(under), rtol=1e-9, atol=1e-7)
+
+
+def test_bands_along_a_slanted_line_tile_the_surface():
+    """The points of y = x / 3 in doubles make slivers behind slivers."""
+    x = np.arange(300.0)
+    points = np.vstack([np.column_stack([x, x / 3, np.sin(x)]), [[150.0, 600.0, 0.0]]])
+    tin = ts.triangulate(points)
+    bands = ts.contour_bands(tin, interval=0.2)
+    require_a_partition(tin, bands)
+    assert not any("met themselves" in note or "crossed" in note for note in bands.notes)

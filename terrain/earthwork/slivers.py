@@ -1,0 +1,80 @@
+"""Triangles along the boundary that are thinner than the rounding of their coordinates."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...tin.topology import NO_NEIGHBOR
+
+if TYPE_CHECKING:
+    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+
+__all__ = ["leave_out_slivers", "measure_rounding"]
+
+_ROUNDINGS = 8.0
+"""Points on a line, turned and rounded, lie off it by some three roundings of a coordinate."""
+
+
+def measure_rounding(points: Float64Array) -> float:
+    """Return the distance between neighbouring doubles at the largest coordinate."""
+    return float(np.spacing(np.abs(points[:, :2]).max(initial=0.0)))
+
+
+def leave_out_slivers(
+    points: Float64Array,
+    triangles: Int32Array,
+    neighbors: Int32Array,
+    rounding: float | None = None,
+) -> tuple[Int32Array, Int32Array]:
+    """Return triangles and neighbours without those along the boundary by rounding only.
+
+    The boundary points of a turned grid, or of a slanted line, are collinear as surveyed and not in
+    doubles: the hull has triangles there with a height of a few roundings and any slope. Without
+    them the boundary moves by no more than their heights. All are kept if none would be left.
+    """
+    if rounding is None:
+        rounding = measure_rounding(points)
+    is_kept = ~_find_slivers(points, triangles, neighbors, rounding)
+    if is_kept.all() or not is_kept.any():
+        return triangles, neighbors
+    number = np.append(np.cumsum(is_kept) - 1, NO_NEIGHBOR)  # the last for no neighbour
+    number[:-1][~is_kept] = NO_NEIGHBOR
+    kept = np.ascontiguousarray(triangles[is_kept])
+    return kept, number[neighbors[is_kept]].astype(np.int32)
+
+
+def _find_slivers(
+    points: Float64Array, triangles: Int32Array, neighbors: Int32Array, rounding: float
+) -> BoolArray:
+    """Tell which thin triangles have their longest edge in the boundary, or two of their edges.
+
+    Those that lie in the boundary without these follow.
+    """
+    is_thin, longest = _find_thin(points, triangles, _ROUNDINGS * rounding)
+    is_sliver = np.zeros(len(triangles), bool)
+    pending = np.flatnonzero(is_thin).tolist()
+    while pending:
+        triangle = pending.pop()
+        if is_sliver[triangle]:
+            continue
+        across = neighbors[triangle].tolist()
+        is_open = [other == NO_NEIGHBOR or is_sliver[other] for other in across]
+        if is_open[longest[triangle]] or sum(is_open) > 1:
+            is_sliver[triangle] = True
+            pending += [other for other in across if other != NO_NEIGHBOR and is_thin[other]]
+    return is_sliver
+
+
+def _find_thin(
+    points: Float64Array, triangles: Int32Array, height: float
+) -> tuple[BoolArray, Int64Array]:
+    """Tell which triangles are no higher above their longest edge, which is returned too."""
+    xy = points[triangles, :2]
+    edges = xy[:, [2, 0, 1]] - xy[:, [1, 2, 0]]
+    (ux, uy), (vx, vy) = edges[:, 1].T, edges[:, 2].T
+    lengths = np.hypot(edges[..., 0], edges[..., 1])
+    with np.errstate(over="ignore", invalid="ignore"):
+        is_thin = np.abs(ux * vy - uy * vx) <= height * lengths.max(axis=1)
+    return is_thin, lengths.argmax(axis=1)
