@@ -142,7 +142,7 @@ def _measure(
 def _overlay(
     surfaces: Sequence[TIN], regions: Path | None, asked: dict[str, Any], progress: Tell
 ) -> Difference:
-    """Subtract the ground from the design, or from a level: the volumes come of the same overlay."""
+    """Subtract the ground from the design or a level; its volumes are of the same overlay."""
     from ...terrain import difference
 
     chosen = None if regions is None else _read_regions(regions, surfaces[0])
