@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .._methods import make_card
-from .._sentences import counted
+from .._sentences import counted, height
 from .types import Frozen, RowSources
 
 if TYPE_CHECKING:
@@ -595,8 +595,8 @@ class Report(Frozen):
         )
         return (
             f"The breakline crosses {other} at x {x:.6f}, y {y:.6f}: its elevation there is "
-            f"{elevations[mine]:g}, the other's {elevations[1 - mine]:g}; "
-            f"{self.crossings.vertex_elevations[row]:g} was taken."
+            f"{height(elevations[mine])}, the other's {height(elevations[1 - mine])}; "
+            f"{height(self.crossings.vertex_elevations[row])} was taken."
         )
 
     def renumber(

@@ -14,7 +14,7 @@ import numpy as np
 
 from ... import _optional
 from ..._progress import Progress
-from ..._sentences import counted
+from ..._sentences import coordinate, counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError
 from ...terrain.gridding.voids import trace_rings
@@ -530,8 +530,9 @@ def _cut_bounds(dataset: Header, bounds: Bounds, path: Path) -> tuple[int, int, 
         raise OptionError(
             "window",
             limits,
-            f"an area that meets '{path}', which spans easting {left:g} to {east:g} and northing "
-            f"{low:g} to {high:g}",
+            f"an area that meets '{path}', which spans easting {coordinate(left)} to "
+            f"{coordinate(east)} and northing "
+            f"{coordinate(low)} to {coordinate(high)}",
         )
     return column, row, right - column, bottom - row
 
@@ -638,7 +639,8 @@ def _require_finite_centres(points: Float64Array, band: int, path: Path) -> None
         count, first = int(wrong.sum()), points[int(np.argmax(wrong))].tolist()
         raise ReadError(
             f"'{path}': {count} {'cell' if count == 1 else 'cells'} of band {band} would have an "
-            f"elevation that is not finite (first at {first[0]:.10g}, {first[1]:.10g}): its scale "
+            f"elevation that is not finite (first at {coordinate(first[0])}, "
+            f"{coordinate(first[1])}): its scale "
             "or offset is wrong.",
             path=path,
         )

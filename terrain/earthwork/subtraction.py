@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..._sentences import coordinate
 from ...errors import PointsError
 from .. import _kernel
 from . import zones as parts
@@ -178,4 +179,7 @@ def _make_sound(
 def _describe_extent(surface: Surface) -> str:
     used = surface.points[surface.triangles.ravel(), :2]
     (west, south), (east, north) = used.min(axis=0), used.max(axis=0)
-    return f"{west:.10g} to {east:.10g} east, {south:.10g} to {north:.10g} north"
+    return (
+        f"{coordinate(west)} to {coordinate(east)} east, {coordinate(south)} to "
+        f"{coordinate(north)} north"
+    )

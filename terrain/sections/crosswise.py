@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..._products import product
+from ..._sentences import coordinate
 from ...crs import scale_elevations
 from ...errors import OptionError, PointsError
 from ...tin.validation.points import as_elevations
@@ -311,7 +312,10 @@ def _find_on_lines(ends: Float64Array, given: Any, near: float) -> Float64Array:
         raise OptionError(
             "station",
             float(stations[np.argmax(off)]),
-            allowed=f"on the centreline, from {ends[:, 0].min():.6g} to {ends[:, 1].max():.6g}",
+            allowed=(
+                f"on the centreline, from {coordinate(ends[:, 0].min())} to "
+                f"{coordinate(ends[:, 1].max())}"
+            ),
         )
     line, at = np.nonzero(is_on)
     return np.column_stack([line, stations[at]])
