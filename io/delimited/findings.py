@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..._sentences import coordinate, counted, height
-from ...crs import FOOT, Unit
+from ...crs import Unit
 from ...errors import CrsError, OptionError, ReadError
 from ...tin.screening.nodata import describe_elevations
 from .cells import is_number, split_line
@@ -361,7 +361,7 @@ def require_unit_of_crs(
     Raises
     ------
     CrsError
-        If they are not both feet, and the caller has not told the columns.
+        If they are not both feet, of either kind, and the caller has not told the columns.
     """
     if crs is None or crs.is_geographic:
         return []
@@ -381,8 +381,7 @@ def require_unit_of_crs(
                 "the header says.",
                 crs=crs,
             )
-        if is_far or unit != FOOT:  # "ft" is written for feet of either kind
-            return [f"{sentence[0].upper()}{sentence[1:]}, as which they are taken."]
+        return [f"{sentence[0].upper()}{sentence[1:]}, as which they are taken."]
     return []
 
 
