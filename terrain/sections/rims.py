@@ -29,7 +29,8 @@ def trace_to_rim(tin: TIN, segments: Segments) -> Breaks:
     A segment that was meant to lie on the boundary runs in and out of the surface, as coordinates
     are rounded. So a segment that has gaps is followed to the left and to the right of itself, by
     twice the rounding of the coordinates of the boundary; where it then has much more of the
-    surface, it gets what was found there. An end as close to the boundary has its elevation.
+    surface, it gets what was found there. An end within four times the rounding of the boundary has
+    the elevation there.
     """
     breaks = trace_breaks(tin, segments)
     is_gap = _find_gaps(breaks)
@@ -38,7 +39,7 @@ def trace_to_rim(tin: TIN, segments: Segments) -> Breaks:
     rounding = find_rounding(tin.points[np.concatenate(tin.rings), :2])
     chosen = np.unique(breaks.segments[is_gap])
     breaks = _take_better(tin, segments, breaks, chosen, rounding)
-    return _close_short_gaps(breaks, _ASIDE * rounding)
+    return _close_short_gaps(breaks, 2.0 * _ASIDE * rounding)
 
 
 def _find_gaps(breaks: Breaks) -> BoolArray:
@@ -64,7 +65,7 @@ def _take_better(
         better = np.flatnonzero(covered > most)
         if len(better):
             most[better] = covered[better]
-            found = _thin(_move_back(found, own, shift), 2.0 * _ASIDE * rounding)
+            found = _thin(_move_back(found, own, shift), _ASIDE * rounding)
             breaks = _replace(breaks, found, chosen, better)
     return breaks
 
@@ -95,7 +96,8 @@ def _thin(found: Breaks, least: float) -> Breaks:
     begins = np.append(True, found.segments[1:] != found.segments[:-1])
     ends = np.append(begins[1:], True)
     steps = np.hypot(*np.diff(found.xy, axis=0, prepend=found.xy[:1]).T)
-    near = ~begins & (steps <= least)
+    has = ~np.isnan(found.elevations)
+    near = ~begins & (steps <= least) & has & np.append(False, has[:-1])
     keep = ~near | ends
     keep[:-1] &= ~(ends[1:] & near[1:]) | begins[:-1]  # the end stays in place of those before it
     last = np.append(np.flatnonzero(keep)[1:], len(keep)) - 1
