@@ -407,10 +407,9 @@ def _read_file(
             known=lookup.find_suffixes("read"),
         )
     reader = chosen.load("read")
-    of_file = {name: declared[name] for name in declared if name != "crs"} | dict(options)
+    of_file, told = _take_options(chosen, declared, options)
     require_options(chosen, "read", reader, of_file)
-    if wishes:
-        of_file |= {name: wishes[name] for name in chosen.options("read") if name in wishes}
+    of_file |= {name: wishes[name] for name in chosen.options("read") if name in wishes}
     if progress is not None and takes_progress(reader):
         of_file["progress"] = progress
     try:
@@ -426,8 +425,39 @@ def _read_file(
             raise
         raise _blame_plug_in(chosen, file, describe_failure(error)) from error
     if isinstance(found, Survey | TIN):
+        _require_unit(found, told, options)
         return _name_source(found, file)
     raise _blame_plug_in(chosen, file, f"it gives a {type(found).__name__}, no Survey and no TIN")
+
+
+def _take_options(
+    chosen: Format, declared: Mapping[str, Any], options: Mapping[str, Any]
+) -> tuple[dict[str, Any], Unit | None]:
+    """Return the options of a reader, and the unit of lengths where it has no option for it.
+
+    That is then the unit of elevations, unless it is told by itself.
+    """
+    taken = {name: value for name, value in declared.items() if name != "crs"} | dict(options)
+    if "unit" in chosen.options("read"):
+        return taken, None
+    told = Unit.of(taken.pop("unit", None))
+    if told is not None:
+        taken.setdefault("z_unit", told)
+    return taken, told
+
+
+def _require_unit(found: Survey | TIN, told: Unit | None, options: Mapping[str, Any]) -> None:
+    """Refuse a unit of lengths that the CRS of the coordinates does not have.
+
+    Raises
+    ------
+    OptionError
+    """
+    if told is None or found.crs is None or "source_crs" in options:
+        return
+    if found.crs.is_geographic or found.crs.horizontal_unit != told:
+        unit = found.crs.horizontal_unit.name
+        raise OptionError("unit", told.name, f"{unit}, the unit of {found.crs.label}")
 
 
 def _name_source(found: Survey | TIN, file: Path) -> Survey | TIN:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .._methods import make_card
-from .._sentences import counted
+from .._sentences import counted, height
 from .types import Frozen, RowSources
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ LEFT_OUT = (
     "removed by an edit",
     "masked",
     "simplified away",
+    "looks like a blunder",
 )
 """Why a row of points has no vertex; ``Report.left_out_why`` holds places in this list."""
 
@@ -505,6 +506,21 @@ class Report(Frozen):
         codes[before] = self.left_out_why[np.searchsorted(self.left_out_rows, lost[before])]
         return replace(self, left_out_rows=lost, left_out_why=codes)
 
+    def with_reason(self, rows: Int64Array, why: str) -> Report:
+        """Return the report with another reason for some of the rows that were left out.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 4, 7], [0, 3, 8]])
+        >>> tin.remove([3])
+        >>> tin.report.with_reason(np.array([3]), "looks like a blunder").to_dict()["left_out"]
+        {'looks like a blunder': [3]}
+        """
+        codes = self.left_out_why.copy()
+        codes[np.isin(self.left_out_rows, rows)] = LEFT_OUT.index(why)
+        return replace(self, left_out_why=codes)
+
     def with_rows(self, rows: Int64Array, n_rows: int) -> Report:
         """Return the report with row ``i`` called ``rows[i]``; those between were removed.
 
@@ -595,8 +611,8 @@ class Report(Frozen):
         )
         return (
             f"The breakline crosses {other} at x {x:.6f}, y {y:.6f}: its elevation there is "
-            f"{elevations[mine]:g}, the other's {elevations[1 - mine]:g}; "
-            f"{self.crossings.vertex_elevations[row]:g} was taken."
+            f"{height(elevations[mine])}, the other's {height(elevations[1 - mine])}; "
+            f"{height(self.crossings.vertex_elevations[row])} was taken."
         )
 
     def renumber(

@@ -1061,6 +1061,25 @@ class TIN(Editable, Surface):
         told = tuple(dict.fromkeys([*notes, *self.report.notes]))
         return self if told == tuple(self.report.notes) else self._with_report(notes=told)
 
+    def with_reason(self, rows: ArrayLike, why: str) -> TIN:
+        """Return the TIN with another reason in its report for rows that were left out.
+
+        ``why`` is one of the reasons that reports give.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3], [1, 1, 4]],
+        ...                          [[0, 1, 2], [1, 3, 2]])
+        >>> tin.remove([3])
+        >>> tin.with_reason([3], "looks like a blunder").report.to_dict()["left_out"]
+        {'looks like a blunder': [3]}
+        """
+        version, origin = self._settle()
+        report = version.report.with_reason(np.asarray(rows, np.int64), why)
+        other = self._replace({"report": report})
+        other._resume(origin)
+        return other
+
     def _with_report(self, **changes: Any) -> TIN:
         version, origin = self._settle()
         given, inputs = origin.given, origin.inputs

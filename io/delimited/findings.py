@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted
-from ...crs import FOOT, Unit
+from ..._sentences import coordinate, counted, height
+from ...crs import Unit
 from ...errors import CrsError, OptionError, ReadError
 from ...tin.screening.nodata import describe_elevations
 from .cells import is_number, split_line
@@ -105,8 +105,9 @@ def require_in_area(
     if area.is_local(points[:, :2]):
         x, y = points[0, :2].tolist()
         return [
-            f"The points lie about the origin of {area.source.label} (first: easting {x:.10g}, "
-            f"northing {y:.10g}), outside its area of use: check that they are no local "
+            f"The points lie about the origin of {area.source.label} (first: easting "
+            f"{coordinate(x)}, "
+            f"northing {coordinate(y)}), outside its area of use: check that they are no local "
             "coordinates, and no degrees."
         ]
     outside = area.find_outside(points[:, :2])
@@ -360,7 +361,7 @@ def require_unit_of_crs(
     Raises
     ------
     CrsError
-        If they are not both feet, and the caller has not told the columns.
+        If they are not both feet, of either kind, and the caller has not told the columns.
     """
     if crs is None or crs.is_geographic:
         return []
@@ -380,8 +381,7 @@ def require_unit_of_crs(
                 "the header says.",
                 crs=crs,
             )
-        if is_far or unit != FOOT:  # "ft" is written for feet of either kind
-            return [f"{sentence[0].upper()}{sentence[1:]}, as which they are taken."]
+        return [f"{sentence[0].upper()}{sentence[1:]}, as which they are taken."]
     return []
 
 
@@ -408,7 +408,8 @@ def find_odd_elevations(points: Float64Array, *, in_degrees: bool = False) -> li
     if not are_plausible_elevations(some[:, 2]):
         low, high = np.percentile(some[:, 2], [5, 95], method="nearest")
         notes.append(
-            f"Most elevations lie between {low:,.6g} and {high:,.6g}, where no ground is: check "
+            f"Most elevations lie between {height(low)} and {height(high)}, where no ground "
+            "is: check "
             "the columns."
         )
     relief, extent = measure_relief_and_extent(some)

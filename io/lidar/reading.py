@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ... import _optional
-from ..._sentences import counted, inflect
+from ..._sentences import coordinate, counted, inflect
 from ...crs import CRS, Unit
 from ...errors import CrsError, OptionError, ReadError
 from ...tin import Bounds, Survey
@@ -380,7 +380,10 @@ def _describe_outside(points: Float64Array, header: Header) -> list[str]:
         count = int(((some < low - slack) | (some > high + slack)).any(axis=1).sum())
     if count == 0:
         return []
-    box = [f"{name} {a:.10g} to {b:.10g}" for name, a, b in zip("xyz", low, high, strict=True)]
+    box = [
+        f"{name} {coordinate(a)} to {coordinate(b)}"
+        for name, a, b in zip("xyz", low, high, strict=True)
+    ]
     return [
         f"{count:,} of {counted(len(some), 'point')} looked at {inflect('[lies|lie]', count)} "
         f"outside the bounds that '{header.path.name}' gives ({', '.join(box)}): these, "

@@ -11,6 +11,7 @@ import numpy as np
 from ... import _optional
 from ..._atomic import replacing
 from ..._progress import Progress
+from ..._sentences import coordinate
 from ...errors import LossWarning, OptionError, WriteError
 from ...tin import TIN, Survey
 from ..mesh.common import require_writable
@@ -168,8 +169,10 @@ def _scale_axis(
             return tried
     if best is None:
         raise WriteError(
-            f"Cannot write '{path}': the {axis} coordinates reach from {values.min():.10g} to "
-            f"{values.max():.10g}, and with the scale {candidates[0]:g} 32 bits hold a length of "
+            f"Cannot write '{path}': the {axis} coordinates reach from "
+            f"{coordinate(values.min())} to "
+            f"{coordinate(values.max())}, and with the scale {candidates[0]:g} 32 bits hold "
+            "a length of "
             f"{2 * _LARGEST * candidates[0]:g}.",
             path=path,
         )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted
+from ..._sentences import counted, height
 from ...crs import CRS, Unit
 from ...errors import CrsError, FormatError, OptionError, PointsError, ReadError
 from ...tin import TIN, Surface, Survey
@@ -240,7 +240,8 @@ def _describe_suspects(z: Float64Array) -> list[str]:
     """Tell of elevations that may stand for no data; a mesh is read with all its vertices."""
     return [
         f"{counted(one.count, 'vertex', 'vertices')} {'has' if one.count == 1 else 'have'} the "
-        f"elevation {one.value:g}, far from the others ({one.lowest:g} to {one.highest:g}): it may "
+        f"elevation {one.value:g}, far from the others ({height(one.lowest)} to "
+        f"{height(one.highest)}): it may "
         "stand for no data."
         for one in find_suspect_elevations(z)
         if abs(one.value) >= _LEAST_MARK  # a flat mesh may well have one tower

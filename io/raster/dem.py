@@ -15,7 +15,7 @@ import numpy as np
 
 from ... import _optional
 from ..._progress import Progress
-from ..._sentences import counted
+from ..._sentences import coordinate, counted
 from ...crs import CRS, Unit
 from ...errors import OptionError, ReadError
 from ...terrain.gridding.voids import trace_rings
@@ -574,8 +574,8 @@ def _cut_bounds(dataset: Header, bounds: Bounds, path: Path) -> tuple[int, int, 
         raise OptionError(
             "window",
             (bounds.xmin, bounds.ymin, bounds.xmax, bounds.ymax),
-            f"an area that meets '{path}', which spans easting {left:.10g} to {east:.10g} and "
-            f"northing {low:.10g} to {high:.10g}{_CELLS_ARE}",
+            f"an area that meets '{path}', which spans easting {coordinate(left)} to "
+            f"{coordinate(east)} and northing {coordinate(low)} to {coordinate(high)}{_CELLS_ARE}",
         )
     return column, row, right - column, bottom - row
 
@@ -684,7 +684,8 @@ def _require_finite_centres(points: Float64Array, band: int, path: Path) -> None
         count, first = int(wrong.sum()), points[int(np.argmax(wrong))].tolist()
         raise ReadError(
             f"'{path}': {count} {'cell' if count == 1 else 'cells'} of band {band} would have an "
-            f"elevation that is not finite (first at {first[0]:.10g}, {first[1]:.10g}): its scale "
+            f"elevation that is not finite (first at {coordinate(first[0])}, "
+            f"{coordinate(first[1])}): its scale "
             "or offset is wrong.",
             path=path,
         )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted
+from ..._sentences import coordinate, counted
 from ...errors import CrsError, ReadError
 from ...terrain.georeference import agree
 from ...tin import Survey
@@ -179,7 +179,7 @@ def _describe_shared_places(
     first_two = f"'{names[file_of[row]]}' and '{names[file_of[other]]}'"
     return [
         f"{counted(len(rows), 'point')} of one file {stand} where a point of another does (first: "
-        f"{first_two} at x {x:.12g}, y {y:.12g}): {told}."
+        f"{first_two} at x {coordinate(x)}, y {coordinate(y)}): {told}."
     ]
 
 

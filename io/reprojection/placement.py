@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 import numpy as np
 
-from ..._sentences import counted
+from ..._sentences import coordinate, counted
 from ...crs import require_same_unit
 from ...errors import CrsError, ReadError
 from ...tin.screening.area_of_use import AreaOfUse
@@ -140,7 +140,8 @@ def _require_degrees(points: Float64Array, source: CRS, path: Path) -> None:
         x, y = middle.tolist()
         raise CrsError(
             f"'{path}' is in {source.label}, in degrees, by what it says, and its coordinates, "
-            f"about ({x:.10g}, {y:.10g}), are none: the CRS of the file is another one.",
+            f"about ({coordinate(x)}, {coordinate(y)}), are none: the CRS of the file is "
+            "another one.",
             crs=source,
         )
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from ..._products import product
+from ..._sentences import height
 from ...crs import CRS, Unit
 from ...errors import CrsError, OptionError
 from ...tin import TIN, Breakline, Surface, Survey, Water
@@ -207,7 +208,7 @@ class _Mover:
         moved = self._move(corners)
         if self._target is not None and np.ptp(moved[:, 2]) > _FLAT:
             raise CrsError(
-                f"Water at {water.z:g} would not be flat in the vertical datum of "
+                f"Water at {height(water.z)} would not be flat in the vertical datum of "
                 f"{self._target.label}: name the horizontal part of the CRS alone.",
                 crs=self._target,
             )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted
+from ..._sentences import coordinate, counted
 from ...crs import CRS, METRE, UNKNOWN, Unit, assume_elevation_unit
 from ...errors import CrsError
 from ...tin.validation.points import as_points
@@ -235,7 +235,7 @@ def _require_images(points: Float64Array, moved: Float64Array, names: str, targe
         count = int(lost.sum())
         raise CrsError(
             f"{counted(count, 'point')} {'has' if count == 1 else 'have'} no image {names} "
-            f"(first: point {row} at {x:g}, {y:g}): "
+            f"(first: point {row} at {coordinate(x)}, {coordinate(y)}): "
             "check that the CRS of the points is the right one.",
             crs=target,
         )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted
+from ..._sentences import counted, height
 from ...crs import FOOT, US_SURVEY_FOOT, Unit
 from ...errors import OptionError, ReadError
 
@@ -213,8 +213,9 @@ def _require_same(
     if differs.any():
         first = int(np.argmax(differs))
         raise ReadError(
-            f"'{features.path}' has two elevations for each point that differ: {z[first]:.10g} in "
-            f"the geometry and {values[first]:.10g} in the column '{name}' (feature "
+            f"'{features.path}' has two elevations for each point that differ: "
+            f"{height(z[first])} in "
+            f"the geometry and {height(values[first])} in the column '{name}' (feature "
             f"{features.numbers[rows[first]]}): the option z_field chooses, '{GEOMETRY}' or "
             f"'{name}'.",
             path=features.path,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, get_args
 import numpy as np
 
 from ..._atomic import as_path
+from ..._sentences import height
 from ...crs import CRS, Unit
 from ...errors import ReadError
 from ...policies import BreaklineKind
@@ -387,7 +388,11 @@ def _require_level(
     has_heights = ring.shape[1] == 3
     if has_heights and np.ptp(ring[:, 2]) == 0:
         return float(ring[0, 2])
-    found = f"heights from {ring[:, 2].min():g} to {ring[:, 2].max():g}" if has_heights else "none"
+    found = (
+        f"heights from {height(ring[:, 2].min())} to {height(ring[:, 2].max())}"
+        if has_heights
+        else "none"
+    )
     raise ReadError(
         f"{features.label(row)} needs one height and has {found}: water gets it from a column "
         f"({', '.join(_WATER_COLUMNS)}), from corners of one height, or for all from the option "

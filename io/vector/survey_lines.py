@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..._atomic import as_path
+from ..._sentences import coordinate
 from ...errors import OptionError, ReadError
 from ...tin import Bounds, Breakline, Survey, Water
 from ...tin.validation.options import require_type
@@ -165,4 +166,7 @@ def _require_near(survey: Survey, coords: Sequence[Float64Array], path: Path) ->
 
 
 def _format_extent(box: Bounds) -> str:
-    return f"x {box.xmin:.10g} to {box.xmax:.10g}, y {box.ymin:.10g} to {box.ymax:.10g}"
+    return (
+        f"x {coordinate(box.xmin)} to {coordinate(box.xmax)}, y {coordinate(box.ymin)} "
+        f"to {coordinate(box.ymax)}"
+    )

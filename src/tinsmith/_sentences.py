@@ -8,13 +8,49 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["counted", "inflect", "printable", "shown", "suggest"]
+__all__ = ["coordinate", "counted", "height", "inflect", "printable", "shown", "suggest"]
 
 _INFLECTED = re.compile(r"\[([^\[|\]]*)\|([^\[|\]]*)\]")
 _ODD_LETTER = "\N{REPLACEMENT CHARACTER}"
 _LONGEST = 60
 _MOST_ITEMS = 5
 _MOST_BITS = 200
+_SMALL = 1000.0
+"""Coordinates below may be degrees, which need more decimals for a millimetre."""
+_LARGE = 1e15
+
+
+def coordinate(value: float) -> str:
+    """Return an easting, a northing or a degree for sentences, not rounded by a millimetre.
+
+    With 3 decimals, below 1,000 with 8, as degrees need them; those that are 0 at the end are left
+    out. Only what is too large or too small for that has an exponent.
+
+    Examples
+    --------
+    >>> coordinate(4024250.12345), coordinate(500000.0), coordinate(-86.12345678)
+    ('4024250.123', '500000', '-86.12345678')
+    """
+    value = float(value)
+    size = abs(value)
+    text = f"{value:.{8 if size < _SMALL else 3}f}"
+    if not size < _LARGE or (size > 0.0 and size < 1e-6):
+        return f"{value:.10g}"
+    return text.rstrip("0").rstrip(".")
+
+
+def height(value: float) -> str:
+    """Return an elevation for sentences, with 6 digits or to the millimetre.
+
+    Examples
+    --------
+    >>> height(318.9475), height(10234.5678), height(320.0)
+    ('318.947', '10234.568', '320')
+    """
+    value = float(value)
+    if not _SMALL <= abs(value) < _LARGE:
+        return f"{value:.6g}"
+    return f"{value:.3f}".rstrip("0").rstrip(".")
 
 
 def counted(number: int, noun: str, plural: str = "") -> str:

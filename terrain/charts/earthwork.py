@@ -59,7 +59,7 @@ def earthwork_map(
     -------
     matplotlib.figure.Figure
         Drawn without a screen; ``savefig`` writes it. Cut is red, fill blue, with lines of equal
-        difference; the black line parts them.
+        difference; the black line parts them. Above it stand the sums of ``difference.volumes``.
 
     Raises
     ------
@@ -100,17 +100,15 @@ def earthwork_map(
 
 
 def _write_caption(difference: Difference) -> str:
-    zones = difference.zones
-    unit = zones.units["volume"]
-    symbol = "" if unit is None else f" {unit}"
-    square = "" if unit is None else f" {zones.units['area']}"
-    parts = []
-    for kind in ("cut", "fill"):
-        chosen = zones.columns["kind"] == kind
-        volume, area = (float(zones.columns[name][chosen].sum()) for name in ("volume", "area"))
-        parts.append(f"{kind} {_write_rounded(volume)}{symbol} over {_write_rounded(area)}{square}")
-    net = difference.fill - difference.cut
-    surplus = f"net {_write_rounded(net)}{symbol}"
+    """Write the sums of the table of volumes."""
+    table = difference.volumes
+    volume, area = (f" {unit}" if unit else "" for unit in map(table.units.get, ("cut", "area")))
+    parts = [
+        f"{kind} {_write_rounded(float(table[kind].sum()))}{volume} over "
+        f"{_write_rounded(float(table[f'{kind}_area'].sum()))}{area}"
+        for kind in ("cut", "fill")
+    ]
+    surplus = f"net {_write_rounded(float(table['net'].sum()))}{volume}"
     return f"{'; '.join(parts).capitalize()}; {surplus}"
 
 

@@ -4,44 +4,34 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..._products import product
 from ..._progress import Progress
-from ...errors import OptionError, PointsError
-from ...tin.validation.threads import thread_count
+from ...errors import OptionError
 from .. import _kernel
 from ..results import Features, Table
 from ..results.columns import join_notes
 from . import zones as parts
-from .cells import fan_out
-from .meshes import as_mesh, cut_at_zero, mend, part_places, rebuild
-from .reference import Reference, Surface, find_common_reference, require_finite
-from .slivers import leave_out_slivers, measure_rounding
+from .planes import level_surface
+from .reference import Reference, Surface
+from .regional import find_regional_zones, subtract_in_regions
 from .statistics import percentiles
+from .subtraction import subtract
+from .volumes import measure
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Sequence
 
-    from ..._progress import Tell
-    from ...arrays import Float64Array, Int32Array
+    from numpy.typing import ArrayLike
+
+    from ...arrays import Float64Array
     from ...tin import TIN
-
-    _Mesh = tuple[Float64Array, Int32Array]
+    from .regional import Regional
 
 __all__ = ["Difference", "difference"]
-
-_SHARE_OF_VOLUME = 1e-7
-"""Of the area times the largest difference: so much the volumes of the TIN may be off."""
-_ROUNDINGS = 4.0
-"""Or what so many roundings of every coordinate change: surfaces that agree differ by no more."""
-
-_MOST_VERTICES = (2**31 - 1) // 4
-"""Of an overlay: the kernel numbers them in 32 bits."""
-
-_TOO_THIN = "The surfaces overlap only in what is thinner than coordinates can tell."
 
 _SHARES = {"p05": 5.0, "p25": 25.0, "median": 50.0, "p75": 75.0, "p95": 95.0}
 
@@ -55,8 +45,15 @@ class Difference:
     tin : TIN
         Its elevation is that of the other surface less that of the first: above 0 where there is
         fill, below where there is cut. Its edges are those of both TINs and the zero line.
+    volumes : Table
+        As :func:`tinsmith.volume` gives it, of the same overlay: one row, or one for each region.
     notes : tuple of str
         What was assumed or converted.
+
+    Notes
+    -----
+    With regions, all of it is of what lies in any of them, once; but ``zones`` and ``volumes`` are
+    region by region: what lies in several regions is in each of them.
 
     Examples
     --------
@@ -71,9 +68,11 @@ class Difference:
     """
 
     tin: TIN
+    volumes: Table
     notes: tuple[str, ...]
     _reference: Reference
     _sums: dict[str, float]
+    _regions: tuple[Regional, ...] = ()
 
     def with_notes(self, notes: Sequence[str]) -> Difference:
         """Return the same with further notes in front of its own, those of its parts too.
@@ -89,7 +88,13 @@ class Difference:
         if told == self.notes:
             return self
         reference = replace(self._reference, notes=told)
-        return replace(self, tin=self.tin.with_notes(told), notes=told, _reference=reference)
+        return replace(
+            self,
+            tin=self.tin.with_notes(told),
+            volumes=self.volumes.with_notes(notes),
+            notes=told,
+            _reference=reference,
+        )
 
     @property
     def cut(self) -> float:
@@ -115,8 +120,10 @@ class Difference:
         """The connected parts that are cut, filled or unchanged as polygons.
 
         Columns ``kind`` ("cut", "fill", "unchanged"), ``area``, ``volume``, ``lowest``,
-        ``highest``.
+        ``highest``; before them ``region``, at whose border polygons are cut, if there are any.
         """
+        if self._regions:
+            return find_regional_zones(self._regions, self._reference)
         return parts.find_zones(self.tin.triangulation, self._reference)
 
     @cached_property
@@ -185,7 +192,12 @@ def _list_moments(sums: dict[str, float]) -> dict[str, float]:
 
 @product
 def difference(
-    tin: TIN, other: TIN, *, progress: Callable[[float], None] | None = None
+    tin: TIN,
+    other: TIN | None = None,
+    *,
+    base: float | ArrayLike | None = None,
+    regions: Any = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Difference:
     """Subtract a surface from another one, exactly where both are.
 
@@ -193,23 +205,29 @@ def difference(
     ----------
     tin : TIN
         For example the ground as it is, or was.
-    other : TIN
+    other : TIN, optional
         The surface that it is subtracted from.
+    base : float or (3, 3) array, optional
+        In place of another TIN a level or a plane, as of :func:`tinsmith.volume`.
+    regions : polygons, optional
+        Subtract only in them, as of :func:`tinsmith.volume`: zones and volumes are then region by
+        region.
     progress : callable, optional
         Called with the fraction done, ascending to 1.0, between the stages, and more finely while
-        the statistics are summed up. What it raises ends the call.
+        the volumes are summed up. What it raises ends the call.
 
     Returns
     -------
     Difference
-        A TIN of the difference with its zero line, cut and fill as polygons, and statistics.
+        A TIN of the difference with its zero line, cut and fill as polygons, volumes, statistics.
 
     Raises
     ------
-    CrsError
+    OptionError, CrsError, LinesError
         As :func:`tinsmith.volume`.
     PointsError
-        If the surfaces do not overlap, or only in what is thinner than coordinates can tell.
+        If the surfaces do not overlap, or only in what is thinner than coordinates can tell; if
+        the regions hold nothing of them.
 
     Notes
     -----
@@ -217,8 +235,8 @@ def difference(
     that is thinner than the rounding is merged with the next. Triangles along the boundary that are
     as thin, as between the points of a slanted line, are left out of the TIN. Two TINs of n
     vertices each have an overlay of some 8 n vertices; memory goes with it, about 2 kB for each of
-    the n. Statistics are those of the surfaces as they are; the TIN is refused if its volumes
-    differ from theirs.
+    the n. Volumes and statistics are those of the surfaces as they are; the TIN is refused if its
+    volumes differ from theirs.
 
     Examples
     --------
@@ -228,195 +246,30 @@ def difference(
     >>> found = ts.difference(flat, ramp)
     >>> found.statistics["highest"], sorted(found.zones.columns["kind"])
     (array([1.]), ['cut', 'fill'])
+    >>> east = [[3, 0], [4, 0], [4, 4], [3, 4]]
+    >>> ts.difference(flat, ramp, regions={"east": east}).zones.columns["volume"]
+    array([3.])
     """
     done = Progress(progress)
-    reference, first, second = find_common_reference(tin, other, "Differences")
-    done(0.05)
-    trimmed = _trim((tin, other), (first, second))
-    made = _overlay(*trimmed)
-    done(0.3)
-    if len(made.triangles) == 0:
-        _refuse_empty(first, second)
-    require_finite(made.vertices)
-    sums = _sum_differences(first, second, done.stage(0.3, 0.5))
-    if not sums["area"] > 0.0:
-        raise PointsError(_TOO_THIN)
-    triangles, cells = fan_out(made.offsets, made.corners)
-    slack = _measure_rounding(*trimmed, made.vertices, triangles, made.triangles[cells])
-    given = cut_at_zero(made.vertices, triangles)
-    done(0.6)
-    made_sound = _make_sound(*given, _make_holder(tin, other))
-    surface = _choose_surface(made_sound, reference, sums, slack)
+    measured = measure(
+        tin, other, base, regions, None, Progress(done.stage(0.0, 0.4)), "Differences"
+    )
+    reference = replace(measured.reference, notes=tuple(measured.table.notes))
+    against = level_surface(tin, base) if other is None else other
+    first = measured.first
+    second = measured.other or Surface(against.points, against.triangles)
+    done(0.4)
+    holds = _make_holder(tin, against)
+    parts_of: tuple[Regional, ...] = ()
+    if measured.parts is None:
+        sums = dict(zip(_kernel.SUMS, measured.sums[0].tolist(), strict=True))
+        surface = subtract(first, second, sums, holds, reference)
+    else:
+        surface, sums, parts_of = subtract_in_regions(first, second, measured, holds)
     done.end()
-    return Difference(surface, reference.notes, reference, sums)
-
-
-def _choose_surface(
-    candidates: Iterator[_Mesh], reference: Reference, sums: dict[str, float], slack: float
-) -> TIN:
-    """Return the first mesh whose volumes are those of the surfaces.
-
-    Raises
-    ------
-    PointsError
-        If there is none: rounding has moved a wall, or left nothing.
-    """
-    least = np.inf
-    for mesh in candidates:
-        surface = as_mesh(*mesh, crs=reference.crs, elevation_unit=reference.elevation_unit)
-        apart = _measure_disagreement(surface, sums)
-        most = max(sums["highest"], -sums["lowest"])
-        if apart <= _SHARE_OF_VOLUME * sums["area"] * most + _ROUNDINGS * slack:
-            return surface
-        least = min(least, apart)
-    if np.isfinite(least):
-        raise PointsError(
-            "The surfaces have walls that are thinner than coordinates can tell: the volume of "
-            f"their difference as a TIN would be off by {least:.3g}. Round the points of both to "
-            "a unit that they are surveyed in, such as a millimetre."
-        )
-    raise PointsError(
-        "What both surfaces cover is thinner than coordinates can tell: round the points of both "
-        "to a unit that they are surveyed in, such as a millimetre."
-    )
-
-
-def _trim(tins: Sequence[TIN], surfaces: Sequence[Surface]) -> tuple[Surface, Surface]:
-    """Return two surfaces without the triangles that lie along a boundary by rounding only.
-
-    Their planes have any slope: what is interpolated in them at a rounded place is wrong by much
-    more than they have area.
-    """
-    rounding = max(measure_rounding(surface.points) for surface in surfaces)
-    first, second = (
-        Surface(
-            surface.points,
-            leave_out_slivers(surface.points, surface.triangles, tin.neighbors, rounding)[0],
-        )
-        for tin, surface in zip(tins, surfaces, strict=True)
-    )
-    return first, second
-
-
-def _refuse_empty(first: Surface, second: Surface) -> NoReturn:
-    """Refuse surfaces that do not overlap, or only in triangles that were left out.
-
-    Raises
-    ------
-    PointsError
-    """
-    if len(_overlay(first, second).triangles):
-        raise PointsError(_TOO_THIN)
-    raise PointsError(
-        f"The surfaces do not overlap: one covers {_describe_extent(first)}, the other "
-        f"{_describe_extent(second)}."
-    )
-
-
-def _overlay(first: Surface, second: Surface) -> _kernel.OverlayMesh:
-    try:
-        return _kernel.overlay(first.points, first.triangles, second.points, second.triangles)
-    except OverflowError:
-        raise PointsError(
-            f"The overlay of both surfaces has more than {_MOST_VERTICES:,} vertices: subtract "
-            "parts of them."
-        ) from None
-
-
-def _sum_differences(first: Surface, second: Surface, progress: Tell | None) -> dict[str, float]:
-    groups = np.zeros(len(first.triangles), np.int32)
-    workers = thread_count(None, len(first.points) + len(second.points))
-    sums = _kernel.sum_between(
-        first.points,
-        first.triangles,
-        groups,
-        1,
-        second.points,
-        second.triangles,
-        1.0,
-        workers,
-        progress,
-    )
-    require_finite(sums)
-    return dict(zip(_kernel.SUMS, sums[0].tolist(), strict=True))
-
-
-def _measure_rounding(
-    first: Surface,
-    second: Surface,
-    vertices: Float64Array,
-    triangles: Int32Array,
-    pairs: Int32Array,
-) -> float:
-    """Return how much a volume changes if the surfaces move by a rounding of their coordinates.
-
-    That is the rounding times the rise over run of both, summed over the area of their overlay.
-    """
-    areas = np.abs(_measure_doubled(vertices, triangles))
-    total = 0.0
-    for k, surface in enumerate((first, second)):
-        whole = np.abs(_measure_doubled(surface.points, surface.triangles))[pairs[:, k]]
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            shares = np.fmin(areas / whole, 1.0)  # of a triangle thinner than its rounding, all
-            total += float((shares * _measure_rises(surface)[pairs[:, k]]).sum())
-    moved = float(np.spacing(np.abs(vertices[:, :2]).max())) * total
-    return moved if np.isfinite(moved) else 0.0
-
-
-def _measure_doubled(points: Float64Array, triangles: Int32Array) -> Float64Array:
-    xy = points[triangles, :2]
-    (ux, uy), (vx, vy) = (xy[:, 1] - xy[:, 0]).T, (xy[:, 2] - xy[:, 0]).T
-    doubled: Float64Array = ux * vy - uy * vx
-    return doubled
-
-
-def _measure_rises(surface: Surface) -> Float64Array:
-    """Return the rise over run of each triangle times its area, in the units that it has."""
-    corners = surface.points[surface.triangles]
-    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    (ux, uy, uz), (vx, vy, vz) = u.T, v.T
-    with np.errstate(invalid="ignore", over="ignore"):
-        rises: Float64Array = 0.5 * np.hypot(uy * vz - uz * vy, uz * vx - ux * vz)
-    return rises
-
-
-def _measure_disagreement(surface: TIN, sums: dict[str, float]) -> float:
-    """Return by how much a volume of a TIN is not that of the surfaces."""
-    found = _sum_classes(surface)
-    return max(abs(found[name] - sums[name]) for name in ("cut", "fill"))
-
-
-def _sum_classes(surface: TIN) -> dict[str, float]:
-    """Return cut and fill in the triangles that count as cut and as filled."""
-    mesh = surface.triangulation
-    heights = np.ascontiguousarray(mesh.points[:, 2])
-    groups = parts.classify(mesh).astype(np.int32) + np.int32(1)
-    sums = _kernel.sum_heights(mesh.points, mesh.triangles, heights, groups, 3, 1.0)
-    column = _kernel.SUMS.index
-    return {"cut": float(sums[0, column("cut")]), "fill": float(sums[2, column("fill")])}
-
-
-def _make_sound(
-    points: Float64Array, triangles: Int32Array, holds: Callable[[Any], Any]
-) -> Iterator[_Mesh]:
-    """Yield the overlay mended, with walls a rounding wider, and triangulated anew.
-
-    Where a new vertex moved the zero line, it is cut once more.
-    """
-    for placed in (points, part_places(points, triangles)):
-        mended = mend(placed, triangles)
-        if mended is not None:
-            yield mended
-    for found in rebuild(points, triangles, holds):
-        yield mend(*cut_at_zero(*found)) or found
+    return Difference(surface, measured.table, reference.notes, reference, sums, parts_of)
 
 
 def _make_holder(tin: TIN, other: TIN) -> Callable[[Any], Any]:
     """Return a function that tells whether both surfaces hold places."""
     return lambda xy: (tin.locate(xy) >= 0) & (other.locate(xy) >= 0)
-
-
-def _describe_extent(surface: Surface) -> str:
-    used = surface.points[surface.triangles.ravel(), :2]
-    (west, south), (east, north) = used.min(axis=0), used.max(axis=0)
-    return f"{west:.10g} to {east:.10g} east, {south:.10g} to {north:.10g} north"

@@ -16,7 +16,16 @@ if TYPE_CHECKING:
 
     from ...arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
 
-__all__ = ["as_mesh", "cut_at_zero", "mend", "number_parts", "part_places", "rebuild"]
+__all__ = [
+    "as_mesh",
+    "cut_at_zero",
+    "drop_unused",
+    "mend",
+    "number_parts",
+    "part_places",
+    "rebuild",
+    "unite",
+]
 
 _MOST_ROUNDS = 64
 """Flat triangles lie side by side in short chains; each round takes one off an end."""
@@ -46,7 +55,7 @@ def _mend_rounds(
     for _ in range(_MOST_ROUNDS):
         flat = np.flatnonzero(turns(points, merged) <= 0)
         if not len(flat):
-            found = _drop_unused(points, merged)
+            found = drop_unused(points, merged)
             return found if _is_sound(*found) else None
         merged = _remove_flat(points, merged, flat)
     return None
@@ -85,6 +94,16 @@ def rebuild(
     once = np.unique(topology.edge_keys(np.stack([start, end], axis=-1), len(points)))
     pairs = np.stack([once // len(points), once % len(points)], axis=1)
     pairs = pairs[(points[pairs[:, 0], :2] != points[pairs[:, 1], :2]).any(axis=1)]
+    yield from unite(points, pairs, holds)
+
+
+def unite(
+    points: Float64Array, pairs: Int64Array, holds: Callable[[Any], Any]
+) -> Iterator[tuple[Float64Array, Int32Array]]:
+    """Triangulate points with lines between pairs of them, (k, 2), and keep what is inside.
+
+    As :func:`rebuild`.
+    """
     lines = list(points[pairs])
     rounding = float(np.spacing(np.abs(points[:, :2]).max()))
     for roundings in _SNAPS:
@@ -93,7 +112,7 @@ def rebuild(
             tin = triangulate(points, breaklines=lines, duplicates="first", snap=snap)
         except (LinesError, PointsError):  # lines meet anew wherever they are split
             continue
-        found = _drop_unused(tin.points, tin.triangles[_is_inside(tin, holds)])
+        found = drop_unused(tin.points, tin.triangles[_is_inside(tin, holds)])
         if _is_sound(*found):
             yield found
 
@@ -207,7 +226,8 @@ def _find_corners_on_edges(points: Float64Array, triangles: Int32Array) -> Int64
     return longest
 
 
-def _drop_unused(points: Float64Array, triangles: Int32Array) -> tuple[Float64Array, Int32Array]:
+def drop_unused(points: Float64Array, triangles: Int32Array) -> tuple[Float64Array, Int32Array]:
+    """Leave out points that no triangle has."""
     used = topology.mark_corners(triangles, len(points))
     number = np.cumsum(used, dtype=np.int32) - np.int32(1)
     return points[used], np.ascontiguousarray(number[triangles])

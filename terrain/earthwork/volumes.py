@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from .reference import Surface, find_common_reference, find_reference, require_f
 from .regions import as_regions
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import ArrayLike
 
@@ -28,10 +28,27 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .reference import Reference
 
-__all__ = ["volume"]
+__all__ = ["Measured", "measure", "volume"]
 
 _ROUNDING = 1e-12
 """An area alone that is a smaller share of the whole is what the sums' rounding leaves."""
+
+
+class Measured(NamedTuple):
+    """Volumes, and what they were measured of."""
+
+    table: Table
+    reference: Reference
+    names: list[str]
+    sums: Float64Array
+    """(k, sums), of each region, or of all there is."""
+    first: Surface
+    pieces: Pieces
+    """The first surface in regions, or whole."""
+    parts: Pieces | None
+    """The regions, if there are any."""
+    other: Surface | None
+    """In the units of the first; None if there is a plane."""
 
 
 @product
@@ -104,22 +121,40 @@ def volume(
     >>> table["cut"], table["fill"], table["area"]
     (array([4.5]), array([4.5]), array([12.]))
     """
-    if (other is None) == (base is None):
-        given = "neither" if other is None else "both"
-        raise OptionError("base", given, allowed="a level, a plane, or another TIN, one of them")
     done = Progress(progress)
-    if other is None:
-        table = _measure_to_plane(tin, base, regions)
-    else:
-        table = _measure_between(tin, other, regions, threads, done)
+    table = measure(tin, other, base, regions, threads, done).table
     done.end()
     return table
 
 
+def measure(
+    tin: TIN,
+    other: TIN | None,
+    base: Any,
+    regions: Any,
+    threads: int | None,
+    done: Progress,
+    purpose: str = "Volumes",
+) -> Measured:
+    """Measure as :func:`volume` does, with what else the sums were made of.
+
+    Raises
+    ------
+    OptionError, CrsError, LinesError
+        As :func:`volume`.
+    """
+    if (other is None) == (base is None):
+        given = "neither" if other is None else "both"
+        raise OptionError("base", given, allowed="a level, a plane, or another TIN, one of them")
+    if other is None:
+        return _measure_to_plane(tin, base, regions, purpose)
+    return _measure_between(tin, other, regions, threads, done, purpose)
+
+
 def _measure_between(
-    tin: TIN, other: TIN, regions: Any, threads: int | None, done: Progress
-) -> Table:
-    reference, surface, second = find_common_reference(tin, other, "Volumes")
+    tin: TIN, other: TIN, regions: Any, threads: int | None, done: Progress, purpose: str
+) -> Measured:
+    reference, surface, second = find_common_reference(tin, other, purpose)
     names, pieces, parts, notes = _cut_into_regions(surface, regions, tin)
     workers = thread_count(threads, len(tin.points) + len(other.points))
     done(0.1)
@@ -135,11 +170,13 @@ def _measure_between(
         "area_alone": _subtract(own, sums[:, 0]),
         "base_area_alone": _subtract(others, sums[:, 0]),
     }
-    return _as_table(names, sums, alone, reference, [*notes, *_describe_overlaps(parts, names)])
+    notes = (*notes, *_describe_overlaps(parts, names))
+    table = _as_table(names, sums, alone, reference, notes)
+    return Measured(table, reference, names, sums, surface, pieces, parts, second)
 
 
-def _measure_to_plane(tin: TIN, base: Any, regions: Any) -> Table:
-    reference, plane = find_reference(tin, "Volumes"), as_plane(base)
+def _measure_to_plane(tin: TIN, base: Any, regions: Any, purpose: str) -> Measured:
+    reference, plane = find_reference(tin, purpose), as_plane(base)
     surface = Surface(tin.triangulation.points, tin.triangulation.triangles)
     names, pieces, parts, notes = _cut_into_regions(surface, regions, tin)
     heights = plane.heights_above(pieces.surface.points)
@@ -155,7 +192,9 @@ def _measure_to_plane(tin: TIN, base: Any, regions: Any) -> Table:
     alone: dict[str, Float64Array] = {}
     if parts is not None:
         alone["base_area_alone"] = _subtract(_measure_areas(parts, len(names)), sums[:, 0])
-    return _as_table(names, sums, alone, reference, [*notes, *_describe_overlaps(parts, names)])
+    notes = (*notes, *_describe_overlaps(parts, names))
+    table = _as_table(names, sums, alone, reference, notes)
+    return Measured(table, reference, names, sums, surface, pieces, parts, None)
 
 
 def _take_whole(surface: Surface) -> Pieces:
@@ -223,7 +262,7 @@ def _as_table(
     sums: Float64Array,
     alone: dict[str, Float64Array],
     reference: Reference,
-    notes: list[str],
+    notes: Sequence[str],
 ) -> Table:
     require_finite(sums)
     by_name = dict(zip(_kernel.SUMS, sums.T, strict=True))

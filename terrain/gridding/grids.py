@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted
+from ..._sentences import coordinate, counted
 from ...crs import CRS
 from ...errors import OptionError, PointsError
 from ...tin.types import Bounds, Grid
@@ -160,8 +160,9 @@ def describe_extent(bounds: Bounds) -> str:
     '0 to 4 east, 0 to 3 north'
     """
     return (
-        f"{bounds.xmin:.10g} to {bounds.xmax:.10g} east, {bounds.ymin:.10g} to "
-        f"{bounds.ymax:.10g} north"
+        f"{coordinate(bounds.xmin)} to {coordinate(bounds.xmax)} east, "
+        f"{coordinate(bounds.ymin)} to "
+        f"{coordinate(bounds.ymax)} north"
     )
 
 

@@ -25,12 +25,13 @@ def list_wrong_rows(table: Table) -> Int64Array:
     return rows
 
 
-def drop_blunders(tin: TIN, table: Table) -> Int64Array:
+def drop_blunders(tin: TIN, table: Table) -> tuple[TIN, Int64Array]:
     """Remove the points from a TIN, in place, that look like blunders.
 
     ``table`` is one of :func:`tinsmith.blunders`. Those of low certainty stay, and those that only
     say that another row has the same number or place; a vertex that stands for other rows, too; and
-    one without which a line would vanish. Returns the rows that were left out, ascending.
+    one without which a line would vanish. Returns the TIN, whose report gives the reason, and the
+    rows that were left out, ascending.
     """
     rows = list_wrong_rows(table)
     vertex_of = tin.vertex_of
@@ -41,7 +42,7 @@ def drop_blunders(tin: TIN, table: Table) -> Int64Array:
         for vertex in vertices[::-1]:  # those behind a removed one move up
             _remove(tin, vertex[None])
     gone: Int64Array = rows[tin.vertex_of[rows] < 0]
-    return gone
+    return tin.with_reason(gone, "looks like a blunder"), gone
 
 
 def _remove(tin: TIN, vertices: Int32Array) -> bool:

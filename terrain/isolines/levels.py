@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted, shown
+from ..._sentences import counted, height, shown
 from ...errors import OptionError
 from ...tin.types import seal
 from ...tin.validation.options import is_finite_number, is_whole_number
@@ -120,7 +120,7 @@ class LevelOptions:
         if outside:
             notes = (
                 f"{outside:,} of {counted(len(values), 'level')} lie outside the elevations of "
-                f"the surface, above {lowest:g} up to {highest:g}, and have no line.",
+                f"the surface, above {height(lowest)} up to {height(highest)}, and have no line.",
             )
         return Levels(values, self._find_index(np.arange(len(values))), notes)
 
@@ -132,7 +132,8 @@ class LevelOptions:
     def _describe_none(self, lowest: float, highest: float) -> str:
         return (
             f"No level at the interval {shown(self.interval)} from base {shown(self.base)} lies "
-            f"within the elevations of the surface, above {lowest:g} up to {highest:g}: "
+            f"within the elevations of the surface, above {height(lowest)} up to "
+            f"{height(highest)}: "
             "there is no line."
         )
 

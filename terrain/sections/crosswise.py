@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..._products import product
+from ..._sentences import coordinate
 from ...crs import scale_elevations
 from ...errors import OptionError, PointsError
 from ...tin.validation.points import as_elevations
@@ -255,10 +256,11 @@ def _choose_stations(
     firsts = np.flatnonzero(np.append(True, np.diff(segments.lines) != 0))
     lasts = np.append(firsts[1:], len(segments.lines)) - 1
     ends = np.stack([segments.start_stations[firsts], segments.end_stations[lasts]], axis=1)
-    wanted = [_find_on_lines(ends, given)] if given is not None else [np.empty((0, 2))]
+    near = segments.rounding
+    wanted = [_find_on_lines(ends, given, near)] if given is not None else [np.empty((0, 2))]
     if interval is not None:
         wanted.append(_list_multiples(ends, as_positive("interval", interval)))
-    pairs = np.unique(np.concatenate(wanted), axis=0)
+    pairs = _join_near(np.unique(np.concatenate(wanted), axis=0), ends, near)
     lines, stations = pairs[:, 0].astype(np.int64), pairs[:, 1]
     segment = np.empty(len(lines), np.int64)
     for line in np.unique(lines).tolist():
@@ -281,7 +283,22 @@ def _list_multiples(ends: Float64Array, interval: float) -> Float64Array:
     return np.column_stack([lines, np.concatenate(found)])
 
 
-def _find_on_lines(ends: Float64Array, given: Any) -> Float64Array:
+def _join_near(pairs: Float64Array, ends: Float64Array, near: float) -> Float64Array:
+    """Take lines and stations, in order, that coordinates can tell apart; ends are where they are.
+
+    A length is a sum of distances between rounded coordinates: 200.00000000003743 is 200.
+    """
+    own = ends[pairs[:, 0].astype(np.int64)]
+    placed = pairs.copy()
+    for k in range(2):
+        at_end = np.abs(placed[:, 1] - own[:, k]) <= near
+        placed[at_end, 1] = own[at_end, k]
+    is_new = np.append(True, np.diff(placed[:, 0]) > 0)
+    is_new[1:] |= np.diff(placed[:, 1]) > near
+    return placed[is_new]
+
+
+def _find_on_lines(ends: Float64Array, given: Any, near: float) -> Float64Array:
     """Return line and station of stations, on every line that is long enough for them."""
     try:
         stations = np.atleast_1d(as_elevations(given))
@@ -289,13 +306,16 @@ def _find_on_lines(ends: Float64Array, given: Any) -> Float64Array:
         raise OptionError("stations", given, allowed="finite numbers, in CRS units") from None
     if len(stations) == 0:
         raise OptionError("stations", [], allowed="one number at least")
-    is_on = (ends[:, :1] <= stations) & (stations <= ends[:, 1:])
+    is_on = (ends[:, :1] - near <= stations) & (stations <= ends[:, 1:] + near)
     off = ~is_on.any(axis=0)
     if off.any():
         raise OptionError(
             "station",
             float(stations[np.argmax(off)]),
-            allowed=f"on the centreline, from {ends[:, 0].min():.6g} to {ends[:, 1].max():.6g}",
+            allowed=(
+                f"on the centreline, from {coordinate(ends[:, 0].min())} to "
+                f"{coordinate(ends[:, 1].max())}"
+            ),
         )
     line, at = np.nonzero(is_on)
     return np.column_stack([line, stations[at]])

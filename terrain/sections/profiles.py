@@ -293,11 +293,14 @@ def require_few(option: str, interval: float, lengths: Float64Array) -> None:
 
 
 def places_at(segments: Segments, segment: Int64Array, stations: Float64Array) -> Places:
-    """Return the places at stations within segments; those at a segment's ends are left out."""
+    """Return the places at stations within segments; those at a segment's ends are left out.
+
+    A station as close to an end as coordinates are rounded is there.
+    """
     begin, end = segments.start_stations[segment], segments.end_stations[segment]
     share = ((stations - begin) / (end - begin))[:, None]
     start, stop = segments.starts[segment], segments.ends[segment]
     xy = start + share * (stop - start)
-    inside = (begin < stations) & (stations < end)
+    inside = (begin + segments.rounding < stations) & (stations < end - segments.rounding)
     inside &= (xy != start).any(axis=1) & (xy != stop).any(axis=1)
     return Places(segment[inside], stations[inside], xy[inside])

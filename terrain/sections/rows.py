@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...tin.topology import NO_NEIGHBOR
-from .breaks import CROSSED, trace_breaks
+from .breaks import CROSSED
+from .rims import trace_to_rim
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -68,7 +69,7 @@ def cut_rows(surfaces: Surfaces, segments: Segments, extra: Places | None = None
     break to the next gets a row in its middle.
     """
     traced = [
-        trace_breaks(tin, segments).scale_elevations(factor)
+        trace_to_rim(tin, segments).scale_elevations(factor)
         for tin, factor in zip(surfaces.tins, surfaces.factors, strict=True)
     ]
     sources = [_find_places(breaks, segments) for breaks in traced]

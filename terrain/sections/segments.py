@@ -8,6 +8,7 @@ import numpy as np
 
 from ...errors import LinesError
 from ...tin.topology import find_owners
+from .roundings import find_rounding
 
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array, Int64Array
@@ -39,6 +40,11 @@ class Segments(NamedTuple):
         is_continued = np.zeros(len(self.lines), np.bool_)
         is_continued[:-1] = np.diff(self.lines) == 0
         return is_continued
+
+    @property
+    def rounding(self) -> float:
+        """How far stations may be off because coordinates are rounded."""
+        return 2.0 * find_rounding(np.concatenate([self.starts, self.ends]))
 
     def stations(self, segment: Int64Array, ratio: Float64Array) -> Float64Array:
         """Return the stations of shares of the way along segments, between those of their ends."""

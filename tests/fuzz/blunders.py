@@ -48,7 +48,7 @@ def examine(case: Case) -> str:
     for table in (ts.blunders(tin), screen(tin)):
         examine_table(tin, table, len(xyz))
     table = ts.blunders(tin)
-    gone = drop_blunders(tin, table)
+    tin, gone = drop_blunders(tin, table)
     assert set(gone.tolist()) <= set(list_wrong_rows(table).tolist())
     assert ts.check(tin).ok, repr(ts.check(tin))
     return "found" if len(table) else "none"

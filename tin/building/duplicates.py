@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._sentences import inflect
+from ..._sentences import height, inflect
 from ...errors import PointsError
 from ...policies import DuplicatePolicy
 from ..validation.points import SHOWN
@@ -131,7 +131,7 @@ def _refuse(
     group = rows[offsets[0] : offsets[1]]
     numbers = group if rows_of is None else rows_of[group]
     x, y, _ = xyz[group[0]].tolist()
-    elevations = ", ".join(f"{z:g}" for z in xyz[group[:SHOWN], 2])
+    elevations = ", ".join(f"{height(z)}" for z in xyz[group[:SHOWN], 2])
     shown = ", ".join(str(row) for row in numbers[:SHOWN])
     repeat = inflect(f"{surplus} of {len(xyz)} rows [repeats|repeat]", surplus)
     raise PointsError(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted
+from ..._sentences import coordinate, counted, height
 from ...crs import CRS, Unit, require_one_unit, require_same_unit
 from ...errors import CrsError, LinesError, choice
 from ...policies import CrossingPolicy, DuplicatePolicy, TrimPolicy
@@ -229,8 +229,8 @@ def _describe_rings(boundary: Sequence[Any], holes: Sequence[Any]) -> list[str]:
     x, y, lowest = start[0].tolist()
     return [
         f"{len(starts)} ring{'s close' if len(starts) > 1 else ' closes'} with more than one "
-        f"elevation (first: {label} at x {x:.12g}, y {y:.12g}, {lowest:.10g} to "
-        f"{start[-1, 2]:.10g}): the lowest was taken."
+        f"elevation (first: {label} at x {coordinate(x)}, y {coordinate(y)}, {height(lowest)} to "
+        f"{height(start[-1, 2])}): the lowest was taken."
     ]
 
 
@@ -278,6 +278,6 @@ def _require_simple_rings(lines: LineSet) -> None:
             places = counted(len(crossings), "place")
             raise LinesError(
                 f"{label[0].upper() + label[1:]} crosses itself at {places} "
-                f"(first: x {x:.6g}, y {y:.6g}): a ring must not.",
+                f"(first: x {coordinate(x)}, y {coordinate(y)}): a ring must not.",
                 lines=[line],
             )

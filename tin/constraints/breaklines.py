@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
-from ..._sentences import counted, inflect, shown
+from ..._sentences import counted, height, inflect, shown
 from ...errors import LinesError, OptionError, PointsError, choice
 from ...policies import BreaklineKind, LineKind
 from ..types import Frozen
@@ -130,7 +130,7 @@ class Water:
 
     def __repr__(self) -> str:
         name = f", '{self.name}'" if self.name else ""
-        return f"<Water: {len(self.ring)} corners at {self.z:g}{name}>"
+        return f"<Water: {len(self.ring)} corners at {height(self.z)}{name}>"
 
 
 def _make_no_numbers() -> Int32Array:

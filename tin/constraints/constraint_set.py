@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._sentences import shown
+from ..._sentences import coordinate, shown
 from ...errors import LinesError
 from .. import _kernel
 from ..topology import find_offsets, find_owners
@@ -340,7 +340,8 @@ def require_length(lines: LineSet) -> None:
         label = lines.label(line)
         x, y = lines.xy[lines.offsets[line]]
         raise LinesError(
-            f"{label[0].upper() + label[1:]} has all its vertices at one place (x {x:g}, y {y:g}): "
+            f"{label[0].upper() + label[1:]} has all its vertices at one place (x "
+            f"{coordinate(x)}, y {coordinate(y)}): "
             "a line needs two places.",
             lines=[line],
         )

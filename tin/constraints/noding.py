@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..._sentences import coordinate, height
 from ...errors import LinesError, choice
 from ...policies import CrossingPolicy
 from ..report import Crossings
@@ -289,12 +290,14 @@ def _explain_crossing(
     label_a, label_b = (f"line {i}" if names is None else names[i] for i in (a, b))
     whom = "itself" if a == b else label_b
     return LinesError(
-        f"{label_a[0].upper()}{label_a[1:]} crosses {whom} at ({x:.12g}, {y:.12g}), "
+        f"{label_a[0].upper()}{label_a[1:]} crosses {whom} at ({coordinate(x)}, {coordinate(y)}), "
         f"{_describe_elevations(elevations)}: crossing='split' makes a vertex there.",
         lines=sorted({a, b}),
     )
 
 
 def _describe_elevations(elevations: list[float]) -> str:
-    first, second = ("no elevation" if np.isnan(z) else f"elevation {z:.10g}" for z in elevations)
+    first, second = (
+        "no elevation" if np.isnan(z) else f"elevation {height(z)}" for z in elevations
+    )
     return f"with {first} and {second}"

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..._sentences import coordinate, height
 from ...errors import PointsError
 from .. import _kernel
 from ..building.duplicates import merge_rows
@@ -473,7 +474,8 @@ def merge_elevations(old: float, new: float, policy: DuplicatePolicy) -> float:
     """
     if policy == "error":
         raise PointsError(
-            f"A vertex with elevation {old:g} stands where one with {new:g} is to be inserted: "
+            f"A vertex with elevation {height(old)} stands where one with {height(new)} is "
+            "to be inserted: "
             'duplicates="error" allows none.'
         )
     return {
@@ -490,5 +492,6 @@ def merge_elevations(old: float, new: float, policy: DuplicatePolicy) -> float:
 def explain_occupied(vertex: int, x: float, y: float) -> PointsError:
     """Return the error for a place at which a vertex stands already."""
     return PointsError(
-        f"Vertex {vertex} stands at x {x:g}, y {y:g} already: two vertices need two places."
+        f"Vertex {vertex} stands at x {coordinate(x)}, y {coordinate(y)} already: two "
+        "vertices need two places."
     )

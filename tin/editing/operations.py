@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
-from ..._sentences import shown
+from ..._sentences import coordinate, height, shown
 from ...errors import LinesError, choice
 from ...policies import CrossingPolicy, DuplicatePolicy
 from ..constraints.breaklines import Breakline
@@ -408,7 +408,8 @@ def _require_elevations(found: State, wanted: Float64Array) -> None:
     if len(wrong):
         x, y, z = points[wrong[0]].tolist()
         raise LinesError(
-            f"The vertex at x {x:g}, y {y:g} stays at elevation {z:g}: what counts more there, "
+            f"The vertex at x {coordinate(x)}, y {coordinate(y)} stays at elevation "
+            f"{height(z)}: what counts more there, "
             "such as water, has it."
         )
 

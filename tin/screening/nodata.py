@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._sentences import counted, inflect
+from ..._sentences import counted, height, inflect
 from ...errors import OptionError
 from .slips import BEYOND, find_multiplied
 
@@ -180,7 +180,8 @@ def describe_suspects(suspects: Iterable[SuspectElevation], what: str = "point")
     """Return a sentence for each, which names the option that leaves such points out."""
     return [
         f"{one.count:,} {what}{' has' if one.count == 1 else 's have'} the elevation "
-        f"{one.value:g}, far from the others ({one.lowest:g} to {one.highest:g}): if it stands for "
+        f"{one.value:g}, far from the others ({height(one.lowest)} to "
+        f"{height(one.highest)}): if it stands for "
         f"no data, nodata={one.value:g} leaves {'it' if one.count == 1 else 'them'} out."
         for one in suspects
     ]
@@ -198,7 +199,8 @@ def describe_elevations(z: Float64Array, what: str = "point") -> list[str]:
     """
     if len(z) >= _REPEATS and is_customary(float(z[0])) and bool((z == z[0]).all()):
         return [
-            f"All {len(z):,} {what}s have the elevation {z[0]:g}: check that it stands not for no "
+            f"All {len(z):,} {what}s have the elevation {height(z[0])}: check that it "
+            "stands not for no "
             "data."
         ]
     told = []
@@ -207,8 +209,8 @@ def describe_elevations(z: Float64Array, what: str = "point") -> list[str]:
         count = int(multiplied.is_wrong.sum())
         told.append(
             f"{counted(count, what)} {inflect('[has an elevation|have elevations]', count)} "
-            f"{multiplied.words} those of the others ({multiplied.lowest:g} to "
-            f"{multiplied.highest:g}): check {inflect('[its|their]', count)} unit."
+            f"{multiplied.words} those of the others ({height(multiplied.lowest)} to "
+            f"{height(multiplied.highest)}): check {inflect('[its|their]', count)} unit."
         )
         z = z[~multiplied.is_wrong]
     return [*told, *describe_suspects(find_suspect_elevations(z), what)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from ..._sentences import counted, inflect
+from ..._sentences import counted, height, inflect
 from .gaps import describe_gaps
 from .naming import make_namer
 from .searching import screen_points
@@ -72,7 +72,7 @@ def describe_screening(found: Screening, name: NameRows) -> tuple[str, ...]:
 def _describe_blunders(wrong: Sequence[Suspect], name: NameRows) -> str:
     rows = list(dict.fromkeys(one.row for one in wrong))
     z = {one.row: one.place[2] for one in wrong}
-    shown = "; ".join(f"{name([row])} at elevation {z[row]:.7g}" for row in rows[:_SHOWN])
+    shown = "; ".join(f"{name([row])} at elevation {height(z[row])}" for row in rows[:_SHOWN])
     more = "; ..." if len(rows) > _SHOWN else ""
     reasons = list_counts(one.reason for one in wrong)
     looks = inflect("[looks like a blunder|look like blunders]", len(rows))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..._progress import Progress
-from ..._sentences import counted, inflect
+from ..._sentences import counted, height, inflect
 from ...crs import assume_elevation_unit
 from ...errors import LinesError, PointsError
 from .. import _kernel
@@ -152,14 +152,14 @@ def _find_marks(rows: Rows) -> list[Suspect]:
         chosen = ~multiplied.is_wrong
         sentence = (
             f"Its elevation is {multiplied.words} those of the others, "
-            f"{multiplied.lowest:.6g} to {multiplied.highest:.6g}."
+            f"{height(multiplied.lowest)} to {height(multiplied.highest)}."
         )
         for i in np.flatnonzero(multiplied.is_wrong).tolist():
             found.append(rows.suspect(i, "factor", sentence, "high"))
     for one in find_suspect_elevations(z[chosen]):
         sentence = (
             f"An elevation of {one.value:g} may stand for none: the others are "
-            f"{one.lowest:g} to {one.highest:g}."
+            f"{height(one.lowest)} to {height(one.highest)}."
         )
         for i in np.flatnonzero(z == one.value).tolist():
             found.append(rows.suspect(i, "code", sentence, "high"))
@@ -187,8 +187,9 @@ def _find_wrong_lines(
 def _tell_void(tin: TIN, rows: Rows, void: Void) -> Suspect:
     at = np.flatnonzero(np.isin(rows.vertices, void.vertices))
     sentence = (
-        f"{len(void.vertices):,} points that lie together have the elevation {void.value:g}, and "
-        f"{void.lowest:.6g} to {void.highest:.6g} is all around: it may stand for none."
+        f"{len(void.vertices):,} points that lie together have the elevation "
+        f"{height(void.value)}, and "
+        f"{height(void.lowest)} to {height(void.highest)} is all around: it may stand for none."
     )
     if len(at):
         return rows.suspect(int(at[0]), "void", sentence, "medium")
@@ -203,8 +204,8 @@ def _tell_line(tin: TIN, line: WrongLine) -> Suspect:
     words = inflect(line.words, count)
     vertices = counted(line.n_vertices, "vertex", "vertices")
     sentence = (
-        f"{name}: {which} {vertices} {words}; the points around give {line.lowest:.6g} to "
-        f"{line.highest:.6g}."
+        f"{name}: {which} {vertices} {words}; the points around give {height(line.lowest)} to "
+        f"{height(line.highest)}."
     )
     place = tuple(tin.points[line.worst].tolist())
     return Suspect(
@@ -350,10 +351,10 @@ def _judge_vertices_of_lines(
 def _describe_height(z: float, expected: float, limit: float) -> tuple[str, str]:
     """Return reason and sentence for an elevation that does not fit."""
     if is_customary(z):
-        return "code", f"It may stand for none: the points around it give {expected:.6g}."
+        return "code", f"It may stand for none: the points around it give {height(expected)}."
     words = name_factor(z, expected, limit)
     if words is not None:
-        return "factor", f"It is {words} the {expected:.6g} that the points around it give."
+        return "factor", f"It is {words} the {height(expected)} that the points around it give."
     side = "above" if z > expected else "below"
     return (
         "spike" if z > expected else "pit",

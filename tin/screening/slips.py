@@ -93,7 +93,8 @@ def _find_multiplied(z: Float64Array) -> Multiplied | None:
     lowest, highest = float(more[0]), float(more[-1])
     pad = _PAD * (highest - lowest)
     for factor, words in _GROUPS.items():
-        right = fewer / factor
+        with np.errstate(over="ignore"):
+            right = fewer / factor
         if (right >= lowest - pad).all() and (right <= highest + pad).all():
             is_wrong: BoolArray = z >= high[0] if is_high else z <= low[-1]
             return Multiplied(is_wrong, words, lowest, highest)

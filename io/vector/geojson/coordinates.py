@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from ...._sentences import counted
+from ...._sentences import coordinate, counted
 from ....crs import CRS, METRE
 from ....errors import CrsError, WriteError
 from ...reprojection.transformation import reproject
@@ -168,7 +168,8 @@ def _require_on_earth(moved: Float64Array, points: Float64Array, crs: CRS) -> No
         count = int(outside.sum())
         raise CrsError(
             f"{counted(count, 'point')} {'is no place' if count == 1 else 'are no places'} on "
-            f"Earth in this CRS (first: point {row} at {x:.12g}, {y:.12g}): longitudes of -180 to "
+            f"Earth in this CRS (first: point {row} at {coordinate(x)}, {coordinate(y)}): "
+            "longitudes of -180 to "
             "180 and latitudes of -90 to 90 are allowed; check that the CRS is the right one.",
             crs=crs,
         )

@@ -427,8 +427,8 @@ def make_reading_options(*, unit_flag: str = "--unit") -> Callable[[Function], F
         unit_flag,
         "length_unit",
         metavar="UNIT",
-        help="Unit of the coordinates and elevations of a LandXML or DXF file, if it does not "
-        "state one, or one that differs from its CRS.",
+        help="Unit of coordinates and elevations, if the file does not state one; of a LandXML or "
+        "DXF file also where it states one that differs from its CRS.",
     )
     return _gather("reading", Reading, *_READING, *under("Coordinates and units", unit))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, get_args
 import click
 
 from .._sentences import suggest
-from .paths import INPUT, LINES, OUTPUT
+from .paths import INPUT, LINES, OUTPUT, STANDARD
 
 __all__ = [
     "Command",
@@ -35,6 +35,8 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from click.shell_completion import CompletionItem
 
 _OWN = "Options"
@@ -275,7 +277,18 @@ def file_option(
 
 def report_option(help: str) -> Decorator:  # noqa: A002 - click's name
     """Return the option for a report as JSON."""
-    return click.option("--report", metavar="FILE", type=OUTPUT, help=help)
+    return click.option("--report", metavar="FILE", type=OUTPUT, callback=_require_json, help=help)
+
+
+def _require_json(
+    context: click.Context, parameter: click.Parameter, value: Path | None
+) -> Path | None:
+    """Refuse a report whose name says that it is something else."""
+    if value is not None and value != STANDARD and value.suffix.lower() != ".json":
+        raise click.BadParameter(
+            f"a report is JSON, and the name '{value}' does not end in .json.", context, parameter
+        )
+    return value
 
 
 def picture_option(help: str) -> Decorator:  # noqa: A002 - click's name

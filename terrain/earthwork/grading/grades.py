@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...._products import product
 from ...._progress import Progress
+from ...._sentences import coordinate, height
 from ....crs import scale_elevations
 from ....errors import LinesError, OptionError, PointsError
 from ....tin.constraints.polygons import gather_rings_of_regions
@@ -155,7 +156,9 @@ def _find_level(ring: Float64Array) -> float:
     low, high = float(ring[:, 2].min()), float(ring[:, 2].max())
     if low != high:
         raise OptionError(
-            "elevation", None, f"a number: the pad's ring is not level ({low:g} to {high:g})"
+            "elevation",
+            None,
+            f"a number: the pad's ring is not level ({height(low)} to {height(high)})",
         )
     return low
 
@@ -166,7 +169,9 @@ def _require_within(area: Any, patch: TIN) -> None:
     beyond = shapely.difference(find_area(patch), area)
     if beyond.area > _SHARE * patch.area:
         place = shapely.point_on_surface(beyond)
-        raise PointsError(f"A slope reaches beyond the ground, at {place.x:.10g} {place.y:.10g}.")
+        raise PointsError(
+            f"A slope reaches beyond the ground, at {coordinate(place.x)} {coordinate(place.y)}."
+        )
 
 
 def _require_on_ground(area: Any, pad: Any) -> None:
@@ -175,4 +180,6 @@ def _require_on_ground(area: Any, pad: Any) -> None:
     beyond = shapely.difference(pad, area)
     if not beyond.is_empty:
         place = shapely.point_on_surface(beyond)
-        raise PointsError(f"The pad lies off the ground, at {place.x:.10g} {place.y:.10g}.")
+        raise PointsError(
+            f"The pad lies off the ground, at {coordinate(place.x)} {coordinate(place.y)}."
+        )

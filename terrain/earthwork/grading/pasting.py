@@ -10,6 +10,7 @@ import numpy as np
 
 from ...._products import product
 from ...._progress import Progress
+from ...._sentences import coordinate
 from ....errors import PointsError
 from ....tin import Breakline, Survey, triangulate
 from ....tin.building.attributes import join_columns
@@ -217,7 +218,8 @@ def _describe_gap(base: TIN, area: Any, agreed: Agreement, cut: Seam) -> list[st
     x, y = seam[worst, :2].tolist()
     return [
         "Along the seam the elevations of the patch differ from those of the base by up to "
-        f"{gaps[worst]:.4g}{unit}, at {x:.10g} {y:.10g}: the base was joined to the patch."
+        f"{gaps[worst]:.4g}{unit}, at {coordinate(x)} {coordinate(y)}: the base was joined "
+        "to the patch."
     ]
 
 

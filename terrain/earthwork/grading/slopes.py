@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ...._sentences import coordinate
 from ....errors import PointsError
 from ....tin import TIN, topology
 from ..differences import difference
@@ -94,7 +95,8 @@ def find_slope(tin: TIN, area: Any, pad: Any, level: float, rate: float, reach: 
             x, y = lost[0]
             raise PointsError(
                 f"The {'cut' if rate > 0 else 'fill'} slope does not meet the ground before it "
-                f"ends, at {x:.10g} {y:.10g}: a larger ground is needed, or a steeper slope."
+                f"ends, at {coordinate(x)} {coordinate(y)}: a larger ground is needed, or a "
+                "steeper slope."
             )
         far = float(min(2.0 * far, reach))
 

@@ -1164,7 +1164,9 @@ def test_feet_of_the_other_kind_are_told(tmp_path):
     told = " ".join(_with_units(tmp_path, "US survey foot", crs="EPSG:2222").notes)
     assert "The header gives the easting in US survey foot, and EPSG:2222 measures in foot" in told
     plain = " ".join(_with_units(tmp_path, "ft", crs="EPSG:2274").notes)
-    assert "header gives" not in plain
+    assert "The header gives the easting in foot, and EPSG:2274 measures in US survey foot" in plain
+    same = " ".join(_with_units(tmp_path, "US survey foot", crs="EPSG:2274").notes)
+    assert "header gives" not in same
 
 
 # ------------------------------------------------------------------ a file that was cut off

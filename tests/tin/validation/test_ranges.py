@@ -38,7 +38,7 @@ def test_an_edit_after_others_is_checked_too():
 def test_points_on_both_sides_of_the_antimeridian_are_refused():
     longitudes = np.array([179.99, -179.99, 179.98])
     points = np.column_stack([longitudes, [-17.0, -17.0, -17.1], [1.0, 2.0, 3.0]])
-    with pytest.raises(ts.PointsError, match="antimeridian.*Add 360"):
+    with pytest.raises(ts.PointsError, match=r"antimeridian.*Add 360"):
         ts.triangulate(points, crs="EPSG:4326")
     points[:, 0] %= 360.0
     assert ts.triangulate(points, crs="EPSG:4326").bounds.width == pytest.approx(0.03)
@@ -53,7 +53,7 @@ def test_points_around_the_globe_are_told():
 def test_areas_in_degrees_are_refused_or_square_metres():
     tin = ts.triangulate(DEGREES, crs="EPSG:4326")
     for name in ("area", "triangle_areas", "surface_area"):
-        with pytest.raises(ts.CrsError, match="angles|degrees|longitude"):
+        with pytest.raises(ts.CrsError, match=r"angles|degrees|longitude"):
             getattr(tin, name)
     row = ts.slope_statistics(tin)
     assert row.units["area"] == "m²"

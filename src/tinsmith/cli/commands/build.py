@@ -80,7 +80,7 @@ def build(
         require_contours(survey, points[0])
     survey = add_lines(survey, how, console)
     tin = build_tin(survey, how, console)
-    suspects = _find_blunders(tin, request, drop=drop_blunders)
+    tin, suspects = _find_blunders(tin, request, drop=drop_blunders)
     if from_contours:
         with request.step("Mending flat triangles") as progress:
             tin = mend_flats(tin, progress=progress)
@@ -95,7 +95,7 @@ def build(
     request.finish(planned, rows, describe)
 
 
-def _find_blunders(tin: TIN, request: Request, *, drop: bool) -> Suspects:
+def _find_blunders(tin: TIN, request: Request, *, drop: bool) -> tuple[TIN, Suspects]:
     """Look for points that look like blunders, and leave them out where that is asked for."""
     from ...terrain.inspection.dropping import drop_blunders
     from ...terrain.inspection.findings import blunders, screen
@@ -103,9 +103,10 @@ def _find_blunders(tin: TIN, request: Request, *, drop: bool) -> Suspects:
 
     with request.step("Checking points") as progress:
         if not drop:
-            return Suspects(screen(tin), None)
+            return tin, Suspects(screen(tin), None)
         table = blunders(tin, progress=progress)
-        return Suspects(table, drop_blunders(tin, table))
+        tin, dropped = drop_blunders(tin, table)
+        return tin, Suspects(table, dropped)
 
 
 def _require_survey(found: Survey | TIN, path: Path) -> Survey:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..._sentences import counted
+from ..._sentences import counted, height
 from ..options import vector_options
 from ..parameters import file_command, number_option, numbers_option
 from ..paths import make_title
@@ -149,7 +149,12 @@ def _summarise_levels(made: Features) -> list[Row]:
         return []
     unit = unit_text(made.units, "elevation")
     shown = f" {unit}" if unit and unit != "unknown" else ""
-    return [("Levels", f"{len(levels):,}, from {levels[0]:g} to {levels[-1]:g}{shown}")]
+    return [
+        (
+            "Levels",
+            f"{len(levels):,}, from {height(levels[0])} to {height(levels[-1])}{shown}",
+        )
+    ]
 
 
 def _describe_contours(file: Path, made: Features) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..._sentences import coordinate
 from ...policies import InterpolationMethod, RasterSample, RasterValue
 from ..options import format_options
 from ..parameters import choice_option, file_command, file_option, number_option, smooth_option
@@ -105,7 +106,7 @@ def _summarise_raster(tin: TIN, made: Raster) -> list[Row]:
     return [
         ("Surface", mesh_counts(tin)),
         ("Raster", describe_raster_size(made)),
-        ("", f"west {box.xmin:.10g}, north {box.ymax:.10g}"),
+        ("", f"west {coordinate(box.xmin)}, north {coordinate(box.ymax)}"),
         *(("Note", note) for note in made.notes),
     ]
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..._sentences import counted
+from ..._sentences import coordinate, counted
 from ...policies import SimplificationHold
 from ..options import writing_options
 from ..output.failures import Failure
@@ -130,7 +130,7 @@ def _find_kept(
         raise Failure(
             f"'{path}': {counted(len(missing), 'point')} of {len(found):,} to be kept "
             f"{'is not a vertex' if len(missing) == 1 else 'are not vertices'} of the surface; the "
-            f"first is at {x:.12g}, {y:.12g}."
+            f"first is at {coordinate(x)}, {coordinate(y)}."
         )
     return np.array(found, np.int64)
 

@@ -72,13 +72,15 @@ def volume(
     planned = request.plan_products(inputs, *kinds)
     surfaces = request.read_tins(files)
     with request.step("Measuring") as progress:
-        table = _measure(surfaces, regions, asked, progress)
+        if planned.holds("Features") or planned.holds("picture"):
+            found = _overlay(surfaces, regions, asked, progress)
+            table = found.volumes
+        else:
+            table = _measure(surfaces, regions, asked, progress)
     planned.write("Table", table)
-    if planned.holds("Features") or planned.holds("picture"):
-        with request.step("Overlaying") as progress:
-            found = _overlay(surfaces, asked["base"], progress)
+    if planned.holds("Features"):
         planned.write("Features", found.zones)
-        planned.draw(lambda: _draw_map(found, surfaces[0], files, asked["title"]))
+    planned.draw(lambda: _draw_map(found, surfaces[0], files, asked["title"]))
     request.finish(
         planned, _summarise_volumes(table, surfaces), lambda: _describe_volumes(files, table)
     )
@@ -137,14 +139,15 @@ def _measure(
     )
 
 
-def _overlay(surfaces: Sequence[TIN], base: float, progress: Tell) -> Difference:
-    """Subtract the ground from the design, or from a level."""
+def _overlay(
+    surfaces: Sequence[TIN], regions: Path | None, asked: dict[str, Any], progress: Tell
+) -> Difference:
+    """Subtract the ground from the design or a level; its volumes are of the same overlay."""
     from ...terrain import difference
-    from ...terrain.earthwork import level_surface
 
-    ground = surfaces[0]
-    other = surfaces[1] if len(surfaces) > 1 else level_surface(ground, base)
-    return difference(ground, other, progress=progress)
+    chosen = None if regions is None else _read_regions(regions, surfaces[0])
+    base = asked["base"] if len(surfaces) == 1 else None
+    return difference(*surfaces, base=base, regions=chosen, progress=progress)
 
 
 def _draw_map(found: Difference, ground: TIN, files: Sequence[Path], title: str | None) -> Any:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted
+from ..._sentences import counted, height
 
 if TYPE_CHECKING:
     from ...arrays import Int64Array
@@ -40,7 +40,7 @@ def list_findings(table: Table, most: int) -> list[Row]:
         (
             table["certainty"][i].capitalize(),
             f"{_name_point(table, i)} at {table['x'][i]:.3f} {table['y'][i]:.3f}, elevation "
-            f"{table['z'][i]:.6g}: {table['reason'][i]}. {table['explanation'][i]}",
+            f"{height(table['z'][i])}: {table['reason'][i]}. {table['explanation'][i]}",
         )
         for i in range(min(len(table), most))
     ]

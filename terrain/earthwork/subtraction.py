@@ -1,0 +1,219 @@
+"""One surface less another one, as a TIN that is sound after rounding."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import numpy as np
+
+from ..._sentences import coordinate
+from ...errors import PointsError
+from ...tin import topology
+from .. import _kernel
+from . import zones as parts
+from .cells import fan_out
+from .meshes import as_mesh, cut_at_zero, mend, part_places, rebuild
+from .reference import Surface, require_finite
+from .slivers import leave_out_slivers, measure_rounding
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from ...arrays import Float64Array, Int32Array
+    from ...tin import TIN
+    from .reference import Reference
+
+    _Mesh = tuple[Float64Array, Int32Array]
+
+__all__ = ["subtract"]
+
+_SHARE_OF_VOLUME = 1e-7
+"""Of the area times the largest difference: so much the volumes of the TIN may be off."""
+_ROUNDINGS = 4.0
+"""Or what so many roundings of every coordinate change: surfaces that agree differ by no more."""
+
+_MOST_VERTICES = (2**31 - 1) // 4
+"""Of an overlay: the kernel numbers them in 32 bits."""
+
+_TOO_THIN = "The surfaces overlap only in what is thinner than coordinates can tell."
+
+
+def subtract(
+    first: Surface,
+    second: Surface,
+    sums: Mapping[str, float],
+    holds: Callable[[Any], Any],
+    reference: Reference,
+) -> TIN:
+    """Return the second surface less the first as a TIN, where both are.
+
+    ``sums`` are those of the kernel of the same surfaces, which the volumes of the TIN must be;
+    ``holds`` tells whether both surfaces hold places, (k, 2).
+
+    Raises
+    ------
+    PointsError
+        If they do not overlap, or only in what is thinner than coordinates can tell.
+    """
+    trimmed = _trim(first, second)
+    made = _overlay(*trimmed)
+    if len(made.triangles) == 0:
+        _refuse_empty(first, second)
+    require_finite(made.vertices)
+    if not sums["area"] > 0.0:
+        raise PointsError(_TOO_THIN)
+    triangles, cells = fan_out(made.offsets, made.corners)
+    slack = _measure_rounding(*trimmed, made.vertices, triangles, made.triangles[cells])
+    given = cut_at_zero(made.vertices, triangles)
+    return _choose_surface(_make_sound(*given, holds), reference, sums, slack)
+
+
+def _choose_surface(
+    candidates: Iterator[_Mesh], reference: Reference, sums: Mapping[str, float], slack: float
+) -> TIN:
+    """Return the first mesh whose volumes are those of the surfaces.
+
+    Raises
+    ------
+    PointsError
+        If there is none: rounding has moved a wall, or left nothing.
+    """
+    least = np.inf
+    for mesh in candidates:
+        surface = as_mesh(*mesh, crs=reference.crs, elevation_unit=reference.elevation_unit)
+        apart = _measure_disagreement(surface, sums)
+        most = max(sums["highest"], -sums["lowest"])
+        if apart <= _SHARE_OF_VOLUME * sums["area"] * most + _ROUNDINGS * slack:
+            return surface
+        least = min(least, apart)
+    if np.isfinite(least):
+        raise PointsError(
+            "The surfaces have walls that are thinner than coordinates can tell: the volume of "
+            f"their difference as a TIN would be off by {least:.3g}. Round the points of both to "
+            "a unit that they are surveyed in, such as a millimetre."
+        )
+    raise PointsError(
+        "What both surfaces cover is thinner than coordinates can tell: round the points of both "
+        "to a unit that they are surveyed in, such as a millimetre."
+    )
+
+
+def _trim(*surfaces: Surface) -> tuple[Surface, Surface]:
+    """Return two surfaces without the triangles that lie along a boundary by rounding only.
+
+    Their planes have any slope: what is interpolated in them at a rounded place is wrong by much
+    more than they have area.
+    """
+    rounding = max(measure_rounding(surface.points) for surface in surfaces)
+    first, second = (_trim_one(surface, rounding) for surface in surfaces)
+    return first, second
+
+
+def _trim_one(surface: Surface, rounding: float) -> Surface:
+    points, triangles = surface.points, surface.triangles
+    neighbors = topology.neighbors_of(triangles, len(points))
+    return Surface(points, leave_out_slivers(points, triangles, neighbors, rounding)[0])
+
+
+def _refuse_empty(first: Surface, second: Surface) -> NoReturn:
+    """Refuse surfaces that do not overlap, or only in triangles that were left out.
+
+    Raises
+    ------
+    PointsError
+    """
+    if len(_overlay(first, second).triangles):
+        raise PointsError(_TOO_THIN)
+    raise PointsError(
+        f"The surfaces do not overlap: one covers {_describe_extent(first)}, the other "
+        f"{_describe_extent(second)}."
+    )
+
+
+def _overlay(first: Surface, second: Surface) -> _kernel.OverlayMesh:
+    try:
+        return _kernel.overlay(first.points, first.triangles, second.points, second.triangles)
+    except OverflowError:
+        raise PointsError(
+            f"The overlay of both surfaces has more than {_MOST_VERTICES:,} vertices: subtract "
+            "parts of them."
+        ) from None
+
+
+def _measure_rounding(
+    first: Surface,
+    second: Surface,
+    vertices: Float64Array,
+    triangles: Int32Array,
+    pairs: Int32Array,
+) -> float:
+    """Return how much a volume changes if the surfaces move by a rounding of their coordinates.
+
+    That is the rounding times the rise over run of both, summed over the area of their overlay.
+    """
+    areas = np.abs(_measure_doubled(vertices, triangles))
+    total = 0.0
+    for k, surface in enumerate((first, second)):
+        whole = np.abs(_measure_doubled(surface.points, surface.triangles))[pairs[:, k]]
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            shares = np.fmin(areas / whole, 1.0)  # of a triangle thinner than its rounding, all
+            total += float((shares * _measure_rises(surface)[pairs[:, k]]).sum())
+    moved = float(np.spacing(np.abs(vertices[:, :2]).max())) * total
+    return moved if np.isfinite(moved) else 0.0
+
+
+def _measure_doubled(points: Float64Array, triangles: Int32Array) -> Float64Array:
+    xy = points[triangles, :2]
+    (ux, uy), (vx, vy) = (xy[:, 1] - xy[:, 0]).T, (xy[:, 2] - xy[:, 0]).T
+    doubled: Float64Array = ux * vy - uy * vx
+    return doubled
+
+
+def _measure_rises(surface: Surface) -> Float64Array:
+    """Return the rise over run of each triangle times its area, in the units that it has."""
+    corners = surface.points[surface.triangles]
+    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    (ux, uy, uz), (vx, vy, vz) = u.T, v.T
+    with np.errstate(invalid="ignore", over="ignore"):
+        rises: Float64Array = 0.5 * np.hypot(uy * vz - uz * vy, uz * vx - ux * vz)
+    return rises
+
+
+def _measure_disagreement(surface: TIN, sums: Mapping[str, float]) -> float:
+    """Return by how much a volume of a TIN is not that of the surfaces."""
+    found = _sum_classes(surface)
+    return max(abs(found[name] - sums[name]) for name in ("cut", "fill"))
+
+
+def _sum_classes(surface: TIN) -> dict[str, float]:
+    """Return cut and fill in the triangles that count as cut and as filled."""
+    mesh = surface.triangulation
+    heights = np.ascontiguousarray(mesh.points[:, 2])
+    groups = parts.classify(mesh).astype(np.int32) + np.int32(1)
+    sums = _kernel.sum_heights(mesh.points, mesh.triangles, heights, groups, 3, 1.0)
+    column = _kernel.SUMS.index
+    return {"cut": float(sums[0, column("cut")]), "fill": float(sums[2, column("fill")])}
+
+
+def _make_sound(
+    points: Float64Array, triangles: Int32Array, holds: Callable[[Any], Any]
+) -> Iterator[_Mesh]:
+    """Yield the overlay mended, with walls a rounding wider, and triangulated anew.
+
+    Where a new vertex moved the zero line, it is cut once more.
+    """
+    for placed in (points, part_places(points, triangles)):
+        mended = mend(placed, triangles)
+        if mended is not None:
+            yield mended
+    for found in rebuild(points, triangles, holds):
+        yield mend(*cut_at_zero(*found)) or found
+
+
+def _describe_extent(surface: Surface) -> str:
+    used = surface.points[surface.triangles.ravel(), :2]
+    (west, south), (east, north) = used.min(axis=0), used.max(axis=0)
+    return (
+        f"{coordinate(west)} to {coordinate(east)} east, {coordinate(south)} to "
+        f"{coordinate(north)} north"
+    )
