@@ -26,9 +26,9 @@ def build_patch(tin: TIN, pad: Any, level: float, slopes: list[Slope]) -> TIN:
     breaks = [line for slope in slopes for line in slope.find_breaks()]
     ends = np.concatenate([edge, *rims])
     lines = [Breakline(edge, name="pad edge", priority=1)]
-    snapped = [_snap(line, ends, tolerance) for line in breaks]
+    _snap(breaks, ends, tolerance)
     lines += [
-        Breakline(line, name="slope") for line in snapped if np.ptp(line[:, :2], axis=0).any()
+        Breakline(line, name="slope") for line in breaks if np.ptp(line[:, :2], axis=0).any()
     ]
     return triangulate(
         np.concatenate(rings),
@@ -96,11 +96,17 @@ def _lift(
     return np.column_stack([ring, z])
 
 
-def _snap(line: Float64Array, places: Float64Array, tolerance: float) -> Float64Array:
-    """Move the ends of a line onto places that are there."""
-    line = line.copy()
-    for end in (0, -1):
-        apart = np.hypot(*(places[:, :2] - line[end, :2]).T)
-        if apart.min() <= tolerance:
-            line[end] = places[int(apart.argmin())]
-    return line
+def _snap(lines: list[Float64Array], places: Float64Array, tolerance: float) -> None:
+    """Move the ends of lines onto the nearest places that are there."""
+    import shapely
+
+    if not lines:
+        return
+    ends = np.array([line[end] for line in lines for end in (0, -1)])
+    tree = shapely.STRtree(shapely.points(places[:, :2]))
+    found, near = tree.query(shapely.points(ends[:, :2]), "dwithin", distance=tolerance)
+    apart = np.hypot(*(places[near, :2] - ends[found, :2]).T)
+    order = np.lexsort((near, apart, found))
+    moved, first = np.unique(found[order], return_index=True)
+    for end, place in zip(moved.tolist(), near[order][first].tolist(), strict=True):
+        lines[end // 2][-(end % 2)] = places[place]

@@ -417,7 +417,8 @@ def test_a_surface_along_a_slanted_line_is_subtracted():
 def test_surfaces_that_overlap_in_a_sliver_alone_are_too_thin():
     above = [2.0, np.nextafter(1.0, 2.0), 5.0]
     upper = ts.triangulate([[1, 1, 0], [3, 1, 0], [2, 3, 0]])
-    lower = ts.triangulate([[1, 1, 2], [2, -1, 2], [3, 1, 2], above])
+    corners = [[1, 1, 2], [2, -1, 2], [3, 1, 2], above]
+    lower = ts.TIN.from_triangles(corners, [[0, 1, 2], [0, 2, 3]])
     assert 0.0 < ts.volume(upper, lower)["area"][0] < 1e-15
     with pytest.raises(ts.PointsError, match="overlap only in what is thinner"):
         ts.difference(upper, lower)
