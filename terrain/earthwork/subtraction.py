@@ -51,6 +51,8 @@ def subtract(
     PointsError
         If they do not overlap, or only in what is thinner than coordinates can tell.
     """
+    if len(first.triangles) == 0 or len(second.triangles) == 0:
+        raise PointsError("The surfaces overlap only in what is thinner than coordinates can tell.")
     made = _overlay(first, second)
     if len(made.triangles) == 0:
         raise PointsError(
