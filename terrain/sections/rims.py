@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -118,7 +118,8 @@ def _replace(breaks: Breaks, found: Breaks, chosen: Int64Array, better: Int64Arr
     stays = ~np.isin(breaks.segments, chosen[better])
     comes = np.isin(found.segments, better)
     found = found._replace(segments=chosen[found.segments])
-    joined = [np.concatenate([a[stays], b[comes]]) for a, b in zip(breaks, found, strict=True)]
+    both: Any = zip(breaks, found, strict=True)
+    joined = [np.concatenate([old[stays], new[comes]]) for old, new in both]
     order = np.argsort(
         np.concatenate([breaks.segments[stays], found.segments[comes]]), kind="stable"
     )
