@@ -55,6 +55,8 @@ def subtract(
     PointsError
         If they do not overlap, or only in what is thinner than coordinates can tell.
     """
+    if len(first.triangles) == 0 or len(second.triangles) == 0:
+        raise PointsError(_TOO_THIN)
     trimmed = _trim(first, second)
     made = _overlay(*trimmed)
     if len(made.triangles) == 0:

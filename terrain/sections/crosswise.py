@@ -218,7 +218,7 @@ def _cut(
     segments = lines_to_segments(features, start, "centreline")
     at = _choose_stations(segments, interval, stations)
     axes = _lay_axes(segments, *at, *_as_reaches(*widths))
-    rows = cut_rows(surfaces, axes.segments)
+    rows = cut_rows(surfaces, axes.segments, is_computed=True)
     require_surface(surfaces, axes.segments, rows, "section")
     return _Cut(surfaces, axes, rows, notes)
 
@@ -295,7 +295,8 @@ def _join_near(pairs: Float64Array, ends: Float64Array, near: float) -> Float64A
         placed[at_end, 1] = own[at_end, k]
     is_new = np.append(True, np.diff(placed[:, 0]) > 0)
     is_new[1:] |= np.diff(placed[:, 1]) > near
-    return placed[is_new]
+    kept: Float64Array = placed[is_new]
+    return kept
 
 
 def _find_on_lines(ends: Float64Array, given: Any, near: float) -> Float64Array:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...tin.topology import NO_NEIGHBOR
 from .breaks import Breaks, trace_breaks
-from .roundings import find_rounding
+from .roundings import find_rounding, find_written_rounding
 from .segments import Segments
 
 if TYPE_CHECKING:
@@ -19,25 +19,33 @@ __all__ = ["trace_to_rim"]
 
 _ASIDE = 2.0
 """Roundings: that of the boundary and that of the segment."""
+_FINEST = 1e-5
+"""Share of the extent that a rounding may be: else surfaces and roundings are of one size."""
 _GAINED = 100.0
 """Roundings: a segment that crosses the boundary at an angle gains less."""
 
 
-def trace_to_rim(tin: TIN, segments: Segments) -> Breaks:
+def trace_to_rim(tin: TIN, segments: Segments, *, is_computed: bool = False) -> Breaks:
     """Follow segments over a TIN as :func:`trace_breaks`, but along its boundary within rounding.
 
     A segment that was meant to lie on the boundary runs in and out of the surface, as coordinates
     are rounded. So a segment that has gaps is followed to the left and to the right of itself, by
     twice the rounding of the coordinates of the boundary; where it then has much more of the
     surface, it gets what was found there. An end within four times the rounding of the boundary has
-    the elevation there.
+    the elevation there. Segments that are ``is_computed`` have been rounded themselves; of others
+    nothing is assumed where the boundary has no decimals that tell its rounding.
     """
     breaks = trace_breaks(tin, segments)
     is_gap = _find_gaps(breaks)
     if not is_gap.any() or len(tin.triangles) == 0:
         return breaks
-    rounding = find_rounding(tin.points[np.concatenate(tin.rings), :2])
+    rim = tin.points[np.concatenate(tin.rings), :2]
+    rounding = find_rounding(rim) if is_computed else find_written_rounding(rim)
+    if not 0.0 < rounding <= _FINEST * float(np.ptp(rim, axis=0).max()):
+        return breaks
     chosen = np.unique(breaks.segments[is_gap])
+    lengths = np.hypot(*(segments.ends - segments.starts)[chosen].T)
+    chosen = chosen[lengths > _GAINED * rounding]
     breaks = _take_better(tin, segments, breaks, chosen, rounding)
     return _close_short_gaps(breaks, 2.0 * _ASIDE * rounding)
 
@@ -53,7 +61,7 @@ def _take_better(
     tin: TIN, segments: Segments, breaks: Breaks, chosen: Int64Array, rounding: float
 ) -> Breaks:
     """Replace breaks of chosen segments where there is much more surface beside them."""
-    own = Segments(*(array[chosen] for array in segments))
+    own = Segments._make(array[chosen] for array in segments)
     side = own.directions[:, ::-1] * (-1.0, 1.0) * (_ASIDE * rounding)
     is_back = (side[:, 0] < 0.0) | ((side[:, 0] == 0.0) & (side[:, 1] < 0.0))
     side[is_back] *= -1.0  # the same for the segment in reverse
@@ -76,9 +84,8 @@ def _measure_covered(breaks: Breaks, segments: Segments) -> Float64Array:
     steps = np.append(np.diff(breaks.ratios), 0.0) * lengths[breaks.segments]
     goes_on = np.append(breaks.segments[1:] == breaks.segments[:-1], False)
     counted = goes_on & (breaks.triangles != NO_NEIGHBOR)
-    covered: Float64Array = np.bincount(
-        breaks.segments[counted], steps[counted], minlength=len(lengths)
-    )
+    covered: Float64Array = np.zeros(len(lengths))
+    np.add.at(covered, breaks.segments[counted], steps[counted])
     return covered
 
 
@@ -111,8 +118,11 @@ def _replace(breaks: Breaks, found: Breaks, chosen: Int64Array, better: Int64Arr
     stays = ~np.isin(breaks.segments, chosen[better])
     comes = np.isin(found.segments, better)
     found = found._replace(segments=chosen[found.segments])
-    joined = [np.concatenate([a[stays], b[comes]]) for a, b in zip(breaks, found, strict=True)]
-    order = np.argsort(joined[0], kind="stable")
+    both: Any = zip(breaks, found, strict=True)
+    joined = [np.concatenate([old[stays], new[comes]]) for old, new in both]
+    order = np.argsort(
+        np.concatenate([breaks.segments[stays], found.segments[comes]]), kind="stable"
+    )
     return Breaks._make(array[order] for array in joined)
 
 

@@ -9,12 +9,16 @@ import numpy as np
 if TYPE_CHECKING:
     from ...arrays import Float64Array
 
-__all__ = ["find_rounding"]
+__all__ = ["find_rounding", "find_written_rounding"]
 
 _DECIMALS = range(3, 10)
 """Coordinates with fewer, such as whole numbers, are taken as they are."""
 _SPACINGS = 4.0
 """Spacings of floating point numbers: what a few operations leave."""
+
+
+_MEANINGFUL = 16.0
+"""Spacings: a last decimal below is one that every number of this size has."""
 
 
 def find_rounding(xy: Float64Array) -> float:
@@ -23,8 +27,18 @@ def find_rounding(xy: Float64Array) -> float:
     Half a unit of the last decimal in either direction, if all of them are written with so few
     decimals, from 3 to 9; at least a few spacings of floating point numbers of their size.
     """
-    least = _SPACINGS * float(np.spacing(np.abs(xy).max(initial=1.0)))
+    return max(find_written_rounding(xy), _SPACINGS * _find_spacing(xy))
+
+
+def find_written_rounding(xy: Float64Array) -> float:
+    """Return the same for coordinates that are taken as they are unless decimals tell more."""
     if (np.round(xy, _DECIMALS[0] - 1) == xy).all():
-        return least
+        return 0.0
     decimals = next((n for n in _DECIMALS if (np.round(xy, n) == xy).all()), None)
-    return least if decimals is None else max(float(np.hypot(0.5, 0.5)) * 10.0**-decimals, least)
+    if decimals is None or 10.0**-decimals < _MEANINGFUL * _find_spacing(xy):
+        return 0.0
+    return float(np.hypot(0.5, 0.5)) * 10.0**-decimals
+
+
+def _find_spacing(xy: Float64Array) -> float:
+    return float(np.spacing(np.abs(xy).max(initial=1.0)))

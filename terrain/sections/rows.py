@@ -61,15 +61,22 @@ class Rows(NamedTuple):
         return np.where(self.is_last, 0.0, np.roll(stations, -1) - stations)
 
 
-def cut_rows(surfaces: Surfaces, segments: Segments, extra: Places | None = None) -> Rows:
+def cut_rows(
+    surfaces: Surfaces,
+    segments: Segments,
+    extra: Places | None = None,
+    *,
+    is_computed: bool = False,
+) -> Rows:
     """Follow segments over surfaces, with rows at further places within segments.
 
     There is a row wherever any surface has a break. Between two rows in a row of a line that both
     have an elevation of a surface, the surface is the straight line between them: a gap from one
-    break to the next gets a row in its middle.
+    break to the next gets a row in its middle. Ends of segments that are ``is_computed`` have been
+    rounded.
     """
     traced = [
-        trace_to_rim(tin, segments).scale_elevations(factor)
+        trace_to_rim(tin, segments, is_computed=is_computed).scale_elevations(factor)
         for tin, factor in zip(surfaces.tins, surfaces.factors, strict=True)
     ]
     sources = [_find_places(breaks, segments) for breaks in traced]

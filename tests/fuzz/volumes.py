@@ -104,6 +104,47 @@ def rounding_of(tin: Any, other: Any) -> float:
     return float(8 * np.spacing(np.abs(xy).max()) * np.ptp(xy, axis=0).sum() * edges)
 
 
+def generate_regions(rng: np.random.Generator) -> Case:
+    """Two surfaces as above, and one to three regions among their places, which may overlap."""
+    case = generate(rng)
+    xy = np.array([*case["points"], *case["other"]], float)[:, :2]
+    low, high = xy.min(axis=0), xy.max(axis=0)
+    regions = []
+    for _ in range(int(rng.integers(1, 4))):
+        if rng.random() < 0.5:
+            regions.append(xy[rng.choice(len(xy), 3, replace=False)].tolist())
+        else:
+            a, b = np.sort(low + (high - low) * rng.random((2, 2)), axis=0)
+            regions.append([a.tolist(), [b[0], a[1]], b.tolist(), [a[0], b[1]]])
+    return case | {"regions": regions}
+
+
+def examine_regions(case: Case) -> str:
+    """Ask for zones that add up to the table of volumes, region by region."""
+    try:
+        tin, other = (ts.triangulate(case[name]) for name in ("points", "other"))
+        table = ts.volume(tin, other, regions=case["regions"])
+        found = ts.difference(tin, other, regions=case["regions"])
+    except ts.TinsmithError as error:
+        return f"refused: {type(error).__name__}"
+    assert ts.check(found.tin).ok, repr(ts.check(found.tin))
+    slack = 64.0 * rounding_of(tin, other)
+    relief = float(np.abs(found.tin.points[:, 2]).max())
+    ranges = float(np.ptp(tin.points[:, 2]) + np.ptp(other.points[:, 2]))
+    zones = found.zones.columns
+    for row, name in enumerate(table["region"].tolist()):
+        own = zones["region"].astype(str) == name
+        area = float(table["area"][row])
+        assert abs(zones["area"][own].sum() - area) <= slack, f"area of {name}"
+        for kind in ("cut", "fill"):
+            volume = zones["volume"][own & (zones["kind"].astype(str) == kind)].sum()
+            apart = abs(volume - table[kind][row])
+            most = slack * (relief + ranges) + 2e-7 * area * relief
+            assert apart <= most, f"{kind} of {name}: off by {apart}"
+    return f"{len(case['regions'])} regions"
+
+
 CAMPAIGNS = (
     Campaign("volumes", "cut and fill, and the difference of two TINs", generate, examine),
+    Campaign("regions", "zones and volumes in regions", generate_regions, examine_regions),
 )
