@@ -27,9 +27,7 @@ def build_patch(tin: TIN, pad: Any, level: float, slopes: list[Slope]) -> TIN:
     ends = np.concatenate([edge, *rims])
     lines = [Breakline(edge, name="pad edge", priority=1)]
     _snap(breaks, ends, tolerance)
-    lines += [
-        Breakline(line, name="slope") for line in breaks if np.ptp(line[:, :2], axis=0).any()
-    ]
+    lines += [Breakline(line, name="slope") for line in breaks if np.ptp(line[:, :2], axis=0).any()]
     return triangulate(
         np.concatenate(rings),
         breaklines=lines,
