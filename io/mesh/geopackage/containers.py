@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import sqlite3
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ...._atomic import replacing_path
 from ....errors import WriteError
+from .digests import digest_lines
 from .journals import require_closed
 from .schema import LAYERS, NO_CLOCK, RECORD
 
@@ -183,8 +185,20 @@ def _merge(path: Path, made: Path, beside: Path, placing: Placing) -> None:
             if there is not None:
                 _remove(file, there)
             _add(file, layer, numbers)
+        if RECORD in layers:
+            _renew_digest(file)
         file.execute("COMMIT")
         file.execute("DETACH made")
+
+
+def _renew_digest(file: sqlite3.Connection) -> None:
+    """Let the record of a TIN tell of its lines as they are, whose CRS may have another number."""
+    (text,) = file.execute(f"SELECT data FROM main.{RECORD} WHERE name = 'digests'").fetchone()
+    rows = file.execute("SELECT geom, kind, name FROM main.lines ORDER BY fid")
+    digests = json.loads(text) | {"lines": digest_lines(rows)}
+    file.execute(
+        f"UPDATE main.{RECORD} SET data = ? WHERE name = 'digests'", (json.dumps(digests).encode(),)
+    )
 
 
 def _find_table(file: sqlite3.Connection, layer: str) -> str | None:
