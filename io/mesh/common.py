@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
@@ -72,7 +72,7 @@ def read_content(path: Path) -> bytes:
 def require_writable(surface: object, path: Path) -> TIN | Survey:
     """Return a TIN or a survey; refuse anything else."""
     if isinstance(surface, Surface | Survey):
-        return surface
+        return cast("TIN | Survey", surface)  # writers ask it alone
     raise FormatError(
         f"Cannot write '{path}': a {type(surface).__name__} is neither a TIN nor a Survey."
     )

@@ -545,8 +545,8 @@ def _cut_cells(dataset: Header, cells: Sequence[int], path: Path) -> tuple[int, 
 
 def _has_cells(dataset: Header, cells: tuple[Any, ...]) -> bool:
     column, row, width, height = cells
-    fits = 0 <= column < column + width <= dataset.width
-    return fits and 0 <= row < row + height <= dataset.height
+    fits_across = 0 <= column < column + width <= dataset.width
+    return bool(fits_across and 0 <= row < row + height <= dataset.height)
 
 
 def _describe_window(dataset: Header, choice: Choice) -> list[str]:

@@ -117,7 +117,8 @@ def _measure_cells(diagram: Voronoi, closed: Int64Array, offsets: Int64Array) ->
     if measure_angular_unit(diagram.crs) is None:
         return diagram.areas
     parts = measure_ring_areas(diagram.crs, diagram.coords[closed], offsets)
-    return np.bincount(diagram.cell_of_part, parts, len(diagram))
+    areas: Float64Array = np.bincount(diagram.cell_of_part, parts, len(diagram)).astype(np.float64)
+    return areas
 
 
 def _count_within(sizes: Int64Array) -> Int64Array:

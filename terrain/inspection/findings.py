@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -103,7 +103,7 @@ def screen(tin: TIN) -> Table:
 
 def _as_tin(points: Any, progress: Tell | None) -> TIN:
     if isinstance(points, Surface):
-        return points
+        return cast("TIN", points)  # which is asked alone
     if not isinstance(points, Survey):
         raise OptionError("points", points, "a Survey or a TIN")
     return triangulate(points, progress=progress)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from ...arrays import Float64Array
     from ...crs import CRS
-    from ...tin import TIN
+    from ...tin import TIN, Surface
 
 __all__ = [
     "aspect",
@@ -172,7 +172,7 @@ def find_area_scale(crs: CRS | None, northing: ArrayLike) -> Any:
     return scales.east * scales.north * (metres or 1.0) ** 2
 
 
-def compute_normals(tin: TIN) -> Float64Array:
+def compute_normals(tin: Surface) -> Float64Array:
     """Return the upward normal of each triangle, its length twice the triangle's area in space.
 
     They are (m, 3), of the true surface, as in :func:`slope`: in CRS units squared, in a geographic
@@ -190,7 +190,7 @@ def compute_normals(tin: TIN) -> Float64Array:
     return normals
 
 
-def _find_normal_factors(tin: TIN) -> tuple[Any, Any, Any]:
+def _find_normal_factors(tin: Surface) -> tuple[Any, Any, Any]:
     """Return the factors from products of two coordinates each to areas, of each triangle."""
     east, north, up = find_scales(tin.crs, tin.elevation_unit, _average_northings(tin))
     return north * up, east * up, east * north
@@ -222,7 +222,7 @@ def sum_normals(tin: TIN, per: SurfacePart) -> Float64Array:
     return sum_at_vertices(tin, upward)
 
 
-def sum_at_vertices(tin: TIN, upward: Float64Array) -> Float64Array:
+def sum_at_vertices(tin: Surface, upward: Float64Array) -> Float64Array:
     """Return the sums at each vertex, (n, 3), of the normals of triangles, (m, 3).
 
     They do not depend on the order of triangles.
@@ -232,7 +232,7 @@ def sum_at_vertices(tin: TIN, upward: Float64Array) -> Float64Array:
     return _kernel.vertex_normals(surface.points, surface.triangles, upward, threads)
 
 
-def _average_northings(tin: TIN) -> Any:
+def _average_northings(tin: Surface) -> Any:
     """Return the northing at the middle of each triangle if scales depend on it, else 0."""
     if tin.crs is None or not tin.crs.is_geographic:
         return 0.0

@@ -484,8 +484,12 @@ _LAYER_OPTIONS = (
         help="Replace a layer of a GeoPackage that another program wrote or changed.",
     ),
 )
-_VECTOR_WRITING = (_format_option, _kind_option, _make_projected_option("points"))
-_VECTOR_WRITING += _LAYER_OPTIONS
+_VECTOR_WRITING = (
+    _format_option,
+    _kind_option,
+    _make_projected_option("points"),
+    *_LAYER_OPTIONS,
+)
 writing_options = _gather(
     "writing", SurfaceWriting, *under("Output", *_VECTOR_WRITING, *MESH_WRITING)
 )
