@@ -132,7 +132,8 @@ def _measure_edges(falls: Falls, starts: Int64Array, ends: Int64Array) -> Float6
 def _measure_triangles(falls: Falls, triangles: Int64Array) -> Float64Array:
     a, b, c = (falls.points[falls.triangles[triangles, k]] for k in range(3))
     (east, north, area), poor = _cross(b - a, c - a)
-    slopes = np.hypot(east, north) / area
+    with np.errstate(divide="ignore", invalid="ignore"):  # those are measured again below
+        slopes = np.hypot(east, north) / area
     for row in np.flatnonzero(poor).tolist():
         x, y, whole = _cross_exactly(falls, int(triangles[row]))
         slopes[row] = math.hypot(float(x / whole), float(y / whole))
