@@ -191,7 +191,8 @@ void draw_raster() {
   std::vector<double> values(100), means(100);
   Team team(2, keep_going);
   const OrderedSurface ordered(plane.surface());
-  CenterScan::run(ordered, grid, nullptr, values.data(), team);
+  const ElevationPaint paint{ordered, values.data()};
+  CenterScan<ElevationPaint>::run(ordered, grid, paint, team);
   MeanScan::run(ordered, grid, edges.data(), north_edges.data(), nullptr, means.data(), team);
   for (int i = 0; i < 100; ++i) {
     const double wanted = 3.0 + 0.1 * centers[i % 10];

@@ -87,7 +87,7 @@ def check_flow(told, tin, folder):
         "catchments": ts.catchments(tin),
     }
     for name, wanted in found.items():
-        again = ts.write(wanted, folder / "wanted.gpkg")
+        again = ts.write(wanted, folder / f"wanted {name}.gpkg")
         assert qgis.read_layer(folder / f"{name}.gpkg") == qgis.read_layer(again), name
         layer = told[name]["layers"]["Flow"]
         assert (layer["count"], layer["crs"]) == (len(wanted), qgis.UTM)
@@ -100,7 +100,7 @@ def check_flow(told, tin, folder):
 
 def check_sight(told, tin, folder):
     seen = ts.viewshed(tin, EYE, eye_height=1.7)
-    wanted = ts.write(seen, folder / "wanted.gpkg")
+    wanted = ts.write(seen, folder / "wanted seen.gpkg")
     assert qgis.read_layer(folder / "seen.gpkg") == qgis.read_layer(wanted)
     layer = told["seen"]["layers"]["Sight"]
     assert layer["legend"] == seen.columns["class"].tolist()
@@ -112,7 +112,7 @@ def check_sight(told, tin, folder):
     assert (layer["count"], layer["legend"]) == (300, ["visible", "blocked"])
     assert layer["unclassified"] == 0
     _, shapes, columns = qgis.read_layer(folder / "lines.gpkg")
-    _, wanted, values = qgis.read_layer(ts.write(lines, folder / "wanted.gpkg"))
+    _, wanted, values = qgis.read_layer(ts.write(lines, folder / "wanted lines.gpkg"))
     assert shapes == wanted
     np.testing.assert_array_equal(columns, values)
 

@@ -91,7 +91,8 @@ def test_the_file_is_valid_and_the_same_each_time(installed, tmp_path):
 
 
 def test_what_it_cannot_write_is_refused(installed, tmp_path):
-    given = ts.write(matrix.make_tin().replace(crs=4326), tmp_path / "a.gpkg")
+    degrees = ts.triangulate([[9, 50, 1], [9.1, 50, 2], [9, 50.1, 3]], crs=4326)
+    given = ts.write(degrees, tmp_path / "a.gpkg")
     done = run(installed, "convert", given, "-o", tmp_path / "a.ifc", code=1)
     assert "IFC needs eastings and northings" in done.stderr
     assert not (tmp_path / "a.ifc").exists()
