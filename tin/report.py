@@ -27,6 +27,7 @@ __all__ = [
     "Simplification",
     "Unmended",
     "describe_skipped",
+    "word_reason",
 ]
 
 LEFT_OUT = (
@@ -41,6 +42,8 @@ LEFT_OUT = (
     "looks like a blunder",
 )
 """Why a row of points has no vertex; ``Report.left_out_why`` holds places in this list."""
+_OF_SEVERAL = {"looks like a blunder": "look like blunders"}
+"""Reasons of one row that read otherwise of several."""
 
 UNMENDED_WHY = (
     "lines or the boundary meet there under a small angle",
@@ -48,6 +51,17 @@ UNMENDED_WHY = (
     "a line or the boundary in the way has no room for a further vertex",
 )
 """Why a triangle stays as it is; ``Unmended.why`` holds places in this list."""
+
+
+def word_reason(why: str, count: int) -> str:
+    """Return a reason of ``LEFT_OUT`` as it reads behind the number of rows.
+
+    Examples
+    --------
+    >>> word_reason("looks like a blunder", 5), word_reason("in water", 5)
+    ('look like blunders', 'in water')
+    """
+    return why if count == 1 else _OF_SEVERAL.get(why, why)
 
 
 class Merge(NamedTuple):

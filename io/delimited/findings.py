@@ -48,6 +48,8 @@ __all__ = [
 ]
 
 _SHOWN = 5
+_LARGEST_WHOLE = 1e15
+"""Below, whole point numbers are written without an exponent or decimals."""
 _SHOWN_NAME = 40
 _TOP_LINES = 100
 _STATISTICS = frozenset(
@@ -452,7 +454,9 @@ def find_repeated_numbers(numbers: AnyArray | None, rows: Int64Array) -> list[st
 
 
 def _format_value(value: Any) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    """Write a point number in full: 12345678.0 as 12345678, for it names one point."""
+    is_whole = isinstance(value, float) and value.is_integer() and abs(value) < _LARGEST_WHOLE
+    return str(int(value)) if is_whole else str(value)
 
 
 def describe_left_out(why: str, lines: Sequence[int]) -> str:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..._sentences import coordinate
 from ...crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit
 from ...errors import CrsError, MissingExtraError, ReadError, TinsmithError
 from ..isolated import run_isolated
@@ -144,7 +145,7 @@ def _advise(header: Header, error: TinsmithError) -> TinsmithError:
     """Return an error that tells the coordinates too, by which a surveyor knows their CRS."""
     if not isinstance(error, CrsError):
         return error
-    middle = ", ".join(f"{one:.10g}" for one in header.middle.tolist())
+    middle = ", ".join(coordinate(one) for one in header.middle.tolist())
     advice = f"declare the CRS of its coordinates, which are about ({middle})"
     if _is_from_the_centre(header, error):
         advice = (

@@ -14,7 +14,7 @@ from typing import IO, TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted, inflect
+from ..._sentences import coordinate, counted, inflect
 from ...errors import ReadError
 from ..isolated.spooling import translate_system_errors
 
@@ -225,7 +225,7 @@ def _require_scales(
 
 
 def _list(numbers: np.ndarray[tuple[int], np.dtype[np.float64]]) -> str:
-    return ", ".join(f"{one:g}" for one in numbers.tolist())
+    return ", ".join(coordinate(one) for one in numbers.tolist())
 
 
 # ------------------------------------------------------------------- variable records

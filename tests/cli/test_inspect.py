@@ -67,6 +67,7 @@ def test_a_build_leaves_them_out_when_asked_and_reports_each(site, tmp_path):
     told = json.loads(report.read_text())
     assert {one["row"]: one["dropped"] for one in told["blunders"]} == {40: 1, 50: 1, 60: 1}
     assert told["left_out"] == {"looks like a blunder": [40, 50, 60]}
+    assert "3 rows: 3 look like blunders\n" in result.stderr
     assert json.loads(result.stdout)["report"]["blunders"] == told["blunders"]
     points = ts.read(site, crs="EPSG:32616").points
     rest = ts.triangulate(np.delete(points, [40, 50, 60], axis=0))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...._sentences import counted
+from ....tin.report import word_reason
 from .drawings import Canvas
 from .frame import describe_bounds, name_crs, name_units, write_card
 
@@ -99,7 +100,7 @@ def _describe_report(report: Report) -> Iterator[tuple[str, str]]:
         places = counted(len(report.merged_vertices), "vertex", "vertices")
         yield "Merged", f"{counted(merged, 'row')} at {places}, elevation by {report.duplicates!r}"
     for what, rows in report.to_dict()["left_out"].items():
-        yield "Left out", f"{counted(len(rows), 'row')} {what}"
+        yield "Left out", f"{counted(len(rows), 'row')} {word_reason(what, len(rows))}"
     if report.n_lines:
         yield "Lines", counted(report.n_lines, "line")
     if len(report.crossings.xy):

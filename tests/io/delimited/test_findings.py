@@ -144,6 +144,14 @@ def test_suspects_stand_alone():
         ([1.5, np.nan, 1.5], ["1 point number occurs more than once: 1.5 in lines 11, 13."]),
         ([100000.0, 100000.0], ["1 point number occurs more than once: 100000 in lines 11, 12."]),
         (
+            [12345678.0, 12345679.0, 12345679.0, 12345678.0],
+            [
+                "2 point numbers occur more than once: 12345678 in lines 11, 14; "
+                "12345679 in lines 12, 13."
+            ],
+        ),
+        ([1234567.5] * 2, ["1 point number occurs more than once: 1234567.5 in lines 11, 12."]),
+        (
             [5] * 6,
             ["1 point number occurs more than once: 5 in lines 11, 12, 13, 14, 15, ...."],
         ),

@@ -560,6 +560,12 @@ def test_headers_that_lie_are_refused(tmp_path, cloud, suffix, place, form, valu
     assert words in refuse(path)
 
 
+def test_offsets_in_sentences_are_written_to_the_millimetre(tmp_path, cloud):
+    cloud.write(tmp_path / "sound.las")
+    path = patched(tmp_path / "sound.las", 131, "<6d", 0.0, 0.01, 0.01, 500000.0, 4024250.125, 0.0)
+    assert "the scales 0, 0.01, 0.01 and the offsets 500000, 4024250.125, 0, " in refuse(path)
+
+
 @pytest.mark.parametrize("suffix", [".las", ".laz"])
 def test_files_that_are_cut_short_are_refused(tmp_path, cloud, suffix):
     cloud.write(tmp_path / f"sound{suffix}")

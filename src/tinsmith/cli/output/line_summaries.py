@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..._sentences import counted
-from ...tin.report import LEFT_OUT
+from ...tin.report import LEFT_OUT, word_reason
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -117,7 +117,10 @@ def summarise_lines(survey: Survey, tin: TIN) -> list[Row]:
     if len(report.overruled.vertices):
         rows.append(("Elevations", _describe_overruled(report, survey)))
     if len(report.left_out_rows):
-        reasons = ", ".join(f"{number:,} {why}" for why, number in _count_left_out(report).items())
+        reasons = ", ".join(
+            f"{number:,} {word_reason(why, number)}"
+            for why, number in _count_left_out(report).items()
+        )
         rows.append(("Left out", f"{counted(len(report.left_out_rows), 'row')}: {reasons}"))
     return rows
 
