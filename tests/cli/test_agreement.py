@@ -118,16 +118,19 @@ def compare_volumes(*arguments):
         outputs = [word for name in ("v.csv", "v.gpkg", "v.png") for word in ("-o", name)]
         run = Run("volume", *arguments, *outputs, figures=figures)
         rows, layer = read_table(folder / "v.csv"), read_layer(folder / "v.gpkg").columns
-        said = {name: {} for name in ("table", "layer", "record", "picture", "summary")}
+        run_command("volume", "hill.csv", *arguments, *UTM, "-o", "alone.csv")
+        tables = {"table": rows, "table alone": read_table(folder / "alone.csv")}
+        said = {name: {} for name in (*tables, "layer", "record", "picture", "summary")}
         caption = re.search(r"Cut .*? over .*?; fill .*? over [^;]*", run.words)[0]
         drawn = read_numbers(caption.replace("m³", "").replace("m²", ""))
         told = run.summary["Cut"], run.summary["Fill"]
         for k, kind in enumerate(("cut", "fill")):
             chosen = layer["kind"].astype(str) == kind
-            said["table"] |= {
-                kind: [sum_of(rows, kind)],
-                f"{kind} area": [sum_of(rows, f"{kind}_area")],
-            }
+            for name, found in tables.items():
+                said[name] |= {
+                    kind: [sum_of(found, kind)],
+                    f"{kind} area": [sum_of(found, f"{kind}_area")],
+                }
             said["layer"] |= {
                 kind: [layer["volume"][chosen].sum()],
                 f"{kind} area": [layer["area"][chosen].sum()],

@@ -76,6 +76,19 @@ def test_volumes_come_by_region(files, tmp_path):
     assert [row["fill"] for row in rows] == pytest.approx([0, 1800], abs=1e-6)
 
 
+def test_rounding_is_no_area_without_ground(files, tmp_path):
+    turns = np.linspace(0, 2 * np.pi, 11)
+    circle = np.column_stack([np.cos(turns), np.sin(turns)])
+    circle[-1] = circle[0]
+    places = np.random.default_rng(3).uniform([752_010, 4_024_010], [752_030, 4_024_030], (8, 2))
+    rings = (places[:, None] + 9.7 * circle).reshape(-1, 2)
+    regions = ts.Features.of_polygons(rings, np.arange(0, 89, 11), np.arange(9), crs="EPSG:32616")
+    ts.write(regions, tmp_path / "regions.gpkg")
+    told = run("volume", *files, "--regions", tmp_path / "regions.gpkg").stderr
+    assert told.count("m² compared\n") == 8
+    assert "without ground" not in told
+
+
 @pytest.mark.parametrize("column", ["name", "ID"])
 def test_regions_of_a_file_have_its_names(files, tmp_path, column):
     x, y = 752_000, 4_024_000

@@ -26,6 +26,8 @@ _SHOWN = 12
 _CUBIC_YARD = 27.0
 """Cubic feet, of either foot."""
 _FEET = ("ft³", "US ft³")
+_LEAST_AREA = 0.005
+"""Areas below are written as 0.00: what rounding leaves of a region inside the surface."""
 
 
 @command
@@ -187,7 +189,7 @@ def _format_area(table: Table, row: int) -> str:
     text = f"{_format_quantity(table, 'area', row)} compared"
     alone = {"area_alone": "of the ground alone", "base_area_alone": "without ground"}
     for name, what in alone.items():
-        if name in table.columns and table[name][row] > 0:
+        if name in table.columns and table[name][row] >= _LEAST_AREA:
             text += f", {_format_quantity(table, name, row)} {what}"
     return text
 
