@@ -13,7 +13,6 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import islice
 
 import numpy as np
 
@@ -74,7 +73,7 @@ DATASETS: dict[str, Callable[[int], np.ndarray]] = {
 
 
 def _shift(tin: ts.TIN) -> ts.TIN:
-    return ts.triangulate(tin.points + [0.125, 0.125, 0.0])
+    return ts.triangulate(np.add(tin.points, [0.125, 0.125, 0.0]))
 
 
 def _spread(tin: ts.TIN) -> np.ndarray:
@@ -88,7 +87,7 @@ def _step(tin: ts.TIN) -> float:
 
 def _paste_middle(tin: ts.TIN) -> ts.TIN:
     inner = np.abs(tin.points[:, 0] - np.median(tin.points[:, 0])) < np.ptp(tin.points[:, 0]) / 5
-    return ts.paste(tin, ts.triangulate(tin.points[inner] + [0, 0, 0.5]))
+    return ts.paste(tin, ts.triangulate(np.add(tin.points[inner], [0, 0, 0.5])))
 
 
 PRODUCTS: dict[str, Product] = {
@@ -100,7 +99,7 @@ PRODUCTS: dict[str, Product] = {
     "volume": lambda tin: ts.volume(tin, base=0.0),
     "difference, shifted": lambda tin: ts.difference(tin, _shift(tin)),
     "difference, raised": lambda tin: ts.difference(
-        tin, ts.TIN.from_triangles(tin.points + [0, 0, 1], tin.triangles)
+        tin, ts.TIN.from_triangles(np.add(tin.points, [0, 0, 1]), tin.triangles)
     ),
     "paste": _paste_middle,
     "ponds": lambda tin: ts.ponds(tin, float(np.median(tin.points[:, 2]))),
@@ -192,8 +191,8 @@ def main(arguments: list[str] | None = None) -> None:
                 most=given.most,
                 limit=given.limit,
             )
-            last = next(islice(zip(reversed(found.sizes), reversed(found.seconds)), 1), (0, 0.0))
-            row = f"{data:14} {name:26} {last[0]:8,} {last[1]:8.3f} {found.exponent:8.2f}"
+            size, seconds = (found.sizes or (0,))[-1], (found.seconds or (math.nan,))[-1]
+            row = f"{data:14} {name:26} {size:8,} {seconds:8.3f} {found.exponent:8.2f}"
             print(f"{row}  {found.refusal}".rstrip(), flush=True)
 
 
