@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...tin import TIN
 from ...tin.topology import NO_NEIGHBOR
 
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
-__all__ = ["find_slivers", "leave_out_slivers", "measure_rounding"]
+__all__ = ["find_slivers", "leave_out_slivers", "measure_rounding", "take_without_slivers"]
 
 _ROUNDINGS = 8.0
 """Points on a line, turned and rounded, lie off it by some three roundings of a coordinate."""
@@ -36,6 +37,12 @@ def leave_out_slivers(
     number[:-1][~is_kept] = NO_NEIGHBOR
     kept = np.ascontiguousarray(triangles[is_kept])
     return kept, number[neighbors[is_kept]].astype(np.int32)
+
+
+def take_without_slivers(tin: TIN) -> TIN:
+    """Return a TIN without the triangles that :func:`find_slivers` finds."""
+    triangles, _ = leave_out_slivers(tin.points, tin.triangles, tin.neighbors)
+    return tin if triangles is tin.triangles else TIN.from_triangles(tin.points, triangles)
 
 
 def find_slivers(
