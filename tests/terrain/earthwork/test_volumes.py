@@ -432,7 +432,7 @@ def test_surfaces_that_share_most_of_their_triangles(seed):
     """Shared ones meet no others; numbered and turned in another way they are the same."""
     rng = np.random.default_rng(seed)
     tin = rough(60, seed)
-    points = tin.points + [0, 0, 0.1]
+    points = np.add(tin.points, [0, 0, 0.1])
     inner = np.setdiff1d(np.arange(len(points)), tin.hull)[:6]
     points[inner] += rng.random((6, 3))
     other = ts.triangulate(points)
@@ -444,9 +444,9 @@ def test_surfaces_that_share_most_of_their_triangles(seed):
     assert 0.2 < np.mean(kept) < 1.0
     turned = rng.permutation(other.triangles)[:, [1, 2, 0]]
     exact = exact_volume(tin, other)
-    for given in (other, ts.TIN.from_triangles(other.points, turned)):
+    for version in (other, ts.TIN.from_triangles(other.points, turned)):
         for name in NAMES:
             expected = float(getattr(exact, name))
-            assert one(ts.volume(tin, given), name) == pytest.approx(expected, rel=1e-12)
-            found = ts.difference(tin, given).volumes
+            assert one(ts.volume(tin, version), name) == pytest.approx(expected, rel=1e-12)
+            found = ts.difference(tin, version).volumes
             assert one(found, name) == pytest.approx(expected, rel=1e-12)
