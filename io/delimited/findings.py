@@ -14,7 +14,7 @@ from ...crs import Unit
 from ...errors import CrsError, OptionError, ReadError
 from ...tin.screening.nodata import describe_elevations
 from .cells import is_number, split_line
-from .columns import COORDINATES, find_columns_by_header, find_unit_word, list_names
+from .columns import COORDINATES, find_unit_word, list_names, names_coordinates
 from .content import are_plausible_elevations, is_too_steep, measure_relief_and_extent
 from .lines import COMMENT_PREFIXES
 
@@ -174,7 +174,7 @@ def require_one_header(
     """
     for fault in faults:
         cells = split_line(lines.decode_line(fault.line), delimiter)
-        found = find_columns_by_header(cells, strict=False)
+        found = names_coordinates(cells)
         if found is not None and _differs(found, columns):
             taken = list_names([columns.label(columns.roles[role]) for role in COORDINATES])
             raise ReadError(

@@ -14,12 +14,14 @@ from ...errors import ReadError
 from .cells import BLANKS, is_number, is_number_like, is_padded, split_line
 from .columns import (
     Columns,
+    describe_doubts,
     find_columns_by_header,
     find_columns_by_word,
     find_role,
     find_unit_word,
     list_meanings,
     list_names,
+    names_coordinates,
 )
 from .content import require_no_split_decimals
 from .lines import COMMENT_PREFIXES
@@ -178,7 +180,7 @@ def _split_rows(rows: Sequence[str], delimiter: str) -> list[list[str]]:
     first = next((i for i, n in enumerate(numbers[:_TOP_LINES]) if n >= 2), 0)
     if delimiter == BLANKS:
         cells[:first] = map(_join_units, cells[:first])
-    if any(find_columns_by_header(row, strict=False) for row in cells[:first]):
+    if any(names_coordinates(row) for row in cells[:first]):
         return cells
     counts = Counter(len(row) for row, n in zip(cells, numbers, strict=True) if n >= 2)
     for i in range(first):
@@ -366,7 +368,7 @@ def _count_named_columns(rows: Sequence[Sequence[str]], wishes: _Wishes) -> int 
         given = list_meanings(wishes.columns)
         return len(given) if given[-1:] == ["description"] else None
     for row in rows[:_TOP_LINES]:
-        known = find_columns_by_header(row, strict=False)
+        known = names_coordinates(row)
         if known is not None and known.roles.get("description") == len(row) - 1:
             return len(row)
     return None
@@ -395,7 +397,7 @@ def _find_top(rows: Sequence[Sequence[str]], count: int, decimal: str) -> _Top:
         if kind == "point count":
             top.announced = int(row[0])
         if kind == "header lines" and not is_known:
-            is_known = find_columns_by_header(row, strict=False) is not None
+            is_known = names_coordinates(row) is not None
             top.header = list(row)
         elif kind == "header lines":
             top.units = list(row)
@@ -413,7 +415,7 @@ def _classify_line(row: Sequence[str], count: int, decimal: str, is_header_known
             for cell in row
         )
         return "header lines" if is_units and numbers == 0 else "row"
-    if find_columns_by_header(row, strict=False) is not None:
+    if names_coordinates(row) is not None:
         return "header lines"
     if len(row) == 1 and count > 1 and row[0].isdecimal() and len(row[0]) <= _COUNT_DIGITS:
         return "point count"
@@ -433,15 +435,17 @@ def _find_header_in_comment(
     if first_row == 0:
         return None
     above = lines.decode_line(first_row - 1).strip()
+    found: list[list[str]] = []
     for prefix in ("", *COMMENT_PREFIXES):
         if above.startswith(prefix):
             names = split_line(above.removeprefix(prefix), delimiter)
-            if len(names) == count and find_columns_by_header(names, strict=False) is not None:
-                return names
+            if len(names) == count and names_coordinates(names) is not None:
+                found.append(names)
             other = split_header(above.removeprefix(prefix), delimiter, count)
             if other is not None and len(other) == count:
-                return other
-    return None
+                found.append(other)
+    plain = (names for names in found if not describe_doubts(names))
+    return next(plain, found[0] if found else None)
 
 
 # ------------------------------------------------------------------ columns
@@ -458,7 +462,7 @@ def _fit_header(
     if len(header) == count + 1 and not header[-1]:
         return header[:-1]
     n_told = _count_told_columns(wishes)
-    is_known = find_columns_by_header(header, strict=False) is not None
+    is_known = names_coordinates(header) is not None
     if n_told and (n_told >= count or not is_known):
         return []
     raise ReadError(
@@ -489,6 +493,9 @@ def _find_columns_by_name(
     columns = find_columns_by_header(header, units)
     if columns is None:
         found = [f"{find_role(name)} '{name}'" for name in header[:_TOP_LINES] if find_role(name)]
+        doubts = describe_doubts(header)
+        if doubts:
+            raise ReadError(f"the header ({list_names(header)}) leaves its meaning open: {doubts}.")
         raise ReadError(
             f"the header ({list_names(header)}) does not name easting, northing and elevation "
             f"(known: {', '.join(found) or 'none of it'}): say with the option columns which "

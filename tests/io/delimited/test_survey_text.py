@@ -427,8 +427,10 @@ def test_n_beside_x_and_y_is_the_number(survey):
 def test_what_a_header_leaves_open_is_told(survey):
     (note,) = survey("Nr;Y;X;H\n1;10;20;30\n2;11;21;31\n").notes
     assert "'X' is the easting and 'Y' the northing" in note
-    (note,) = survey("E,N,X,Y,Z\n1,2,30,40,5\n2,3,31,41,6\n").notes
+    (note,) = survey("X,Y,E,N,Z\n1,2,30,40,5\n2,3,31,41,6\n").notes
     assert "'E' and 'N' are taken, 'X' and 'Y' are not" in note
+    text = "E,N,X,Y,Z\n1,2,30,40,5\n2,3,31,41,6\n"
+    assert "('E', 'N'; 'X', 'Y', 'Z')" in str(fault(survey, text, ReadError))
     (note,) = survey("E,N,Height,Elevation\n1,2,30,40\n2,3,31,41\n").notes
     assert "'Elevation' is taken as the elevation, not 'Height'" in note
 
