@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from .vocabulary import Kind, Sense
 
-__all__ = ["ColumnName", "parse_name", "split_words"]
+__all__ = ["ColumnName", "list_senses", "parse_name"]
 
 _LONGEST_NAME = 200
 """Letters of a header cell that may be a name; a longer one is some other text."""
@@ -114,9 +114,13 @@ def _parse(name: str) -> ColumnName:
     return ColumnName(role.role, role.kind, system, unit, doubt, word, role.rank)
 
 
-def split_words(text: str) -> list[list[str]]:
-    """Return the words of a text, simplified, those in brackets apart."""
-    return [[word.plain for word in words] for words in _divide(_NUMBER_SIGN.sub(" no ", text))]
+def list_senses(text: str) -> list[tuple[str, Sense]]:
+    """Return the words of a text that name what a column may be, and what each says."""
+    text = _NUMBER_SIGN.sub(" no ", text)
+    found = _Found()
+    for words in _divide(text):
+        _read_part(words, text, found, is_bracket=True)
+    return found.roles
 
 
 def _divide(text: str) -> list[list[_Word]]:

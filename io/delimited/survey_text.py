@@ -232,7 +232,11 @@ def _find_columns(
     try:
         columns = [one.without(nodata) for one in describe_columns(cells, layout)]
         found, note = find_columns_by_content(
-            columns, area, is_scan=layout.is_scan, is_announced=layout.is_announced
+            columns,
+            area,
+            is_scan=layout.is_scan,
+            is_announced=layout.is_announced,
+            heading=layout.heading.label if layout.heading else "",
         )
     except ReadError as error:
         raise ReadError(f"'{path}': {error}", path=path) from None

@@ -1,0 +1,166 @@
+"""Lines near a table that name its coordinates without being its header: "# Format: NEZ".
+
+Such a line gives the order of the columns if it names all of them and nothing else; where it only
+speaks of coordinates, no convention may decide what the columns are.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...errors import ReadError
+from .columns import describe_doubts, find_columns_by_header, find_unit_word
+from .lines import COMMENT_PREFIXES
+from .names import list_senses
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from ...arrays import Int64Array
+    from .lines import TextLines
+
+__all__ = ["Heading", "find_heading"]
+
+_LINES_ABOVE, _LINES_BELOW = 100, 20
+_LONGEST_LINE = 300
+_SHOWN_LETTERS = 60
+_LETTERS = re.compile(r"[PNEXYZHD-]{3,8}", re.IGNORECASE)
+_SPLITS = (r"[,;\t|]", r"[/|\\]", r"->|[-\u2013>\u2192]", r"\s+")
+_BEFORE_BRACKET = re.compile(r"\s+(?=[(\[])")
+_SPEAKING = frozenset(
+    (
+        *("easting", "eastings", "northing", "northings", "rechtswert", "hochwert", "ostwert"),
+        *("nordwert", "longitude", "latitude", "lat", "lon", "lng", "longitud", "latitud"),
+    )
+)
+"""Words that stand for a coordinate wherever they are; "north" may be in the name of a site."""
+
+
+class Heading(NamedTuple):
+    """A line that speaks of coordinates."""
+
+    line: int
+    """From 0."""
+    text: str
+    names: tuple[str, ...] = ()
+    """One a column; () if the line does not give them."""
+    units: tuple[str, ...] = ()
+    """Cells of a line of units below it."""
+
+    @property
+    def label(self) -> str:
+        """Name the line for a sentence."""
+        text = self.text.strip()
+        shown = text if len(text) <= _SHOWN_LETTERS else f"{text[:_SHOWN_LETTERS]}..."
+        return f"line {self.line + 1} ('{shown}')"
+
+    @property
+    def note(self) -> str:
+        """Say that it gives the order of the columns."""
+        return f"L{self.label[1:]} gives the order of the columns."
+
+
+def find_heading(lines: TextLines, rows: Int64Array, count: int) -> Heading | None:
+    """Return the line near a table that gives the order of its columns, or speaks of coordinates.
+
+    Parameters
+    ----------
+    lines : TextLines
+    rows : (n,) int64 array
+        Lines of the table, from 0.
+    count : int
+        Number of its columns.
+
+    Raises
+    ------
+    ReadError
+        If two lines give two orders.
+    """
+    speaking: Heading | None = None
+    giving: Heading | None = None
+    for line, text in _list_others(lines, rows):
+        names = _read_order(text, count)
+        if names is None and giving is not None and line == giving.line + 1 and not giving.units:
+            giving = giving._replace(units=_read_units(text, count))
+        if names is None and speaking is None and _speaks_of_coordinates(text):
+            speaking = Heading(line, text)
+        if names is not None and giving is not None and names != giving.names:
+            raise ReadError(
+                f"{giving.label} and {Heading(line, text).label} give two orders of its columns: "
+                "say with the option columns which is right."
+            )
+        if names is not None and giving is None:
+            giving = Heading(line, text, names)
+    return giving or speaking
+
+
+def _list_others(lines: TextLines, rows: Int64Array) -> Iterator[tuple[int, str]]:
+    """Walk the lines above a table, between its first rows, and behind it, that are no rows."""
+    is_other = ~lines.is_blank
+    is_other[rows] = False
+    others = np.flatnonzero(is_other)
+    near = others[(others < rows[0]) | (others > rows[-1])]
+    for line in np.unique([*near[:_LINES_ABOVE], *others[:_LINES_BELOW], *near[-_LINES_BELOW:]]):
+        text = lines.decode_line(int(line)).strip()
+        prefix = next((one for one in COMMENT_PREFIXES if text.startswith(one)), "")
+        if len(text) <= _LONGEST_LINE:
+            yield int(line), text.removeprefix(prefix).strip(" \t#/;!%\"'")
+
+
+def _read_order(text: str, count: int) -> tuple[str, ...] | None:
+    """Return the names that a line gives the columns; None if it does not give all."""
+    for part in dict.fromkeys((text, re.split(r"[:=]", text)[-1].strip())):
+        for split in _SPLITS:
+            cells = [one.strip(" \"'") for one in re.split(split, _BEFORE_BRACKET.sub("", part))]
+            cells = [one for one in cells if one]
+            names = _take_letters(cells[-1:]) or cells
+            before = [] if names is cells and len(cells) <= count else cells[: -len(names)]
+            if names is cells and split == r"\s+":
+                names, before = cells[-count:], cells[:-count]
+            if len(names) == count and _are_names(names) and not _name_coordinates(before):
+                return tuple(names)
+    return None
+
+
+def _take_letters(cells: Sequence[str]) -> list[str]:
+    """Return the letters of a word such as PNEZD."""
+    word = "".join(cells)
+    if _LETTERS.fullmatch(word) is None:
+        return []
+    letters = word.replace("-", "").upper()
+    return list(word.upper()) if len(set(letters)) == len(letters) else []
+
+
+def _are_names(names: Sequence[str]) -> bool:
+    try:
+        return find_columns_by_header(names) is not None and not describe_doubts(names)
+    except ReadError:
+        return False
+
+
+def _name_coordinates(words: Sequence[str]) -> bool:
+    roles = {sense.role for word in words for _, sense in list_senses(word)}
+    return not roles.isdisjoint(("easting", "northing", "elevation"))
+
+
+def _speaks_of_coordinates(text: str) -> bool:
+    """Whether a line has a word for a coordinate, or those for two of them."""
+    letters = [set(_take_letters([word])) for word in re.split(r"[\s,;:=/|-]+", text)]
+    if any(one >= {*"NE"} or one >= {*"XY"} for one in letters):
+        return True
+    named = list_senses(text)
+    if any(word in _SPEAKING for word, _ in named):
+        return True
+    return {sense.role for _, sense in named} >= {"easting", "northing"}
+
+
+def _read_units(text: str, count: int) -> tuple[str, ...]:
+    """Return the cells of a line of nothing but units."""
+    for split in _SPLITS:
+        cells = tuple(one.strip(" ()[]") for one in re.split(split, text))
+        if len(cells) == count and all(find_unit_word(f"({cell})") for cell in cells if cell):
+            return cells
+    return ()
