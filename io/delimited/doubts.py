@@ -112,7 +112,8 @@ def _has_one_step(values: Float64Array) -> bool:
     steps = np.diff(values)
     if len(steps) < _FEW_ROWS - 1 or not np.isfinite(steps).all() or steps[0] == 0.0:
         return False
-    return bool((np.abs(steps - steps[0]) <= _SAME_STEP * np.abs(values).max()).all())
+    rounding = 4.0 * np.finfo(np.float64).eps * np.abs(values).max()
+    return bool((np.abs(steps - steps[0]) <= _SAME_STEP * abs(steps[0]) + rounding).all())
 
 
 def _is_monotone(values: Float64Array) -> bool:
