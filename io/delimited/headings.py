@@ -14,7 +14,7 @@ import numpy as np
 from ...errors import ReadError
 from .columns import describe_doubts, find_columns_by_header, find_unit_word
 from .lines import COMMENT_PREFIXES
-from .names import list_senses
+from .names import read_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ...arrays import Int64Array
     from .lines import TextLines
 
-__all__ = ["Heading", "find_heading"]
+__all__ = ["Heading", "UnitLine", "find_heading", "find_unit_line"]
 
 _LINES_ABOVE, _LINES_BELOW = 100, 20
 _LONGEST_LINE = 300
@@ -37,6 +37,21 @@ _SPEAKING = frozenset(
     )
 )
 """Words that stand for a coordinate wherever they are; "north" may be in the name of a site."""
+
+
+_UNIT_NOUNS = frozenset(
+    (
+        *("unit", "units", "einheit", "einheiten", "unite", "unites", "unidad", "unidades"),
+        *("unita", "unidade", "eenheid", "enhet"),
+    )
+)
+_FILLERS = _UNIT_NOUNS | frozenset(
+    (
+        *("in", "are", "is", "all", "the", "of", "given", "as", "and", "for", "values", "used"),
+        *("alle", "sind", "en", "de", "las", "los", "le", "les", "hoehen", "hohen", "altitudes"),
+    )
+)
+"""Words beside which "elevations" and a unit say what the unit of the elevations is."""
 
 
 class Heading(NamedTuple):
@@ -85,15 +100,16 @@ def find_heading(lines: TextLines, rows: Int64Array, count: int) -> Heading | No
         names = _read_order(text, count)
         if names is None and giving is not None and line == giving.line + 1 and not giving.units:
             giving = giving._replace(units=_read_units(text, count))
+        whole = lines.decode_line(line)
         if names is None and speaking is None and _speaks_of_coordinates(text):
-            speaking = Heading(line, text)
+            speaking = Heading(line, whole)
         if names is not None and giving is not None and names != giving.names:
             raise ReadError(
-                f"{giving.label} and {Heading(line, text).label} give two orders of its columns: "
+                f"{giving.label} and {Heading(line, whole).label} give two orders of its columns: "
                 "say with the option columns which is right."
             )
         if names is not None and giving is None:
-            giving = Heading(line, text, names)
+            giving = Heading(line, whole, names)
     return giving or speaking
 
 
@@ -142,7 +158,7 @@ def _are_names(names: Sequence[str]) -> bool:
 
 
 def _name_coordinates(words: Sequence[str]) -> bool:
-    roles = {sense.role for word in words for _, sense in list_senses(word)}
+    roles = {sense.role for word in words for _, sense in read_words(word).roles}
     return not roles.isdisjoint(("easting", "northing", "elevation"))
 
 
@@ -151,7 +167,7 @@ def _speaks_of_coordinates(text: str) -> bool:
     letters = [set(_take_letters([word])) for word in re.split(r"[\s,;:=/|-]+", text)]
     if any(one >= {*"NE"} or one >= {*"XY"} for one in letters):
         return True
-    named = list_senses(text)
+    named = read_words(text).roles
     if any(word in _SPEAKING for word, _ in named):
         return True
     return {sense.role for _, sense in named} >= {"easting", "northing"}
@@ -164,3 +180,37 @@ def _read_units(text: str, count: int) -> tuple[str, ...]:
         if len(cells) == count and all(find_unit_word(f"({cell})") for cell in cells if cell):
             return cells
     return ()
+
+
+# ------------------------------------------------------------------ units
+
+
+class UnitLine(NamedTuple):
+    """A line that tells a unit."""
+
+    unit: str
+    """That of the elevations, as it is written; "" if the line leaves open what it is of."""
+    label: str
+    note: str
+
+
+def find_unit_line(lines: TextLines, rows: Int64Array) -> UnitLine | None:
+    """Return the first line near a table that tells a unit: "# elevations in US survey feet"."""
+    for line, text in _list_others(lines, rows):
+        words = read_words(text)
+        plain = {word.casefold() for word in words.unknown}
+        named = {sense.role for _, sense in words.roles}
+        if len(set(words.units)) != 1 or re.search(rf"\d\s*{re.escape(words.units[0])}", text):
+            continue
+        whole = Heading(line, lines.decode_line(line)).label
+        if named == {"elevation"} and plain <= _FILLERS:
+            note = f"L{whole[1:]} gives the unit of the elevations."
+            return UnitLine(words.units[0], whole, note)
+        if plain & _UNIT_NOUNS or "elevation" in named:
+            return UnitLine(
+                "",
+                whole,
+                f"L{whole[1:]} tells a unit, which is not looked at: the option z_unit says that "
+                "of the elevations.",
+            )
+    return None

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from .vocabulary import Kind, Sense
 
-__all__ = ["ColumnName", "list_senses", "parse_name"]
+__all__ = ["ColumnName", "Words", "parse_name", "read_words"]
 
 _LONGEST_NAME = 200
 """Letters of a header cell that may be a name; a longer one is some other text."""
@@ -102,7 +102,10 @@ def _parse(name: str) -> ColumnName:
     text = _NUMBER_SIGN.sub(" no ", name).strip()
     found = _Found()
     for number, words in enumerate(_divide(text)):
+        n_unknown, n_units = len(found.unknown), len(found.units)
         _read_part(words, text, found, is_bracket=number > 0)
+        if number and len(found.unknown) > n_unknown:
+            del found.units[n_units:]  # (error in m)
     role, word, doubt = _settle_role(found.roles)
     unit = found.units[0][1] if found.units else ""
     doubt = next(iter(found.unknown), "") or doubt or _find_clash(found, role)
@@ -114,13 +117,30 @@ def _parse(name: str) -> ColumnName:
     return ColumnName(role.role, role.kind, system, unit, doubt, word, role.rank)
 
 
-def list_senses(text: str) -> list[tuple[str, Sense]]:
-    """Return the words of a text that name what a column may be, and what each says."""
+class Words(NamedTuple):
+    """What the words of a line of text say."""
+
+    roles: tuple[tuple[str, Sense], ...]
+    """Words that name what a column may be."""
+    units: tuple[str, ...]
+    """Units of length, as they are written."""
+    unknown: tuple[str, ...]
+
+
+def read_words(text: str) -> Words:
+    """Return what the words of a line of text say.
+
+    Examples
+    --------
+    >>> read_words("elevations in US survey feet").units
+    ('US survey feet',)
+    """
     text = _NUMBER_SIGN.sub(" no ", text)
     found = _Found()
     for words in _divide(text):
         _read_part(words, text, found, is_bracket=True)
-    return found.roles
+    units = tuple(shown for _, shown in found.units)
+    return Words(tuple(found.roles), units, tuple(found.unknown))
 
 
 def _divide(text: str) -> list[list[_Word]]:
@@ -153,7 +173,7 @@ def _divide_capitals(found: re.Match[str]) -> Iterator[_Word]:
 
 def _read_part(words: list[_Word], text: str, found: _Found, *, is_bracket: bool) -> None:
     """Read the words of a part, the longest phrase that is known at a time."""
-    place, units, n_unknown = 0, [], len(found.unknown)
+    place = 0
     while place < len(words):
         count, senses = _find_phrase(words[place:])
         phrase = "".join(word.plain for word in words[place : place + count])
@@ -166,14 +186,12 @@ def _read_part(words: list[_Word], text: str, found: _Found, *, is_bracket: bool
             if sense.what == "role":
                 found.roles.append((phrase, sense))
             elif sense.what == "unit":
-                units.append((phrase, _end_short_form(shown, words[place + count - 1], text)))
+                found.units.append((phrase, _end_short_form(shown, words[place + count - 1], text)))
             elif sense.what == "system":
                 found.systems.append(phrase)
             found.has_degrees |= sense.what == "degree"
             found.has_datum |= sense.what == "datum"
         place += count
-    if not is_bracket or len(found.unknown) == n_unknown:
-        found.units += units
 
 
 def _end_short_form(shown: str, last: _Word, text: str) -> str:

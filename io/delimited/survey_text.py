@@ -20,6 +20,7 @@ from ...tin.types import RowSources
 from ..registry.losses import keep_on_one_line
 from ..reprojection.placement import place, settle_unit
 from ..reprojection.transformation import is_geographic
+from .axes import require_no_geocentric, require_one_hemisphere, settle_axes
 from .columns import find_unit_word
 from .content import find_columns_by_content
 from .findings import (
@@ -31,13 +32,12 @@ from .findings import (
     find_rounded_coordinates,
     find_split_thousands,
     find_summary_rows,
-    find_turned_axes,
     find_unit_words,
-    find_units_above,
     require_in_area,
     require_one_header,
     require_unit_of_crs,
 )
+from .headings import find_unit_line
 from .layout import find_layout
 from .lines import COMMENT_PREFIXES, read_lines
 from .table import describe_columns, describe_faults_of_rows, read_cells, read_table
@@ -149,13 +149,15 @@ def read(
     _require_few_faults(table.faults, lines, layout, path, skip_bad=skip_bad)
     require_one_header(table.faults, lines, layout.delimiter, meaning, path)
     told = _account_for_rows(table, left_out, path)
-    notes = [*layout.notes, *notes, *told_units, *told_cut, *told.notes]
+    unit, told_unit = _find_unit(layout, lines, Unit.of(z_unit), path)
+    is_headed = layout.columns is not None and columns is None
+    if is_headed:
+        told, meaning = _settle_header(told, meaning, source or target, area, path)
+    notes = [*layout.notes, *notes, *told_units, *told_cut, *told.notes, *told_unit]
     notes += [
-        *require_in_area(told.points, told.rows, meaning, area, path),
-        *_find_turned(told, layout, source or target, area, is_told=columns is not None),
+        *require_in_area(told.points, told.rows, meaning, area, path, is_headed=is_headed),
         *_find_odd(told, lines, layout, meaning, in_degrees=is_geographic(source)),
     ]
-    unit = settle_unit(Unit.of(z_unit), _find_header_unit(layout), path)
     placed = place(
         told.points, source=source, target=target, path=path, unit=unit, looks_at_area=False
     )
@@ -172,14 +174,6 @@ def read(
     )
 
 
-def _find_turned(
-    told: _Accounted, layout: Layout, crs: CRS | None, area: AreaOfUse | None, *, is_told: bool
-) -> list[str]:
-    if layout.columns is None or is_told:
-        return []
-    return find_turned_axes(told.points, layout.columns, crs, area)
-
-
 def _find_odd(
     told: _Accounted, lines: TextLines, layout: Layout, columns: Columns, *, in_degrees: bool
 ) -> list[str]:
@@ -189,7 +183,6 @@ def _find_odd(
         *find_repeated_numbers(numbers, told.rows),
         *find_rounded_coordinates(lines, told.rows, layout.delimiter, columns),
         *find_summary_rows(told.points, told.rows, (numbers, names)),
-        *find_units_above(lines, int(layout.rows[0])),
         *find_commented_points(lines, layout.rows, layout, columns),
         *(() if layout.columns is None else _find_split(told, layout, columns)),
     ]
@@ -201,10 +194,42 @@ def _find_split(told: _Accounted, layout: Layout, columns: Columns) -> list[str]
     return find_split_thousands(told.points, beyond, layout.delimiter)
 
 
-def _find_header_unit(layout: Layout) -> Unit | None:
-    """Return the unit of elevations that the header names; a word that is no length tells none."""
+def _settle_header(
+    told: _Accounted,
+    columns: Columns,
+    crs: CRS | None,
+    area: AreaOfUse | None,
+    path: Path,
+) -> tuple[_Accounted, Columns]:
+    """Refuse what no header can mean, and take X for the northing where the CRS does."""
+    require_one_hemisphere(told.attributes, columns, path)
+    require_no_geocentric(told.points, columns, path)
+    points, columns, notes = settle_axes(told.points, columns, crs, area)
+    return told._replace(points=points, notes=[*told.notes, *notes]), columns
+
+
+def _find_unit(
+    layout: Layout, lines: TextLines, declared: Unit | None, path: Path
+) -> tuple[Unit | None, list[str]]:
+    """Return the unit of elevations by the header, a line near the table or the caller."""
+    named = _find_known_unit(layout.elevation_unit)
+    line = find_unit_line(lines, layout.rows)
+    if line is None or not line.unit:
+        return settle_unit(declared, named, path), [line.note] if line else []
+    told = _find_known_unit(line.unit)
+    if named not in (None, told) or declared not in (None, told):
+        raise ReadError(
+            f"'{path}': {line.label} tells {line.unit} as the unit of the elevations, and the "
+            f"{'header' if named else 'option z_unit'} another: make them agree.",
+            path=path,
+        )
+    return told, [line.note]
+
+
+def _find_known_unit(word: str | None) -> Unit | None:
+    """Return a unit of length; a word that is none tells none."""
     try:
-        return Unit.of(layout.elevation_unit)
+        return Unit.of(word)
     except OptionError:
         return None
 

@@ -110,7 +110,7 @@ CASES = {
             "divided": [0, 1, 2],
             "skipped": {"comment lines": 2},
             "word": "ENZ",
-            "notes": ("Line 1 ('E,N,Z') gives the order of the columns.",),
+            "notes": ("Line 1 ('# E,N,Z') gives the order of the columns.",),
         },
     ),
     "semicolon comment": (

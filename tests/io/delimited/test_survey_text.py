@@ -254,9 +254,12 @@ def test_crs_decides_whether_northing_comes_first(survey):
 
 def test_named_columns_are_refused_where_only_the_exchanged_ones_fit(survey):
     """Neither a header nor the caller's word may put a site on another continent silently."""
-    content = "northing,easting,z\n752646,4024238,1\n752647,4024238,1\n"
+    axes = "y,x,z\n752646,4024238,1\n752647,4024238,1\n"
+    said = str(fault(survey, axes, CrsError, crs="EPSG:32616"))
+    assert "columns='ENZ' takes the easting in column 1 ('y')" in said
+    content = axes.replace("y,x", "northing,easting")
     said = str(fault(survey, content, CrsError, crs="EPSG:32616"))
-    assert "columns='ENZ' takes the easting in column 1 ('northing')" in said
+    assert "check that EPSG:32616 is the CRS of the points" in said  # not that names are wrong
     assert survey(content).points[0].tolist() == [4024238, 752646, 1]
     found = survey(content, crs="EPSG:32616", columns="ENZ")
     assert found.points[0].tolist() == [752646, 4024238, 1]
@@ -1313,17 +1316,55 @@ def test_codes_that_are_units_in_few_rows_are_not_told(survey):
     assert survey("E,N,Z,Code\n1.5,2.5,3.5,M\n2.5,7.5,4.5,EP\n3.5,8.5,5.5,\n").notes == []
 
 
-def test_an_x_that_the_crs_calls_northing_is_told(survey):
-    text = "Nr;X;Y;H\n1;500084.8;250013.6;325.8\n2;500029.1;250046.2;322.1\n3;500040;250090;323\n"
-    told = [
-        "EPSG:2180 calls its northing X, and by the header 'X' is taken as the easting: if it is "
-        "not, columns='PNEZ' says so."
+@pytest.mark.parametrize("header", ["Nr;X;Y;H", "Nr;Y;X;H", "Nr;Coord. X;Coord. Y;Z"])
+@pytest.mark.parametrize(
+    ("crs", "east", "north"),
+    [
+        ("EPSG:2180", 500_084.8, 500_013.6),
+        ("EPSG:3844", 586_100.5, 330_100.5),
+        ("EPSG:6677", -12_100.5, -35_100.5),
+        ("EPSG:21781", 600_100.5, 200_100.5),
+        ("EPSG:31468", 4_570_200.5, 5_400_100.5),
+    ],
+)
+def test_an_x_that_header_and_crs_call_northing_is_the_northing(survey, header, crs, east, north):
+    place = {"X": north, "Y": east}
+    rows = [
+        [i] + [place[name[-1]] + 7 * i for name in header.split(";")[1:3]] + [300 + i]
+        for i in range(5)
     ]
-    assert survey(text, crs="EPSG:2180").notes == told
-    assert survey(text, crs="EPSG:2180", columns="PNEZ").points[0].tolist() == [
-        *(250013.6, 500084.8, 325.8)
+    text = header + "\n" + "".join(";".join(map(str, row)) + "\n" for row in rows)
+    found = survey(text, crs=crs)
+    assert found.points[0].tolist() == [east, north, 300]
+    assert any(f"{crs} calls its northing X, as the header does" in note for note in found.notes)
+
+
+def test_an_x_that_only_the_crs_or_the_area_of_use_turns(survey):
+    text = "Nr;X;Y;H\n1;500084.8;250013.6;325.8\n2;500029.1;250046.2;322.1\n3;500040;250090;323\n"
+    assert survey(text, crs="EPSG:2180", columns="PENZ").points[0].tolist() == [
+        *(500084.8, 250013.6, 325.8)
     ]
     assert not any("calls its northing" in note for note in survey(text, crs="EPSG:32634").notes)
+    gis = "X;Y;Z\n4570200;5400100;512\n4570210;5400110;513\n4570220;5400100;512\n"
+    assert survey(gis, crs="EPSG:31468").points[0].tolist() == [4570200, 5400100, 512]
+
+
+@pytest.mark.parametrize(
+    ("header", "row", "is_read"),
+    [
+        ("Lat,N/S,Lon,E/W,Elev", "36.3{0},N,84.2{0},W,{0}", False),
+        ("Lat,N/S,Lon,E/W,Elev", "36.3{0},S,84.2{0},E,{0}", False),
+        ("Lat,N/S,Lon,E/W,Elev", "36.3{0},N,84.2{0},E,{0}", True),
+        ("Lat,Dir1,Lon,Dir2,Elev", "36.3{0},N,84.2{0},W,{0}", False),
+        ("Lat,LatDir,Lon,LonDir,Elev", "36.3{0},1,84.2{0},-1,{0}", False),
+    ],
+)
+def test_columns_of_hemispheres_are_never_thrown_away(survey, header, row, is_read):
+    text = header + "\n" + "".join(row.format(i) + "\n" for i in range(1, 6))
+    if is_read:
+        assert len(survey(text, crs="EPSG:3857")) == 5
+    else:
+        assert "may turn the sign" in str(fault(survey, text, crs="EPSG:3857"))
 
 
 def test_points_whose_numbers_begin_as_comments_do_are_told(survey):
@@ -1438,6 +1479,33 @@ def test_a_unit_above_the_table_is_told(survey, line):
     (note,) = found.notes
     assert note.startswith(f"Line 1 ('{line}') tells a unit")
     assert survey(f"United we stand\nUnits: many\n{WITH_HEADER}").notes == []
+
+
+@pytest.mark.parametrize(
+    ("line", "unit"),
+    [
+        ("# elevations in US survey feet", "US survey foot"),
+        ("# Elevation unit: ft", "foot"),
+        ("// Heights are given in metres", "metre"),
+        ("# Höhen in m", None),
+        ("# elevations relative to the floor, in ft", None),
+        ("# spacing 5 ft", None),
+    ],
+)
+def test_a_line_that_gives_the_unit_of_elevations_is_followed(survey, line, unit):
+    found = survey(f"{line}\n{WITH_HEADER}")
+    assert (found.elevation_unit and found.elevation_unit.name) == unit
+    assert bool(found.notes) == ("5 ft" not in line and "Höhen" not in line)
+    if unit is not None:
+        assert "gives the unit of the elevations" in found.notes[0]
+        said = str(fault(survey, f"{line}\n{WITH_HEADER}", z_unit="cm"))
+        assert "as the unit of the elevations, and the option z_unit another" in said
+
+
+def test_geocentric_coordinates_are_no_eastings(survey):
+    rows = "".join(f"{i},{630000.5 + i},{-5100000.5 + 2 * i},{3760000.25 - i}\n" for i in range(9))
+    assert "geocentric" in str(fault(survey, "P,X,Y,Z\n" + rows))
+    assert len(survey("P,E,N,Z\n" + rows)) == len(survey("P,X,Y,Z\n" + rows, columns="PXYZ")) == 9
 
 
 def test_white_space_of_any_kind_may_stand_around_a_number(tmp_path):

@@ -1,0 +1,132 @@
+"""Which way coordinates count: an X that points north, a longitude that counts to the west."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...errors import ReadError
+from .columns import COORDINATES, shorten
+from .names import parse_name
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from ...arrays import AnyArray, Float64Array
+    from ...crs import CRS
+    from ...tin.screening.area_of_use import AreaOfUse
+    from .columns import Columns
+
+__all__ = ["are_named_plainly", "require_no_geocentric", "require_one_hemisphere", "settle_axes"]
+
+_POSITIVE = frozenset({"n", "e", "north", "east"})
+_NEGATIVE = frozenset({"s", "w", "o", "south", "west", "sud", "ouest", "oeste"})
+
+_EARTH = (6_330_000.0, 6_400_000.0)
+"""Metres from its centre to places on the earth."""
+_FOOT = 0.3048
+_HIGHEST = 30_000.0
+"""Elevations are never so high, in feet; geocentric Z is, but near the equator."""
+
+
+def settle_axes(
+    points: Float64Array, columns: Columns, crs: CRS | None, area: AreaOfUse | None
+) -> tuple[Float64Array, Columns, list[str]]:
+    """Take the header's X for the northing where the CRS calls its northing so.
+
+    Where only one reading lies in the area of use it is taken.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+        As they are in the file, with X as the easting.
+    columns : Columns
+        Found by the header.
+    crs : CRS or None
+        Of the coordinates in the file.
+    area : AreaOfUse or None
+        None says nothing.
+
+    Returns
+    -------
+    points : (n, 3) float64 array
+    columns : Columns
+    notes : list of str
+    """
+    east, north = (columns.names[columns.roles[role]] for role in COORDINATES[:2])
+    is_axis = parse_name(east).kind == "axis"
+    if crs is None or not is_axis or not _points_north(crs, "x"):
+        return points, columns, []
+    turned = points[:, [1, 0, 2]]
+    if area is not None and area.covers_most(points) and not area.covers_most(turned):
+        return points, columns, []
+    note = (
+        f"{crs.label} calls its northing X, as the header does: '{shorten(east)}' is taken as the "
+        f"northing and '{shorten(north)}' as the easting; columns='{columns.word}' takes them the "
+        "other way round."
+    )
+    return turned, columns.permute((1, 0, 2)), [note]
+
+
+def _points_north(crs: CRS, name: str) -> bool:
+    return any(
+        axis.abbrev.casefold() == name and axis.direction == "north"
+        for axis in crs.to_pyproj().axis_info
+    )
+
+
+def are_named_plainly(columns: Columns) -> bool:
+    """Whether the names of easting and northing say beyond doubt which is which: not X and Y."""
+    names = [parse_name(columns.names[columns.roles[role]]) for role in COORDINATES[:2]]
+    return all(
+        name.kind in ("word", "letter") and name.role == role
+        for name, role in zip(names, COORDINATES, strict=False)
+    )
+
+
+def require_one_hemisphere(
+    attributes: Mapping[str, AnyArray], columns: Columns, path: Path
+) -> None:
+    """Refuse degrees beside a column that turns their sign: N or S, E or W.
+
+    Raises
+    ------
+    ReadError
+        Unless all of it is N and E.
+    """
+    for name, values in attributes.items() if columns.is_degrees else ():
+        letters = {str(one).strip(" .").casefold() for one in values.tolist()} - {""}
+        is_named = parse_name(name).role == "hemisphere"
+        is_hemisphere = bool(letters) and letters <= _POSITIVE | _NEGATIVE
+        if (is_named or is_hemisphere) and not letters <= _POSITIVE:
+            raise ReadError(
+                f"'{path}': the column '{shorten(name)}' may turn the sign of latitudes and "
+                f"longitudes ({', '.join(sorted(letters)[:4])}): write those to the south and west "
+                "as negative numbers, and leave the column out.",
+                path=path,
+            )
+
+
+def require_no_geocentric(points: Float64Array, columns: Columns, path: Path) -> None:
+    """Refuse X, Y, Z that count from the centre of the earth.
+
+    Raises
+    ------
+    ReadError
+    """
+    names = (parse_name(columns.names[column]) for column in columns.coordinates)
+    if len(points) == 0 or any(name.kind != "axis" for name in names):
+        return
+    with np.errstate(over="ignore"):
+        radius = float(np.median(np.sqrt((points**2).sum(axis=1))))
+    is_high = abs(float(np.median(points[:, 2]))) > _HIGHEST
+    low, high = _EARTH
+    if is_high and (low <= radius <= high or low <= _FOOT * radius <= high):
+        raise ReadError(
+            f"'{path}': its X, Y and Z lie {radius:,.0f} from their origin, as geocentric "
+            "coordinates do, which are no easting, northing and elevation: transform them first, "
+            f"or columns='{columns.word}' takes them nonetheless.",
+            path=path,
+        )
