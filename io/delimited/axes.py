@@ -19,7 +19,14 @@ if TYPE_CHECKING:
     from ...tin.screening.area_of_use import AreaOfUse
     from .columns import Columns
 
-__all__ = ["are_named_plainly", "require_no_geocentric", "require_one_hemisphere", "settle_axes"]
+__all__ = [
+    "are_named_plainly",
+    "describe_turn",
+    "is_northing",
+    "require_no_geocentric",
+    "require_one_hemisphere",
+    "settle_axes",
+]
 
 _POSITIVE = frozenset({"n", "e", "north", "east"})
 _NEGATIVE = frozenset({"s", "w", "o", "south", "west", "sud", "ouest", "oeste"})
@@ -56,18 +63,26 @@ def settle_axes(
     notes : list of str
     """
     east, north = (columns.names[columns.roles[role]] for role in COORDINATES[:2])
-    is_axis = parse_name(east).kind == "axis"
-    if crs is None or not is_axis or not _points_north(crs, "x"):
+    if crs is None or not is_northing(east, points[:, :2], crs, area):
         return points, columns, []
-    turned = points[:, [1, 0, 2]]
-    if area is not None and area.covers_most(points) and not area.covers_most(turned):
-        return points, columns, []
-    note = (
+    note = describe_turn(crs, east, north)
+    note += f"; columns='{columns.word}' takes them the other way round."
+    return points[:, [1, 0, 2]], columns.permute((1, 0, 2)), [note]
+
+
+def is_northing(name: str, xy: Float64Array, crs: CRS, area: AreaOfUse | None) -> bool:
+    """Whether a column called X is the northing, as its CRS says and the area of use allows."""
+    if parse_name(name).kind != "axis" or not _points_north(crs, "x"):
+        return False
+    return area is None or not area.covers_most(xy) or area.covers_most(xy[:, ::-1])
+
+
+def describe_turn(crs: CRS, east: str, north: str) -> str:
+    """Say that the columns called X and Y are taken as northing and easting."""
+    return (
         f"{crs.label} calls its northing X, as the header does: '{shorten(east)}' is taken as the "
-        f"northing and '{shorten(north)}' as the easting; columns='{columns.word}' takes them the "
-        "other way round."
+        f"northing and '{shorten(north)}' as the easting"
     )
-    return turned, columns.permute((1, 0, 2)), [note]
 
 
 def _points_north(crs: CRS, name: str) -> bool:
@@ -86,9 +101,7 @@ def are_named_plainly(columns: Columns) -> bool:
     )
 
 
-def require_one_hemisphere(
-    attributes: Mapping[str, AnyArray], columns: Columns, path: Path
-) -> None:
+def require_one_hemisphere(attributes: Mapping[str, AnyArray], path: Path) -> None:
     """Refuse degrees beside a column that turns their sign: N or S, E or W.
 
     Raises
@@ -96,7 +109,7 @@ def require_one_hemisphere(
     ReadError
         Unless all of it is N and E.
     """
-    for name, values in attributes.items() if columns.is_degrees else ():
+    for name, values in attributes.items():
         letters = {str(one).strip(" .").casefold() for one in values.tolist()} - {""}
         is_named = parse_name(name).role == "hemisphere"
         is_hemisphere = bool(letters) and letters <= _POSITIVE | _NEGATIVE

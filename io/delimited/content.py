@@ -15,6 +15,7 @@ import numpy as np
 
 from ..._sentences import counted, inflect, shown
 from ...errors import ReadError
+from ...tin.screening.nodata import find_suspect_elevations
 from .columns import Columns, find_columns_by_word
 from .doubts import are_angles_in_parts, find_doubt, have_no_elevations
 
@@ -240,7 +241,10 @@ def _compare_columns(candidate: _Candidate, columns: Sequence[Column]) -> Iterat
     """Say what speaks against other columns; where only axes may be exchanged it tells nothing."""
     if any(one.text_share > _ODD_SHARE for one in columns[candidate.start : candidate.start + 3]):
         yield "would have coordinates that are no numbers"
-    relief, extent = measure_relief_and_extent(candidate.coordinates(columns))
+    points = candidate.coordinates(columns)
+    no_data = [one.value for one in find_suspect_elevations(points[:, 2])]
+    points = points[~np.isin(points[:, 2], no_data)]
+    relief, extent = measure_relief_and_extent(points)
     if is_too_steep(relief, extent):
         yield f"would rise by {relief:,.6g} within an extent of {extent:,.6g}"
 

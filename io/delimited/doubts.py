@@ -65,7 +65,8 @@ def have_no_elevations(columns: Sequence[Column]) -> bool:
     if len(some[0]) < _FEW_ROWS or columns[2].is_text:
         return False
     digits = [_count_digits(values) for values in some]
-    return min(digits[:2]) > 0 and digits[2] == 0
+    are_repeated = 2 * len(np.unique(some[2])) <= len(some[2])
+    return min(digits[:2]) > 0 and digits[2] == 0 and are_repeated
 
 
 def are_angles_in_parts(columns: Sequence[Column]) -> bool:

@@ -15,11 +15,12 @@ from .names import ColumnName, parse_name
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-__all__ = ["Group", "find_group"]
+__all__ = ["Group", "find_group", "find_plane_pair"]
 
 _FAMILIES = {"word": 0, "letter": 0, "axis": 1, "angle": 2}
 """Of several pairs those are preferred that say where they point, longitudes and latitudes last."""
 _COORDINATES = {"easting", "northing", "elevation"}
+_PLANE = {"easting", "northing"}
 _SHOWN_LETTERS = 40
 
 
@@ -46,6 +47,14 @@ class _Pair:
     @property
     def family(self) -> int:
         return _FAMILIES[self.name.kind]
+
+
+def find_plane_pair(header: Sequence[str]) -> tuple[int, int] | None:
+    """Return the columns of easting and northing; None unless a header names just one of each."""
+    names = [parse_name(name) for name in header]
+    pairs = _find_pairs(names)
+    named = [name for name in names if name.role in _PLANE and not name.doubt]
+    return (pairs[0].east, pairs[0].north) if len(pairs) == 1 and len(named) == 2 else None
 
 
 def find_group(header: Sequence[str], *, with_doubtful: bool = False) -> Group | None:

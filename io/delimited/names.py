@@ -188,7 +188,7 @@ def _read_part(words: list[_Word], text: str, found: _Found, *, is_bracket: bool
             elif sense.what == "unit":
                 found.units.append((phrase, _end_short_form(shown, words[place + count - 1], text)))
             elif sense.what == "system":
-                found.systems.append(phrase)
+                found.systems.append(sense.role)
             found.has_degrees |= sense.what == "degree"
             found.has_datum |= sense.what == "datum"
         place += count
@@ -220,7 +220,7 @@ def _settle_role(found: Sequence[tuple[str, Sense]]) -> tuple[Sense | None, str,
     # "X (Northing)": the word says which way the axis points.
     plain = [(word, one) for word, one in named if one.kind not in ("axis", "letter")]
     plain = plain or [(word, one) for word, one in named if one.kind != "axis"] or named
-    role = plain[0][1]
+    role = min(plain, key=lambda pair: pair[1].kind != "sure")[1]
     wrong = [w for w, one in others if w not in CONTEXT] + [
         w for w, one in named if not _agree(one, role)
     ]

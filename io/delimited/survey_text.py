@@ -40,7 +40,13 @@ from .findings import (
 from .headings import find_unit_line
 from .layout import find_layout
 from .lines import COMMENT_PREFIXES, read_lines
-from .table import describe_columns, describe_faults_of_rows, read_cells, read_table
+from .table import (
+    describe_columns,
+    describe_faults_of_rows,
+    read_cells,
+    read_table,
+    require_one_mark,
+)
 from .truncation import leave_out_cut_row
 
 if TYPE_CHECKING:
@@ -144,6 +150,7 @@ def read(
     area = AreaOfUse.of(source, target)
     meaning, notes = _find_columns(cells, layout, area, left_out, path)
     told_units = require_unit_of_crs(meaning, source or target, path, is_told=columns is not None)
+    require_one_mark(cells, meaning, layout, path)
     table = read_table(cells, layout, meaning, lines)
     table, told_cut = leave_out_cut_row(table, lines, layout, meaning, path, skip_bad=skip_bad)
     _require_few_faults(table.faults, lines, layout, path, skip_bad=skip_bad)
@@ -202,7 +209,8 @@ def _settle_header(
     path: Path,
 ) -> tuple[_Accounted, Columns]:
     """Refuse what no header can mean, and take X for the northing where the CRS does."""
-    require_one_hemisphere(told.attributes, columns, path)
+    if columns.is_degrees:
+        require_one_hemisphere(told.attributes, path)
     require_no_geocentric(told.points, columns, path)
     points, columns, notes = settle_axes(told.points, columns, crs, area)
     return told._replace(points=points, notes=[*told.notes, *notes]), columns

@@ -27,6 +27,7 @@ class Sense(NamedTuple):
 
     what: Literal["role", "unit", "degree", "datum", "system", "noun"]
     role: str = ""
+    """What a word for a role names; the name of a system."""
     kind: Kind = ""
     rank: int = 0
     """Of words for one role the first say it most clearly."""
@@ -136,7 +137,7 @@ def find_sense(phrase: str) -> list[Sense]:
     if _DATUMS.fullmatch(phrase):
         return [Sense("datum")]
     if _SYSTEMS.fullmatch(phrase):
-        return [Sense("system")]
+        return [Sense("system", phrase)]
     for affix in _AFFIXES:
         is_behind = phrase.endswith(affix)
         rest = phrase.removesuffix(affix) if is_behind else phrase.removeprefix(affix)

@@ -531,6 +531,27 @@ def test_thousands_separators_are_taken_out_where_they_are_proved(survey):
     assert point.points[0].tolist() == [752700.5, 4024240, 1032.5]
 
 
+@pytest.mark.parametrize(("comma", "point"), [("512,350", "512.700"), ("512,700", "512.350")])
+def test_a_comma_and_a_point_between_digits_of_one_column_are_refused(survey, comma, point):
+    rows = (
+        f"1;5400100.5;4570200.5;{comma}\n2;5400110.5;4570210.5;{point}\n3;5400120.5;4570200.5;513\n"
+    )
+    text = f"Nr;Hoch;Rechts;Höhe\n{rows}"
+    assert f"'{comma}' beside '{point}' in column 4" in str(fault(survey, text))
+    assert survey(text, decimal=".").points[0, 2] == float(comma.replace(",", ""))
+
+
+def test_three_elevations_of_zero_leave_the_layout_plain(survey):
+    heights = [0 if i % 5 == 0 else 512 + i for i in range(17)]
+    rows = "".join(
+        f"{i},{5400100 + 9 * (i % 4)}.123,{4570200 + 8 * (i // 4)}.417,{heights[i]},G\n"
+        for i in range(1, 17)
+    )
+    notes = survey(rows, crs="EPSG:31468").notes
+    assert "(PNEZD)" in notes[0]
+    assert "3 points have the elevation 0" in notes[1]
+
+
 def test_nodata_in_text_is_told_and_left_out_on_request(survey):
     content = "x,y,z\n1,2,318.5\n4,5,-9999\n7,8,320.5\n9,9,331\n3,4,-9999\n5,6,0\n"
     notes = survey(content).notes
@@ -1405,8 +1426,8 @@ def test_elevations_of_no_data_say_nothing_of_a_layout(survey):
         f"{i},{4024240 + i % 4}.5,{752700 + i // 3}.5,{-9999 if i % 3 == 0 else 322}.25,GS\n"
         for i in range(1, 13)
     ]
-    with pytest.raises(ReadError, match="PNEZD would rise by"):
-        survey("".join(rows), crs="EPSG:32616")
+    told = survey("".join(rows), crs="EPSG:32616")
+    assert any("4 points have the elevation -9999.25, far from" in note for note in told.notes)
     found = survey("".join(rows), crs="EPSG:32616", nodata=-9999.25)
     assert found.skipped["nodata points"] == 4
     assert found.points[0].tolist() == [752700.5, 4024241.5, 322.25]
