@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ...crs import CRS
     from ...tin.screening.area_of_use import AreaOfUse
     from .columns import Columns
+    from .headings import AxesLine
 
 __all__ = [
     "are_named_plainly",
@@ -39,9 +40,13 @@ _HIGHEST = 30_000.0
 
 
 def settle_axes(
-    points: Float64Array, columns: Columns, crs: CRS | None, area: AreaOfUse | None
+    points: Float64Array,
+    columns: Columns,
+    crs: CRS | None,
+    area: AreaOfUse | None,
+    line: AxesLine | None = None,
 ) -> tuple[Float64Array, Columns, list[str]]:
-    """Take the header's X for the northing where the CRS calls its northing so.
+    """Take the header's X for the northing where a line near the table, or the CRS, does.
 
     Where only one reading lies in the area of use it is taken.
 
@@ -55,6 +60,8 @@ def settle_axes(
         Of the coordinates in the file.
     area : AreaOfUse or None
         None says nothing.
+    line : AxesLine or None
+        What says of X and Y which way they point.
 
     Returns
     -------
@@ -63,11 +70,24 @@ def settle_axes(
     notes : list of str
     """
     east, north = (columns.names[columns.roles[role]] for role in COORDINATES[:2])
-    if crs is None or not is_northing(east, points[:, :2], crs, area):
+    if parse_name(east).kind != "axis":
         return points, columns, []
-    note = describe_turn(crs, east, north)
-    note += f"; columns='{columns.word}' takes them the other way round."
+    if line is None and crs is not None and is_northing(east, points[:, :2], crs, area):
+        why = describe_turn(crs, east, north)
+    elif line is not None and line.is_turned:
+        why = f"By {line.label} {_name_turn(east, north)}"
+    else:
+        is_odd = line is None and columns.roles["northing"] < columns.roles["easting"]
+        return points, columns, [_describe_order(east, north)] if is_odd else []
+    note = f"{why}; columns='{columns.word}' takes them the other way round."
     return points[:, [1, 0, 2]], columns.permute((1, 0, 2)), [note]
+
+
+def _describe_order(east: str, north: str) -> str:
+    return (
+        f"By the header '{shorten(east)}' is the easting and '{shorten(north)}' the northing; "
+        "where X points north it is the other way round."
+    )
 
 
 def is_northing(name: str, xy: Float64Array, crs: CRS, area: AreaOfUse | None) -> bool:
@@ -79,10 +99,11 @@ def is_northing(name: str, xy: Float64Array, crs: CRS, area: AreaOfUse | None) -
 
 def describe_turn(crs: CRS, east: str, north: str) -> str:
     """Say that the columns called X and Y are taken as northing and easting."""
-    return (
-        f"{crs.label} calls its northing X, as the header does: '{shorten(east)}' is taken as the "
-        f"northing and '{shorten(north)}' as the easting"
-    )
+    return f"{crs.label} calls its northing X, as the header does: {_name_turn(east, north)}"
+
+
+def _name_turn(east: str, north: str) -> str:
+    return f"'{shorten(east)}' is taken as the northing and '{shorten(north)}' as the easting"
 
 
 def _points_north(crs: CRS, name: str) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from ..._sentences import counted
+from ...crs import Unit
 from ...errors import OptionError, ReadError
 from .grouping import find_group
 from .names import parse_name
@@ -206,13 +207,25 @@ def describe_doubts(header: Sequence[str]) -> str:
 def _find_unit_words(
     header: Sequence[str], units: Sequence[str], roles: Mapping[str, int]
 ) -> dict[str, str]:
-    """Return the words for the units of the coordinates, in the header or the line below it."""
+    """Return the words for the units of the coordinates, in the header or the line below it.
+
+    Raises
+    ------
+    ReadError
+        If they contradict each other.
+    """
     found: dict[str, str] = {}
     for role in COORDINATES:
         column = roles[role]
         name = header[column] if column < len(header) else ""
         below = units[column].strip(" ()[]") if column < len(units) else ""
-        word = find_unit_word(name) or find_unit_word(f"({below})")
+        own, other = find_unit_word(name), find_unit_word(f"({below})")
+        if own and other and Unit.of(own) != Unit.of(other):
+            raise ReadError(
+                f"the header gives the {role} in {own} ('{shorten(name)}'), and the line below it "
+                f"in {other}: make them agree."
+            )
+        word = own or other
         if word is not None:
             found[role] = word
     return found

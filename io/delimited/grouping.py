@@ -147,20 +147,13 @@ def _choose_pair(
 
 
 def _note_pairs(header: Sequence[str], pair: _Pair, pairs: Sequence[_Pair]) -> list[str]:
-    notes = [
+    return [
         f"The header names two pairs of coordinates: '{_shorten(header[pair.east])}' and "
         f"'{_shorten(header[pair.north])}' are taken, '{_shorten(header[other.east])}' and "
         f"'{_shorten(header[other.north])}' are not."
         for other in pairs
         if other is not pair
     ][:1]
-    if pair.name.kind == "axis" and pair.north < pair.east:
-        notes.append(
-            f"By the header '{_shorten(header[pair.east])}' is the easting and "
-            f"'{_shorten(header[pair.north])}' the northing; where X points north it is the other "
-            "way round."
-        )
-    return notes
 
 
 # ------------------------------------------------------------------ elevations

@@ -15,7 +15,6 @@ from .columns import (
     find_columns_by_header,
     find_columns_by_word,
     find_role,
-    find_unit_word,
     list_meanings,
     list_names,
     names_coordinates,
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
     from .headings import Heading
     from .lines import TextLines
 
-__all__ = ["Told", "TopLines", "count_told_columns", "find_named_columns", "join_units"]
+__all__ = ["Told", "TopLines", "count_told_columns", "find_named_columns", "join_brackets"]
 
 Told: TypeAlias = "str | Sequence[str] | Mapping[str, str | int]"
 """What the caller says that the columns are."""
@@ -147,13 +146,15 @@ def _find_columns_by_name(
     return columns
 
 
-def join_units(header: Sequence[str]) -> list[str]:
-    """Join units in brackets, where blanks split them off, to the names before them."""
+def join_brackets(header: Sequence[str]) -> list[str]:
+    """Join brackets, where blanks split them off, to the names before them: "Z (US survey ft)"."""
     joined: list[str] = []
+    depth = 0
     for cell in header:
         is_behind_name = bool(joined) and not joined[-1].startswith(("(", "["))
-        if is_behind_name and cell.startswith(("(", "[")) and find_unit_word(cell) is not None:
+        if depth > 0 or (is_behind_name and cell.startswith(("(", "["))):
             joined[-1] = f"{joined[-1]} {cell}"
+            depth += cell.count("(") + cell.count("[") - cell.count(")") - cell.count("]")
         else:
             joined.append(cell)
     return joined

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ...arrays import Int64Array
     from .lines import TextLines
 
-__all__ = ["Heading", "UnitLine", "find_heading", "find_unit_line"]
+__all__ = ["AxesLine", "Heading", "UnitLine", "find_axes_line", "find_heading", "find_unit_line"]
 
 _LINES_ABOVE, _LINES_BELOW = 100, 20
 _LONGEST_LINE = 300
@@ -182,7 +182,33 @@ def _read_units(text: str, count: int) -> tuple[str, ...]:
     return ()
 
 
-# ------------------------------------------------------------------ units
+# ------------------------------------------------------------------ axes and units
+
+
+class AxesLine(NamedTuple):
+    """A line that says which way X and Y point: "X = Northing, Y = Easting"."""
+
+    label: str
+    is_turned: bool
+    """Whether X points north."""
+
+
+def find_axes_line(lines: TextLines, rows: Int64Array) -> AxesLine | None:
+    """Return the first line near a table that says which way X and Y point."""
+    for line, text in _list_others(lines, rows):
+        named = [
+            (sense.role, sense.kind == "axis")
+            for _, sense in read_words(text).roles
+            if sense.role in ("easting", "northing")
+            and (sense.kind in ("axis", "word") or (sense.kind == "letter" and "=" in text))
+        ]
+        pairs = [(named[k], named[k + 1]) for k in range(0, len(named) - 1, 2)]
+        if pairs and len(named) % 2 == 0 and all(one[1] != other[1] for one, other in pairs):
+            are_turned = {one[0] != other[0] for one, other in pairs}
+            if len(are_turned) == 1:
+                label = Heading(line, lines.decode_line(line)).label
+                return AxesLine(label, are_turned.pop())
+    return None
 
 
 class UnitLine(NamedTuple):

@@ -19,7 +19,7 @@ from .columns import (
     names_coordinates,
 )
 from .content import require_no_split_decimals
-from .header import TopLines, count_told_columns, find_named_columns, join_units
+from .header import TopLines, count_told_columns, find_named_columns, join_brackets
 from .lines import COMMENT_PREFIXES
 from .marks import (
     DecimalMark,
@@ -178,7 +178,7 @@ def _split_rows(rows: Sequence[str], delimiter: str) -> list[list[str]]:
     numbers = [sum(is_number(c, ".") or is_number(c, ",") for c in row) for row in cells]
     first = next((i for i, n in enumerate(numbers[:_TOP_LINES]) if n >= 2), 0)
     if delimiter == BLANKS:
-        cells[:first] = map(join_units, cells[:first])
+        cells[:first] = map(join_brackets, cells[:first])
     if any(names_coordinates(row) for row in cells[:first]):
         return cells
     counts = Counter(len(row) for row, n in zip(cells, numbers, strict=True) if n >= 2)

@@ -30,6 +30,7 @@ _NO_NAME = re.compile(r"\s*([-+.,]*[0-9]|[^\w#№]*$)")
 _WORD = re.compile(r"[^\W\d_]+|\d+|[^\w\s]|_")
 _JOINED_WORDS = re.compile(r"(?<=[a-z]{2})(?=[A-Z])")
 _OPENING, _CLOSING = "([{", ")]}"
+_NO_BRACKETS = str.maketrans(dict.fromkeys(_OPENING + _CLOSING, " "))
 _SEPARATORS = frozenset('_.,:;/|"\u2013-')
 _COORDINATES = ("easting", "northing", "elevation")
 _ALONE = frozenset({"alt"})
@@ -135,10 +136,9 @@ def read_words(text: str) -> Words:
     >>> read_words("elevations in US survey feet").units
     ('US survey feet',)
     """
-    text = _NUMBER_SIGN.sub(" no ", text)
+    text = _NUMBER_SIGN.sub(" no ", text).translate(_NO_BRACKETS)
     found = _Found()
-    for words in _divide(text):
-        _read_part(words, text, found, is_bracket=True)
+    _read_part(_divide(text)[0], text, found, is_bracket=True)
     units = tuple(shown for _, shown in found.units)
     return Words(tuple(found.roles), units, tuple(found.unknown))
 

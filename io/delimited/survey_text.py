@@ -37,7 +37,7 @@ from .findings import (
     require_one_header,
     require_unit_of_crs,
 )
-from .headings import find_unit_line
+from .headings import find_axes_line, find_unit_line
 from .layout import find_layout
 from .lines import COMMENT_PREFIXES, read_lines
 from .table import (
@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from ...arrays import AnyArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from .columns import Columns
+    from .headings import AxesLine
     from .layout import Layout
     from .lines import TextLines
     from .table import Cells, Fault, Table
@@ -159,7 +160,8 @@ def read(
     unit, told_unit = _find_unit(layout, lines, Unit.of(z_unit), path)
     is_headed = layout.columns is not None and columns is None
     if is_headed:
-        told, meaning = _settle_header(told, meaning, source or target, area, path)
+        line = find_axes_line(lines, layout.rows)
+        told, meaning = _settle_header(told, meaning, (source or target, area, line), path)
     notes = [*layout.notes, *notes, *told_units, *told_cut, *told.notes, *told_unit]
     notes += [
         *require_in_area(told.points, told.rows, meaning, area, path, is_headed=is_headed),
@@ -204,15 +206,14 @@ def _find_split(told: _Accounted, layout: Layout, columns: Columns) -> list[str]
 def _settle_header(
     told: _Accounted,
     columns: Columns,
-    crs: CRS | None,
-    area: AreaOfUse | None,
+    place: tuple[CRS | None, AreaOfUse | None, AxesLine | None],
     path: Path,
 ) -> tuple[_Accounted, Columns]:
     """Refuse what no header can mean, and take X for the northing where the CRS does."""
     if columns.is_degrees:
         require_one_hemisphere(told.attributes, path)
     require_no_geocentric(told.points, columns, path)
-    points, columns, notes = settle_axes(told.points, columns, crs, area)
+    points, columns, notes = settle_axes(told.points, columns, *place)
     return told._replace(points=points, notes=[*told.notes, *notes]), columns
 
 

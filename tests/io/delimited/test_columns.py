@@ -55,10 +55,6 @@ def test_units_stand_in_brackets_or_behind_a_name(name, unit):
 
 
 TWO_PAIRS = "The header names two pairs of coordinates: {} are taken, {} are not."
-TURNED = (
-    "By the header 'X' is the easting and 'Y' the northing; where X points north it is the other "
-    "way round."
-)
 HEIGHTS = "The header's 'Z' is taken as the elevation, not {}."
 
 
@@ -75,11 +71,11 @@ HEIGHTS = "The header's 'Z' is taken as the elevation, not {}."
         ("E Easting Northing Z", "-ENZ", []),
         ("Pkt Rechts Hoch NHN Libellé", "PENZD", []),
         ("№ Øst Nord Høyde", "PENZ", []),
-        ("Y X Z", "NEZ", [TURNED]),
+        ("Y X Z", "NEZ", []),
         ("N E Z", "NEZ", []),
         ("N X Y Z", "PENZ", []),
         ("No N X Y Z", "P-ENZ", []),
-        ("N Y X Z D", "PNEZD", [TURNED]),
+        ("N Y X Z D", "PNEZD", []),
         ("E N Z Height", "ENZ", [HEIGHTS.format("'Height'")]),
         ("Height E N Z", "-ENZ", [HEIGHTS.format("'Height'")]),
         (
@@ -174,11 +170,17 @@ def test_units_stand_in_the_header_or_below_it():
     units = {"easting": "ft", "elevation": "m"}
     assert columns.find_columns_by_header(["E (ft)", "N", "Z"], ["", "", "(m)"]).units == units
     assert (
-        columns.find_columns_by_word("ENZ", ["E (ft)", "N", "Z"], 3, ["m", "q", "[m]"]).units
+        columns.find_columns_by_word("ENZ", ["E (ft)", "N", "Z"], 3, ["ft", "q", "[m]"]).units
         == units
     )
     assert columns.find_columns_by_header(["E", "N", "Z"], ["m"]).units == {"easting": "m"}
     assert columns.find_columns_by_header(["E", "N", "Z"]).units == {}
+
+
+def test_units_that_contradict_each_other_are_refused():
+    with pytest.raises(ReadError, match=r"in ft .* and the line below it in m"):
+        columns.find_columns_by_header(["E", "N", "Z (ft)"], ["", "", "m"])
+    assert columns.find_columns_by_header(["E", "N (m)", "Z (feet)"], ["m", "m", "ft"]).units
 
 
 def test_equal_names_of_a_coordinate_are_refused():

@@ -1371,6 +1371,34 @@ def test_an_x_that_only_the_crs_or_the_area_of_use_turns(survey):
 
 
 @pytest.mark.parametrize(
+    ("line", "is_turned"),
+    [
+        ("# X = Northing, Y = Easting", True),
+        ("# X: north, Y: east", True),
+        ("X is the Hochwert and Y is the Rechtswert", True),
+        ("# Northing (X), Easting (Y)", True),
+        ("# X=N Y=E", True),
+        ("# X = Easting, Y = Northing", False),
+        ("# site North, block Y", False),
+        ("# two lines", False),
+    ],
+)
+def test_a_line_that_says_where_x_points_is_followed(survey, line, is_turned):
+    text = f"{line}\nP,X,Y,Z\n1,2000,1000,5\n2,2010,1000,6\n3,2000,1020,7\n"
+    found = survey(text)
+    assert found.points[0].tolist() == ([1000, 2000, 5] if is_turned else [2000, 1000, 5])
+    assert any("'X' is taken as the northing" in note for note in found.notes) == is_turned
+    assert survey(text, columns="PENZ").points[0].tolist() == [2000, 1000, 5]
+
+
+def test_brackets_between_blanks_belong_to_the_name_before_them(survey):
+    text = "P X (Northing) Y (Easting) Elev (US survey ft)\n1 20 10 5\n2 21 10 6\n3 20 12 7\n"
+    found = survey(text, name="a.txt")
+    assert found.points[0].tolist() == [10, 20, 5]
+    assert found.elevation_unit.name == "US survey foot"
+
+
+@pytest.mark.parametrize(
     ("header", "row", "is_read"),
     [
         ("Lat,N/S,Lon,E/W,Elev", "36.3{0},N,84.2{0},W,{0}", False),
