@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..._sentences import coordinate, counted, height
-from ...crs import Unit
+from ...crs import METRE, Unit
 from ...errors import CrsError, OptionError, ReadError
 from ...tin.screening.nodata import describe_elevations
 from .axes import are_named_plainly
@@ -328,7 +328,9 @@ def require_unit_of_crs(
     CrsError
         If they are not both feet, of either kind, and the caller has not told the columns.
     """
-    if crs is None or crs.is_geographic:
+    if crs is None:
+        return _require_units_of_a_kind(columns, path, is_told=is_told)
+    if crs.is_geographic:
         return []
     wanted = crs.horizontal_unit
     for role in ("easting", "northing"):
@@ -348,6 +350,22 @@ def require_unit_of_crs(
             )
         return [f"{sentence[0].upper()}{sentence[1:]}, as which they are taken."]
     return []
+
+
+def _require_units_of_a_kind(columns: Columns, path: Path, *, is_told: bool) -> list[str]:
+    """Say where the header gives eastings another unit than elevations, which no CRS then keeps."""
+    across, up = (_find_unit(columns.units.get(role)) for role in ("easting", "elevation"))
+    if across is None or across == (up or METRE):
+        return []
+    if up is not None and not is_told:
+        raise CrsError(
+            f"'{path}': the header gives the easting in {across.name} and the elevation in "
+            f"{up.name}: the option crs names the CRS that the points are in, columns tells the "
+            "columns whatever the header says."
+        )
+    return [
+        f"The header gives the easting in {across.name}, which is not kept where no CRS is named."
+    ]
 
 
 def _find_unit(word: str | None) -> Unit | None:

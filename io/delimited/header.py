@@ -22,6 +22,7 @@ from .columns import (
 from .headings import find_heading
 from .lines import COMMENT_PREFIXES
 from .marks import split_header
+from .names import read_words
 
 if TYPE_CHECKING:
     from ...arrays import Int64Array
@@ -73,6 +74,7 @@ def find_named_columns(
     delimiter, count = shape
     first_row = int(top.rows[0])
     header = top.header or _find_header_in_comment(top.lines, first_row, delimiter, count)
+    header = None if header is None else _drop_label(header)
     heading = None
     if told is None and (header is None or names_coordinates(header) is None):
         heading = find_heading(top.lines, top.rows, count)
@@ -83,6 +85,13 @@ def find_named_columns(
     if named or told is not None:
         return _find_columns_by_name(named, top.units, count, told), None
     return None, heading
+
+
+def _drop_label(header: list[str]) -> list[str]:
+    """Return a header without what stands before its first name: "Columns: N", "E", "Z"."""
+    label, _, name = header[0].rpartition(":")
+    is_label = bool(name.strip()) and not read_words(label).roles and "(" not in label
+    return [name.strip(), *header[1:]] if is_label else header
 
 
 def _find_header_in_comment(

@@ -39,6 +39,7 @@ _SPEAKING = frozenset(
 """Words that stand for a coordinate wherever they are; "north" may be in the name of a site."""
 
 
+_COORDINATES = {"easting", "northing", "elevation"}
 _UNIT_NOUNS = frozenset(
     (
         *("unit", "units", "einheit", "einheiten", "unite", "unites", "unidad", "unidades"),
@@ -132,13 +133,19 @@ def _read_order(text: str, count: int) -> tuple[str, ...] | None:
         for split in _SPLITS:
             cells = [one.strip(" \"'") for one in re.split(split, _BEFORE_BRACKET.sub("", part))]
             cells = [one for one in cells if one]
-            names = _take_letters(cells[-1:]) or cells
-            before = [] if names is cells and len(cells) <= count else cells[: -len(names)]
-            if names is cells and split == r"\s+":
-                names, before = cells[-count:], cells[:-count]
-            if len(names) == count and _are_names(names) and not _name_coordinates(before):
-                return tuple(names)
+            for names, before in _list_readings(cells, count):
+                if len(names) == count and _are_names(names) and not _name_coordinates(before):
+                    return tuple(names)
     return None
+
+
+def _list_readings(cells: Sequence[str], count: int) -> Iterator[tuple[list[str], list[str]]]:
+    """Walk the names that cells may hold, and the words before them: "fields N", "E", "Z"."""
+    yield list(cells[-count:]), list(cells[:-count])
+    yield _take_letters(cells[-1:]), list(cells[:-1])
+    if len(cells) == count:
+        *words, name = cells[0].split(" ")
+        yield [name, *cells[1:]], words
 
 
 def _take_letters(cells: Sequence[str]) -> list[str]:
@@ -159,7 +166,7 @@ def _are_names(names: Sequence[str]) -> bool:
 
 def _name_coordinates(words: Sequence[str]) -> bool:
     roles = {sense.role for word in words for _, sense in read_words(word).roles}
-    return not roles.isdisjoint(("easting", "northing", "elevation"))
+    return not roles.isdisjoint(_COORDINATES)
 
 
 def _speaks_of_coordinates(text: str) -> bool:
@@ -226,10 +233,12 @@ def find_unit_line(lines: TextLines, rows: Int64Array) -> UnitLine | None:
         words = read_words(text)
         plain = {word.casefold() for word in words.unknown}
         named = {sense.role for _, sense in words.roles}
-        if len(set(words.units)) != 1 or re.search(rf"\d\s*{re.escape(words.units[0])}", text):
+        if not words.units or re.search(rf"\d\s*{re.escape(words.units[0])}", text):
             continue
+        if len(named & _COORDINATES) > 1 and not plain & _UNIT_NOUNS:
+            continue  # a header, whose units are known
         whole = Heading(line, lines.decode_line(line)).label
-        if named == {"elevation"} and plain <= _FILLERS:
+        if named == {"elevation"} and plain <= _FILLERS and len(set(words.units)) == 1:
             note = f"L{whole[1:]} gives the unit of the elevations."
             return UnitLine(words.units[0], whole, note)
         if plain & _UNIT_NOUNS or "elevation" in named:

@@ -31,7 +31,7 @@ _WORD = re.compile(r"[^\W\d_]+|\d+|[^\w\s]|_")
 _JOINED_WORDS = re.compile(r"(?<=[a-z]{2})(?=[A-Z])")
 _OPENING, _CLOSING = "([{", ")]}"
 _NO_BRACKETS = str.maketrans(dict.fromkeys(_OPENING + _CLOSING, " "))
-_SEPARATORS = frozenset('_.,:;/|"\u2013-')
+_SEPARATORS = frozenset('_.,:;/|"=\u2013-')
 _COORDINATES = ("easting", "northing", "elevation")
 _ALONE = frozenset({"alt"})
 """Short for "altitude", and the German for "old" beside another word."""

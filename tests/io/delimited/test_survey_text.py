@@ -1177,7 +1177,10 @@ def test_a_unit_in_the_header_that_the_crs_has_not_is_refused(tmp_path, unit):
         _with_units(tmp_path, unit, crs="EPSG:32617", source_crs="EPSG:32616")
     told = _with_units(tmp_path, unit, crs="EPSG:32616", columns="PNEZ")
     assert "measures in metre, as which they are taken" in " ".join(told.notes)
-    assert len(_with_units(tmp_path, unit)) == 4
+    with pytest.raises(ts.CrsError, match="and the elevation in metre: the option crs names"):
+        _with_units(tmp_path, unit)  # no CRS would keep the unit
+    told = _with_units(tmp_path, unit, columns="PNEZ")
+    assert "which is not kept where no CRS is named" in " ".join(told.notes)
 
 
 @pytest.mark.parametrize(("unit", "crs"), [("m", "EPSG:32616"), ("usft", "EPSG:2274")])
