@@ -165,7 +165,7 @@ def _require_no_doubt(chosen: _Candidate, columns: Sequence[Column], doubt: str)
     """Refuse x, y, z where they are but a convention that something speaks against."""
     if chosen.start == 0:
         doubt = doubt or find_doubt(columns)
-    elif have_no_elevations(columns[chosen.start : chosen.start + 3]):
+    if not doubt and have_no_elevations(columns[chosen.start : chosen.start + 3]):
         doubt = "its elevations would be whole numbers beside coordinates with decimals"
     if doubt:
         raise ReadError(

@@ -38,18 +38,18 @@ def find_doubt(columns: Sequence[Column]) -> str:
     if len(first) < _FEW_ROWS:
         return ""
     are_divided = [_count_digits(values) > 0 for values in some[:3]]
-    is_distinct = len(np.unique(first)) >= _SHARE_OF_NUMBERS * len(first)
+    is_scattered = _is_distinct(first) or _is_distinct(second)  # and no grid
     if _has_one_step(columns[0].values) and not _has_one_step(columns[1].values):
         step = columns[0].values[1] - columns[0].values[0]
         return (
             f"its first column grows by {step:.10g} from row to row, as numbers, distances and "
             "times do"
         )
-    if is_distinct and are_divided[1:] == [True, True] and not are_divided[0]:
+    if is_scattered and are_divided[1:] == [True, True] and not are_divided[0]:
         return "its first column may be point numbers: all are whole, and the others have decimals"
     if are_divided == [True, True, False] and _is_monotone(columns[2].values):
         return "its third column may be point numbers: they are whole, and the others have decimals"
-    if is_distinct and _count_digits(first) < _count_digits(second) == _count_digits(third):
+    if is_scattered and _count_digits(first) < _count_digits(second) == _count_digits(third):
         return "its first column has fewer decimals than the others, as no coordinate has"
     if len(some) == 4 and _is_monotone(columns[0].values) and _has_better_elevation(columns):
         return (
@@ -60,13 +60,16 @@ def find_doubt(columns: Sequence[Column]) -> str:
 
 
 def have_no_elevations(columns: Sequence[Column]) -> bool:
-    """Whether the last of coordinates are whole numbers again and again, as codes, not heights."""
+    """Whether the last of coordinates may be numbers or codes: whole, and the others divided.
+
+    A grid may have such elevations.
+    """
     some = [_take_some(column) for column in columns]
     if len(some[0]) < _FEW_ROWS or columns[2].is_text:
         return False
     digits = [_count_digits(values) for values in some]
-    are_repeated = 2 * len(np.unique(some[2])) <= len(some[2])
-    return min(digits[:2]) > 0 and digits[2] == 0 and are_repeated
+    is_scattered = _is_distinct(some[0]) and _is_distinct(some[1])
+    return min(digits[:2]) > 0 and digits[2] == 0 and is_scattered
 
 
 def are_angles_in_parts(columns: Sequence[Column]) -> bool:
@@ -107,6 +110,10 @@ def _count_digits(values: Float64Array) -> int:
             if (np.abs(scaled - np.round(scaled)) < _WRITTEN).all():
                 return digits
     return _MOST_DIGITS
+
+
+def _is_distinct(values: Float64Array) -> bool:
+    return len(np.unique(values)) >= _SHARE_OF_NUMBERS * len(values)
 
 
 def _has_one_step(values: Float64Array) -> bool:

@@ -177,7 +177,18 @@ def test_whole_numbers_before_two_columns_with_decimals_may_be_point_numbers():
     with pytest.raises(ReadError, match="its first column may be point numbers"):
         find_columns_by_content([whole(EASTING), NORTHING, ELEVATION], None)
     grid = Column(740_000.0 + np.arange(N) % 8, is_whole=True, distinct_share=0.2)
-    assert find_columns_by_content([grid, NORTHING, ELEVATION], None)[0].word == "ENZ"
+    rows = Column(4_024_000.5 + np.arange(N) // 8)
+    assert find_columns_by_content([grid, rows, ELEVATION], None)[0].word == "ENZ"
+    with pytest.raises(ReadError, match="its first column may be point numbers"):
+        find_columns_by_content([grid, NORTHING, ELEVATION], None)
+
+
+def test_whole_numbers_again_and_again_are_elevations_of_a_grid_only():
+    codes = Column(np.arange(N) % 4.0, is_whole=True, distinct_share=0.1)
+    with pytest.raises(ReadError, match="its elevations would be whole numbers"):
+        find_columns_by_content([EASTING, NORTHING, codes], None)
+    centres = [Column(0.5 + np.arange(N) % 8), Column(0.5 + np.arange(N) // 8)]
+    assert find_columns_by_content([*centres, codes], None)[0].word == "ENZ"
 
 
 def rounded(column, digits):
