@@ -22,6 +22,9 @@ _TERMS = 3
 _MOST_LEVERAGE = 16.0
 """A plane tells elevations within so much, which is the square of four standard deviations."""
 
+_MOST_EDGES = 256
+"""A vertex of more, such as the middle of a fan, joins others that do not lie together."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Residuals:
@@ -142,16 +145,24 @@ class Residuals:
         return most
 
     def list_wide_neighbors(self, vertices: Int32Array) -> tuple[Int64Array, Int32Array]:
-        """Return the vertices within two edges of some, as offsets and vertices."""
+        """Return the vertices within two edges of some, as offsets and vertices.
+
+        Of a neighbour with more than 256 edges the other neighbours are left out.
+        """
         offsets, near = self.list_neighbors(vertices)
-        wide, around = self.list_neighbors(near)
         owner = find_owners(offsets)
-        owner = np.concatenate([owner, owner[find_owners(wide)]])
+        leads_on = self._count_edges()[near] <= _MOST_EDGES
+        wide, around = self.list_neighbors(near[leads_on])
+        owner = np.concatenate([owner, owner[leads_on][find_owners(wide)]])
         reach = np.concatenate([near, around])
         owner, reach = np.divmod(np.unique(owner * len(self.xyz) + reach), len(self.xyz))
         elsewhere = reach != vertices[owner]
         owner, reach = owner[elsewhere], reach[elsewhere].astype(np.int32)
         return find_offsets(np.bincount(owner, minlength=len(vertices))), reach
+
+    def _count_edges(self) -> Int64Array:
+        """Return how many triangles meet at each vertex, which are its edges but for one."""
+        return np.bincount(self.surface.triangles.ravel(), minlength=len(self.xyz))
 
     def list_neighbors(self, vertices: Int32Array) -> tuple[Int64Array, Int32Array]:
         """Return the vertices joined to some by edges, as offsets and vertices."""
