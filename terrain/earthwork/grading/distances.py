@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ....tin import TIN, triangulate
-from ..zones import join_segments
 from .edge_cells import find_rays
 
 if TYPE_CHECKING:
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["measure_distances"]
 
-_SHARE = 1e-7
+_SHARE = 1e-6
 """Of the largest distance: what is nearer to each other is one place."""
 
 
@@ -41,16 +40,18 @@ def measure_distances(pad: Any, reach: float, tolerance: float) -> TIN:
     is_fan = rays.cell >= len(ring)
     fans = np.stack([rays.cell[is_fan] - len(ring), ends[is_fan]], axis=1)
     segments = np.concatenate([tops[follows], fans])
-    outline = tops[is_free[:-1]]
-    outer, inner = _find_rings(places, outline[outline[:, 0] != outline[:, 1]])
+    rings = [
+        np.column_stack([own, np.full(len(own), reach)])
+        for own in _list_rings(places[:, :2], tops[is_free[:-1]], pad)
+    ]
     edge = np.column_stack([ring, np.zeros(len(ring))])
     segments = np.unique(np.sort(segments, axis=1), axis=0)
     lines = list(places[segments[segments[:, 0] != segments[:, 1]]])
     return triangulate(
         places[np.unique(number)],
         breaklines=lines,
-        boundary=[outer],
-        holes=[edge, *inner],
+        boundary=rings[:1],
+        holes=[edge, *rings[1:]],
         duplicates="last",
     )
 
@@ -70,14 +71,12 @@ def _merge(xy: Float64Array, tolerance: float) -> Int64Array:
         first = least
 
 
-def _find_rings(
-    places: Float64Array, segments: Int64Array
-) -> tuple[Float64Array, list[Float64Array]]:
-    """Return the rings that segments make: the one around all others, and these."""
+def _list_rings(xy: Float64Array, segments: Int64Array, pad: Any) -> list[Float64Array]:
+    """Return the ring around a pad that segments make, and those of what they leave open."""
     import shapely
 
-    chains = join_segments(segments[:, 0], segments[:, 1])
-    rings = [places[chain] for chain in chains if chain[0] == chain[-1] and len(chain) > 3]
-    areas = [float(shapely.area(shapely.polygons(ring[:, :2]))) for ring in rings]
-    outer = rings.pop(int(np.argmax(areas)))
-    return outer, rings
+    lines = shapely.linestrings(xy[segments[segments[:, 0] != segments[:, 1]]])
+    noded = shapely.get_parts(shapely.union_all(lines))  # where slopes just meet, lines overlap
+    faces = shapely.get_parts(shapely.polygonize(noded))
+    face = faces[shapely.contains_properly(faces, shapely.point_on_surface(pad))][0]
+    return [shapely.get_coordinates(ring) for ring in shapely.get_rings(face)]

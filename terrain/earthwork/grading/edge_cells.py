@@ -1,4 +1,4 @@
-"""What lies nearest to each edge and corner of a polygon, outside: the cells of its Voronoi diagram.
+"""Cells of the Voronoi diagram outside a polygon: what is nearest to each edge and corner.
 
 From every place on the edge a ray goes out at right angles, from a corner that juts out a fan of
 rays. All along a ray nothing is nearer than its foot, up to where a circle that touches the foot
@@ -24,8 +24,9 @@ _SHARE = 1e-12
 """Of a radius: by so much less something may be away by rounding."""
 _FREE = 1e-9
 """Of the reach: so much less is the reach by rounding."""
+_STRAIGHT = 1e-6
+"""An edge goes straight on where it turns by less."""
 _HALVINGS = 60
-_MOST_STEPS = 1000
 
 
 class Rays(NamedTuple):
@@ -56,9 +57,12 @@ class Rays(NamedTuple):
         return Rays(*(column[chosen] for column in self))
 
     def join(self, other: Rays) -> Rays:
-        """Return them and others, by cells and places."""
-        both = Rays(*(np.concatenate(pair) for pair in zip(self, other, strict=True)))
-        return both.take(np.lexsort((both.place, both.cell)))
+        """Return them and others."""
+        return Rays(*(np.concatenate(pair) for pair in zip(self, other, strict=True)))
+
+    def sort(self) -> Rays:
+        """Return them by cells and places."""
+        return self.take(np.lexsort((self.place, self.cell)))
 
 
 def find_rays(ring: Float64Array, reach: float) -> tuple[Rays, BoolArray]:
@@ -73,25 +77,25 @@ def find_rays(ring: Float64Array, reach: float) -> tuple[Rays, BoolArray]:
     Where neighbouring rays of a cell end at the same other cell, so do all between them: the
     circles at their ends and the two edges enclose what they pass over, and no part of the polygon
     comes in. Where they end at different ones, the ray that would end at both is tried, until a
-    third cell is no longer found. This takes a few rays for each corner of the diagram.
+    third cell is no longer found; between rays of full length that which ends the earliest. This
+    takes a few rays for each corner of the diagram.
     """
     outline = _Outline(ring, reach)
     rays = outline.trace(*outline.list_first())
-    left = np.flatnonzero(outline.lack_corner(rays.take(slice(-1)), rays.take(slice(1, None))))
-    before, behind = rays.take(left), rays.take(left + 1)
-    for _ in range(_MOST_STEPS):
-        if len(before.cell) == 0:
-            break
-        between = outline.trace(before.cell, outline.find_corner_places(before, behind))
+    is_pair = rays.cell[1:] == rays.cell[:-1]
+    before, behind = rays.take(slice(-1)).take(is_pair), rays.take(slice(1, None)).take(is_pair)
+    while len(before.cell):
+        places = outline.find_places_between(before, behind)
+        chosen = ~np.isnan(places)
+        before, behind = before.take(chosen), behind.take(chosen)
+        between = outline.trace(before.cell, places[chosen])
         rays = rays.join(between)
         is_new = outline.is_new(between, before, behind)
-        firsts = [before.take(is_new), between.take(is_new)]
-        seconds = [between.take(is_new), behind.take(is_new)]
-        before = Rays(*(np.concatenate(pair) for pair in zip(*firsts, strict=True)))
-        behind = Rays(*(np.concatenate(pair) for pair in zip(*seconds, strict=True)))
-        lacks = outline.lack_corner(before, behind)
-        before, behind = before.take(lacks), behind.take(lacks)
-    rays = rays.join(outline.turn_round(rays.take(rays.other != _NONE)))
+        before, between, behind = (one.take(is_new) for one in (before, between, behind))
+        before, behind = before.join(between), between.join(behind)
+    rays = rays.join(outline.turn_round(rays.take(rays.other != _NONE))).sort()
+    is_full = outline.are_full(rays)
+    rays.length[is_full] = reach
     return rays, outline.find_free(rays)
 
 
@@ -109,6 +113,7 @@ class _Outline:
         before = np.roll(self._along, 1, axis=0)
         cross = before[:, 0] * self._along[:, 1] - before[:, 1] * self._along[:, 0]
         self._turn = np.arctan2(cross, (before * self._along).sum(axis=1))
+        self._turn[np.abs(self._turn) < _STRAIGHT] = 0.0
         ends = np.stack([ring, np.roll(ring, -1, axis=0)], axis=1)
         self._tree = shapely.STRtree(shapely.linestrings(ends))
 
@@ -118,7 +123,7 @@ class _Outline:
         places = [np.column_stack([np.zeros(self._n), self._lengths]).ravel()]
         for corner in np.flatnonzero(self._turn > 0).tolist():
             angle = float(self._turn[corner])
-            count = max(int(angle / _FACET + 0.5), 1) + 1
+            count = int(np.ceil(angle / _FACET * (1.0 - _SHARE))) + 1
             cells.append(np.full(count, self._n + corner))
             places.append(np.linspace(0.0, angle, count))
         return np.concatenate(cells), np.concatenate(places)
@@ -144,9 +149,7 @@ class _Outline:
         length, other = np.full(len(cell), self._reach), np.full(len(cell), _NONE)
         self._stop_in_notches(cell, place, length, other)
         open_ = np.flatnonzero(length > 0)
-        for _ in range(_MOST_STEPS):
-            if len(open_) == 0:
-                break
+        while len(open_):
             middle = foot[open_] + length[open_, None] * way[open_]
             near, away = self._tree.query_nearest(
                 shapely.points(middle), all_matches=False, return_distance=True
@@ -191,6 +194,7 @@ class _Outline:
         along, out = self._along[edge], self._out[edge]
         apart = foot - self._ring[edge]
         beyond = (apart * out).sum(axis=1)
+        out, beyond = out * np.sign(beyond)[:, None], np.abs(beyond)  # from either side
         with np.errstate(divide="ignore", invalid="ignore"):
             length = 2.0 * beyond / ((way - out) ** 2).sum(axis=1)
             place = ((apart + length[:, None] * way) * along).sum(axis=1)
@@ -222,13 +226,43 @@ class _Outline:
         )
         return np.where(other == _NONE, self._reach, found)
 
-    def lack_corner(self, before: Rays, behind: Rays) -> BoolArray:
-        """Tell between which neighbouring rays a corner of their cell is not known yet."""
-        scale = np.where(before.cell < self._n, self._lengths[before.cell % self._n], 1.0)
-        lacks = (before.cell == behind.cell) & (behind.place - before.place > _SHARE * scale)
-        for one, other in ((before.other, behind.other), (behind.other, before.other)):
-            lacks &= ~self._include(one, other)
-        return np.asarray(lacks, np.bool_)
+    def find_places_between(self, before: Rays, behind: Rays) -> Float64Array:
+        """Return where in a cell, between two rays, a third one is needed; NaN for nowhere."""
+        places = np.full(len(before.cell), np.nan)
+        is_full = self.are_full(before) & self.are_full(behind)
+        if is_full.any():
+            places[is_full] = self._find_intruders(before.take(is_full), behind.take(is_full))
+        is_known = self._include(before.other, behind.other)
+        is_known |= self._include(behind.other, before.other)
+        lacks = ~is_full & ~is_known
+        places[lacks] = self._find_corners(before.take(lacks), behind.take(lacks))
+        places[~self._are_apart(before, behind)] = np.nan
+        return places
+
+    def are_full(self, rays: Rays) -> BoolArray:
+        return np.asarray(rays.length >= self._reach * (1.0 - _FREE), np.bool_)
+
+    def _find_intruders(self, before: Rays, behind: Rays) -> Float64Array:
+        """Return the places of rays, between others of full length, that end the earliest."""
+        import shapely
+
+        ends = np.stack([before.ends, behind.ends], axis=1)
+        chords = shapely.linestrings(ends)
+        near = self._reach * (1.0 - _FREE)
+        chord, edge = self._tree.query(chords, predicate="dwithin", distance=near)
+        own = self._are_own(before.cell[chord], np.zeros(len(chord)), edge)
+        own |= self._are_own(before.cell[chord], self._lengths[before.cell[chord] % self._n], edge)
+        chord, edge = chord[~own], edge[~own]
+        ways = shapely.shortest_line(chords[chord], self._tree.geometries[edge])
+        order = np.lexsort((shapely.length(ways), chord))
+        place = np.full(len(chords), np.nan)
+        first = shapely.get_coordinates(ways).reshape(-1, 2, 2)[order, 0]
+        chord = chord[order]
+        along = ends[chord, 1] - ends[chord, 0]
+        share = ((first - ends[chord, 0]) * along).sum(axis=1) / (along**2).sum(axis=1)
+        chord, at = np.unique(chord, return_index=True)
+        place[chord] = before.place[chord] + share[at] * (behind.place - before.place)[chord]
+        return place
 
     def _include(self, one: Int64Array, other: Int64Array) -> BoolArray:
         """Tell which cells are others, or those of edges at whose ends the others are."""
@@ -236,13 +270,23 @@ class _Outline:
         return np.asarray((one == other) | ((one != _NONE) & (one < self._n) & is_end), np.bool_)
 
     def is_new(self, between: Rays, before: Rays, behind: Rays) -> BoolArray:
-        """Tell which rays end at a third cell."""
+        """Tell which rays, amid others, are of a third kind, or of full length beside another."""
         is_known = self._include(before.other, between.other)
         is_known |= self._include(behind.other, between.other)
-        is_inner = (between.place > before.place) & (between.place < behind.place)
-        return np.asarray(~is_known & is_inner, np.bool_)
+        is_full = self.are_full(between)
+        is_beside_full = self.are_full(before) | self.are_full(behind)
+        is_earlier = self.are_full(before) & self.are_full(behind) & ~is_full
+        is_inner = self._are_apart(before, between) & self._are_apart(between, behind)
+        return np.asarray(
+            (~is_known | is_earlier | (is_full & is_beside_full)) & is_inner, np.bool_
+        )
 
-    def find_corner_places(self, before: Rays, behind: Rays) -> Float64Array:
+    def _are_apart(self, before: Rays, behind: Rays) -> BoolArray:
+        is_edge = before.cell < self._n
+        scale = np.where(is_edge, self._lengths[before.cell % self._n], 1.0)
+        return np.asarray(behind.place - before.place > _SHARE * scale, np.bool_)
+
+    def _find_corners(self, before: Rays, behind: Rays) -> Float64Array:
         """Return where rays end at both of the cells that neighbouring rays end at."""
         low, high = before.place.copy(), behind.place.copy()
         for _ in range(_HALVINGS):
@@ -271,9 +315,8 @@ class _Outline:
 
     def find_free(self, rays: Rays) -> BoolArray:
         """Tell between which rays and the next of their cells nothing is within the reach."""
-        full = self._reach * (1.0 - _FREE)
-        is_full = rays.length >= full
+        is_full = self.are_full(rays)
         free = np.append((rays.cell[1:] == rays.cell[:-1]) & is_full[1:] & is_full[:-1], False)
         place = 0.5 * (rays.place[:-1] + rays.place[1:])[free[:-1]]
-        free[free] = self.trace(rays.cell[free], place).length >= full
+        free[free] = self.are_full(self.trace(rays.cell[free], place))
         return np.asarray(free, np.bool_)
