@@ -151,3 +151,13 @@ def test_the_rounding_is_that_of_the_decimals():
         assert find_rounding(z) == pytest.approx(lost.std(), rel=0.02)
     assert find_rounding(rng.random(900) * 500) < 1e-6
     assert find_rounding(np.full(5, 318.2)) < 0.03
+
+
+def test_the_middle_of_a_fan_does_not_join_the_vertices_of_its_rim():
+    angle = np.arange(500) * 2 * np.pi / 500
+    rim = np.column_stack([np.cos(angle), np.sin(angle), angle])
+    tin = ts.triangulate(np.vstack([rim, [[0.0, 0.0, 0.0]]]))
+    vertices = np.arange(500, dtype=np.int32)
+    offsets, around = Residuals.of(tin.triangulation).list_wide_neighbors(vertices)
+    assert (np.diff(offsets) == 5).all()  # two on either side, and the middle
+    assert set(around[: offsets[1]].tolist()) == {1, 2, 498, 499, 500}
