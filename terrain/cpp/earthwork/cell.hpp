@@ -112,7 +112,8 @@ class Cell {
       const double left = x[corner_after(j)] * y[corner_before(j)],
                    right = y[corner_after(j)] * x[corner_before(j)];
       const bool is_zero = is_at[corner_after(j)] || is_at[corner_before(j)];
-      const double error = tinsmith::detail::kOrientationBound * (std::fabs(left) + std::fabs(right));
+      const double error =
+          tinsmith::detail::kOrientationBound * (std::fabs(left) + std::fabs(right));
       area[j] = left - right;
       found.are_precise &= is_zero || is_precise(left, right);
       found.may_be_left[j] = !is_zero && !(area[j] < -error);

@@ -47,10 +47,8 @@ class SearchTriangle {
   bool may_meet(const Box& box, bool is_small) const {
     if (!box_.meets(box)) return false;
     if (is_small || box_.within(box)) return true;
-    const Point corners[4] = {{box.west, box.south},
-                              {box.east, box.south},
-                              {box.east, box.north},
-                              {box.west, box.north}};
+    const Point corners[4] = {
+        {box.west, box.south}, {box.east, box.south}, {box.east, box.north}, {box.west, box.north}};
     for (int i = 0; i < 3; ++i) {
       int sum = 0;
       for (const Point p : corners) {
@@ -220,10 +218,10 @@ class NodeTree {
 
   const std::vector<Point>& points_;
   std::vector<Cell> cells_;
-  std::vector<Node> next_;                // of the same cell
+  std::vector<Node> next_;  // of the same cell
   std::vector<std::int32_t> cell_of_;
-  std::vector<Node> held_;                // of the cell that is halved
-  std::vector<std::int32_t> pending_;     // of the search at hand
+  std::vector<Node> held_;             // of the cell that is halved
+  std::vector<std::int32_t> pending_;  // of the search at hand
 };
 
 }  // namespace tinsmith::isolines
