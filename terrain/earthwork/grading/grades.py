@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from ...._products import product
@@ -110,9 +111,12 @@ def grade(
     used = tin.points[tin.triangles, 2]
     farthest = {cut: (used.max() - level) / cut, fill: (used.min() - level) / fill}
     slopes = []
+    # Farther away is no ground.
+    across = math.hypot(*(tin.points.max(axis=0) - tin.points.min(axis=0))[:2])
     for number, (rate, reach) in enumerate(farthest.items(), 1):
         if reach > 0:
-            slopes.append(find_slope(local, area, polygon, level, rate, float(reach)))
+            slope = find_slope(local, area, polygon, level, rate, min(float(reach), across))
+            slopes.append(slope)
         done(number * _SLOPE)
     patch = build_patch(tin, polygon, level, slopes)
     _require_within(area, patch)
