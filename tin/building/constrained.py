@@ -105,10 +105,8 @@ def triangulate_constrained(
     """
     xyz = points[rows]
     merged = _merge(xyz, rows, lines, options, progress)
-    mesh, noded = (
-        build_mesh_of_growth(merged.points, merged.growth),
-        accept_noded(merged.polylines, lines.elevations),
-    )
+    mesh = build_mesh_of_growth(merged.points, merged.growth)
+    noded = accept_noded(merged.polylines, lines.elevations)
     is_simple = options.snap == 0.0 and not (lines.priorities == ABOVE_ALL).any()
     is_forced = is_simple and _is_forced(mesh, noded.polylines)
     if not is_forced:

@@ -173,6 +173,23 @@ def test_each_point_of_a_line_is_known_in_a_triangle_that_holds_it(make):
         assert ((along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0]) / length > -1e-9).all()
 
 
+def test_clusters_far_apart_are_smoothed_and_stay_apart():
+    cluster = np.random.default_rng(1).random((150, 3))
+    tin = ts.triangulate(np.concatenate([cluster, cluster + np.array([1e6, 1e6, 0.0])]))
+    lines = ts.contours(tin, interval=0.1, smooth=0.1)
+    assert len(lines.coordinates) > 2 * len(ts.contours(tin, interval=0.1).coordinates)
+    found = ts.check_contours(tin, lines)
+    assert found.is_apart
+    assert found.deviation <= 0.1 + 1e-9
+
+
+def test_straight_contours_are_left_with_their_ends():
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(300.0), np.arange(4.0)))
+    tin = ts.triangulate(np.column_stack([x, y, y]))
+    lines = ts.contours(tin, levels=[0.25, 1.5, 2.75], simplify=0.1)
+    assert np.diff(lines.offsets[0]).tolist() == [2, 2, 2]
+
+
 @pytest.mark.parametrize("turn", [(3, 1), (1, 3), (-7, 11)])
 def test_contours_along_a_slanted_line_stay_within_their_tolerance(turn):
     """Its triangles along the boundary are thinner than rounding, and as long as the line."""
