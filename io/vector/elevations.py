@@ -10,12 +10,19 @@ from ..._sentences import counted, height
 from ...crs import FOOT, US_SURVEY_FOOT, Unit
 from ...errors import OptionError, ReadError
 from ..delimited.columns import find_role, find_unit_word
+from ..reprojection.placement import settle_unit
 
 if TYPE_CHECKING:
     from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from .features import Features
 
-__all__ = ["Elevations", "find_elevations", "find_named_unit"]
+__all__ = [
+    "Elevations",
+    "find_elevation_unit",
+    "find_elevations",
+    "find_named_unit",
+    "list_elevation_columns",
+]
 
 GEOMETRY = "geometry"
 _NAMES = frozenset(("contour", "grid_code", "gridcode", "orthometric", "quote", "ele"))
@@ -37,6 +44,27 @@ class Elevations(NamedTuple):
     """What the name of their column says."""
     notes: tuple[str, ...] = ()
     """What was assumed."""
+
+
+def find_elevation_unit(features: Features, declared: Unit | None) -> Unit | None:
+    """Return the unit of the elevations in geometries that the file or the caller tells.
+
+    Raises
+    ------
+    OptionError
+        If the two differ.
+    """
+    try:
+        told = Unit.of(features.elevation_unit or None)
+    except OptionError:  # such as "unknown", which is what we write
+        told = None
+    vertical = None if features.crs is None else features.crs.vertical_unit
+    return settle_unit(declared, told or vertical, features.path)
+
+
+def list_elevation_columns(features: Features) -> list[str]:
+    """Return the names of the columns that hold elevations."""
+    return list(_find_columns(features))
 
 
 def find_named_unit(name: str, features: Features) -> Unit | None:
@@ -175,7 +203,7 @@ def _take_column(
         raise ReadError(
             f"'{features.path}' has no elevations: none in the geometry, and "
             + (f"no column of numbers with such a name ({known}): " if known else "no column: ")
-            + "the option z_field names the column that holds them.",
+            + " ".join(("the option z_field names the column that holds them.", *features.notes)),
             path=features.path,
         )
     name, values = next(iter(columns.items()))
