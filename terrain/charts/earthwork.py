@@ -9,9 +9,9 @@ import numpy as np
 from ... import _optional
 from ...tin import Bounds
 from ...tin.validation.options import require_tin, require_type
+from ..drawing.north_up import draw_north_up
 from ..drawing.rounding import round_down
 from ..earthwork import Difference
-from ..georeference.axes import draw_north_up
 from ..gridding import rasterize
 from ..gridding.grids import cover
 from ..relief.shading import hillshade

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 from ... import _optional
 from ..._products import join_notes, product
 from ...tin.surface import Surface
-from ..georeference.axes import draw_north_up
+from ..drawing.north_up import draw_north_up
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -17,8 +17,9 @@ from ...policies import ContourLabeling, GridStyle, PointMarking, SheetLayout
 from ...tin import Bounds, Survey
 from ...tin.validation.options import require_tin, require_type
 from ..charts.arguments import parse_text
+from ..drawing.north_up import draw_north_up
 from ..georeference import require_same_crs
-from ..georeference.axes import draw_north_up, find_axes, undo_north_up
+from ..georeference.axes import find_axes, undo_north_up
 from ..results.columns import join_notes
 from ..sections.geometries import as_features
 from ..sections.segments import as_segments

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from ...errors import OptionError
 from ...tin import TIN
 from ...tin.validation.options import require_tin
+from ..drawing.north_up import draw_north_up
 from ..georeference import agree
-from ..georeference.axes import draw_north_up, find_axes
+from ..georeference.axes import find_axes
 
 if TYPE_CHECKING:
     from ...arrays import Float64Array

@@ -10,7 +10,7 @@ import numpy as np
 from ..._products import product
 from ..._sentences import counted
 from ..drawing.cards.frame import SIZE, describe_bounds, name_crs, name_units, write_card
-from ..georeference.axes import draw_north_up
+from ..drawing.north_up import draw_north_up
 from ..georeference.units import find_ground
 from .scene import NORTHWEST, choose_exaggeration, measure_relief
 from .tints import interpolate_tints

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...._sentences import counted
-from ...georeference.axes import draw_north_up, find_axes
+from ...georeference.axes import find_axes
 from ...results.columns import unit_text
+from ..north_up import draw_north_up
 from .drawings import Canvas, draw_cells
 from .frame import (
     SIZE,

@@ -235,7 +235,7 @@ def _draw(tin, kind):
 
 
 def test_usual_axes_leave_a_surface_as_it_is():
-    from tinsmith.terrain.georeference.axes import draw_north_up
+    from tinsmith.terrain.drawing.north_up import draw_north_up
 
     tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:32616")
     assert draw_north_up(tin) is tin
