@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from ....arrays import Float64Array, Int64Array
     from ....crs import CrsLike, UnitLike
+    from ....policies import FacePolicy
     from ....tin import TIN
 
 __all__ = ["read"]
@@ -48,6 +49,7 @@ def read(
     z_unit: UnitLike | None = None,
     surface: str | None = None,
     join: bool = False,
+    faces: FacePolicy = "all",
 ) -> TIN:
     """Read the terrain of a CityJSON file.
 
@@ -77,7 +79,7 @@ def read(
     points, triangles = _merge_vertices(points, made.triangles)
     found_crs, found_unit = _find_reference(city, reliefs)
     reference = choose_reference(crs, z_unit, path, found_crs=found_crs, found_unit=found_unit)
-    return make_tin(points, triangles, path, reference=reference, notes=notes)
+    return make_tin(points, triangles, path, reference=reference, notes=notes, faces=faces)
 
 
 def _describe_damage(path: Path, what: str) -> ReadError:

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...._sentences import counted
 from ....errors import OptionError, ReadError
 from ..common import choose_reference, make_tin, read_content
-from .tile import BrokenTileError, TileName, decode_tile
+from .tile import STEPS, BrokenTileError, TileName, decode_tile
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ....arrays import Int64Array
     from ....crs import CrsLike, UnitLike
+    from ....policies import FacePolicy
     from ....tin import TIN
 
 __all__ = ["read"]
@@ -36,6 +36,7 @@ def read(
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
     tile: str | None = None,
+    faces: FacePolicy = "all",
 ) -> TIN:
     """Read a tile, gzipped or not, in longitude, latitude and metres above the ellipsoid.
 
@@ -58,15 +59,8 @@ def read(
     places = type(found)(steps, triangles, found.lowest, found.highest).place(name)
     if len(triangles) == 0:
         raise ReadError(f"'{path}' is a tile without any triangle.", path=path)
-    flat = _measure(steps, triangles) <= 0  # rounding turned some over: their neighbours cover them
-    notes = []
-    if flat.any():
-        count = counted(int(flat.sum()), "triangle")
-        notes.append(f"{count} of the file without area, or turned over by rounding, left out.")
-        triangles = triangles[~flat]
-    if len(triangles) == 0:
-        raise ReadError(f"'{path}' is a tile whose triangles have no area.", path=path)
-    return make_tin(places, triangles, path, reference=reference, notes=notes)
+    rounding = name.width / STEPS
+    return make_tin(places, triangles, path, reference=reference, faces=faces, rounding=rounding)
 
 
 def _find_name(path: Path, tile: str | None) -> TileName:
@@ -112,9 +106,3 @@ def _merge(steps: Int64Array, triangles: Int64Array) -> tuple[Int64Array, Int64A
     rank = np.empty(len(kept), np.int64)
     rank[np.argsort(first)] = np.arange(len(kept))
     return steps[np.sort(first)], rank[number.ravel()][triangles]
-
-
-def _measure(steps: Int64Array, triangles: Int64Array) -> Int64Array:
-    a, b, c = (steps[triangles[:, k], :2] for k in range(3))
-    u, v = b - a, c - a
-    return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
