@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import re
 import zlib
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ....errors import OptionError, ReadError
-from ..common import choose_reference, make_tin, read_content
+from ..common import add_notes, choose_reference, make_tin, read_content
+from .placing import find_placing
 from .tile import STEPS, BrokenTileError, TileName, decode_tile
 
 if TYPE_CHECKING:
@@ -22,7 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["read"]
 
-_CRS = "EPSG:4979"
 _NAME = re.compile(r"(\d{1,2})/(\d{1,9})/(\d{1,9})")
 _MOST_LEVEL = 30
 _GZIP = b"\x1f\x8b"
@@ -40,8 +41,10 @@ def read(
 ) -> TIN:
     """Read a tile, gzipped or not, in longitude, latitude and metres above the ellipsoid.
 
-    A CRS or unit that is given must be EPSG:4979 and the metre. Triangles without area, which
-    programs leave in tiles, are left out and told. Normals, water and other extensions are skipped.
+    A tile of a pyramid of web Mercator, by the centre that its header tells, is in EPSG:3857; the
+    report tells it. A CRS or unit that is given must be that and the metre. Triangles that rounding
+    left without area or turned over are left out and told. Normals, water and other extensions are
+    skipped.
 
     Parameters
     ----------
@@ -54,13 +57,21 @@ def read(
         found = decode_tile(content)
     except BrokenTileError as error:
         raise ReadError(_describe_fault(path, content, str(error)), path=path) from None
-    reference = choose_reference(crs, z_unit, path, found_crs=_CRS)
+    placing = find_placing(found.center, name, path, is_declared=tile is not None)
+    reference = choose_reference(crs, z_unit, path, found_crs=placing.crs, found_unit=placing.unit)
     steps, triangles = _merge(found.steps, found.triangles)
-    places = type(found)(steps, triangles, found.lowest, found.highest).place(name)
+    places = replace(found, steps=steps).place(placing.west, placing.south, placing.width)
     if len(triangles) == 0:
         raise ReadError(f"'{path}' is a tile without any triangle.", path=path)
-    rounding = name.width / STEPS
-    return make_tin(places, triangles, path, reference=reference, faces=faces, rounding=rounding)
+    tin = make_tin(
+        places,
+        triangles,
+        path,
+        reference=reference,
+        faces=faces,
+        rounding=placing.width / STEPS,
+    )
+    return add_notes(tin, placing.notes)
 
 
 def _find_name(path: Path, tile: str | None) -> TileName:
