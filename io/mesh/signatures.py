@@ -49,8 +49,8 @@ def is_off(head: bytes) -> bool:
 
 
 def is_cityjson(head: bytes) -> bool:
-    """Whether the file is CityJSON."""
-    return head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{") and (
+    """Whether the file is CityJSON, or a sequence that begins with it."""
+    return head.lstrip(b"\xef\xbb\xbf \t\r\n\x1e").startswith(b"{") and (
         _CITYJSON.search(head) is not None
     )
 
