@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...arrays import BoolArray, Float64Array, Int64Array
-    from ...policies import LineKind
+    from ...policies import FacePolicy, LineKind
     from ..mesh.common import Reference
 
 __all__ = ["EdgeLine", "Mesh", "make_tin_with_lines", "merge_equal_points"]
@@ -78,7 +78,7 @@ def merge_equal_points(mesh: Mesh) -> Mesh:
 
 
 def make_tin_with_lines(
-    mesh: Mesh, lines: Sequence[EdgeLine], path: Path, *, reference: Reference
+    mesh: Mesh, lines: Sequence[EdgeLine], path: Path, *, reference: Reference, faces: FacePolicy
 ) -> TIN:
     """Make a TIN as every mesh does; lines that run along its edges become its lines."""
     tin = make_tin(
@@ -88,6 +88,7 @@ def make_tin_with_lines(
         constrained=mesh.constrained,
         reference=reference,
         notes=mesh.notes,
+        faces=faces,
     )
     if not lines:
         return tin

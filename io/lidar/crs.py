@@ -40,6 +40,8 @@ _DEGREE = 111_000.0
 _RADII, _HIGHEST = (6.3e6, 6.42e6), 1e4
 """Metres from the centre of the Earth at its surface; elevations are below the latter."""
 
+_NO_NAMES = ("", "unnamed", "unknown", "undefined", "none", "local", "user-defined")
+
 _UNITS = {9001: METRE, 9002: FOOT, 9003: US_SURVEY_FOOT}
 _IN_FEET = {(5703, US_SURVEY_FOOT): 6360, (5703, FOOT): 8228}
 """NAVD 88 in metres, as files name it whose elevations are in feet, and what they mean."""
@@ -90,7 +92,10 @@ def find_reference(header: Header, *, is_declared: bool) -> Reference:
 
 def _find_reference(header: Header) -> Reference:
     keys = _read_keys(header)
-    named = [CRS.of(text) for text in _read_texts(header)]
+    every = [CRS.of(text) for text in _read_texts(header)]
+    named = [crs for crs in every if not _is_unnamed(crs)]
+    if every and not named and keys is None:
+        return Reference(notes=(_describe_unnamed(every[0].horizontal_unit),))
     if not named:
         return Reference() if keys is None else _interpret_keys(header, keys)
     for other in (*named[1:], *_find_plain_code(keys or {})):
@@ -182,12 +187,29 @@ def _interpret_keys(header: Header, keys: dict[int, int]) -> Reference:
     code = keys.get(_PROJECTED_KEY) or keys.get(_GEOGRAPHIC_KEY)
     vertical = keys.get(_VERTICAL_KEY, 0)
     if code == _USER_DEFINED or (code is None and vertical == _USER_DEFINED):
-        return Reference(CRS.of(_ask_gdal(header)), _UNITS.get(keys.get(_VERTICAL_UNIT_KEY, 0)))
+        crs, unit = CRS.of(_ask_gdal(header)), _UNITS.get(keys.get(_VERTICAL_UNIT_KEY, 0))
+        if not _is_unnamed(crs):
+            return Reference(crs, unit)
+        linear = _UNITS.get(keys.get(_LINEAR_UNIT_KEY, 0))
+        return Reference(unit=unit, notes=(_describe_unnamed(linear),))
     if code is None or code == 0:
         return Reference(unit=_UNITS.get(keys.get(_VERTICAL_UNIT_KEY, 0)))
     horizontal = CRS.of(f"EPSG:{code}")
     _require_unit(horizontal, _UNITS.get(keys.get(_LINEAR_UNIT_KEY, 0)), header.path)
     return _add_vertical(horizontal, vertical, _UNITS.get(keys.get(_VERTICAL_UNIT_KEY, 0)))
+
+
+def _is_unnamed(crs: CRS) -> bool:
+    """Whether it says no more than that coordinates are in a plane: neither where, nor its name."""
+    return crs.to_pyproj().is_engineering and crs.name.strip().lower() in _NO_NAMES
+
+
+def _describe_unnamed(unit: Unit | None) -> str:
+    known = "" if unit is None else f" but its unit, the {unit.name}"
+    return (
+        f"The CRS of the file is user-defined, and nothing describes it{known}: it is taken for "
+        "not known."
+    )
 
 
 def _require_unit(crs: CRS, unit: Unit | None, path: Path) -> None:

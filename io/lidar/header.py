@@ -41,7 +41,9 @@ _LARGEST_RECORD = 1 << 24
 
 _LASZIP = ("laszip encoded", 22204)
 _COPC = ("copc", 1)
-_VARIABLE_CHUNKS = 2**32 - 1
+_VARIABLE_CHUNKS = (0, 2**32 - 1)
+"""Sizes that stand for none, as COPC has it: the table tells the points of each chunk."""
+
 _LASTING = 2**31
 """Coordinates are stored as whole numbers of 32 bits."""
 
@@ -315,7 +317,7 @@ def _require_chunks(header: Header, file: IO[bytes]) -> None:
     if compressor not in (2, 3) or header.count == 0:
         return  # no chunks; the size of all points is looked at where they are counted
     n_chunks = _count_chunks(header, file)
-    if n_chunks is None or chunk_size == _VARIABLE_CHUNKS:
+    if n_chunks is None or chunk_size in _VARIABLE_CHUNKS:
         return
     if not (n_chunks - 1) * chunk_size < header.count <= n_chunks * chunk_size:
         raise _describe_fault(

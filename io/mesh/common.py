@@ -15,6 +15,7 @@ from ...tin.checking.overlaps import describe_overlaps
 from ...tin.screening.nodata import find_suspect_elevations
 from ...tin.validation.options import is_finite_number
 from ..reprojection.placement import settle_unit
+from .surface_part import make_surface
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
     from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
+    from ...policies import FacePolicy
 
 __all__ = [
     "Fans",
@@ -34,6 +36,7 @@ __all__ = [
     "format_unit",
     "make_survey",
     "make_tin",
+    "measure_rounding",
     "read_content",
     "require_factor",
     "require_own_crs",
@@ -189,30 +192,66 @@ def make_tin(
     reference: Reference,
     attributes: Mapping[str, AnyArray] | None = None,
     notes: Sequence[str] = (),
+    faces: FacePolicy = "all",
+    rounding: float = 0.0,
 ) -> TIN:
-    """Make a TIN of what a file holds; what makes no TIN is a fault of the file.
+    """Make a TIN of what a file holds; what makes none is a fault of the file.
 
-    What makes one in which triangles overlap, and the like, is told in the notes of its report,
+    Triangles that overlap without a common edge, and the like, are told in the notes of its report,
     behind the ``notes`` given.
+
+    Parameters
+    ----------
+    faces : {"all", "surface"}
+        As :func:`make_surface` takes it.
+    rounding : float
+        Likewise.
 
     Raises
     ------
     ReadError
-        As ``TIN.from_triangles`` raises PointsError.
+        As :func:`make_surface` raises PointsError.
     """
-    try:
-        tin = TIN.from_triangles(
+
+    def make(kept: AnyArray | slice) -> TIN:
+        return TIN.from_triangles(
             points,
-            triangles,
-            constrained=constrained,
+            np.asarray(triangles)[kept],
+            constrained=None if constrained is None else constrained[kept],
             crs=reference.crs,
             z_unit=reference.elevation_unit,
             attributes=attributes,
         )
+
+    try:
+        tin, told = make_surface(make, points, triangles, faces=faces, rounding=rounding)
     except PointsError as error:
         raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
-    told = [*notes, *describe_overlaps(tin), *_describe_suspects(tin.points[:, 2])]
+    told = [*notes, *told, *_describe_oddities(tin, faces)]
+    told += _describe_suspects(tin.points[:, 2])
     return add_notes(tin, told) if told else tin
+
+
+def _describe_oddities(tin: TIN, faces: FacePolicy) -> list[str]:
+    told = describe_overlaps(tin, may_overlap=faces != "surface")
+    offer = " faces='surface' leaves them out."
+    return [note + offer * note.startswith("Triangles overlap") for note in told]
+
+
+def measure_rounding(points: Float64Array, dtype: Any) -> float:
+    """Return how far apart the numbers are that coordinates of a file can have; 0 for doubles.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+        As they stand in the file.
+    dtype : dtype
+        As which it holds them.
+    """
+    if np.dtype(dtype).newbyteorder("=") != np.float32 or len(points) == 0:
+        return 0.0
+    largest = float(np.abs(points[:, :2]).max())
+    return float(np.spacing(np.float32(largest))) if largest < _LARGEST_SINGLE else 0.0
 
 
 def describe_single_precision(points: Float64Array, dtype: Any) -> list[str]:
@@ -224,12 +263,10 @@ def describe_single_precision(points: Float64Array, dtype: Any) -> list[str]:
     dtype : dtype
         As which the file holds coordinates.
     """
-    if np.dtype(dtype).newbyteorder("=") != np.float32 or len(points) == 0:
+    step = measure_rounding(points, dtype)
+    if step < _MUCH:
         return []
     largest = float(np.abs(points[:, :2]).max())
-    step = float(np.spacing(np.float32(largest))) if largest < _LARGEST_SINGLE else np.inf
-    if not _MUCH <= step < np.inf:
-        return []
     return [
         f"Coordinates of the file are numbers of 32 bits: those about {largest:,.10g} are rounded "
         f"to multiples of {step:g}."

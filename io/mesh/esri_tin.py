@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
-    from ...policies import LineKind
+    from ...policies import FacePolicy, LineKind
     from ...tin import TIN
 
 __all__ = ["read"]
@@ -57,7 +57,13 @@ class _Tables(NamedTuple):
     enforced: Int64Array
 
 
-def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN:
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    faces: FacePolicy = "all",
+) -> TIN:
     """Read an Esri TIN by its folder, or any of the files in it.
 
     The CRS defaults to that of ``prj.adf``; the unit of the elevations the files do not tell.
@@ -82,7 +88,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     if not wanted.any():
         raise ReadError(f"'{folder}' is an Esri TIN whose triangles are all masked.", path=folder)
     reference = choose_reference(crs, z_unit, folder, found_crs=_read_crs(folder))
-    tin = make_tin(points, number[triangles[wanted]], folder, reference=reference)
+    tin = make_tin(points, number[triangles[wanted]], folder, reference=reference, faces=faces)
     chains = _gather_chains(tables, triangles, np.where(used, number, -1), tin)
     tin, lost = add_lines(tin, chains)
     if not lost:

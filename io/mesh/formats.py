@@ -9,6 +9,7 @@ from .signatures import (
     is_2dm,
     is_cityjson,
     is_esri_tin,
+    is_gzipped_tile,
     is_off,
     is_quantized_mesh,
 )
@@ -145,6 +146,7 @@ FORMATS = (
         read="tinsmith.io.mesh.quantized_mesh.reading:read",
         reads=("TIN",),
         sniff=is_quantized_mesh,
+        sniff_file=is_gzipped_tile,
     ),
     Format(
         name="glb",

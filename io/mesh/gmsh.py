@@ -16,9 +16,17 @@ import numpy as np
 
 from ... import _optional
 from ..._atomic import replacing_path
+from ...errors import ReadError
 from ...tin.topology import NO_NEIGHBOR, directed_edges, edge_keys, ends
 from ..isolated import run_isolated
-from .common import choose_reference, make_survey, make_tin, read_content, require_tin
+from .common import (
+    choose_reference,
+    cut_into_fans,
+    make_survey,
+    make_tin,
+    read_content,
+    require_tin,
+)
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -26,6 +34,7 @@ if TYPE_CHECKING:
     from ..._progress import Tell
     from ...arrays import BoolArray, Int32Array
     from ...crs import CrsLike, UnitLike
+    from ...policies import FacePolicy
     from ...tin import TIN, Survey
 
 __all__ = ["read", "write"]
@@ -45,22 +54,47 @@ class _Edges(NamedTuple):
     names: list[str]
 
 
-def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
-    """Read the triangles of a Gmsh file; line elements along their edges become constrained.
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    faces: FacePolicy = "all",
+) -> TIN | Survey:
+    """Read the faces of a Gmsh file; line elements along their edges become constrained.
 
-    The file tells neither CRS nor unit. One without triangles gives a survey.
+    The file tells neither CRS nor unit. Quadrilaterals are cut along a diagonal, which the report
+    tells; faces with nodes amid their edges are cut at these. Cells that are no faces are left out
+    and told. A file of nodes alone gives a survey.
     """
     _optional.require("meshio", "Reading Gmsh files")
     if not path.is_file():
         read_content(path)  # says why it cannot be read
     where = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
-    arrays = run_isolated(f"{__package__}.gmsh_child:read_mesh", where, path=path).arrays
-    points, triangles = arrays["points"], arrays["triangles"]
+    others, arrays = run_isolated(f"{__package__}.gmsh_child:read_mesh", where, path=path)
+    points = arrays["points"]
     reference = choose_reference(crs, z_unit, path)
-    if len(triangles) == 0:
+    told = ", ".join(f"{count:,} of the kind {kind}" for kind, count in others.items())
+    if len(arrays["corners"]) == 0:
+        if others:
+            raise ReadError(
+                f"'{path}' holds no faces, but other cells ({told}): triangles and quadrilaterals "
+                "can be read.",
+                path=path,
+            )
         return make_survey(points, path, reference=reference)
-    flags = _flag_edges(triangles, arrays["lines"], len(points))
-    return make_tin(points, triangles, path, constrained=flags, reference=reference)
+    made = cut_into_fans(arrays["corners"], arrays["offsets"], points, path)
+    flags = _flag_edges(made.triangles, arrays["lines"], len(points))
+    notes = [*made.notes, *([f"Not read: other cells ({told})."] if others else [])]
+    return make_tin(
+        points,
+        made.triangles,
+        path,
+        constrained=flags,
+        reference=reference,
+        notes=notes,
+        faces=faces,
+    )
 
 
 def _flag_edges(triangles: Int32Array, lines: Int32Array, n_points: int) -> BoolArray:

@@ -24,6 +24,7 @@ from .common import (
     format_crs,
     format_unit,
 )
+from .surface_part import make_surface
 from .vtk_child import read_dataset
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 
     from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
+    from ...policies import FacePolicy
 
 __all__ = ["from_mesh", "to_meshio", "to_pyvista", "to_trimesh"]
 
@@ -217,7 +219,13 @@ class _Found(NamedTuple):
     dtype: Any
 
 
-def from_mesh(mesh: Any, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN:
+def from_mesh(
+    mesh: Any,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    faces: FacePolicy = "all",
+) -> TIN:
     """Return a TIN of the triangles of another library's mesh, which are kept as they are.
 
     Parameters
@@ -227,6 +235,9 @@ def from_mesh(mesh: Any, *, crs: CrsLike | None = None, z_unit: UnitLike | None 
         Declares the CRS; default the one that the mesh has from tinsmith.
     z_unit : Unit or str, optional
         Declares the unit of the elevations; default the one that the mesh has from tinsmith.
+    faces : {"all", "surface"}
+        "surface": leave out faces without area seen from above, and of faces that overlap all but
+        the largest; the report tells how many.
 
     Returns
     -------
@@ -265,19 +276,24 @@ def from_mesh(mesh: Any, *, crs: CrsLike | None = None, z_unit: UnitLike | None 
     except ReadError as error:
         raise PointsError(str(error)) from error
     has_flags = found.flags is not None and len(found.flags) == len(fans.triangles)
-    tin = TIN.from_triangles(
-        points,
-        fans.triangles,
-        constrained=found.flags if has_flags else None,
-        crs=reference.crs,
-        z_unit=reference.elevation_unit,
-        attributes=found.attributes,
-    )
-    told = describe_overlaps(tin)
+
+    def make(kept: BoolArray | slice) -> TIN:
+        return TIN.from_triangles(
+            points,
+            fans.triangles[kept],
+            constrained=found.flags[kept] if found.flags is not None and has_flags else None,
+            crs=reference.crs,
+            z_unit=reference.elevation_unit,
+            attributes=found.attributes,
+        )
+
+    tin, notes = make_surface(make, points, fans.triangles, faces=faces)
+    told = describe_overlaps(tin, may_overlap=faces != "surface")
     overlaps = next((sentence for sentence in told if "overlap" in sentence), None)
     if overlaps is not None:
-        raise PointsError(f"'{name}' holds no TIN. {overlaps}")
-    return add_notes(tin, [*describe_single_precision(points, found.dtype), *fans.notes, *told])
+        raise PointsError(f"'{name}' holds no TIN. {overlaps} faces='surface' leaves them out.")
+    notes += [*describe_single_precision(points, found.dtype), *fans.notes, *told]
+    return add_notes(tin, notes)
 
 
 def _as_text(value: Any) -> str | None:

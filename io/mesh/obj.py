@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from ..._progress import Tell
     from ...arrays import AnyArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
+    from ...policies import FacePolicy
     from ...tin import TIN, Survey
     from .texture import Texture
 
@@ -45,7 +46,13 @@ _CLAMPED = 2**63 - 1
 _VERTEX_NUMBER = re.compile(r"([-+]?)([0-9]+)(?:/|$)")
 
 
-def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    faces: FacePolicy = "all",
+) -> TIN | Survey:
     """Read the vertices and faces of an OBJ file.
 
     CRS and unit default to those in the comments ``# crs: ...`` and ``# elevation unit: ...``.
@@ -67,7 +74,9 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
         return common.make_survey(points, path, reference=reference)
     corners, offsets = _parse_faces(lines, vertex_lines, face_lines, path)
     made = common.cut_into_fans(corners, offsets, points, path)
-    return common.make_tin(points, made.triangles, path, reference=reference, notes=made.notes)
+    return common.make_tin(
+        points, made.triangles, path, reference=reference, notes=made.notes, faces=faces
+    )
 
 
 def _split_lines(content: bytes) -> list[str]:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from ..._progress import Tell
     from ...arrays import Int64Array
     from ...crs import CrsLike, UnitLike
+    from ...policies import FacePolicy
     from ...tin import TIN, Survey
 
 __all__ = ["read", "write"]
@@ -38,7 +39,13 @@ class _Counts(NamedTuple):
     faces: int
 
 
-def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    faces: FacePolicy = "all",
+) -> TIN | Survey:
     """Read the vertices and faces of an OFF file in text.
 
     CRS and unit default to those in the comments ``# crs: ...`` and ``# elevation unit: ...``.
@@ -48,7 +55,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     content = common.read_content(path)
     rows = _skip_keyword(split_rows(content, path))
     counts = _parse_counts(rows)
-    vertices, faces = (
+    vertices, polygons = (
         rows.cut(1, counts.vertices + 1),
         rows.cut(counts.vertices + 1, sum(counts) + 1),
     )
@@ -60,9 +67,11 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     )
     if counts.faces == 0:
         return common.make_survey(points, path, reference=reference)
-    corners, offsets = _parse_faces(faces)
+    corners, offsets = _parse_faces(polygons)
     made = common.cut_into_fans(corners, offsets, points, path)
-    return common.make_tin(points, made.triangles, path, reference=reference, notes=made.notes)
+    return common.make_tin(
+        points, made.triangles, path, reference=reference, notes=made.notes, faces=faces
+    )
 
 
 def _skip_keyword(rows: TextRows) -> TextRows:

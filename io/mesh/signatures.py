@@ -11,7 +11,15 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["TIN_FILES", "is_2dm", "is_cityjson", "is_esri_tin", "is_off", "is_quantized_mesh"]
+__all__ = [
+    "TIN_FILES",
+    "is_2dm",
+    "is_cityjson",
+    "is_esri_tin",
+    "is_gzipped_tile",
+    "is_off",
+    "is_quantized_mesh",
+]
 
 TIN_FILES = ("tnxy.adf", "tnz.adf", "tnod.adf", "tedg.adf", "tmsk.adf", "tmsx.adf", "thul.adf",
              "tdenv.adf", "tdenv9.adf", "tnodinfo.adf", "teval.adf")  # fmt: skip
@@ -20,6 +28,11 @@ TIN_FILES = ("tnxy.adf", "tnz.adf", "tnod.adf", "tedg.adf", "tmsk.adf", "tmsx.ad
 _TILE_HEADER = struct.Struct("<3d2f3dd3d")
 _LEAST_RADIUS, _MOST_RADIUS, _MOST_HEIGHT = 6.2e6, 6.6e6, 1e5
 """Metres: how far from its centre the surface of the Earth is, and how high above the ellipsoid."""
+
+_HALF_WORLD = 20_037_508.35
+"""Metres, half the width of the world in web Mercator."""
+
+_GZIP = b"\x1f\x8b"
 
 _OFF = re.compile(rb"\s*(?:ST)?C?N?4?n?OFF\s")
 _CITYJSON = re.compile(rb'"type"\s*:\s*"CityJSON"')
@@ -36,8 +49,8 @@ def is_off(head: bytes) -> bool:
 
 
 def is_cityjson(head: bytes) -> bool:
-    """Whether the file is CityJSON."""
-    return head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{") and (
+    """Whether the file is CityJSON, or a sequence that begins with it."""
+    return head.lstrip(b"\xef\xbb\xbf \t\r\n\x1e").startswith(b"{") and (
         _CITYJSON.search(head) is not None
     )
 
@@ -50,9 +63,10 @@ def is_esri_tin(folder: Path) -> bool:
 def is_quantized_mesh(head: bytes) -> bool:
     """Whether the file is a quantized-mesh tile, gzipped or not: its places are those of a globe.
 
-    The header tells the centre of the tile, its heights, and a sphere about it.
+    The header tells the centre of the tile, its heights, and a sphere about it; in a pyramid of web
+    Mercator, in its coordinates.
     """
-    if head.startswith(b"\x1f\x8b"):
+    if head.startswith(_GZIP):
         try:
             head = zlib.decompressobj(wbits=31).decompress(head, _TILE_HEADER.size)
         except zlib.error:
@@ -63,9 +77,21 @@ def is_quantized_mesh(head: bytes) -> bool:
     if not all(math.isfinite(value) for value in found):
         return False
     lowest, highest, radius = found[3], found[4], found[8]
+    if not -_MOST_HEIGHT < lowest <= highest < _MOST_HEIGHT:
+        return False
+    center, middle = found[:3], found[5:8]
+    if _LEAST_RADIUS < math.hypot(*center) < _MOST_RADIUS:
+        return math.hypot(*middle) < _MOST_RADIUS and 0.0 < radius < 2 * _MOST_RADIUS
     return (
-        _LEAST_RADIUS < math.hypot(*found[:3]) < _MOST_RADIUS
-        and -_MOST_HEIGHT < lowest <= highest < _MOST_HEIGHT
-        and math.hypot(*found[5:8]) < _MOST_RADIUS
-        and 0.0 < radius < 2 * _MOST_RADIUS
+        1.0 < max(map(abs, center[:2])) < _HALF_WORLD
+        and max(abs(center[2]), abs(middle[2])) < _MOST_HEIGHT
+        and math.dist(center[:2], middle[:2]) < radius < 2 * _HALF_WORLD
     )
+
+
+def is_gzipped_tile(path: Path) -> bool:
+    """Whether a file is named as a quantized-mesh tile and gzipped, as servers keep them."""
+    if path.suffix.lower() != ".terrain" or not path.is_file():
+        return False
+    with path.open("rb") as file:
+        return file.read(len(_GZIP)) == _GZIP

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from ..._progress import Tell
     from ...arrays import Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
+    from ...policies import FacePolicy
     from ...tin import TIN, Survey
 
 __all__ = ["read", "write"]
@@ -41,7 +42,13 @@ _FACES = {
 _EDGES = ("E2L", "E3L")
 
 
-def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    faces: FacePolicy = "all",
+) -> TIN | Survey:
     """Read a 2DM mesh: nodes in any order with gaps, elements, node strings.
 
     The file tells neither CRS nor unit. Quadrilaterals (E4Q, and those within E8Q and E9Q) are cut
@@ -60,13 +67,13 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     reference = common.choose_reference(crs, z_unit, path)
     if not any(card in cards for card in _FACES):
         return common.make_survey(points, path, reference=reference)
-    faces = [_parse_elements(card, cards[card], numbers) for card in _FACES if card in cards]
-    corners = np.concatenate([part[0] for part in faces])
-    lengths = np.concatenate([part[1] for part in faces])
+    found = [_parse_elements(card, cards[card], numbers) for card in _FACES if card in cards]
+    corners = np.concatenate([part[0] for part in found])
+    lengths = np.concatenate([part[1] for part in found])
     offsets = np.concatenate([[0], np.cumsum(lengths)])
     triangles = common.cut_into_fans(corners, offsets, points, path).triangles
     notes = _describe_losses(cards, int((lengths == 4).sum()))
-    tin = common.make_tin(points, triangles, path, reference=reference, notes=notes)
+    tin = common.make_tin(points, triangles, path, reference=reference, notes=notes, faces=faces)
     strings = _parse_strings(cards.get("NS", TextRows(path)), numbers)
     tin, lost = add_lines(tin, strings)
     if not lost:

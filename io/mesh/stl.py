@@ -28,6 +28,7 @@ from .common import (
     describe_single_precision,
     format_unit,
     make_tin,
+    measure_rounding,
     read_content,
     require_factor,
     require_tin,
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from ..._progress import Tell
     from ...arrays import AnyArray, Float32Array, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
+    from ...policies import FacePolicy
     from ...tin import TIN
 
 __all__ = ["read", "write"]
@@ -54,7 +56,13 @@ _BASE_SHARE = 20.0
 _RECORD = re.compile(r"origin (\S+) (\S+) (\S+)(?: crs (\S+))?(?: z (\S+))?")
 
 
-def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN:
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    faces: FacePolicy = "all",
+) -> TIN:
     """Read a binary STL file; corners at the same place become one vertex.
 
     CRS and unit default to those recorded in the header, whose origin is added back, if there is
@@ -73,7 +81,10 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
         points, triangles = _merge_corners(facets["corners"].reshape(-1, 3))
         places = points + origin
     notes = describe_single_precision(points, np.float32)
-    return make_tin(places, triangles, path, reference=reference, notes=notes)
+    own = measure_rounding(points, np.float32) if content.startswith(b"origin ") else 0.0
+    return make_tin(
+        places, triangles, path, reference=reference, notes=notes, faces=faces, rounding=own
+    )
 
 
 def _find_facets(content: bytes, path: Path) -> AnyArray:

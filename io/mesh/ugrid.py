@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from ..._progress import Tell
     from ...arrays import AnyArray, Float64Array, Int32Array, Int64Array
     from ...crs import CrsLike, UnitLike
+    from ...policies import FacePolicy
     from ...tin import TIN, Survey
     from .common import Reference
 
@@ -65,6 +66,7 @@ def read(
     z_unit: UnitLike | None = None,
     surface: str | None = None,
     variable: str | None = None,
+    faces: FacePolicy = "all",
 ) -> TIN | Survey:
     """Read a mesh of a UGRID file.
 
@@ -98,7 +100,7 @@ def read(
         return make_survey(points, path, reference=reference, notes=notes)
     made = cut_into_fans(arrays["corners"], arrays["offsets"], points, path)
     notes += made.notes
-    tin = make_tin(points, made.triangles, path, reference=reference, notes=notes)
+    tin = make_tin(points, made.triangles, path, reference=reference, notes=notes, faces=faces)
     return _add_edge_types(tin, arrays)
 
 

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from ..._progress import Tell
     from ...arrays import AnyArray, Float64Array
     from ...crs import CrsLike, UnitLike
+    from ...policies import FacePolicy
     from ...tin import TIN, Survey
     from ..isolated import Answer
 
@@ -40,7 +41,13 @@ _CLOSEST_PACKING = 1100  # zlib packs no tighter than 1032 to 1
 _COUNTS = re.compile(rb'NumberOf\w+="(\d+)"')
 
 
-def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    faces: FacePolicy = "all",
+) -> TIN | Survey:
     """Read a VTK XML file of faces.
 
     CRS and unit default to the field data ``crs`` and ``elevation_unit``. Polygons are cut into
@@ -70,6 +77,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
         constrained=is_flagged,
         reference=reference,
         notes=(*notes, *made.notes),
+        faces=faces,
     )
 
 

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array, ObjectArray
     from ...crs import CrsLike, UnitLike
+    from ...policies import FacePolicy
 
 __all__ = ["read"]
 
@@ -46,6 +47,7 @@ def read(
     where: str | None = None,
     lines_as: LineReading | None = None,
     nodata: float | Sequence[float] | None = None,
+    faces: FacePolicy = "all",
 ) -> Survey | TIN:
     """Read the points of a vector layer, or the triangles that another program wrote as polygons.
 
@@ -93,7 +95,7 @@ def read(
     if kinds == {_POINT}:
         return _make_survey(_gather_points(features), features, asked)
     if role is None and kinds == {_POLYGON} and _are_triangles(features):
-        return _make_triangles(features, asked)
+        return _make_triangles(features, asked, faces)
     if _POINT in kinds:
         raise ReadError(
             f"'{path}' holds both points and lines or polygons: one kind is needed; the option "
@@ -293,7 +295,7 @@ def _are_triangles(features: Features) -> bool:
     )
 
 
-def _make_triangles(features: Features, asked: _Asked) -> TIN:
+def _make_triangles(features: Features, asked: _Asked, faces: FacePolicy) -> TIN:
     """Return the TIN of triangles; corners at one place, to the last bit, are one vertex."""
     shapely = _optional.load("shapely")
     if asked.z_field not in (None, "geometry"):
@@ -314,6 +316,7 @@ def _make_triangles(features: Features, asked: _Asked) -> TIN:
         triangles,
         features.path,
         reference=Reference(placed.crs, placed.elevation_unit),
+        faces=faces,
     )
     notes = [*features.notes, *placed.notes]
     if placed.points is not points:

@@ -20,6 +20,7 @@ __all__ = [
     "DuplicatePolicy",
     "EmptyCircleRule",
     "Extrapolation",
+    "FacePolicy",
     "FeatureKind",
     "FlowProduct",
     "GridStyle",
@@ -144,6 +145,9 @@ OutsidePolicy: TypeAlias = Literal["error", "nan", "cut"]
 
 DrawingContent: TypeAlias = Literal["surface", "source", "points"]
 """What is read of a drawing: triangles, the points and lines that make a surface, or points."""
+
+FacePolicy: TypeAlias = Literal["all", "surface"]
+"""Which triangles of a mesh are read: all, or those that make a surface seen from above."""
 
 DrawingVersion: TypeAlias = Literal["R2010", "R12"]
 """Which version of DXF is written."""

@@ -50,7 +50,12 @@ def _make_cityjson(folder: Path) -> list[tuple[str, bytes]]:
     older = {**city, "version": "1.0", "metadata": system}
     relief = city["CityObjects"]["terrain"]
     several = {**city, "CityObjects": {"a": relief, "b": {"type": "Road"}}}
+    first = {**city, "CityObjects": {}, "vertices": []}
+    feature = {"type": "CityJSONFeature", "id": "a", "CityObjects": {"a": relief},
+               "vertices": city["vertices"]}  # fmt: skip
+    sequence = "\n".join(map(json.dumps, (first, feature)))
     return [(name, content), ("older.city.json", json.dumps(older).encode()),
+            ("features.jsonl", sequence.encode()),
             ("several.json", json.dumps(several).encode())]  # fmt: skip
 
 

@@ -57,6 +57,10 @@ __all__ = ["CheckResult", "Problem", "check"]
 LEVELS = (1, 2, 3)
 
 
+_OF_SURFACES = frozenset({"hull", "boundary", "euler", "delaunay", "unused"})
+"""Kinds of problems that sound surfaces have which are not Delaunay."""
+
+
 @dataclass(frozen=True)
 class CheckResult:
     """What :func:`check` found.
@@ -92,6 +96,27 @@ class CheckResult:
         """Whether no problem was found."""
         return not self.problems
 
+    @property
+    def is_surface(self) -> bool:
+        """Whether the triangles make a sound surface, whatever it lacks to be Delaunay.
+
+        So from level 2 on, if all problems are that edges are not Delaunay, that the boundary is
+        not convex or not one ring, or that vertices are of no triangle: surfaces of other programs
+        are often such.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> square = [[0, 0, 5], [4, 0, 6], [4, 4, 8], [1, 3, 7]]
+        >>> result = ts.check(ts.TIN.from_triangles(square, [[0, 1, 2], [0, 2, 3]]))
+        >>> result, result.is_surface
+        (<CheckResult: level 3, problems: 1 delaunay>, True)
+        """
+        return self.level > 1 and all(
+            one.kind in _OF_SURFACES and (one.kind != "hull" or one.first)  # else it winds twice
+            for one in self.problems
+        )
+
     def raise_if_failed(self) -> None:
         """Do nothing if the TIN is sound.
 
@@ -123,6 +148,7 @@ class CheckResult:
         """
         return {
             "ok": self.ok,
+            "is_surface": self.is_surface,
             "level": self.level,
             "problems": [_as_plain(problem) for problem in self.problems],
             "notes": [_as_plain(note) for note in self.notes],

@@ -26,13 +26,15 @@ _MOST_EDGES = 20_000
 """Edges of a boundary that are looked at here, in half a second; a check looks at any number."""
 
 
-def describe_overlaps(tin: TIN) -> list[str]:
+def describe_overlaps(tin: TIN, *, may_overlap: bool = True) -> list[str]:
     """Tell in sentences what is wrong with a TIN made of existing triangles.
 
     Parameters
     ----------
     tin : TIN
         As :meth:`TIN.from_triangles` makes it.
+    may_overlap : bool
+        False where it is known otherwise that no triangles overlap.
 
     Returns
     -------
@@ -49,7 +51,7 @@ def describe_overlaps(tin: TIN) -> list[str]:
     'Triangles overlap (westernmost place: near vertex 3); a check tells more.'
     """
     return [
-        *_describe_overlaps(find_boundary(tin), tin),
+        *(_describe_overlaps(find_boundary(tin), tin) if may_overlap else ()),
         *_describe_unused(tin),
         *_describe_one_sided(tin),
     ]

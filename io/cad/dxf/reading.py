@@ -10,7 +10,7 @@ import numpy as np
 
 from ...._sentences import counted
 from ....errors import LinesError, ReadError, choice
-from ....policies import BreaklineKind, DrawingContent, LineKind
+from ....policies import BreaklineKind, DrawingContent, FacePolicy, LineKind
 from ....tin import Breakline, Survey, Water
 from ....tin.constraints.breaklines import as_ring
 from ....tin.screening.nodata import describe_elevations
@@ -49,6 +49,7 @@ def read(
     content: DrawingContent | None = None,
     texts: bool = False,
     tolerance: float | None = None,
+    faces: FacePolicy = "all",
 ) -> TIN | Survey:
     """Read a DXF drawing, text or binary.
 
@@ -92,7 +93,7 @@ def read(
     kind = content or _choose_content(drawing)
     measures = _choose_measures(drawing, declared)
     if kind == "surface":
-        return _read_tin(drawing, measures, declared)
+        return _read_tin(drawing, measures, declared, faces)
     return _read_survey(drawing, measures, declared, with_lines=kind == "source")
 
 
@@ -131,7 +132,7 @@ def _choose_measures(drawing: Drawing, declared: Declared) -> Measures:
 # ------------------------------------------------------------------ a surface
 
 
-def _read_tin(drawing: Drawing, measures: Measures, declared: Declared) -> TIN:
+def _read_tin(drawing: Drawing, measures: Measures, declared: Declared, policy: FacePolicy) -> TIN:
     require_own_crs(measures.source, declared.crs, drawing.path)
     faces = drawing.arrays["faces"]
     if len(faces) == 0:
@@ -147,6 +148,7 @@ def _read_tin(drawing: Drawing, measures: Measures, declared: Declared) -> TIN:
         _select_edge_lines(drawing, measures),
         drawing.path,
         reference=Reference(measures.source, measures.elevation_unit),
+        faces=policy,
     )
 
 

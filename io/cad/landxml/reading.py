@@ -8,7 +8,7 @@ import numpy as np
 
 from ...._sentences import counted, shown
 from ....errors import OptionError, ReadError, choice
-from ....policies import DrawingContent
+from ....policies import DrawingContent, FacePolicy
 from ...mesh.common import Reference, require_own_crs
 from ..reference import Declared, Measures, choose_measures
 from ..surfaces import make_tin_with_lines, merge_equal_points
@@ -38,6 +38,7 @@ def read(
     unit: UnitLike | None = None,
     surface: str | int | None = None,
     content: DrawingContent | None = None,
+    faces: FacePolicy = "all",
 ) -> TIN | Survey:
     """Read a LandXML file, version 1.0 to 2.0.
 
@@ -77,7 +78,7 @@ def read(
     kind = content or _choose_content(found, chosen, path)
     notes = _describe_rest(found, chosen, kind)
     if kind == "surface" and chosen is not None:
-        return _read_tin(found, chosen, declared, path, notes)
+        return _read_tin(found, chosen, declared, path, notes, faces)
     if kind != "points" and chosen is None:
         has = "source data" if kind == "source" else "visible faces"
         raise ReadError(f"'{path}' has no surface with {has}.", path=path)
@@ -98,7 +99,12 @@ def _as_wanted(surface: str | int | None) -> str | int | None:
 
 
 def _read_tin(
-    found: Content, chosen: Surface, declared: Declared, path: Path, notes: list[str]
+    found: Content,
+    chosen: Surface,
+    declared: Declared,
+    path: Path,
+    notes: list[str],
+    faces: FacePolicy,
 ) -> TIN:
     mesh = make_mesh(found, chosen, path)
     measures = _choose_measures(found, chosen, declared, path)
@@ -112,6 +118,7 @@ def _read_tin(
         select_edge_lines(chosen, measures),
         path,
         reference=Reference(measures.source, measures.elevation_unit),
+        faces=faces,
     )
 
 

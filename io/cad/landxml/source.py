@@ -18,7 +18,13 @@ from ....tin.screening.nodata import describe_elevations
 from ..placing import Placing, place_rows
 from .numbers import fault
 from .properties import KIND, PRIORITY
-from .surface import NO_ELEVATIONS, describe_point_files, name_line, resolve_references
+from .surface import (
+    NO_ELEVATIONS,
+    describe_point_files,
+    find_boundary_kind,
+    name_line,
+    resolve_references,
+)
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -157,12 +163,17 @@ def _iterate_lines(surface: Surface, path: Path) -> list[tuple[Line, Float64Arra
             rows = part[:, [1, 0, *range(2, part.shape[1])]]
             if line.element == "Contour":
                 rows = _raise_contour(line, rows, path)
-            elif line.element == "DataPoints":
+            elif line.element == "DataPoints" or _is_foreign_boundary(line):
                 continue
             elif line.attributes.get("brkType") in NO_ELEVATIONS:
                 rows = rows[:, :2]
             found.append((line, rows))
     return found
+
+
+def _is_foreign_boundary(line: Line) -> bool:
+    """Whether a boundary clips nothing, such as one of a texture."""
+    return line.element == "Boundary" and not find_boundary_kind(line)
 
 
 def _raise_contour(line: Line, rows: Float64Array, path: Path) -> Float64Array:
@@ -199,8 +210,7 @@ def _add_lines(survey: Survey, lines: list[Line], placing: Placing, first: int) 
         name = name_line(line)
         own = line.properties.get(KIND, "")
         if line.element == "Boundary":
-            kind = line.attributes.get("bndType", "").strip().lower()
-            rings[{"hide": "void", "show": "island"}.get(kind, kind)].append(
+            rings[find_boundary_kind(line)].append(
                 as_ring(rows, f"the boundary of line {line.line}")
             )
         elif own == "water" and rows.shape[1] == 3:
@@ -262,10 +272,11 @@ def _describe_parts_left_out(surface: Surface) -> list[str]:
             f"{counted(soft, 'breakline')} of type proximity or nondestructive draped on the "
             "surface: their own elevations do not count."
         )
+    notes += _describe_foreign_boundaries(surface)
     trimmed = sum(
         line.attributes.get("edgeTrim", "true").strip().lower() in ("false", "0")
         for line in surface.lines
-        if line.element == "Boundary"
+        if line.element == "Boundary" and find_boundary_kind(line)
     )
     if trimmed:
         notes.append(
@@ -273,3 +284,15 @@ def _describe_parts_left_out(surface: Surface) -> list[str]:
             "of the surface."
         )
     return notes
+
+
+def _describe_foreign_boundaries(surface: Surface) -> list[str]:
+    foreign = [line.attributes.get("bndType", "") for line in surface.lines
+               if _is_foreign_boundary(line)]  # fmt: skip
+    if not foreign:
+        return []
+    types = ", ".join(f"'{name[:40]}'" for name in list(dict.fromkeys(foreign))[:5])
+    return [
+        f"{counted(len(foreign), 'boundary', 'boundaries')} left out, whose bndType ({types}) is "
+        "neither outer, void nor island."
+    ]

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 __all__ = [
     "NO_ELEVATIONS",
     "describe_point_files",
+    "find_boundary_kind",
     "make_mesh",
     "name_line",
     "resolve_references",
@@ -31,6 +32,8 @@ __all__ = [
 NO_ELEVATIONS = frozenset({"nondestructive", "proximity"})
 """Types of breaklines that take their elevations from the surface."""
 
+_BOUNDARY_KINDS = {"outer": "outer", "void": "void", "island": "island", "hide": "void",
+                   "show": "island"}  # fmt: skip
 _KINDS: dict[str, LineKind] = {"outer": "boundary", "void": "hole"}
 _OPPOSITE = (2, 0, 1)
 """The corner opposite side 1, 2, 3 of a face: sides join its corners in their order."""
@@ -185,8 +188,13 @@ def _find_kind(line: Line) -> LineKind | None:
             return next(kind for kind in get_args(LineKind) if kind == own)
         return None if line.attributes.get("brkType") in NO_ELEVATIONS else "hard"
     if line.element == "Boundary":
-        return _KINDS.get(line.attributes.get("bndType", ""))
+        return _KINDS.get(find_boundary_kind(line))
     return None
+
+
+def find_boundary_kind(line: Line) -> str:
+    """Return "outer", "void" or "island"; "" for boundaries of other things, such as textures."""
+    return _BOUNDARY_KINDS.get(line.attributes.get("bndType", "").strip().lower(), "")
 
 
 def name_line(line: Line) -> str:

@@ -1,8 +1,7 @@
-"""Read the TINRelief of a CityJSON file, of the versions 1.0 to 2.0."""
+"""Read the TINRelief of CityJSON, of the versions 1.0 to 2.0, and of CityJSONSeq."""
 
 from __future__ import annotations
 
-import json
 import re
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -11,6 +10,7 @@ import numpy as np
 from ....errors import ReadError
 from ..common import choose_reference, cut_into_fans, make_tin, read_content
 from .decimals import DecimalGrid
+from .sequence import City, SequenceError, parse_city
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from ....arrays import Float64Array, Int64Array
     from ....crs import CrsLike, UnitLike
+    from ....policies import FacePolicy
     from ....tin import TIN
 
 __all__ = ["read"]
@@ -48,8 +49,9 @@ def read(
     z_unit: UnitLike | None = None,
     surface: str | None = None,
     join: bool = False,
+    faces: FacePolicy = "all",
 ) -> TIN:
-    """Read the terrain of a CityJSON file.
+    """Read the terrain of a CityJSON file, or of a sequence of features (CityJSONSeq).
 
     The CRS defaults to that of the metadata; the unit of elevations is known where tinsmith wrote
     the file. Vertices at the same place become one. Polygons of more than three corners are cut
@@ -62,10 +64,10 @@ def read(
     join : bool
         Whether all of them become one TIN.
     """
-    city = _parse(path)
+    city, ranges = _parse(path)
     objects = _choose_objects(city, surface, join, path)
     notes: list[str] = []
-    reliefs = [_collect(name, one, notes, path) for name, one in objects.items()]
+    reliefs = [_collect(name, one, notes, path, ranges.get(name)) for name, one in objects.items()]
     points = _restore_vertices(city, path)
     corners = np.concatenate([one.corners for one in reliefs])
     lengths = np.concatenate([np.diff(one.offsets) for one in reliefs])
@@ -77,20 +79,19 @@ def read(
     points, triangles = _merge_vertices(points, made.triangles)
     found_crs, found_unit = _find_reference(city, reliefs)
     reference = choose_reference(crs, z_unit, path, found_crs=found_crs, found_unit=found_unit)
-    return make_tin(points, triangles, path, reference=reference, notes=notes)
+    return make_tin(points, triangles, path, reference=reference, notes=notes, faces=faces)
 
 
 def _describe_damage(path: Path, what: str) -> ReadError:
     return ReadError(f"'{path}' is a damaged CityJSON file: {what}.", path=path)
 
 
-def _parse(path: Path) -> dict[str, Any]:
+def _parse(path: Path) -> City:
     try:
-        city = json.loads(read_content(path))
-    except json.JSONDecodeError as error:
-        raise _describe_damage(path, f"line {error.lineno} is no JSON") from error
-    except (ValueError, RecursionError) as error:  # no UTF-8, endless numbers, endless brackets
-        raise _describe_damage(path, "its text is no JSON") from error
+        found = parse_city(read_content(path))
+    except SequenceError as error:
+        raise _describe_damage(path, str(error)) from error
+    city = found.document
     if not isinstance(city, dict) or city.get("type") != "CityJSON":
         raise ReadError(f"'{path}' is no CityJSON file: its type is not 'CityJSON'.", path=path)
     version = str(city.get("version", ""))[:20]
@@ -99,7 +100,7 @@ def _parse(path: Path) -> dict[str, Any]:
             f"'{path}' is CityJSON of version '{version}': {', '.join(_VERSIONS)} are read.",
             path=path,
         )
-    return city
+    return found
 
 
 def _choose_objects(
@@ -133,8 +134,14 @@ def _choose_objects(
     return found
 
 
-def _collect(name: str, relief: dict[str, Any], notes: list[str], path: Path) -> _Relief:
-    """Return the polygons of the finest geometry of a terrain."""
+def _collect(
+    name: str,
+    relief: dict[str, Any],
+    notes: list[str],
+    path: Path,
+    vertices: tuple[int, int] | None,
+) -> _Relief:
+    """Return the polygons of the finest geometry of a terrain, of the vertices of its feature."""
     geometries = relief.get("geometry")
     geometries = geometries if isinstance(geometries, list) else []
     fitting = [one for one in geometries if isinstance(one, dict) and one.get("type") in _SURFACES]
@@ -149,6 +156,13 @@ def _collect(name: str, relief: dict[str, Any], notes: list[str], path: Path) ->
             f"{str(fitting[-1].get('lod'))[:20]} was read."
         )
     corners, lengths = _flatten(fitting[-1].get("boundaries"), name, path)
+    if vertices is not None:
+        first, end = vertices
+        if (corners >= end - first).any():
+            raise _describe_damage(
+                path, f"a surface of '{name[:40]}' names a vertex that its feature does not have"
+            )
+        corners = corners + first
     return _Relief(corners, np.concatenate([[0], np.cumsum(lengths)]), attributes)
 
 

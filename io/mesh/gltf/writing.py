@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import os
 import struct
+import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ import numpy as np
 from ...._atomic import replacing
 from ...._sentences import counted
 from ....crs import assume_elevation_unit
-from ....errors import CrsError, WriteError
+from ....errors import CrsError, LossWarning, WriteError
 from ....terrain.viewer.tints import interpolate_tints
 from ..common import format_crs, format_unit, require_factor, require_tin
 from ..texture import choose_picture, load_texture
@@ -27,7 +28,15 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...._progress import Tell
-    from ....arrays import AnyArray, Float32Array, Float64Array, Int64Array, UInt16Array
+    from ....arrays import (
+        AnyArray,
+        BoolArray,
+        Float32Array,
+        Float64Array,
+        Int32Array,
+        Int64Array,
+        UInt16Array,
+    )
     from ....tin import TIN
     from ..texture import Texture
 
@@ -87,12 +96,13 @@ def write(
     ReadError
         If the picture cannot be read, or shows nothing of the surface.
     WriteError
-        Also if triangles have no area in float32, or the file would be larger than 4 GiB.
+        Also if no triangle has an area in float32, or the file would be larger than 4 GiB.
 
     Notes
     -----
     Float32 keeps positions to about a sixteen millionth of the extent. Where the CRS is not known
-    its units are taken to be metres, and ``extras`` does not tell any. Lines are lost.
+    its units are taken to be metres, and ``extras`` does not tell any. Lines are lost, and so are
+    triangles without area in float32, of which a LossWarning tells.
     """
     tin = require_tin(surface, path, format_name="GLB")
     require_factor("exaggeration", exaggeration)
@@ -144,13 +154,13 @@ def _make_mesh(
     texture: Texture | None,
     path: Path,
 ) -> _Mesh:
-    used = np.unique(tin.triangles)
+    every = (tin.points - origin) * scale
+    corners = tin.triangles[_find_areas(_turn_up(every).astype(np.float32), tin.triangles, path)]
+    used = np.unique(corners)
     number = np.zeros(len(tin.points), np.int64)
     number[used] = np.arange(len(used))
-    places = (tin.points[used] - origin) * scale
-    triangles = number[tin.triangles]
+    places, triangles = every[used], number[corners]
     positions = _turn_up(places).astype(np.float32)
-    _require_areas(positions, triangles, path)
     normals = _turn_up(_compute_normals(places, triangles)).astype(np.float32)
     is_short = len(used) <= _MOST_SHORT_VERTICES
     colors = _choose_colors(places[:, 2]) if texture is None else None
@@ -161,18 +171,22 @@ def _make_mesh(
     )
 
 
-def _require_areas(positions: Float32Array, triangles: Int64Array, path: Path) -> None:
-    """Refuse what float32 cannot hold."""
-    if not np.isfinite(positions).all():
+def _find_areas(positions: Float32Array, triangles: Int32Array, path: Path) -> BoolArray:
+    """Return which triangles have an area in float32; warn of others, refuse where none has."""
+    if not np.isfinite(positions[triangles]).all():
         raise WriteError(f"Cannot write '{path}': the TIN is too large for float32.", path=path)
     a, b, c = (positions[triangles[:, k]].astype(np.float64) for k in range(3))
-    empty = int((np.cross(b - a, c - a) == 0.0).all(axis=1).sum())
-    if empty:
-        raise WriteError(
-            f"Cannot write '{path}': {counted(empty, 'triangle')} would have no area in float32, "
-            "whose precision is a sixteen millionth of the extent.",
-            path=path,
-        )
+    has_area: BoolArray = (np.cross(b - a, c - a) != 0.0).any(axis=1)
+    count = int(np.count_nonzero(~has_area))
+    told = (
+        f"{counted(count, 'triangle')} without area in float32, whose precision is a sixteen "
+        "millionth of the extent"
+    )
+    if not has_area.any():
+        raise WriteError(f"Cannot write '{path}': it has nothing but {told}.", path=path)
+    if count:
+        warnings.warn(f"'{path}' does not hold {told}.", LossWarning, stacklevel=6)
+    return has_area
 
 
 def _compute_normals(places: Float64Array, triangles: Int64Array) -> Float64Array:

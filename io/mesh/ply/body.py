@@ -15,6 +15,7 @@ import numpy as np
 from ....errors import ReadError
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from pathlib import Path
 
     from ....arrays import AnyArray, Float64Array, Int64Array
@@ -43,15 +44,16 @@ class Table:
     lists: dict[str, Ragged]
 
 
-def read_tables(content: bytes, header: Header, path: Path) -> dict[str, Table]:
-    """Read the tables up to the last of ``vertex``, ``face`` and edges that are constrained.
+def read_tables(
+    content: bytes, header: Header, path: Path, names: Collection[str]
+) -> dict[str, Table]:
+    """Read the tables up to the last of those named.
 
     Raises
     ------
     ReadError
         If the file ends before a table does, or text holds something that is no number.
     """
-    names = ("vertex", "face") if header.lines is None else ("vertex", "face", "edge")
     wanted = [i for i, element in enumerate(header.elements) if element.name in names]
     body = _Body(content, header, path)
     read = header.elements[: max(wanted, default=-1) + 1]

@@ -16,11 +16,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...._atomic import replacing
+from ...._sentences import counted
 from ....errors import ReadError
 from ....tin import TIN, Surface, Survey
 from ...registry.losses import tell_lost_attributes
 from .. import common
-from .body import Ragged, Table, read_tables
+from .body import Table, read_tables
+from .faces import STRIPS, find_faces
 from .header import parse_header
 from .lines import (
     ENDS,
@@ -35,9 +37,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...._progress import Tell
-    from ....arrays import AnyArray, BoolArray, Float64Array, Int64Array
+    from ....arrays import AnyArray, BoolArray, Float64Array
     from ....crs import CrsLike, UnitLike
+    from ....policies import FacePolicy
     from ....tin.constraints.breaklines import Lines
+    from .header import Header
 
 __all__ = ["read", "write"]
 
@@ -47,7 +51,6 @@ _LIST = ("count", "corners")
 
 _COORDINATES = ("x", "y", "z")
 _LARGEST_INTEGER = 2**53
-_FACE_LISTS = ("vertex_indices", "vertex_index")
 _TYPE_NAMES = {
     "i1": "char",
     "u1": "uchar",
@@ -58,35 +61,39 @@ _TYPE_NAMES = {
 }
 
 
-def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN | Survey:
+def read(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    z_unit: UnitLike | None = None,
+    faces: FacePolicy = "all",
+) -> TIN | Survey:
     """Read a PLY file, text or binary of either byte order.
 
-    CRS and unit default to those named in the header. Polygons are cut into triangles, and further
-    vertex properties become attributes; other properties and elements are skipped. A file without
-    faces gives a survey.
+    CRS and unit default to those named in the header. Polygons and strips are cut into triangles,
+    and further vertex properties become attributes; other properties and elements are skipped. A
+    file without faces gives a survey.
     """
     content = common.read_content(path)
     header = parse_header(content, path)
-    tables = read_tables(content, header, path)
-    vertices = tables.get("vertex")
-    if vertices is None or not set(_COORDINATES) <= vertices.columns.keys():
-        raise ReadError(f"'{path}' has no element 'vertex' with x, y and z.", path=path)
+    names = {"vertex", "face", *STRIPS, *(("edge",) if header.lines is not None else ())}
+    tables = read_tables(content, header, path, names)
+    vertices = _require_vertices(tables, path)
     points = _stack_coordinates(vertices)
     notes = common.describe_single_precision(points, vertices.columns["x"].dtype)
     reference = common.choose_reference(
         crs, z_unit, path, found_crs=header.crs, found_unit=header.elevation_unit
     )
-    faces = _find_face_list(tables.get("face"))
+    found = find_faces(tables, path)
     attributes = _find_vertex_attributes(vertices)
-    if faces is None or len(faces.offsets) == 1:
+    if found is None:
+        notes += _describe_skipped(header)
         return common.make_survey(
             points, path, attributes=attributes, reference=reference, notes=notes
         )
-    made = common.cut_into_fans(
-        _require_whole_numbers(faces.items, path), faces.offsets, points, path
-    )
+    made = common.cut_into_fans(found.items, found.offsets, points, path)
     notes += made.notes
-    flags = _find_edge_flags(tables["face"], len(made.triangles))
+    flags = _find_edge_flags(tables.get("face"), len(made.triangles))
     has_lines = header.lines is not None and "edge" in tables
     edges = require_edges(tables["edge"], path, len(points)) if has_lines else None
     if flags is None and edges is not None:
@@ -99,6 +106,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
         reference=reference,
         attributes=attributes,
         notes=notes,
+        faces=faces,
     )
     if edges is None or header.lines is None:
         return tin
@@ -125,23 +133,26 @@ def _stack_coordinates(vertices: Table) -> Float64Array:
         return np.stack(columns, axis=1).astype(np.float64)
 
 
-def _find_face_list(table: Table | None) -> Ragged | None:
-    lists = {} if table is None else table.lists
-    return next((lists[name] for name in _FACE_LISTS if name in lists), None)
+def _require_vertices(tables: dict[str, Table], path: Path) -> Table:
+    vertices = tables.get("vertex")
+    if vertices is None or not set(_COORDINATES) <= vertices.columns.keys():
+        raise ReadError(f"'{path}' has no element 'vertex' with x, y and z.", path=path)
+    return vertices
 
 
-def _require_whole_numbers(items: AnyArray, path: Path) -> Int64Array:
-    if items.dtype.kind == "f" and not (np.abs(items) < 2.0**53).all():
-        raise ReadError(f"'{path}': a face names a vertex that is no number.", path=path)
-    whole = items.astype(np.int64)
-    if (whole != items).any():
-        raise ReadError(f"'{path}': a face names a vertex that is no whole number.", path=path)
-    return whole
+def _describe_skipped(header: Header) -> list[str]:
+    """Tell what other elements a file without faces has."""
+    return [
+        f"Not read: {counted(element.count, 'row')} of '{element.name[:40]}'."
+        for element in header.elements
+        if element.count and element.name != "vertex"
+    ]
 
 
-def _find_edge_flags(faces: Table, n_triangles: int) -> BoolArray | None:
+def _find_edge_flags(faces: Table | None, n_triangles: int) -> BoolArray | None:
     """Return the edge flags if the file has them and every face is a triangle."""
-    columns = [faces.columns[name] for name in _FLAGS if name in faces.columns]
+    found = {} if faces is None else faces.columns
+    columns = [found[name] for name in _FLAGS if name in found]
     if len(columns) < len(_FLAGS) or len(columns[0]) != n_triangles:
         return None
     flags: BoolArray = np.stack(columns, axis=1) != 0

@@ -4,25 +4,26 @@ from __future__ import annotations
 
 import re
 import zlib
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...._sentences import counted
 from ....errors import OptionError, ReadError
-from ..common import choose_reference, make_tin, read_content
-from .tile import BrokenTileError, TileName, decode_tile
+from ..common import add_notes, choose_reference, make_tin, read_content
+from .placing import find_placing
+from .tile import STEPS, BrokenTileError, TileName, decode_tile
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ....arrays import Int64Array
     from ....crs import CrsLike, UnitLike
+    from ....policies import FacePolicy
     from ....tin import TIN
 
 __all__ = ["read"]
 
-_CRS = "EPSG:4979"
 _NAME = re.compile(r"(\d{1,2})/(\d{1,9})/(\d{1,9})")
 _MOST_LEVEL = 30
 _GZIP = b"\x1f\x8b"
@@ -36,11 +37,14 @@ def read(
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
     tile: str | None = None,
+    faces: FacePolicy = "all",
 ) -> TIN:
     """Read a tile, gzipped or not, in longitude, latitude and metres above the ellipsoid.
 
-    A CRS or unit that is given must be EPSG:4979 and the metre. Triangles without area, which
-    programs leave in tiles, are left out and told. Normals, water and other extensions are skipped.
+    A tile of a pyramid of web Mercator, by the centre that its header tells, is in EPSG:3857; the
+    report tells it. A CRS or unit that is given must be that and the metre. Triangles that rounding
+    left without area or turned over are left out and told. Normals, water and other extensions are
+    skipped.
 
     Parameters
     ----------
@@ -53,20 +57,21 @@ def read(
         found = decode_tile(content)
     except BrokenTileError as error:
         raise ReadError(_describe_fault(path, content, str(error)), path=path) from None
-    reference = choose_reference(crs, z_unit, path, found_crs=_CRS)
+    placing = find_placing(found.center, name, path, is_declared=tile is not None)
+    reference = choose_reference(crs, z_unit, path, found_crs=placing.crs, found_unit=placing.unit)
     steps, triangles = _merge(found.steps, found.triangles)
-    places = type(found)(steps, triangles, found.lowest, found.highest).place(name)
+    places = replace(found, steps=steps).place(placing.west, placing.south, placing.width)
     if len(triangles) == 0:
         raise ReadError(f"'{path}' is a tile without any triangle.", path=path)
-    flat = _measure(steps, triangles) <= 0  # rounding turned some over: their neighbours cover them
-    notes = []
-    if flat.any():
-        count = counted(int(flat.sum()), "triangle")
-        notes.append(f"{count} of the file without area, or turned over by rounding, left out.")
-        triangles = triangles[~flat]
-    if len(triangles) == 0:
-        raise ReadError(f"'{path}' is a tile whose triangles have no area.", path=path)
-    return make_tin(places, triangles, path, reference=reference, notes=notes)
+    tin = make_tin(
+        places,
+        triangles,
+        path,
+        reference=reference,
+        faces=faces,
+        rounding=placing.width / STEPS,
+    )
+    return add_notes(tin, placing.notes)
 
 
 def _find_name(path: Path, tile: str | None) -> TileName:
@@ -112,9 +117,3 @@ def _merge(steps: Int64Array, triangles: Int64Array) -> tuple[Int64Array, Int64A
     rank = np.empty(len(kept), np.int64)
     rank[np.argsort(first)] = np.arange(len(kept))
     return steps[np.sort(first)], rank[number.ravel()][triangles]
-
-
-def _measure(steps: Int64Array, triangles: Int64Array) -> Int64Array:
-    a, b, c = (steps[triangles[:, k], :2] for k in range(3))
-    u, v = b - a, c - a
-    return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])

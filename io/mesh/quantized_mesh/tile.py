@@ -76,13 +76,14 @@ class Tile:
     """Height of the step 32767 likewise."""
     normals: Float64Array | None = None
     """(n, 3), unit vectors in the axes of the globe."""
+    center: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """That the header of a file tells, of the tile in space."""
 
-    def place(self, name: TileName) -> Float64Array:
-        """Return longitude, latitude (degrees) and height (metres) of the vertices."""
-        west, south, _, _ = name.bounds
+    def place(self, west: float, south: float, width: float) -> Float64Array:
+        """Return coordinates and height (metres) of the vertices in a square of the plane."""
         share = self.steps / STEPS
         heights = (1.0 - share[:, 2]) * self.lowest + share[:, 2] * self.highest
-        plane = np.array([west, south]) + share[:, :2] * name.width
+        plane = np.array([west, south]) + share[:, :2] * width
         return np.column_stack([plane, heights])
 
 
@@ -99,7 +100,8 @@ def encode_tile(tile: Tile, name: TileName) -> bytes:
     number = np.empty(len(tile.steps), np.int64)
     number[first_use] = np.arange(len(first_use))
     steps, triangles = tile.steps[first_use], number[tile.triangles]
-    places = Tile(steps, triangles, tile.lowest, tile.highest).place(name)
+    west, south, _, _ = name.bounds
+    places = Tile(steps, triangles, tile.lowest, tile.highest).place(west, south, name.width)
     is_long = len(steps) > _MOST_SHORT_VERTICES
     parts = [
         _pack_header(places, tile, name),
@@ -198,7 +200,8 @@ def decode_tile(content: bytes) -> Tile:
         raise BrokenTileError("a vertex lies outside of it")
     if ((triangles < 0) | (triangles >= count)).any():
         raise BrokenTileError("a triangle names a vertex that it does not have")
-    return Tile(steps, triangles.reshape(-1, 3), lowest, highest)
+    center = header[:3] if np.isfinite(header[:3]).all() else (0.0, 0.0, 0.0)
+    return Tile(steps, triangles.reshape(-1, 3), lowest, highest, center=center)
 
 
 class _Reader:

@@ -301,7 +301,8 @@ def _make_bare_tile(name: TileName) -> Tile:
         0.0,
         0.0,
     )
-    places = np.radians(tile.place(name))
+    west, south, _, _ = name.bounds
+    places = np.radians(tile.place(west, south, name.width))
     flat = np.cos(places[:, 1])
     normals = np.column_stack(
         [flat * np.cos(places[:, 0]), flat * np.sin(places[:, 0]), np.sin(places[:, 1])]

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 import click
 
-from ..policies import DrawingContent, DuplicatePolicy, FeatureKind, LineReading
+from ..policies import DrawingContent, DuplicatePolicy, FacePolicy, FeatureKind, LineReading
 from .flags import note_given
 from .line_options import CODE_OPTIONS, LINE_OPTIONS
 from .mesh_options import MESH_READING, MESH_WRITING
@@ -83,6 +83,7 @@ class Reading:
     length_unit: str | None = None
     surface: str | None = None
     content: str | None = None
+    faces: str | None = None
     texts: bool | None = None
     join: bool | None = None
     variable: str | None = None
@@ -334,6 +335,12 @@ _MESHES = under(
         DrawingContent,
         "What to read of a LandXML or DXF file: the triangles of a surface, the points and lines "
         "that make one, or points alone.",
+    ),
+    choice_option(
+        "--faces",
+        FacePolicy,
+        "Triangles of a mesh to read: all, or those that make a surface, without those that have "
+        "no area seen from above or overlap larger ones.",
     ),
     click.option(
         "--texts",

@@ -249,3 +249,39 @@ def test_damaged_world_files(tmp_path, text):
     (tmp_path / "o.pgw").write_text(text)
     with pytest.raises(ts.ReadError, match=r"world file|no place on the ground"):
         ts.write(hills(), tmp_path / "a.glb", texture=source)
+
+
+def slivers(count=12):
+    """A surface with pairs of vertices that float32 does not tell apart."""
+    rng = np.random.default_rng(count)
+    inside = rng.uniform(20, 180, (count, 2))
+    square = np.array([[0.0, 0], [200, 0], [200, 200], [0, 200]])
+    xy = np.vstack([square, inside, inside + 1e-6]) + np.array([752_600, 4_024_100])
+    return ts.triangulate(np.column_stack([xy, np.rint(xy[:, 0]) % 7]))
+
+
+def test_slivers_are_left_out_and_told(tmp_path):
+    tin = slivers()
+    with pytest.warns(ts.LossWarning, match=r"does not hold \d+ triangles? without area") as told:
+        path = ts.write(tin, tmp_path / "a.glb")
+    document, arrays, _ = parse(path)
+    (primitive,) = document["meshes"][0]["primitives"]
+    triangles = arrays[primitive["indices"]].reshape(-1, 3)
+    positions = arrays[primitive["attributes"]["POSITION"]].astype(float)
+    corners = positions[triangles]
+    areas = np.linalg.norm(np.cross(*(corners[:, k] - corners[:, 0] for k in (1, 2))), axis=1)
+    left_out = int(told[0].message.args[0].split()[4])
+    assert len(triangles) == len(tin.triangles) - left_out
+    assert (areas > 0).all()
+    assert np.array_equal(np.unique(triangles), np.arange(len(positions)))
+    flat = positions[triangles][..., [0, 2]]
+    u, v = flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]
+    covered = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]).sum() / 2
+    assert covered == pytest.approx(tin.area, rel=1e-5)
+
+
+def test_a_surface_of_nothing_but_slivers_is_refused(tmp_path):
+    tin = ts.TIN.from_triangles([[0, 0, 1], [1e6, 1e6, 1], [2e6, 2e6 + 0.01, 1]], [[0, 1, 2]])
+    with pytest.raises(ts.WriteError, match="nothing but 1 triangle without area"):
+        ts.write(tin, tmp_path / "a.glb")
+    assert not (tmp_path / "a.glb").exists()

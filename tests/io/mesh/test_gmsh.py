@@ -125,3 +125,54 @@ def test_without_meshio_the_extra_is_named(tin, tmp_path, monkeypatch):
     with pytest.raises(ts.MissingExtraError, match=r"tinsmith\[mesh\]"):
         ts.write(tin, tmp_path / "a.msh")
     assert list(tmp_path.iterdir()) == []
+
+
+SHAPES = {
+    "triangle": [[0, 0], [4, 0], [0, 4]],
+    "triangle6": [[0, 0], [4, 0], [0, 4], [2, 0], [2, 2], [0, 2]],
+    "quad": [[0, 0], [4, 0], [4, 4], [0, 4]],
+    "quad8": [[0, 0], [4, 0], [4, 4], [0, 4], [2, 0], [4, 2], [2, 4], [0, 2]],
+    "quad9": [[0, 0], [4, 0], [4, 4], [0, 4], [2, 0], [4, 2], [2, 4], [0, 2], [2, 2]],
+}
+"""Nodes in the order of the manual: corners, those amid the edges from corner 0 on, the centre."""
+
+
+def write_cells(path, blocks, points):
+    tags = {f"gmsh:{what}": [np.ones(len(cells), int) for _, cells in blocks]
+            for what in ("physical", "geometrical")}  # fmt: skip
+    mesh = meshio.Mesh(np.asarray(points, float), blocks, cell_data=tags)
+    mesh.write(path, file_format="gmsh22", binary=False)
+    return path
+
+
+@pytest.mark.parametrize("kind", SHAPES)
+def test_faces_of_every_kind_become_triangles(tmp_path, kind):
+    xy = np.array(SHAPES[kind], float)
+    points = np.column_stack([xy, xy @ [0.5, 0.25]])
+    tin = ts.read(write_cells(tmp_path / "a.msh", [(kind, [list(range(len(xy)))])], points))
+    assert tin.area == (8 if "triangle" in kind else 16)
+    assert np.array_equal(np.unique(tin.triangles), np.arange(len(xy)))  # nodes amid edges count
+    assert ts.check(tin, level=1).ok
+    assert not any("overlap" in note for note in tin.notes)
+    assert any("cut into triangles" in note for note in tin.notes) == ("quad" in kind)
+
+
+def test_faces_of_several_kinds_are_one_surface(tmp_path):
+    points = [[0, 0, 1], [4, 0, 1], [4, 4, 1], [0, 4, 1], [8, 0, 2]]
+    blocks = [("quad", [[0, 1, 2, 3]]), ("line", [[1, 2]]), ("triangle", [[1, 4, 2]])]
+    tin = ts.read(write_cells(tmp_path / "a.msh", blocks, points))
+    assert (len(tin.triangles), tin.area) == (3, 24)
+    assert tin.is_edge([1], [2]).all()
+    assert tin.constrained.sum() == 2
+
+
+def test_cells_that_are_no_faces_are_told_or_refused(tmp_path):
+    points = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4], [9, 0, 0]]
+    solid = ("tetra", [[0, 1, 2, 3]])
+    with pytest.raises(ts.ReadError, match=r"no faces, but other cells \(1 of the kind tetra\)"):
+        ts.read(write_cells(tmp_path / "a.msh", [solid], points))
+    path = write_cells(tmp_path / "b.msh", [("triangle", [[1, 4, 2]]), solid], points)
+    assert "Not read: other cells (1 of the kind tetra)." in ts.read(path).notes
+    curved = ("triangle10", [[*range(5), *range(5)]])
+    with pytest.raises(ts.ReadError, match="1 of the kind triangle10"):
+        ts.read(write_cells(tmp_path / "c.msh", [curved], points))

@@ -595,7 +595,8 @@ def notes_of(tmp_path, text, name="a.obj"):
 
 def test_triangles_of_a_file_that_overlap_are_told(tmp_path):
     assert notes_of(tmp_path, TWO_OVER_EACH_OTHER) == [
-        "Triangles overlap (westernmost place: near vertex 3); a check tells more."
+        "Triangles overlap (westernmost place: near vertex 3); a check tells more. "
+        "faces='surface' leaves them out."
     ]
 
 

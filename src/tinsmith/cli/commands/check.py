@@ -44,7 +44,8 @@ _PROVED = {
 def check(file: Path, level: int, reading: Reading, how: Triangulating, console: Console) -> None:
     """Check the TIN in FILE, or built from the points in it, in exact arithmetic.
 
-    The exit code is 1 if a problem is found.
+    The exit code is 1 if a problem is found. A surface of another program may be sound and not
+    Delaunay, or have a concave boundary: that is told apart.
 
     \b
     Example:
@@ -59,7 +60,7 @@ def check(file: Path, level: int, reading: Reading, how: Triangulating, console:
         result = check_tin(tin, level=level, points=survey)
     console.answer(_summarise_check(file, result), {"input": str(file)} | result.to_dict())
     if not result.ok:
-        raise Failure(f"The TIN of '{file}' is not sound: {_list_kinds(result)}.")
+        raise Failure(f"The TIN of '{file}' is {_describe_verdict(result)}.")
 
 
 def _summarise_check(file: Path, result: CheckResult) -> list[Row]:
@@ -68,15 +69,21 @@ def _summarise_check(file: Path, result: CheckResult) -> list[Row]:
         for name, one in (("vertices", "vertex"), ("triangles", "triangle"), ("edges", "edge"))
         if name in result.counts
     )
-    verdict = _PROVED[result.level] if result.ok else f"failed: {_list_kinds(result)}"
+    verdict = _PROVED[result.level] if result.ok else _describe_verdict(result)
+    label = "Reason" if result.is_surface else "Problem"
     return [
         ("File", name_file(file)),
         ("Counted", counts),
         (f"Level {result.level}", verdict),
-        *(("Problem", problem.sentence) for problem in result.problems),
+        *((label, problem.sentence) for problem in result.problems),
         *(("Note", note.sentence) for note in result.notes),
     ]
 
 
-def _list_kinds(result: CheckResult) -> str:
-    return ", ".join(dict.fromkeys(problem.kind for problem in result.problems))
+def _describe_verdict(result: CheckResult) -> str:
+    """Tell what a TIN with problems is: a surface at least, or not sound."""
+    if result.is_surface:
+        lacking = "Delaunay" if result.level > 2 else "one of a convex hull"
+        return f"a sound surface, not {lacking}"
+    kinds = ", ".join(dict.fromkeys(problem.kind for problem in result.problems))
+    return f"not sound: {kinds}"

@@ -187,3 +187,30 @@ def test_plan_features_and_alignments_are_told(tmp_path):
     path = tmp_path / "a.xml"
     path.write_text(document("", points=POINTS + planned))
     assert "Not read: 2 plan features, 1 alignment." in ts.read(path).notes
+
+
+def boundary(kind):
+    named = "" if kind is None else f' bndType="{kind}"'
+    return (
+        f'<Boundaries><Boundary{named} edgeTrim="false"><PntList3D>1 1 1 1 4 1 4 4 1 1 1 1'
+        "</PntList3D></Boundary></Boundaries>"
+    )
+
+
+POINTS_OF_SOURCE = "<DataPoints><PntList3D>0 0 1 0 9 2 9 9 3 9 0 4 5 5 6</PntList3D></DataPoints>"
+
+
+@pytest.mark.parametrize("kind", ["texture", "", None, "Retain", "\u00e4"])
+def test_boundaries_of_other_things_are_left_out(write, kind):
+    survey = ts.read(write(only_source(POINTS_OF_SOURCE + boundary(kind))), content="source")
+    assert len(survey.points) == 5
+    assert survey.boundary == survey.holes == []
+    (note,) = [note for note in survey.notes if "bndType" in note]
+    assert note.startswith(f"1 boundary left out, whose bndType ('{kind or ''}')")
+    assert not any("edgeTrim" in note for note in survey.notes)
+
+
+@pytest.mark.parametrize("kind", ["Outer", " outer ", "OUTER"])
+def test_types_of_boundaries_are_read_in_any_letters(write, kind):
+    survey = ts.read(write(only_source(POINTS_OF_SOURCE + boundary(kind))))
+    assert len(survey.boundary) == 1

@@ -1,0 +1,225 @@
+"""Which triangles of a mesh make a surface: those with area seen from above that do not overlap."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ... import _optional
+from ..._sentences import counted, inflect
+from ...errors import PointsError, choice
+from ...policies import FacePolicy
+from ...tin.predicates import columns, orientation
+from ...tin.topology import find_offsets
+from ...tin.validation.points import as_points
+from ...tin.validation.triangles import as_triangles
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ...arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
+    from ...tin import TIN
+    from ...tin.predicates import Columns
+
+__all__ = ["SurfacePart", "find_surface_part", "make_surface"]
+
+_ROUNDINGS = 2.0
+"""How thick a triangle can seem that rounding turned over: each corner moves by half in x and y."""
+
+_BLOCK = 1 << 18
+"""Triangles whose neighbours are looked for at a time."""
+
+
+class SurfacePart(NamedTuple):
+    """The triangles that make a surface, and what the others are."""
+
+    kept: BoolArray
+    """(m,)."""
+    is_flat: BoolArray
+    """(m,), those without area seen from above."""
+    areas: Float64Array
+    """(m,), in the plane."""
+    heights: Float64Array
+    """(m,), upon the longest edge of each, in the plane."""
+
+    @property
+    def n_left_out(self) -> int:
+        """How many triangles are left out."""
+        return int(np.count_nonzero(~self.kept))
+
+    def keep_thick(self, thickness: float) -> SurfacePart:
+        """Leave out only triangles that are no thicker."""
+        return self._replace(kept=self.kept | (self.heights > thickness))
+
+    def describe(self) -> str:
+        """Tell what is left out, for the middle of a sentence."""
+        n_flat = int(np.count_nonzero(self.is_flat & ~self.kept))
+        overlapping = self.n_left_out - n_flat
+        parts = []
+        if n_flat:
+            parts.append(f"{n_flat:,} without area seen from above")
+        if overlapping:
+            share = 100 * float(self.areas[~self.kept].sum() / self.areas.sum())
+            what = inflect("that overlap[s|] others", overlapping)
+            parts.append(f"{overlapping:,} {what}, {share:.3g} % of the area")
+        count = counted(len(self.kept), "triangle")
+        return f"{self.n_left_out:,} of {count} ({'; '.join(parts)})"
+
+
+def make_surface(
+    make: Callable[[BoolArray | slice], TIN],
+    points: AnyArray,
+    triangles: AnyArray,
+    *,
+    faces: FacePolicy = "all",
+    rounding: float = 0.0,
+) -> tuple[TIN, list[str]]:
+    """Make a TIN of the triangles of a mesh, or of those that make a surface.
+
+    Parameters
+    ----------
+    make : callable
+        Makes the TIN of some of the triangles.
+    points : (n, 3) array
+    triangles : (m, 3) int array
+    faces : {"all", "surface"}
+        "all": refuse a mesh with triangles that no TIN can have: without area seen from above, or
+        on the same side of an edge as another one. "surface": leave those out that have no area or
+        overlap others.
+    rounding : float
+        Distance of neighbouring numbers that the coordinates of the file can have, where it is
+        known that rounding alone can make such triangles: those as thin are left out and told.
+
+    Returns
+    -------
+    TIN
+    list of str
+        Notes of what is left out.
+
+    Raises
+    ------
+    PointsError
+        As ``make`` raises it; the sentence tells what "surface" leaves out.
+    """
+    if choice("faces", faces, FacePolicy) == "surface":
+        part = _find_part(points, triangles)
+        note = f"Left out to make a surface: {part.describe()}."
+        return make(part.kept), [note] * bool(part.n_left_out)
+    try:
+        return make(slice(None)), []
+    except PointsError as error:
+        try:
+            part = _find_part(points, triangles)
+        except PointsError:
+            raise error from None
+        thin = part.keep_thick(_ROUNDINGS * rounding)
+        if rounding > 0 and thin.n_left_out and thin.kept.any():
+            with suppress(PointsError):
+                note = f"Left out, without area or turned over by rounding: {thin.describe()}."
+                return make(thin.kept), [note]
+        if not part.n_left_out or not part.kept.any():
+            raise
+        offer = f"To read the others, faces='surface' leaves out {part.describe()}."
+        raise PointsError(f"{error} {offer}", rows=error.rows) from error
+
+
+def _find_part(points: AnyArray, triangles: AnyArray) -> SurfacePart:
+    xyz = as_points(points)
+    return find_surface_part(xyz, as_triangles(triangles, len(xyz)))
+
+
+def find_surface_part(points: Float64Array, triangles: Int32Array) -> SurfacePart:
+    """Choose triangles that make a surface; of those that overlap the largest stay.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+        Finite.
+    triangles : (m, 3) int array
+        Of vertices that there are, in either direction.
+
+    Notes
+    -----
+    Two triangles overlap if no edge of either has both on different sides, by exact signs. They are
+    chosen in the order of their areas, of equal ones the higher first, so that of a closed solid
+    the top stays: each that overlaps none of those chosen before is chosen.
+    """
+    xy = columns(points)
+    corners = np.asarray(triangles, np.int64)
+    turns = orientation(xy, *corners.T)
+    corners = np.where(turns[:, None] < 0, corners[:, [0, 2, 1]], corners)
+    kept: BoolArray = turns != 0
+    areas = _measure_areas(points, corners)
+    pairs = _find_overlaps(points, xy, corners, np.flatnonzero(kept))
+    heights = points[corners, 2].mean(axis=1)
+    kept[_choose_left_out(pairs, np.lexsort((-heights, -areas)))] = False
+    return SurfacePart(kept, turns == 0, areas, _measure_heights(points, corners, areas))
+
+
+def _measure_areas(points: Float64Array, corners: Int64Array) -> Float64Array:
+    """Return areas in the plane, the same for triangles of the same places."""
+    places = points[corners, :2]
+    order = np.lexsort((places[..., 1], places[..., 0]))
+    a, b, c = np.take_along_axis(places, order[..., None], axis=1).transpose(1, 0, 2)
+    u, v = b - a, c - a
+    return np.asarray(np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2)
+
+
+def _measure_heights(
+    points: Float64Array, corners: Int64Array, areas: Float64Array
+) -> Float64Array:
+    places = points[corners, :2]
+    longest = np.linalg.norm(places - np.roll(places, 1, axis=1), axis=2).max(axis=1)
+    return np.asarray(2 * areas / np.where(longest > 0, longest, 1.0))
+
+
+# -------------------------------------------------------------------------- overlaps
+
+
+def _find_overlaps(
+    points: Float64Array, xy: Columns, corners: Int64Array, wanted: Int64Array
+) -> Int64Array:
+    """Return the pairs of triangles that overlap, (k, 2), the lower number first."""
+    shapely = _optional.load("shapely")
+    places = points[corners[wanted], :2]
+    low, high = places.min(axis=1), places.max(axis=1)
+    boxes = shapely.box(*low.T, *high.T)
+    tree = shapely.STRtree(boxes)
+    found = [np.empty((0, 2), np.int64)]
+    for start in range(0, len(wanted), _BLOCK):
+        first, second = tree.query(boxes[start : start + _BLOCK])
+        pairs = np.stack([first + start, second], axis=1)
+        pairs = wanted[pairs[pairs[:, 0] < pairs[:, 1]]]
+        found.append(pairs[_overlap(xy, corners[pairs[:, 0]], corners[pairs[:, 1]])])
+    return np.concatenate(found)
+
+
+def _overlap(xy: Columns, ours: Int64Array, theirs: Int64Array) -> BoolArray:
+    """Tell which pairs of counter-clockwise triangles have a place in common."""
+    overlap = np.ones(len(ours), np.bool_)
+    for one, other in ((ours, theirs), (theirs, ours)):
+        for k in range(3):
+            open_ = np.flatnonzero(overlap)
+            a, b = one[open_, k], one[open_, (k + 1) % 3]
+            is_left = [orientation(xy, a, b, corner) > 0 for corner in other[open_].T]
+            overlap[open_] = np.any(is_left, axis=0)
+    return overlap
+
+
+def _choose_left_out(pairs: Int64Array, order: Int64Array) -> list[int]:
+    """Return the triangles that overlap one that comes before them and stays."""
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    first, second = np.sort(rank[pairs], axis=1).T
+    by_second = np.lexsort((first, second))
+    first, second = first[by_second], second[by_second]
+    ranks, counts = np.unique(second, return_counts=True)
+    offsets = find_offsets(counts.tolist()).tolist()
+    left_out: set[int] = set()
+    earlier = first.tolist()
+    for k, at in enumerate(ranks.tolist()):
+        if not left_out.issuperset(earlier[offsets[k] : offsets[k + 1]]):
+            left_out.add(at)
+    return [int(order[at]) for at in left_out]
