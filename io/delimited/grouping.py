@@ -7,7 +7,7 @@ the header is refused.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from .names import ColumnName, parse_name
@@ -24,13 +24,13 @@ _PLANE = {"easting", "northing"}
 _SHOWN_LETTERS = 40
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Group:
     """Columns of one group, and what was assumed or is left open."""
 
     roles: dict[str, int]
     is_angle: bool = False
-    notes: list[str] = field(default_factory=list)
+    notes: tuple[str, ...] = ()
     refusal: str = ""
     """Why another group may be meant as well; "" if none."""
 
@@ -83,7 +83,7 @@ def find_group(header: Sequence[str], *, with_doubtful: bool = False) -> Group |
     refusal = _find_repeated(header, names, roles) or refusal or unsure
     refusal = refusal or _find_lone(header, names, pair)
     roles |= _find_others(names, roles)
-    notes = [*_note_pairs(header, pair, pairs), *_note_elevations(header, names, z, heights)]
+    notes = (*_note_pairs(header, pair, pairs), *_note_elevations(header, names, z, heights))
     return Group(roles, pair.name.kind == "angle", notes, refusal)
 
 
