@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import coordinate, counted, height
+from ..._sentences import counted, height
 from ...crs import METRE, Unit
 from ...errors import CrsError, OptionError, ReadError
 from ...tin.screening.nodata import describe_elevations
+from ..reprojection.placement import describe_local, require_no_degrees
 from .axes import are_named_plainly
 from .cells import is_number, split_line
 from .columns import COORDINATES, find_unit_word, list_names, names_coordinates
@@ -106,14 +107,11 @@ def require_in_area(
     """
     if area is None:
         return []
+    require_no_degrees(
+        points, area, path, "the option source_crs names the CRS of degrees, such as EPSG:4326"
+    )
     if area.is_local(points[:, :2]):
-        x, y = points[0, :2].tolist()
-        return [
-            f"The points lie about the origin of {area.source.label} (first: easting "
-            f"{coordinate(x)}, "
-            f"northing {coordinate(y)}), outside its area of use: check that they are no local "
-            "coordinates, and no degrees."
-        ]
+        return [describe_local(points, area)]
     outside = area.find_outside(points[:, :2])
     if len(outside) == 0:
         return []

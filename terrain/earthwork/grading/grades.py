@@ -85,10 +85,10 @@ def grade(
 
     Notes
     -----
-    Beside a convex pad slopes are exact planes, and cones have facets of two degrees: daylight is
-    short by at most 0.00016 of its distance. Where the pad has a notch, the slopes meet along
-    curves: their distance from the pad is interpolated between lines of equal distance. What is
-    cut or filled farther away, and does not reach the pad along its slope, stays ground.
+    Slopes beside edges are exact planes, and cones have facets of two degrees: daylight is short by
+    at most 0.00016 of its distance. Where the pad has a notch, slopes meet where they are as far
+    from both edges. What is cut or filled farther away, and does not reach the pad along its slope,
+    stays ground. Time and vertices are in proportion to the corners of the pad.
 
     Examples
     --------

@@ -395,7 +395,11 @@ def test_lines_far_from_the_points_have_the_wrong_crs(tmp_path):
     degrees = write(
         tmp_path / "a.shp", [shapely.LineString([(-84.2, 36.3), (-84.1, 36.4)])], crs=None
     )
-    refused("nowhere near the points", with_lines, survey(), breaklines=[degrees])
+    with pytest.raises(ts.CrsError, match="as longitude and latitude"):
+        with_lines(survey(), breaklines=[degrees])
+    far = CORNER + np.array([[9e4, 9e4], [9.01e4, 9.01e4]])
+    beside = write(tmp_path / "b.shp", [shapely.LineString(far)], crs=None)
+    refused("nowhere near the points", with_lines, survey(), breaklines=[beside])
 
 
 def test_lines_of_our_own_geojson_come_back(tmp_path):
