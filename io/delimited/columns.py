@@ -186,7 +186,7 @@ def names_coordinates(header: Sequence[str]) -> Columns | None:
 def _describe_group(header: Sequence[str], units: Sequence[str], group: Group) -> Columns:
     named = _find_unit_words(header, units, group.roles)
     names = name_columns(header, len(header))
-    return Columns(names, group.roles, group.is_angle, named, tuple(group.notes))
+    return Columns(names, group.roles, group.is_angle, named, group.notes)
 
 
 def describe_doubts(header: Sequence[str]) -> str:

@@ -7,7 +7,7 @@ the header is refused.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from .names import ColumnName, parse_name
@@ -24,13 +24,13 @@ _PLANE = {"easting", "northing"}
 _SHOWN_LETTERS = 40
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Group:
     """Columns of one group, and what was assumed or is left open."""
 
     roles: dict[str, int]
     is_angle: bool = False
-    notes: list[str] = field(default_factory=list)
+    notes: tuple[str, ...] = ()
     refusal: str = ""
     """Why another group may be meant as well; "" if none."""
 
@@ -83,7 +83,7 @@ def find_group(header: Sequence[str], *, with_doubtful: bool = False) -> Group |
     refusal = _find_repeated(header, names, roles) or refusal or unsure
     refusal = refusal or _find_lone(header, names, pair)
     roles |= _find_others(names, roles)
-    notes = [*_note_pairs(header, pair, pairs), *_note_elevations(header, names, z, heights)]
+    notes = (*_note_pairs(header, pair, pairs), *_note_elevations(header, names, z, heights))
     return Group(roles, pair.name.kind == "angle", notes, refusal)
 
 
@@ -113,11 +113,15 @@ def _are_partners(east: ColumnName, north: ColumnName) -> bool:
 def _find_own(
     pair: _Pair, pairs: Iterable[_Pair], heights: Iterable[int], names: Sequence[ColumnName]
 ) -> tuple[int, ...]:
-    """Return the elevations beside a pair, and not behind another."""
+    """Return the elevations beside a pair, and not behind another.
+
+    That before the pair counts only where there are others, whose order leaves it open.
+    """
     heights = [z for z in heights if _are_of_one_system(names[z], pair.name)]
     low, high = sorted((pair.east, pair.north))
     behind = [max(other.east, other.north) + 1 for other in pairs if other is not pair]
-    return tuple(z for z in heights if low - 1 <= z <= high + 1 and z not in behind)
+    low -= bool(behind)
+    return tuple(z for z in heights if low <= z <= high + 1 and z not in behind)
 
 
 def _choose_pair(
@@ -164,7 +168,9 @@ def _choose_elevation(
 ) -> tuple[int, str]:
     """Return the elevation of a pair, and why it may be another."""
     names_sure = [
-        i for i in heights if names[i].kind == "sure" or (names[i].kind == "axis" and i in pair.own)
+        i
+        for i in heights
+        if names[i].kind == "sure" or (names[i].kind == "axis" and pair.own == (i,))
     ]
     left = names_sure or list(heights)
     if len(left) > 1:

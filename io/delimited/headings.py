@@ -142,7 +142,8 @@ def _read_order(text: str, count: int) -> tuple[str, ...] | None:
 def _list_readings(cells: Sequence[str], count: int) -> Iterator[tuple[list[str], list[str]]]:
     """Walk the names that cells may hold, and the words before them: "fields N", "E", "Z"."""
     yield list(cells[-count:]), list(cells[:-count])
-    yield _take_letters(cells[-1:]), list(cells[:-1])
+    for k, cell in enumerate(cells):
+        yield _take_letters([cell.strip(",;:.()[]")]), [*cells[:k], *cells[k + 1 :]]
     if len(cells) == count:
         *words, name = cells[0].split(" ")
         yield [name, *cells[1:]], words

@@ -215,8 +215,7 @@ def _settle_role(found: Sequence[tuple[str, Sense]]) -> tuple[Sense | None, str,
         roles = {one.role for _, one in others if one.role != "number"} or {"number"}
         if not others or len(roles) > 1:
             return None, "", ""
-        role = roles.pop()
-        return next((one, word, "") for word, one in others if one.role == role)
+        return next((one, word, "") for word, one in others if one.role in roles)
     # "X (Northing)": the word says which way the axis points.
     plain = [(word, one) for word, one in named if one.kind not in ("axis", "letter")]
     plain = plain or [(word, one) for word, one in named if one.kind != "axis"] or named

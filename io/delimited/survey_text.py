@@ -57,7 +57,6 @@ if TYPE_CHECKING:
     from ...arrays import AnyArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from .columns import Columns
-    from .headings import AxesLine
     from .layout import Layout
     from .lines import TextLines
     from .table import Cells, Fault, Table
@@ -158,15 +157,9 @@ def read(
     require_one_header(table.faults, lines, layout.delimiter, meaning, path)
     told = _account_for_rows(table, left_out, path)
     unit, told_unit = _find_unit(layout, lines, Unit.of(z_unit), path)
-    is_headed = layout.columns is not None and columns is None
-    if is_headed:
-        line = find_axes_line(lines, layout.rows)
-        told, meaning = _settle_header(told, meaning, (source or target, area, line), path)
-    notes = [*layout.notes, *notes, *told_units, *told_cut, *told.notes, *told_unit]
-    notes += [
-        *require_in_area(told.points, told.rows, meaning, area, path, is_headed=is_headed),
-        *_find_odd(told, lines, layout, meaning, in_degrees=is_geographic(source)),
-    ]
+    where = _Reference(source, target, area)
+    told = _settle_places(told, lines, layout, meaning, where, path, is_told=columns is not None)
+    notes = [*layout.notes, *notes, *told_units, *told_cut, *told_unit, *told.notes]
     placed = place(
         told.points, source=source, target=target, path=path, unit=unit, looks_at_area=False
     )
@@ -203,18 +196,39 @@ def _find_split(told: _Accounted, layout: Layout, columns: Columns) -> list[str]
     return find_split_thousands(told.points, beyond, layout.delimiter)
 
 
-def _settle_header(
+class _Reference(NamedTuple):
+    """The CRS of coordinates, that which they go to, and their areas of use."""
+
+    source: CRS | None
+    target: CRS | None
+    area: AreaOfUse | None
+
+
+def _settle_places(
     told: _Accounted,
+    lines: TextLines,
+    layout: Layout,
     columns: Columns,
-    place: tuple[CRS | None, AreaOfUse | None, AxesLine | None],
+    where: _Reference,
     path: Path,
-) -> tuple[_Accounted, Columns]:
-    """Refuse what no header can mean, and take X for the northing where the CRS does."""
-    if columns.is_degrees:
-        require_one_hemisphere(told.attributes, path)
-    require_no_geocentric(told.points, columns, path)
-    points, columns, notes = settle_axes(told.points, columns, *place)
-    return told._replace(points=points, notes=[*told.notes, *notes]), columns
+    *,
+    is_told: bool,
+) -> _Accounted:
+    """Refuse places that no header can mean, take X for the northing where the CRS does; note."""
+    is_headed = layout.columns is not None and not is_told
+    notes = list(told.notes)
+    points = told.points
+    if is_headed:
+        if columns.is_degrees:
+            require_one_hemisphere(told.attributes, path)
+        require_no_geocentric(points, columns, path)
+        crs, line = where.source or where.target, find_axes_line(lines, layout.rows)
+        points, columns, turned = settle_axes(points, columns, crs, where.area, line)
+        notes += turned
+    told = told._replace(points=points)
+    notes += require_in_area(points, told.rows, columns, where.area, path, is_headed=is_headed)
+    notes += _find_odd(told, lines, layout, columns, in_degrees=is_geographic(where.source))
+    return told._replace(notes=notes)
 
 
 def _find_unit(

@@ -26,7 +26,7 @@ PLACES = {
 BEFORE = ("", "chainage", "times", "number.part", "number", "whole step", "grid row")
 LAYOUTS = ("ENZ", "NEZ", "EN", "NE", "ENP", "ENC", "DMS", "DM")
 HEADINGS = ("", "", "", "# survey of the north field", "Job 12")
-ORDERS = ("{}", "# {}", "order: {}", "# columns are {}", "{} (m)", "Format {}, 14 points")
+ORDERS = ("{}", "# {}", "order: {}", "# columns are {}", "{} (m)", "Format {}")
 
 
 def generate(rng: np.random.Generator) -> Case:

@@ -140,7 +140,7 @@ def test_every_word_of_a_name_counts(header, word):
     [
         *("X;Y;Z;E;N", "East;North;x;y;H", "Height;E;N;Z;RL", "E;N;Z;Elevation", "E;N;H;Height"),
         *("E (local);N (local);E (grid);N (grid);Z", "E;N;Z;Easting;Northing;Elevation"),
-        *("E (UTM);N (UTM);Z (local)",),
+        *("E (UTM);N (UTM);Z (local)", "Z;E;N;Height;X;Y", "Station;Offset;Z;N;E;H"),
     ],
 )
 def test_coordinates_of_several_groups_are_refused(header):
