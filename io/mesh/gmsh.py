@@ -84,7 +84,7 @@ def read(
             )
         return make_survey(points, path, reference=reference)
     made = cut_into_fans(arrays["corners"], arrays["offsets"], points, path)
-    flags = _flag_edges(made.triangles, arrays["lines"], len(points))
+    flags = _flag_edges(made.triangles.astype(np.int32), arrays["lines"], len(points))
     notes = [*made.notes, *([f"Not read: other cells ({told})."] if others else [])]
     return make_tin(
         points,

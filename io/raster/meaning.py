@@ -158,7 +158,7 @@ def settle_axes(header: Header, target: CRS | None) -> tuple[Header, CRS | None,
     except OptionError:
         return header, None, [f"The unit of its axes, '{word}', is no length, and was not used."]
     wanted = target.horizontal_unit
-    if unit is None or unit == wanted:
+    if unit is None or unit.metres is None or wanted.metres is None or unit == wanted:
         return header, None, []
     factor = unit.metres / wanted.metres
     told = f"Eastings and northings were converted from {unit.name} to {wanted.name}."

@@ -75,8 +75,8 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
         _optional.require("pyogrio", "Reading vector files")
     content = _require_whole_file(path)
     if is_dxf(content) or path.suffix.lower() == _DRAWING:
-        found = read_drawing_features(path, layer=layer, where=where, lines_only=lines_only)
-        return Features(path, *found)
+        drawn = read_drawing_features(path, layer=layer, where=where, lines_only=lines_only)
+        return Features(path, *drawn)
     library = "pyarrow" if is_parquet(content) else "pyogrio"
     _optional.require(library, "Reading vector files")
     head = read_json_members(content, path)

@@ -49,8 +49,13 @@ def _turn_surface(tin: Surface, axes: Axes, crs: DrawnCRS) -> TIN:
     points = axes.turn(tin.points)
     if not axes.are_mirrored:
         return tin.replace(points=points, crs=crs)
-    given = {"constrained": tin.constrained, "crs": crs, "z_unit": tin.elevation_unit}
-    made = type(tin.to_tin()).from_triangles(points, tin.triangles, **given)
+    made = type(tin.to_tin()).from_triangles(
+        points,
+        tin.triangles,
+        constrained=tin.constrained,
+        crs=crs,
+        z_unit=tin.elevation_unit,
+    )
     kept = {name: getattr(tin, name) for name in ("vertex_of", "report", "lines", "row_attributes")}
     return made.replace(**kept).with_source(tin.source)
 
@@ -61,7 +66,12 @@ def _turn_survey(survey: Survey, axes: Axes, crs: DrawnCRS) -> Survey:
         survey,
         points=axes.turn(survey.points),
         crs=crs,
-        **dict.fromkeys(("breaklines", "boundary", "holes", "erase", "water", "extent"), ()),
+        breaklines=(),
+        boundary=(),
+        holes=(),
+        erase=(),
+        water=(),
+        extent=(),
     )
 
 

@@ -64,7 +64,7 @@ def prepare_stage_sums():
 
 def prepare_sum_between():
     lower = (*tall(20_000), np.zeros(20_000, np.int32), 1)
-    return _kernel.sum_between, (*lower, *tall(20_000), 1.0, 1)
+    return _kernel.sum_between, (*lower, *tall(20_000), 1.0, False, 1)
 
 
 @pytest.mark.parametrize("prepare", [prepare_stage_sums, prepare_sum_between])
