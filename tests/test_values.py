@@ -16,7 +16,8 @@ from tinsmith.tin.constraints.polylines import Polylines
 from tinsmith.tin.editing.operations import OPERATIONS
 
 WORKED_ON = {
-    "io.delimited.layout._Top", "io.field_survey.figures.Figure", "io.field_survey.geometry._Line",
+    "io.delimited.layout._Top", "io.delimited.names._Found",
+    "io.field_survey.figures.Figure", "io.field_survey.geometry._Line",
     "io.field_survey.instruments.gsi._Block", "io.field_survey.instruments.records.Book",
     "io.lidar.selection.Tally", "io.cad.landxml.content.Content", "io.cad.landxml.content.Line",
     "io.cad.landxml.content.Points", "io.cad.landxml.content.Surface",

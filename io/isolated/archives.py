@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from typing import IO, TYPE_CHECKING
 
+from ..._atomic import scratch_folder
 from ..._sentences import counted
 from ...errors import ReadError, TinsmithError
 from .spooling import rename_in_error, translate_system_errors
@@ -78,7 +79,7 @@ def unpack(path: Path) -> Iterator[Path]:
     if not start.startswith(_STARTS.get(suffix, b"no archive")):
         yield path
         return
-    with tempfile.TemporaryDirectory(prefix="tinsmith-") as folder:
+    with scratch_folder() as folder:
         unpacker = _unpack_gzip if start.startswith(_GZIP) else _unpack_zip
         with translate_system_errors(path):
             try:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import http.client
 import re
-import tempfile
 import urllib.error
 import urllib.request
 from contextlib import contextmanager
@@ -12,6 +11,7 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote, urlsplit
 
+from ..._atomic import scratch_folder
 from ...errors import ReadError, TinsmithError
 from .spooling import rename_in_error
 
@@ -57,7 +57,7 @@ def download(path: str | os.PathLike[str]) -> Iterator[Path]:
         If it cannot be read, or ends before its length.
     """
     address = _WEB.sub(r"\1://", str(path), count=1)
-    with tempfile.TemporaryDirectory(prefix="tinsmith-") as folder:
+    with scratch_folder() as folder:
         copy = Path(folder, _find_name(address))
         try:
             _copy(address, copy)

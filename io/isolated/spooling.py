@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import shutil
 import stat
-import tempfile
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
+from ..._atomic import scratch_folder
 from ...errors import ReadError, TinsmithError
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def spool(stream: IO[bytes], path: Path) -> Iterator[Path]:
     ReadError
         If the stream cannot be read, or there is no room for it.
     """
-    with tempfile.TemporaryDirectory(prefix="tinsmith-") as folder:
+    with scratch_folder() as folder:
         copy = Path(folder) / f"piped{path.suffix or '.txt'}"
         with translate_system_errors(path), copy.open("wb") as file:
             shutil.copyfileobj(stream, file, _CHUNK)

@@ -9,12 +9,12 @@ section 3.
 from __future__ import annotations
 
 import struct
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..._atomic import scratch_folder
 from ..._sentences import coordinate
 from ...crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit
 from ...errors import CrsError, MissingExtraError, ReadError, TinsmithError
@@ -243,7 +243,7 @@ def _add_vertical(horizontal: CRS, code: int, unit: Unit | None) -> Reference:
 
 def _ask_gdal(header: Header) -> str:
     """Return the CRS that a GeoTIFF of the same keys would have, as WKT."""
-    with tempfile.TemporaryDirectory(prefix="tinsmith-") as folder:
+    with scratch_folder() as folder:
         picture = Path(folder, "keys.tif")
         picture.write_bytes(_make_picture(header))
         found = _read_crs(picture, header.path)

@@ -35,6 +35,7 @@ FORMATS = (
         "A whole TIN as a GeoPackage (opens in QGIS, ArcGIS, GDAL)",
         ".gpkg",
         module="geopackage",
+        side_files={"": ("*-wal", "*-shm", "*-journal")},
         sniff=signatures.is_tin_geopackage,
         sniff_file=signatures.has_tin_among_layers,
     ),
@@ -52,6 +53,7 @@ FORMATS = (
     _make(
         *("obj", "Wavefront OBJ mesh", ".obj"),
         module="obj",
+        side_files={"": (".mtl",)},
         sniff=signatures.is_obj,
         losses=f"{_LOSSES}.",
         loses=_LOSES,

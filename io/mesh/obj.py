@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._atomic import replacing, replacing_files
+from ..._atomic import replacing
 from ...errors import ReadError, WriteError
+from ..registry.side_files import replacing_data_set
 from . import common
 from .text_writing import BATCH, write_batches, write_reference
 from .texture import choose_picture, load_texture
@@ -207,7 +208,7 @@ def write(
     draped = load_texture(source, tin, stacklevel=4)
     picture = path.with_name(f"{path.stem}{_PICTURE}{draped.suffix}")
     _require_other_file(source, (picture, path, path.with_suffix(".mtl")))
-    with replacing_files(path, parts=(".mtl",)) as beside:
+    with replacing_data_set(path, "obj") as beside:
         beside.with_name(picture.name).write_bytes(draped.content)
         material = f"newmtl {_MATERIAL}\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nmap_Kd {picture.name}\n"
         beside.with_suffix(".mtl").write_text(material, encoding="utf-8")

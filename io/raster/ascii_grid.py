@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._atomic import replacing_files
 from ...errors import LossWarning, OptionError, WriteError
+from ..registry.side_files import replacing_data_set
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 __all__ = ["write"]
 
-_PARTS = (".prj",)
 _NODATA = -9999.0
 _BLOCK_CELLS = 1 << 20
 
@@ -55,7 +54,7 @@ def write(
     name = _choose_band(raster, band)
     nodata = raster.nodata if math.isfinite(raster.nodata) else _NODATA
     _warn_of_losses(raster, path)
-    with replacing_files(path, parts=_PARTS) as new:
+    with replacing_data_set(path, "asc") as new:
         with new.open("w", encoding="ascii", newline="") as file:
             file.write(_format_head(raster, nodata))
             for done, lines in _iterate_rows(raster, name, nodata, path):

@@ -1,5 +1,6 @@
 """The formats of rasters."""
 
+from pathlib import Path
 from typing import Any
 
 from ..registry import signatures
@@ -16,6 +17,31 @@ def _make(name: str, description: str, writer: str, **more: Any) -> Format:
     return Format(name=name, description=description, write=write, **(usual | more))
 
 
+def _list_mosaic(path: Path) -> list[Path]:
+    """Return the rasters that a VRT names."""
+    from .virtual import is_virtual, require_plain_sources
+
+    return require_plain_sources(path) if is_virtual(path) else []
+
+
+_OF_GEOTIFF = {"": ("*.aux.xml", "*.ovr", "*.msk", "*.ovr.msk")}
+_APPENDED = ("*.aux.xml", "*.ovr", "*.msk", "*.xml", "*.aux")
+_WORLD = (".wld", ".prj")
+_HEADED = (".hdr", ".blw", ".clr", ".stx", *_WORLD)
+_SIDE_FILES = {
+    "": _APPENDED,
+    **dict.fromkeys((".tif", ".tiff"), (".tfw", ".tifw", ".aux", *_WORLD)),
+    **dict.fromkeys((".asc", ".grd", ".bt", ".dem", ".nc"), (".prj", ".clr")),
+    **dict.fromkeys((".bil", ".bip", ".bsq", ".flt"), _HEADED),
+    ".img": (".rrd", ".ige", ".rde", ".aux", *_WORLD),
+    ".sdat": (".sgrd", ".mgrd", ".prj"),
+    ".rst": (".rdc", ".ref", ".smp"),
+    ".png": (".pgw", ".pngw", *_WORLD),
+    ".jpg": (".jgw", ".jpgw", *_WORLD),
+    ".jp2": (".j2w", ".jp2w", *_WORLD),
+}
+"""What GDAL reads beside a raster."""
+
 FORMATS = (
     Format(
         name="raster",
@@ -27,12 +53,15 @@ FORMATS = (
         ),
         read="tinsmith.io.raster.dem:read",
         sniff=signatures.is_raster,
+        side_files=_SIDE_FILES,
+        find_sources=_list_mosaic,
     ),
-    _make("geotiff", "GeoTIFF", "geotiff:write"),
-    _make("cog", "Cloud optimized GeoTIFF", "geotiff:write_cog"),
+    _make("geotiff", "GeoTIFF", "geotiff:write", side_files=_OF_GEOTIFF),
+    _make("cog", "Cloud optimized GeoTIFF", "geotiff:write_cog", side_files=_OF_GEOTIFF),
     _make(
         *("asc", "Esri ASCII grid, one band as text", "ascii_grid:write"),
         suffixes=(".asc",),
+        side_files={"": (".prj",)},
         precision="Every number is kept bit for bit.",
         losses="Units and notes; all bands but one.",
     ),

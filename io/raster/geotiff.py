@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import _optional
-from ..._atomic import replacing_files
 from ...errors import WriteError, choice
 from ...policies import OverviewMethod, RasterCompression
 from ...terrain.results.columns import UNKNOWN_UNIT, unit_text
+from ..registry.side_files import replacing_data_set
 from ..reprojection.crs_kept import require_kept
 
 if TYPE_CHECKING:
@@ -36,7 +36,6 @@ _LEVEL = 4
 _ALL = "ALL_CPUS"
 _LARGEST_DRAFT = 1 << 30
 _WIDER = {"bool": "uint8", "float16": "float32"}
-_PARTS = (".aux.xml", ".ovr", ".msk", ".ovr.msk")
 """What GDAL keeps beside a raster, and would use with the new one."""
 
 
@@ -75,7 +74,7 @@ def write(
     """
     resampling = _choose_resampling(raster, overviews)
     choice("compression", compression, RasterCompression)
-    with replacing_files(path, parts=_list_parts(path)) as new, _translate_faults(path):
+    with replacing_data_set(path, "geotiff") as new, _translate_faults(path):
         _write_tiles(raster, new, path, compression, progress)
         factors = [] if resampling == "none" else _list_factors(raster)
         _add_overviews(raster, new, resampling, factors, compression)
@@ -97,7 +96,7 @@ def write_cog(
     The driver copies a whole raster: a GeoTIFF is written beside it first, and removed.
     """
     resampling = _choose_resampling(raster, overviews)
-    with replacing_files(path, parts=_list_parts(path)) as new, _translate_faults(path):
+    with replacing_data_set(path, "cog") as new, _translate_faults(path):
         plain = new.with_name(f"plain-{new.name}")
         _write_tiles(raster, plain, path, _choose_draft_compression(raster), progress)
         _optional.load("rasterio.shutil", f"Writing '{path}'").copy(
@@ -115,10 +114,6 @@ def write_cog(
         plain.unlink()
         _require_complete(new, path)
         _require_crs(raster, new, path)
-
-
-def _list_parts(path: Path) -> tuple[str, ...]:
-    return tuple(path.suffix + part for part in _PARTS)
 
 
 def _choose_resampling(raster: Raster, overviews: str | None) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -12,7 +12,7 @@ from ..._plug_ins import describe_failure
 from ...errors import FormatError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
 __all__ = ["KINDS", "SURFACES", "Format", "Loss", "load_function", "require_options"]
@@ -78,6 +78,12 @@ class Format:
     sniff_folder : callable, optional
         Whether a folder is certainly of this format, by the names in it; a format without it is
         of files.
+    side_files : mapping of str to tuple of str
+        Files that may stand beside one and belong to it, by its suffix, "" for any: ".prj" stands
+        in place of the suffix, "*.ovr" behind the whole name. Of a writer those that it replaces
+        or removes.
+    find_sources : callable, optional
+        Other files that a file names and that are read with it, by its path.
     part_names : tuple of str
         Names of files in such a folder, small letters, any of which stands for the folder.
     distribution : str
@@ -128,6 +134,8 @@ class Format:
     sniff: Callable[[bytes], bool] | None = None
     sniff_file: Callable[[Path], bool] | None = None
     sniff_folder: Callable[[Path], bool] | None = None
+    side_files: Mapping[str, tuple[str, ...]] = field(default_factory=dict, hash=False)
+    find_sources: Callable[[Path], Sequence[Path]] | None = None
     part_names: tuple[str, ...] = ()
     distribution: str = _OWN
 

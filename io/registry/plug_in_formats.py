@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, get_args
 
@@ -106,11 +107,23 @@ def _find_fault_of_facts(one: Format) -> str:
     ):
         if not isinstance(words, tuple) or not {*map(str, words)} <= {*allowed}:
             return f"{what} is {words!r}, and each must be one of {', '.join(allowed)}"
+    if not _are_ends(one.side_files):
+        return f"its side files {one.side_files!r} are no mapping of suffixes to ends of names"
+    if one.find_sources is not None and not callable(one.find_sources):
+        return f"{one.find_sources!r} finds no sources: it is no function"
     if not (_is_nonnegative(one.rounding) and _is_nonnegative(one.relative_rounding)):
         return "its rounding is no number from 0 on"
     if not all(isinstance(text, str) for text in (one.precision, one.losses, one.extra or "")):
         return "its precision, losses and extra are no texts"
     return ""
+
+
+def _are_ends(value: object) -> bool:
+    return isinstance(value, Mapping) and all(
+        isinstance(ends, tuple)
+        and all(isinstance(end, str) and end[:1] in (".", "*") for end in ends)
+        for ends in value.values()
+    )
 
 
 def _is_nonnegative(value: object) -> bool:

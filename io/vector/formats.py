@@ -36,6 +36,16 @@ def _make(name: str, description: str, *suffixes: str, writer: str = "", **more:
     return Format(name=name, description=description, suffixes=suffixes, **(ends | more))
 
 
+_OF_SHAPEFILES = (
+    *(".shx", ".dbf", ".prj", ".cpg", ".qpj", ".sbn", ".sbx", ".qix", ".idx"),
+    "*.xml",
+)
+_OF_OTHERS = {
+    ".tab": (".dat", ".map", ".id", ".ind"),
+    ".mif": (".mid",),
+    ".gml": (".gfs", ".xsd"),
+}
+
 FORMATS = (
     _make(
         *("geojson", "GeoJSON (RFC 7946)", ".geojson", ".json"),
@@ -67,6 +77,7 @@ FORMATS = (
         loses=("survey lines",),
         extra="vector",
         sniff=is_geopackage,
+        side_files={"": ("*-wal", "*-shm", "*-journal")},
     ),
     _make(
         *("flatgeobuf", "FlatGeobuf", ".fgb"),
@@ -83,6 +94,7 @@ FORMATS = (
         loses=("elevation unit", *_LOSES),
         extra="vector",
         sniff=is_shapefile,
+        side_files={"": _OF_SHAPEFILES},
     ),
     _make(
         *("geoparquet", "GeoParquet", ".parquet", ".geoparquet"),
@@ -97,5 +109,6 @@ FORMATS = (
         extra="vector",
         sniff=is_vector_text,
         sniff_folder=is_geodatabase,
+        side_files=_OF_OTHERS,
     ),
 )

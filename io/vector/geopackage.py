@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
+from ..._atomic import folder_beside
 from ...errors import OptionError, WriteError
 from ...tin.validation.options import as_flag
 from ..mesh.geopackage.containers import MARK, Placing, adding_layers
@@ -67,7 +67,7 @@ def write(
     metadata = describe(features) | {MARK: "tinsmith"}
     with (
         adding_layers(path, placing) as beside,
-        TemporaryDirectory(prefix=".", dir=beside.parent) as folder,
+        folder_beside(beside.with_name(path.name)) as folder,
     ):
         new = Path(folder, path.name)
         version = {"VERSION": _VERSION}

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._atomic import replacing_files
 from ..._sentences import counted
 from ...errors import LossWarning, WriteError
+from ..registry.side_files import replacing_data_set
 from .ogr import write_layer
 from .well_known_binary import encode_tin
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["short_names", "write", "write_multipatch"]
 
-_PARTS = (".shx", ".dbf", ".prj", ".cpg", ".qpj", ".sbn", ".sbx", ".qix", ".idx", ".shp.xml")
 _NAME_BYTES = 10
 _TEXT_BYTES = 254
 _MOST_COLUMNS = 255
@@ -75,7 +74,7 @@ def _write(features: Features, path: Path, **how: Any) -> None:
     _require_room(features, path)
     names = short_names(features.columns)
     _warn_of_losses(features, names, path)
-    with replacing_files(path, parts=_PARTS) as new:
+    with replacing_data_set(path, "shapefile") as new:
         write_layer(
             features,
             new,

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
+import tempfile
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, Literal, overload
@@ -16,13 +18,18 @@ if TYPE_CHECKING:
 
 __all__ = [
     "as_path",
+    "find_dead_scratch",
+    "find_leftovers",
+    "folder_beside",
     "replacing",
     "replacing_files",
     "replacing_folder",
     "replacing_path",
     "require_writable",
+    "scratch_folder",
 ]
 
+_SCRATCH = "tinsmith-"
 _STEM = 40
 """Letters of a name that the name of the file beside it begins with: names have 255 bytes."""
 
@@ -164,7 +171,75 @@ def _require_replaceable(path: Path, target: Path) -> None:
 
 def _choose_path_beside(target: Path) -> Path:
     """Return a new name in the folder of the target: hidden, with its suffix."""
-    return target.with_name(f".{target.stem[:_STEM]}-{os.urandom(4).hex()}{target.suffix}")
+    return _name_beside(target, target.suffix)
+
+
+def _name_beside(target: Path, suffix: str = "") -> Path:
+    return target.with_name(f".{target.stem[:_STEM]}-{os.urandom(4).hex()}{suffix}")
+
+
+def find_leftovers(path: Path) -> list[Path]:
+    """Return what writing a file has left beside it, if it was ended before it could clear up.
+
+    They cannot be told from the files of a writer that is at work.
+    """
+    stem = path.stem[:_STEM]
+    left = re.compile(rf"\.+{re.escape(stem)}(?:-[0-9a-f]{{8}})+(?:\..*)?")
+    try:
+        return sorted(one for one in path.parent.iterdir() if left.fullmatch(one.name))
+    except OSError:
+        return []
+
+
+@contextmanager
+def scratch_folder() -> Iterator[Path]:
+    """Yield a new folder among the system's temporary files, which is removed at the end.
+
+    Yields
+    ------
+    Path
+    """
+    with tempfile.TemporaryDirectory(prefix=f"{_SCRATCH}{os.getpid()}-") as folder:
+        yield Path(folder)
+
+
+def find_dead_scratch() -> list[Path]:
+    """Return temporary folders of processes on this machine that were killed."""
+    if os.name != "posix":
+        return []
+    named = re.compile(rf"{_SCRATCH}(\d+)-\w+")
+    folder = Path(tempfile.gettempdir())
+    try:
+        found = [(one, named.fullmatch(one.name)) for one in sorted(folder.iterdir())]
+    except OSError:
+        return []
+    return [one for one, match in found if match and not _is_running(int(match[1]))]
+
+
+def _is_running(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):
+        return True
+    return True
+
+
+@contextmanager
+def folder_beside(path: Path) -> Iterator[Path]:
+    """Yield a new hidden folder beside a file, which is removed at the end.
+
+    Yields
+    ------
+    Path
+    """
+    folder = _name_beside(path)
+    try:
+        folder.mkdir()
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _create(beside: Path, target: Path) -> None:
@@ -199,7 +274,7 @@ def replacing_files(path: Path, *, parts: Sequence[str] = ()) -> Iterator[Path]:
         As :func:`replacing`.
     """
     with _finding_target(path) as target:
-        folder = target.with_name(f".{target.stem[:_STEM]}-{os.urandom(4).hex()}")
+        folder = _name_beside(target)
         try:  # begins before the folder is there, so that no signal can come in between
             folder.mkdir()
             yield folder / target.name
@@ -245,8 +320,7 @@ def replacing_folder(path: Path, *, marker: str) -> Iterator[Path]:
     with _translate_faults(path):
         target = _find_target(path)
         _require_replaceable_folder(path, target, marker)
-        fresh = target.with_name(f".{target.name[:_STEM]}-{os.urandom(4).hex()}")
-        old = target.with_name(f".{target.name[:_STEM]}-{os.urandom(4).hex()}")
+        fresh, old = _name_beside(target), _name_beside(target)
         try:
             fresh.mkdir()
             yield fresh

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from ..._sentences import counted
 from ...errors import OptionError, TinsmithError
 from ...tin.screening.suspects import DROPPED
 from ...tin.validation.options import require_tin, require_type
+from ..georeference.axes import turn_into_drawing
 from ..results import Table
 from .arguments import parse_title
 from .figures import INK, picture
@@ -75,7 +77,9 @@ def blunder_map(tin: TIN, table: Table, *, title: str | None = None) -> Any:
     require_type("table", table, Table)
     if "reason" not in table.columns or "certainty" not in table.columns:
         raise OptionError("table", table, "one of ts.blunders")
-    ground = _leave_out(tin, table)
+    if len(table) and table["row"].max() >= len(tin.vertex_of):
+        raise OptionError("table", table, f"one of the {len(tin.vertex_of)} points of the surface")
+    ground, table = _leave_out(tin, table), _turn(table, tin)
     drawn = start_map(
         ground,
         parse_title(title, "Points that look like blunders"),
@@ -102,6 +106,12 @@ def _leave_out(tin: TIN, table: Table) -> TIN:
     except TinsmithError:
         return tin
     return rest
+
+
+def _turn(table: Table, drawn: TIN) -> Table:
+    """Return the findings with the places that they have in the drawing."""
+    x, y = turn_into_drawing(np.column_stack([table["x"], table["y"]]), drawn.crs).T
+    return replace(table, columns={**table.columns, "x": x, "y": y})
 
 
 def _mark(drawn: Map, table: Table) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from ... import _optional
 from ...tin import Bounds
 from ...tin.validation.options import require_tin, require_type
+from ..drawing.north_up import draw_north_up
 from ..drawing.rounding import round_down
 from ..earthwork import Difference
 from ..gridding import rasterize
@@ -21,7 +22,7 @@ from .maps import PIXELS, draw_scale, draw_shade, start_map
 if TYPE_CHECKING:
     from ...arrays import Float64Array
     from ...tin import TIN, Grid
-    from ..results import Raster
+    from ..results import Features, Raster
     from .maps import Map
 
 __all__ = ["earthwork_map"]
@@ -82,8 +83,9 @@ def earthwork_map(
     require_type("difference", difference, Difference)
     if ground is not None:
         require_tin(ground)
+    surface = draw_north_up(difference.tin)
     drawn = start_map(
-        difference.tin,
+        surface,
         parse_title(title, "Cut and fill"),
         purpose=_PURPOSE,
         pad=_PAD,
@@ -93,8 +95,8 @@ def earthwork_map(
     axes = drawn.axes
     if ground is not None:
         draw_shade(axes, _shade_around(ground, axes), limits=_LIGHTS)
-    _draw_difference(drawn, difference.tin)
-    _draw_zero_line(axes, difference)
+    _draw_difference(drawn, surface)
+    _draw_zero_line(axes, surface, draw_north_up(difference.zero_line))
     drawn.write_caption(_write_caption(difference), size=10)
     return drawn.figure
 
@@ -170,11 +172,10 @@ def _choose_levels(height: Float64Array) -> Float64Array:
     return levels[(levels > low) & (levels < high)]
 
 
-def _draw_zero_line(axes: Any, difference: Difference) -> None:
+def _draw_zero_line(axes: Any, surface: TIN, lines: Features) -> None:
     collections = _optional.load("matplotlib.collections", _PURPOSE)
-    lines = difference.zero_line
     paths = np.split(lines.coordinates[:, :2], lines.offsets[0][1:-1]) if len(lines) else []
-    rings = [difference.tin.points[np.append(ring, ring[0]), :2] for ring in difference.tin.rings]
+    rings = [surface.points[np.append(ring, ring[0]), :2] for ring in surface.rings]
     for drawn, width, style in ((paths, 1.4, "solid"), (rings, 0.9, (0, (4, 2)))):
         axes.add_collection(
             collections.LineCollection(

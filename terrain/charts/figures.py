@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 from ... import _optional
 from ..._products import join_notes, product
 from ...tin.surface import Surface
+from ..drawing.north_up import draw_north_up
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -59,11 +60,15 @@ _MOST_NOTES = 8
 
 
 def picture(function: F) -> F:
-    """Make a function that draws a figure a product, with the notes of all that it shows below."""
+    """Make a function that draws a figure a product, with the notes of all that it shows below.
+
+    It gets what it draws with eastings and northings, whatever the axes of the CRS are.
+    """
 
     @wraps(function)
     def draw(*given: Any, **options: Any) -> Any:
-        figure = function(*given, **options)
+        turned = [draw_north_up(one) for one in given]
+        figure = function(*turned, **{name: draw_north_up(one) for name, one in options.items()})
         shown = [*given, *options.values()]
         surfaces = [one for one in shown if isinstance(one, Surface)]
         results = [one for one in shown if not isinstance(one, Surface)]

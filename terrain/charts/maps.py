@@ -10,6 +10,7 @@ import numpy as np
 
 from ... import _optional
 from ..drawing.rounding import choose_ticks
+from ..georeference.axes import label_axes
 from ..georeference.units import find_ground
 from ..relief.shading import hillshade
 from .figures import INK, color_frame, start_figure, write_title
@@ -97,13 +98,22 @@ def start_map(
 def _label_axes(axes: Any, tin: TIN, ground: Ground) -> None:
     symbol = "" if tin.crs is None else tin.crs.horizontal_unit.symbol
     unit = f", {symbol}" if symbol else ""
-    axes.set_xlabel(f"easting{unit}\n{ground.crs_name}", color=INK, parse_math=False)
-    axes.set_ylabel(f"northing{unit}", color=INK)
+    across, up = label_axes(tin.crs)
+    axes.set_xlabel(f"{across.name}{unit}\n{ground.crs_name}", color=INK, parse_math=False)
+    axes.set_ylabel(f"{up.name}{unit}", color=INK)
     axes.ticklabel_format(style="plain", useOffset=False)
     axes.set_xticks(choose_ticks(*axes.get_xlim(), count=5))
     axes.set_yticks(choose_ticks(*axes.get_ylim(), count=5))
+    for side, label in ((axes.xaxis, across), (axes.yaxis, up)):
+        if label.sign < 0:
+            side.set_major_formatter(_write_negated)
     axes.tick_params(labelsize=8)
     color_frame(axes)
+
+
+def _write_negated(value: float, _: Any) -> str:
+    """Write the coordinate of an axis that grows to the west or south."""
+    return f"{-value + 0.0:.12g}"
 
 
 def shade_for_map(tin: TIN, *, smooth: bool = True) -> Raster:

@@ -11,6 +11,7 @@ from ..._products import product
 from ...errors import OptionError
 from ...tin.validation.options import require_tin
 from ..drawing.linework import EDGE_KINDS, find_line_edges
+from ..georeference.axes import find_axes
 from ..georeference.units import find_ground
 from ..relief.gradients import slope
 
@@ -98,7 +99,7 @@ def plot_tin(
         ax.triplot(triangles, color="0.25", linewidth=0.3)
     if lines:
         _draw_lines(ax, tin)
-    _set_axes(ax, tin, ground)
+    _set_axes(ax, tin, ground, is_new=is_new)
     return ax
 
 
@@ -144,13 +145,18 @@ def _draw_lines(ax: Any, tin: TIN) -> None:
             )
 
 
-def _set_axes(ax: Any, tin: TIN, ground: Ground) -> None:
-    """Draw true to scale, with whole coordinates along the sides."""
+def _set_axes(ax: Any, tin: TIN, ground: Ground, *, is_new: bool) -> None:
+    """Draw true to scale, with whole coordinates along the sides; north is up on new axes."""
     east, north, _ = ground.scale
     ax.set_aspect(north / east)
     ax.autoscale_view()
     ax.ticklabel_format(style="plain", useOffset=False)
     ax.locator_params(nbins=5)
+    axes = find_axes(tin.crs)
+    if is_new and axes == ("west", "south"):
+        ax.invert_xaxis()
+        ax.invert_yaxis()
     symbol = "" if tin.crs is None else tin.crs.horizontal_unit.symbol
-    for label, set_label in (("easting", ax.set_xlabel), ("northing", ax.set_ylabel)):
+    names = (f"{direction}ing" for direction in axes)
+    for label, set_label in zip(names, (ax.set_xlabel, ax.set_ylabel), strict=True):
         set_label(f"{label}, {symbol}" if symbol else label)

@@ -13,6 +13,7 @@ from ...policies import SlopeUnit, SurfacePart
 from ...tin.validation.options import require_tin
 from ...tin.validation.threads import thread_count
 from .. import _kernel
+from ..georeference.axes import find_axes
 from ..georeference.units import find_scales
 
 if TYPE_CHECKING:
@@ -176,7 +177,8 @@ def compute_normals(tin: Surface) -> Float64Array:
     """Return the upward normal of each triangle, its length twice the triangle's area in space.
 
     They are (m, 3), of the true surface, as in :func:`slope`: in CRS units squared, in a geographic
-    CRS square metres. The horizontal part points downhill; the vertical part is positive.
+    CRS square metres. The horizontal part points downhill, to the east and the north whatever the
+    axes of the CRS are; the vertical part is positive.
     """
     require_tin(tin)
     surface = tin.triangulation
@@ -187,7 +189,8 @@ def compute_normals(tin: Surface) -> Float64Array:
     for axis, factor in enumerate(_find_normal_factors(tin)):
         if np.ndim(factor) > 0 or factor != 1.0:
             normals[:, axis] *= factor
-    return normals
+    axes = find_axes(tin.crs)
+    return normals if axes.are_usual else axes.turn(normals)
 
 
 def _find_normal_factors(tin: Surface) -> tuple[Any, Any, Any]:

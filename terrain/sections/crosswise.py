@@ -12,6 +12,7 @@ from ...crs import scale_elevations
 from ...errors import OptionError, PointsError
 from ...tin.validation.points import as_elevations
 from ..georeference import require_same_crs
+from ..georeference.axes import find_axes
 from ..results import Features, Table
 from .geometries import as_features
 from .profiles import (
@@ -217,7 +218,8 @@ def _cut(
     )
     segments = lines_to_segments(features, start, "centreline")
     at = _choose_stations(segments, interval, stations)
-    axes = _lay_axes(segments, *at, *_as_reaches(*widths))
+    is_mirrored = find_axes(surfaces.crs).are_mirrored
+    axes = _lay_axes(segments, *at, *_as_reaches(*widths), is_mirrored=is_mirrored)
     rows = cut_rows(surfaces, axes.segments, is_computed=True)
     require_surface(surfaces, axes.segments, rows, "section")
     return _Cut(surfaces, axes, rows, notes)
@@ -331,13 +333,16 @@ def _lay_axes(
     stations: Float64Array,
     left: float,
     right: float,
+    *,
+    is_mirrored: bool,
 ) -> _Axes:
     """Return the sections, each as the segments left and right of the centreline."""
     begin, end = segments.start_stations[segment], segments.end_stations[segment]
     share = ((stations - begin) / (end - begin))[:, None]
     start, stop = segments.starts[segment], segments.ends[segment]
     middle = np.where(share == 1.0, stop, start + share * (stop - start))
-    to_left = _find_directions(segments, segment, stations)[:, ::-1] * (-1.0, 1.0)
+    side = (1.0, -1.0) if is_mirrored else (-1.0, 1.0)
+    to_left = _find_directions(segments, segment, stations)[:, ::-1] * side
     count = len(stations)
     outer = np.stack([middle + left * to_left, middle, middle - right * to_left], axis=1)
     offsets = np.broadcast_to([-left, 0.0, right], (count, 3))

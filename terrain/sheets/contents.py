@@ -14,6 +14,7 @@ from ...tin.topology import find_offsets
 from ..drawing.linework import EDGE_KINDS, LineEdges, find_line_edges
 from ..drawing.rounding import round_down
 from ..georeference import require_same_crs
+from ..georeference.axes import label_axes
 from ..isolines import contours
 from ..isolines.levels import elevation_range
 from .clipping import Paths, join_paths
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
     from ...arrays import AnyArray, Float64Array
     from ...tin import TIN, Survey
+    from ..georeference.axes import Label as AxisLabel
     from ..results import Features
     from .footprint import Footprint
 
@@ -66,6 +68,8 @@ class Contents:
     """The boundary of the surface where no line runs along it."""
     footprint: Footprint
     marks: Marks | None
+    axes: tuple[AxisLabel, AxisLabel]
+    """How coordinates across and up the map are written."""
     notes: tuple[str, ...]
 
 
@@ -100,6 +104,7 @@ def gather_contents(
         outline=outline,
         footprint=footprint,
         marks=None if points == "none" else _gather_marks(tin, survey, points),
+        axes=label_axes(tin.crs),
         notes=tuple(notes),
     )
 

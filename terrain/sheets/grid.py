@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..drawing.rounding import round_down
+from ..georeference.axes import label_axes
 from .canvas import Pen
 from .clipping import clip_paths, join_paths
 from .lettering import measure_text
@@ -16,8 +17,11 @@ from .windows import turn
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array
     from ...tin import Bounds
+    from ..georeference.axes import Label as AxisLabel
     from .canvas import Canvas
     from .windows import Window
+
+    Axes = tuple[AxisLabel, AxisLabel]
 
 __all__ = ["Label", "draw_grid", "find_cross_places", "find_labels", "find_spacing"]
 
@@ -74,28 +78,33 @@ def _is_inside(places: Float64Array, box: Bounds) -> BoolArray:
     return (x >= box.xmin) & (x <= box.xmax) & (y >= box.ymin) & (y <= box.ymax)
 
 
-def _list_lines(window: Window) -> list[tuple[str, Float64Array]]:
+def _list_lines(window: Window, axes: Axes) -> list[tuple[str, Float64Array]]:
     """Return each line of the grid on paper, with what is written at it, clipped to the frame."""
     spacing = find_spacing(window.mm_per_unit)
     decimals = max(0, -math.floor(math.log10(spacing)))
     low, high = window.corners.min(axis=0), window.corners.max(axis=0)
     lines = []
-    for axis, letter in enumerate("EN"):
+    for axis, label in enumerate(axes):
+        letter = label.name[0].upper()
         for value in _list_multiples(window, axis, spacing):
             ends = np.array([low, high])
             ends[:, axis] = value
             for part in clip_paths(join_paths([window.to_paper(ends)]), window.frame).parts():
-                lines.append((f"{value + 0.0:.{decimals}f} {letter}", part[[0, -1]]))
+                lines.append((f"{label.of(value):.{decimals}f} {letter}", part[[0, -1]]))
     return lines
 
 
 # ---------------------------------------------------------------- labels
 
 
-def find_labels(window: Window) -> list[Label]:
-    """Return the labels around the frame; of two that would meet, one is left out."""
+def find_labels(window: Window, axes: Axes | None = None) -> list[Label]:
+    """Return the labels around the frame; of two that would meet, one is left out.
+
+    ``axes`` tell how coordinates across and up the map are written, by default as eastings and
+    northings.
+    """
     on_sides: dict[str, list[Label]] = {}
-    for text, ends in _list_lines(window):
+    for text, ends in _list_lines(window, axes or label_axes(None)):
         for x, y in ends.tolist():
             side = _find_side(x, y, window.frame)
             if side:
@@ -138,15 +147,15 @@ def _find_middle(label: Label, box: Bounds) -> float:
 # ---------------------------------------------------------------- drawing
 
 
-def draw_grid(canvas: Canvas, window: Window, style: str) -> None:
+def draw_grid(canvas: Canvas, window: Window, style: str, axes: Axes) -> None:
     """Draw the grid within the frame, ticks and labels around it."""
     if style == "none":
         return
     if style == "lines":
-        canvas.draw_paths([ends for _, ends in _list_lines(window)], PEN, "grid-lines")
+        canvas.draw_paths([ends for _, ends in _list_lines(window, axes)], PEN, "grid-lines")
     else:
         canvas.draw_paths(_list_arms(window), PEN, "grid-crosses")
-    labels = find_labels(window)
+    labels = find_labels(window, axes)
     canvas.draw_paths([_make_tick(label) for label in labels], _TICK, "grid-ticks")
     for label in labels:
         _write_label(canvas, label, window.frame)

@@ -98,7 +98,7 @@ def draw_map(
     """
     drawn, room = Drawn(set()), Room(window.frame)
     _fill_water(canvas, window, contents, drawn)
-    draw_grid(canvas, window, grid)
+    draw_grid(canvas, window, grid, contents.axes)
     for match in window.matches:  # first, for their texts to have room
         _draw_match(canvas, window, match, numbers[match.window], room, drawn)
     _draw_contours(canvas, window, contents, labeling, room, drawn)
@@ -113,7 +113,7 @@ def draw_outline(canvas: Canvas, window: Window, contents: Contents, *, grid: st
     """Draw the edge, the lines and the water of a surface alone, with grid and frame."""
     drawn = Drawn(set())
     _fill_water(canvas, window, contents, drawn)
-    draw_grid(canvas, window, grid)
+    draw_grid(canvas, window, grid, contents.axes)
     _draw_linework(canvas, window, contents, drawn)
     _draw_frame(canvas, window)
     return drawn

@@ -17,7 +17,9 @@ from ...policies import ContourLabeling, GridStyle, PointMarking, SheetLayout
 from ...tin import Bounds, Survey
 from ...tin.validation.options import require_tin, require_type
 from ..charts.arguments import parse_text
+from ..drawing.north_up import draw_north_up
 from ..georeference import require_same_crs
+from ..georeference.axes import find_axes, undo_north_up
 from ..results.columns import join_notes
 from ..sections.geometries import as_features
 from ..sections.segments import as_segments
@@ -153,7 +155,9 @@ class Plan:
     @property
     def frames(self) -> Float64Array:
         """Corners on the ground of the map on each sheet, (n, 4, 2), from the lower left one."""
-        return np.array([sheet.window.corners for sheet in self._sheets])
+        corners = np.array([sheet.window.corners for sheet in self._sheets])
+        frames: Float64Array = undo_north_up(corners, self._contents.contours.crs)
+        return frames
 
     def list_files(self, path: str | os.PathLike[str]) -> list[Path]:
         """Return the names of the files that :meth:`save` writes.
@@ -349,9 +353,11 @@ def plan(
     style = _Style(labels, points, grid)
     wording = _Wording.of(title, date)
     layouts = [arrange_sheet(one) for one in Paper.choices(paper, orientation)]
-    ground = _find_ground(tin, find_ground_unit(tin.crs, ground_unit))
-    factor = measure_scale_factor(tin.crs, *ground.bounds.center)
+    unit = find_ground_unit(tin.crs, ground_unit)
     line, notes = _as_axis(axis, tin, layout)
+    tin, survey = draw_north_up(tin), draw_north_up(survey)
+    ground = _find_ground(tin, unit)
+    factor = measure_scale_factor(tin.crs, *undo_north_up(ground.bounds.center, tin.crs))
     chosen = None if scale is None else Scale.of(scale, ground.unit)
     contents = gather_contents(
         tin, ground.footprint, interval=interval, smooth=smooth, points=points, survey=survey
@@ -406,7 +412,8 @@ def _as_axis(axis: Any, tin: TIN, layout: str) -> tuple[Float64Array | None, lis
     notes = require_same_crs(features.crs, tin.crs, "the axis", is_plain=features.crs is None)
     xy = np.ascontiguousarray(features.coordinates[:, :2])
     segments = as_segments(xy, features.offsets[0], what="axis")
-    return np.concatenate([segments.starts, segments.ends[-1:]]), list(notes)
+    vertices = np.concatenate([segments.starts, segments.ends[-1:]])
+    return find_axes(tin.crs).turn(vertices), list(notes)
 
 
 def _arrange(

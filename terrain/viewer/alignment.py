@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from ...errors import OptionError
 from ...tin import TIN
 from ...tin.validation.options import require_tin
+from ..drawing.north_up import draw_north_up
 from ..georeference import agree
+from ..georeference.axes import find_axes
 
 if TYPE_CHECKING:
     from ...arrays import Float64Array
@@ -30,6 +32,22 @@ class Aligned(NamedTuple):
     """(k, 3), the points of the survey, in that unit."""
     notes: tuple[str, ...]
     """What had to be assumed or converted."""
+
+    @property
+    def crs(self) -> CRS | None:
+        """The CRS of all."""
+        return next(iter(self.surfaces.values())).crs
+
+    def draw_north_up(self) -> Aligned:
+        """Return the same with eastings and northings, whatever the axes of the CRS are."""
+        axes = find_axes(self.crs)
+        if axes.are_usual:
+            return self
+        return Aligned(
+            {name: draw_north_up(tin) for name, tin in self.surfaces.items()},
+            None if self.labelled is None else axes.turn(self.labelled),
+            self.notes,
+        )
 
 
 def align(given: TIN | Mapping[str, TIN], survey: Survey | None) -> Aligned:

@@ -10,6 +10,7 @@ import numpy as np
 from ..._products import product
 from ..._sentences import counted
 from ..drawing.cards.frame import SIZE, describe_bounds, name_crs, name_units, write_card
+from ..drawing.north_up import draw_north_up
 from ..georeference.units import find_ground
 from .scene import NORTHWEST, choose_exaggeration, measure_relief
 from .tints import interpolate_tints
@@ -50,7 +51,7 @@ def _describe(tin: TIN) -> Iterator[tuple[str, str]]:
         yield "Lines", counted(len(tin.lines.kinds), "line")
     yield "CRS", name_crs(tin.crs)
     yield "Units", name_units(tin.crs, tin.elevation_unit)
-    yield from describe_bounds(tin.points)
+    yield from describe_bounds(tin.points, tin.crs)
 
 
 def draw_map(tin: TIN, *, size: tuple[int, int] = SIZE) -> UInt8Array:
@@ -64,6 +65,7 @@ def draw_map(tin: TIN, *, size: tuple[int, int] = SIZE) -> UInt8Array:
 
 
 def _draw(tin: TIN, size: tuple[int, int]) -> UInt8Array:
+    tin = draw_north_up(tin)
     ground = find_ground(tin)
     heights, pixel = _sample(tin, ground, size)
     shown = measure_relief(tin, ground)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from io import BytesIO
 from typing import TYPE_CHECKING
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...errors import ReadError
+from ..georeference.axes import find_axes
 
 if TYPE_CHECKING:
     import os
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...arrays import BoolArray, Float64Array, UInt8Array
+    from ...crs import CRS
     from ...tin import TIN
 
 __all__ = ["MOST_PIXELS", "Ortho", "read_ortho"]
@@ -68,6 +70,12 @@ class Ortho:
         turn = np.array([[e, -b], [-d, a]]) / (a * e - b * d)
         matrix = np.column_stack([turn, -turn @ (x, y)])
         return np.asarray(matrix / np.array(self.shape)[::-1, None])
+
+    def draw_north_up(self, crs: CRS | None) -> Ortho:
+        """Return the same for a drawing with eastings and northings, of one in a CRS."""
+        columns = np.reshape(self.transform, (2, 3)).T
+        transform = find_axes(crs).turn(columns).T.ravel().tolist()
+        return replace(self, transform=tuple(transform))
 
     def place(self, points: Float64Array) -> Float64Array:
         """Return where in the picture points lie, (n, 2): from the left and the top, 0 to 1."""

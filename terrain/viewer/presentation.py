@@ -361,7 +361,9 @@ def preview(
     require_type("survey", survey, Survey, or_none=True)
     chosen, aligned = make_look(**look), align(tin, survey)
     ortho = None if drape is None else read_ortho(drape, [*aligned.surfaces.values()])
-    made = Preview(aligned, chosen, survey, ortho)
+    if ortho is not None:
+        ortho = ortho.draw_north_up(aligned.crs)
+    made = Preview(aligned.draw_north_up(), chosen, survey, ortho)
     return made if output is None else made.save(output)
 
 

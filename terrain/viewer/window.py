@@ -13,6 +13,7 @@ from ...policies import Tint
 from ..drawing.linework import add_polylines
 from ..drawing.models import choose_origin
 from ..drawing.rounding import round_down
+from ..georeference.axes import label_axes
 from ..relief.gradients import slope
 from ..sections import profile
 from . import opengl
@@ -153,13 +154,14 @@ class Window:
     def describe(self, found: Reading) -> str:
         """Return a reading in words, in the units of the CRS."""
         ground, crs = self.stage.ground, self.stage.tin.crs
+        east, north = label_axes(crs)
         is_geographic = crs is not None and crs.is_geographic
         digits = 7 if is_geographic else 3
         across = "°" if is_geographic else f" {ground.unit.symbol}".rstrip()
         up = f" {ground.elevation_caption}".rstrip()
         return (
-            f"Easting {found.easting:,.{digits}f}{across}   "
-            f"Northing {found.northing:,.{digits}f}{across}   "
+            f"{east.name.capitalize()} {east.of(found.easting):,.{digits}f}{across}   "
+            f"{north.name.capitalize()} {north.of(found.northing):,.{digits}f}{across}   "
             f"Elevation {found.elevation:,.3f}{up}   Slope {found.slope:.1f}°"
         )
 

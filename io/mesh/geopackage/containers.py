@@ -8,10 +8,9 @@ import shutil
 import sqlite3
 from contextlib import closing, contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ...._atomic import replacing_path
+from ...._atomic import folder_beside, replacing_path
 from ....errors import WriteError
 from .digests import digest_lines
 from .journals import require_closed
@@ -63,7 +62,7 @@ def adding_layers(path: Path, placing: Placing) -> Iterator[Path]:
         if not path.exists() or path.stat().st_size == 0:
             yield beside
             return
-        with TemporaryDirectory(prefix=".", dir=beside.parent) as folder:
+        with folder_beside(beside.with_name(path.name)) as folder:
             made = Path(folder, path.name)
             yield made
             try:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-import tempfile
 from dataclasses import asdict, dataclass
 from inspect import signature
 from pathlib import Path
@@ -12,12 +11,13 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
+from .._atomic import scratch_folder
 from .._sentences import counted, suggest
 from .flags import name_flags
 from .output.console import emit_file
 from .output.failures import Failure, note_written
 from .parameters import refuse_value
-from .paths import STANDARD, Named, name_file, require_separate, split_output
+from .paths import STANDARD, Named, describe_leftovers, name_file, require_separate, split_output
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -292,6 +292,7 @@ def plan_outputs(
     texture = writing.options.get("texture")
     pictures = [] if texture is None else [Named(texture, "the texture")]
     require_separate([*inputs, *pictures], outputs)
+    console.note(describe_leftovers(path for path, _ in placed))
     given = {name: value for name, value in writing.options.items() if value not in (None, False)}
     planned = [
         Output(path, formats, given, _choose_suffix(formats, writing), layer)
@@ -472,7 +473,7 @@ def _write_file(obj: Product, path: Path, one: Format, options: dict[str, Any]) 
 
 def _write_to_stdout(obj: Product, output: Output, one: Format, options: dict[str, Any]) -> None:
     """Write a whole file first, so that nothing comes if it fails."""
-    with tempfile.TemporaryDirectory(prefix="tinsmith-") as folder:
+    with scratch_folder() as folder:
         path = Path(folder) / f"output{output.suffix}"
         _write_file(obj, path, one, options)
         emit_file(path)

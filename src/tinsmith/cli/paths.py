@@ -22,6 +22,7 @@ __all__ = [
     "STANDARD",
     "Named",
     "describe_inputs",
+    "describe_leftovers",
     "make_title",
     "name_file",
     "name_files",
@@ -32,19 +33,6 @@ __all__ = [
 _SHOWN = 5
 STANDARD = Path("-")
 """Standard input or output; a file of that name is ``./-``."""
-
-_RASTER = (".prj", ".hdr", ".aux", ".ovr", ".msk", ".tfw", ".wld", ".stx", ".clr", ".rrd")
-_PARTS = {
-    ".shp": (".shx", ".dbf", ".prj", ".cpg", ".qpj", ".sbn", ".sbx", ".qix", ".idx"),
-    ".tab": (".dat", ".map", ".id", ".ind"),
-    ".mif": (".mid",),
-    ".obj": (".mtl",),
-    **dict.fromkeys((".tif", ".tiff", ".img", ".bil", ".bip", ".bsq", ".flt", ".asc"), _RASTER),
-    **dict.fromkeys((".png", ".jpg", ".jp2"), (*_RASTER, ".pgw", ".jgw", ".j2w")),
-}
-"""Suffixes of files that stand beside one and belong to it."""
-_MORE_PARTS = (".aux.xml", ".xml", ".ovr", ".msk", "-wal", "-shm", "-journal")
-"""What is appended to the whole name of the file that they belong to."""
 
 
 def name_file(path: Path) -> str:
@@ -133,7 +121,7 @@ LINES = _File()
 
 
 def require_separate(inputs: Iterable[Named], outputs: Sequence[Named]) -> None:
-    """Refuse outputs that would overwrite an input, a part of one, or each other.
+    """Refuse outputs that would overwrite an input, a file that is read with it, or each other.
 
     Files are compared by what they are, not by what they are called: links, other ways to the same
     folder, and capitals where the system does not tell them apart.
@@ -145,10 +133,12 @@ def require_separate(inputs: Iterable[Named], outputs: Sequence[Named]) -> None:
         If an output cannot be written where it should be.
     """
     from .._atomic import require_writable
+    from ..io.registry.side_files import list_sources
 
     taken: dict[object, Named] = {}
     for one in _drop_streams(inputs, "input"):
-        for path in [one.path, *_list_parts(one.path)]:
+        _require_outside(one, outputs)
+        for path in [one.path, *list_sources(one.path)]:
             for key in _identify(path):
                 taken.setdefault(key, one)
     files = _drop_streams(outputs, "output")
@@ -156,10 +146,56 @@ def require_separate(inputs: Iterable[Named], outputs: Sequence[Named]) -> None:
         keys = _identify(one.path)
         for before in (taken[key] for key in keys if key in taken):
             raise click.UsageError(_describe_collision(one, before, is_input=before not in files))
+        _require_spared(one, taken)
         taken.update(dict.fromkeys(keys, one))
     for one in files:
         if not _is_tile_folder(one.path):
             require_writable(one.path)
+
+
+def describe_leftovers(outputs: Iterable[Path]) -> list[str]:
+    """Name what earlier runs left, which were killed before they could clear up."""
+    from .._atomic import find_dead_scratch, find_leftovers
+
+    beside = [
+        f"'{name_file(one)}' was left by a run that did not end, unless one is writing "
+        f"'{name_file(path)}' now: delete it."
+        for path in dict.fromkeys(outputs)
+        if path != STANDARD
+        for one in find_leftovers(path)
+    ]
+    return beside + [
+        f"'{name_file(one)}' was left by a run that was ended: delete it."
+        for one in find_dead_scratch()
+    ]
+
+
+def _require_outside(folder: Named, outputs: Sequence[Named]) -> None:
+    """Refuse outputs that would replace files of a folder that is read."""
+    if not folder.path.is_dir():
+        return
+    place = Path(os.path.realpath(folder.path))
+    for one in outputs:
+        if one.path.is_file() and place in Path(os.path.realpath(one.path)).parents:
+            raise click.UsageError(
+                f"'{one.path}' is a file of '{folder.path}', {folder.place}: it cannot be the "
+                f"output too ({one.place})."
+            )
+
+
+def _require_spared(output: Named, read: dict[object, Named]) -> None:
+    """Refuse an output beside which files are written, or removed, that are read."""
+    from ..io.registry.side_files import list_written_beside
+
+    for path in list_written_beside(output.path):
+        if os.path.lexists(path):
+            for before in (read[key] for key in _identify(path) if key in read):
+                is_part = _identify(path) != _identify(before.path)
+                what = f" a part of '{before.path}'," if is_part else ""
+                raise click.UsageError(
+                    f"'{path}' is{what} {before.place}, and '{output.path}' ({output.place}) would "
+                    "replace it: give the output another name."
+                )
 
 
 def _is_tile_folder(path: Path) -> bool:
@@ -208,13 +244,3 @@ def _ignores_case(folder: Path) -> bool:
         return other != folder and other.samefile(folder)
     except (OSError, ValueError):
         return False
-
-
-def _list_parts(path: Path) -> list[Path]:
-    """Return the files that belong to a file and are there, such as the parts of a shapefile."""
-    if not path.name:
-        return []
-    suffixes = _PARTS.get(path.suffix.lower(), ())
-    names = [path.with_name(path.name + more) for more in _MORE_PARTS]
-    names += [path.with_suffix(one) for low in suffixes for one in (low, low.upper())]
-    return [name for name in names if os.path.lexists(name)]

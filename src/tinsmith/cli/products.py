@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from .files import describe_written, plan_outputs, write_figure, write_outputs
 from .output.failures import Failure
-from .paths import STANDARD, Named, require_separate, split_output
+from .paths import STANDARD, Named, describe_leftovers, require_separate, split_output
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -78,6 +78,7 @@ def plan_products(
     for path in paths:
         groups.setdefault(_find_kind(split_output(path)[0], writing, kinds), []).append(path)
     pictures = groups.pop("picture", [])
+    console.note(describe_leftovers(pictures))
     if sum(path == STANDARD for path in paths) > 1:
         raise Failure("'-o -' is given twice: standard output takes one thing.")
     planned = {

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...georeference.axes import find_axes
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -128,9 +130,9 @@ def name_units(crs: CRS | None, elevation_unit: Unit | None) -> str:
     return across if across == up else f"{across}, elevations {up}"
 
 
-def describe_bounds(points: Float64Array) -> list[tuple[str, str]]:
+def describe_bounds(points: Float64Array, crs: CRS | None) -> list[tuple[str, str]]:
     """Return rows with the range of each coordinate; none of coordinates that are not known."""
-    names = ("Easting", "Northing", "Elevation")
+    names = (*(f"{one.capitalize()}ing" for one in find_axes(crs)), "Elevation")
     known = {name: values[~np.isnan(values)] for name, values in zip(names, points.T, strict=False)}
     return [(name, write_range(values)) for name, values in known.items() if len(values)]
 

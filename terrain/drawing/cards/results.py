@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...._sentences import counted
+from ...georeference.axes import find_axes
 from ...results.columns import unit_text
+from ..north_up import draw_north_up
 from .drawings import Canvas, draw_cells
 from .frame import (
     SIZE,
@@ -54,7 +57,7 @@ def _describe_features(features: Features) -> Iterator[tuple[str, str]]:
         yield "Units", name_units(features.crs, features.elevation_unit)
     else:
         yield "Units", name_unit(features.crs)
-    yield from describe_bounds(features.coordinates)
+    yield from describe_bounds(features.coordinates, features.crs)
     yield from list_notes(features.notes)
 
 
@@ -68,7 +71,7 @@ def _with_unit(name: str, units: Units) -> str:
 
 
 def _draw_features(features: Features) -> UInt8Array:
-    xy = features.coordinates[:, :2]
+    xy = find_axes(features.crs).turn(features.coordinates[:, :2])
     canvas = Canvas.around(xy, features.crs)
     if features.kind == "points":
         canvas.draw_points(xy, None)
@@ -89,7 +92,10 @@ def make_raster_card(raster: Raster) -> str:
     A band that is computed as it is written is not computed for the card.
     """
     name, band = next(iter(raster.bands.items()))
-    sample = _sample(band, raster.nodata) if isinstance(band, np.ndarray) else None
+    sample = None
+    if isinstance(band, np.ndarray):
+        turned = draw_north_up(replace(raster, bands={name: band}, units={}))
+        sample = _sample(turned.bands[name], raster.nodata)
     title = f"Raster: {raster.name}" if raster.name else "Raster"
     picture = None if sample is None else draw_cells(sample)
     rows = _describe_raster(raster, name)
@@ -120,7 +126,7 @@ def _describe_raster(raster: Raster, shown: str) -> Iterator[tuple[str, str]]:
     yield "CRS", name_crs(raster.crs)
     bounds = raster.grid.bounds
     corners = np.array([[bounds.xmin, bounds.ymin], [bounds.xmax, bounds.ymax]])
-    yield from describe_bounds(corners)
+    yield from describe_bounds(corners, raster.crs)
     yield from list_notes(raster.notes)
 
 

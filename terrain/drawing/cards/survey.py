@@ -8,6 +8,7 @@ import numpy as np
 
 from ...._sentences import counted
 from ....tin.report import word_reason
+from ...georeference.axes import find_axes
 from .drawings import Canvas
 from .frame import describe_bounds, name_crs, name_units, write_card
 
@@ -50,7 +51,7 @@ def _describe_survey(survey: Survey) -> Iterator[tuple[str, str]]:
         yield "From", survey.source
     yield "CRS", name_crs(survey.crs)
     yield "Units", name_units(survey.crs, survey.elevation_unit)
-    yield from describe_bounds(survey.points)
+    yield from describe_bounds(survey.points, survey.crs)
     skipped = {what: count for what, count in survey.skipped.items() if what != _EXPECTED}
     if skipped:
         yield "Left out", ", ".join(f"{count:,} {what}" for what, count in skipped.items())
@@ -60,9 +61,11 @@ def _describe_survey(survey: Survey) -> Iterator[tuple[str, str]]:
 def _draw(survey: Survey) -> UInt8Array:
     given = [getattr(line, "coords", line) for line in survey.breaklines]
     given += [getattr(water, "ring", water) for water in survey.water]
-    lines = [line for line in map(_take_plane, given) if line is not None]
-    canvas = Canvas.around(np.concatenate([survey.points[:, :2], *lines]), survey.crs)
-    canvas.draw_points(survey.points[:, :2], survey.points[:, 2])
+    axes = find_axes(survey.crs)
+    points = axes.turn(survey.points)
+    lines = [axes.turn(line) for line in map(_take_plane, given) if line is not None]
+    canvas = Canvas.around(np.concatenate([points[:, :2], *lines]), survey.crs)
+    canvas.draw_points(points[:, :2], points[:, 2])
     for line in lines:
         canvas.draw_segments(line[:-1], line[1:], _LINE)
     return canvas.pixels

@@ -11,6 +11,7 @@ import numpy as np
 from ...._sentences import counted
 from ....errors import OptionError
 from ...drawing.linework import EDGE_KINDS, find_line_edges
+from ...georeference.axes import label_axes
 from ...georeference.units import find_ellipsoid
 from ..ramps import choose_ramp
 from ..tints import mix_tints
@@ -121,6 +122,7 @@ def describe_page(
             "horizontal": ground.unit.symbol,
             "elevation": "" if last.elevation_unit is None else last.elevation_unit.symbol,
         },
+        "axes": [[label.name.capitalize(), label.sign] for label in label_axes(last.crs)],
         "geographic": last.crs is not None and last.crs.is_geographic,
         "ellipsoid": find_ellipsoid(last.crs),
         "origin": steps.origin.tolist(),

@@ -11,6 +11,7 @@ from ..._sentences import counted
 from ...crs import assume_elevation_unit
 from ...io.reprojection.transformation import is_geographic, length_unit
 from ...terrain import slope
+from ...terrain.georeference.axes import find_axes
 from ...terrain.relief.gradients import measure_areas
 from ...tin import TIN, Bounds, Survey, quality
 from ...tin.report import describe_skipped
@@ -237,12 +238,13 @@ def summarise_extent(found: Survey | TIN) -> list[Row]:
     digits = 7 if in_degrees else 3
     box = Bounds.of(found.points)
     low, high = found.points[:, 2].min(), found.points[:, 2].max()
-    east, north = ("longitude", "latitude") if in_degrees else ("easting", "northing")
+    grid = tuple(f"{direction}ing" for direction in find_axes(found.crs))
+    first, second = ("longitude", "latitude") if in_degrees else grid
     note = note_assumed_unit(found)
     return [
         ("Extent", f"{box.width:,.{digits}f}{across} x {box.height:,.{digits}f}{across}"),
-        ("", f"{east} {box.xmin:.{digits}f} to {box.xmax:.{digits}f}"),
-        ("", f"{north} {box.ymin:.{digits}f} to {box.ymax:.{digits}f}"),
+        ("", f"{first} {box.xmin:.{digits}f} to {box.xmax:.{digits}f}"),
+        ("", f"{second} {box.ymin:.{digits}f} to {box.ymax:.{digits}f}"),
         ("Elevation", f"{low:,.3f} to {high:,.3f}{up}{f' ({note})' if note else ''}"),
     ]
 

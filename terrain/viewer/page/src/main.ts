@@ -305,11 +305,11 @@ class Page {
   }
 
   private describe({ model, hit }: Marked): string {
-    const { origin, units, scale, geographic } = this.payload;
+    const { origin, units, scale, geographic, axes } = this.payload;
     const decimals = geographic ? [7, this.payload.decimals[1]] : this.payload.decimals;
-    const names = geographic ? ["Longitude", "Latitude"] : ["Easting", "Northing"];
+    const names = geographic ? ["Longitude", "Latitude"] : [axes[0][0], axes[1][0]];
     const unit = geographic ? "\u00b0" : ` ${units.horizontal}`;
-    const [x, y] = [hit.x / scale[0] + origin[0], hit.y / scale[1] + origin[1]];
+    const [x, y] = [axes[0][1] * (hit.x / scale[0] + origin[0]), axes[1][1] * (hit.y / scale[1] + origin[1])];
     const parts = [
       `${names[0]} ${fix(x, decimals[0])}${unit}`,
       `${names[1]} ${fix(y, decimals[0])}${unit}`,

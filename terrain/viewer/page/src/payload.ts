@@ -69,6 +69,8 @@ export interface Payload {
   origin: [number, number, number];
   /** Units on the ground in one unit of easting and of northing. */
   scale: [number, number];
+  /** How coordinates to the east and the north are written: by which name, and factor, 1 or -1. */
+  axes: [[string, number], [string, number]];
   /** Whether eastings and northings are longitudes and latitudes. */
   geographic: boolean;
   /** Its half axis in metres, squared eccentricity, and radians of a unit; null on a map. */

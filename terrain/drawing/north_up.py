@@ -1,0 +1,98 @@
+"""North up: what is drawn, with coordinates to the east and north whatever the axes of its CRS."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from ...crs import CRS
+from ...tin import Bounds, Survey
+from ...tin.surface import Surface
+from ..georeference.axes import Axes, DrawnCRS, find_axes
+from ..results import Features, Raster
+
+if TYPE_CHECKING:
+    from ...arrays import Float64Array
+    from ...tin import TIN
+
+__all__ = ["draw_north_up"]
+
+T = TypeVar("T")
+
+
+def draw_north_up(shown: T) -> T:
+    """Return a surface, survey, features or raster with eastings and northings, for a drawing.
+
+    What has them already, and anything else, is returned as it is.
+    """
+    crs = getattr(shown, "crs", None)
+    if not isinstance(crs, CRS):
+        return shown
+    axes = find_axes(crs)
+    if axes.are_usual:
+        return shown
+    made: Any = shown
+    if isinstance(shown, Surface):
+        made = _turn_surface(shown, axes, DrawnCRS(crs, axes))
+    elif isinstance(shown, Survey):
+        made = _turn_survey(shown, axes, DrawnCRS(crs, axes))
+    elif isinstance(shown, Features):
+        made = _turn_features(shown, axes, DrawnCRS(crs, axes))
+    elif isinstance(shown, Raster):
+        made = _turn_raster(shown, axes, DrawnCRS(crs, axes))
+    return made  # type: ignore[no-any-return]
+
+
+def _turn_surface(tin: Surface, axes: Axes, crs: DrawnCRS) -> TIN:
+    points = axes.turn(tin.points)
+    if not axes.are_mirrored:
+        return tin.replace(points=points, crs=crs)
+    given = {"constrained": tin.constrained, "crs": crs, "z_unit": tin.elevation_unit}
+    made = type(tin.to_tin()).from_triangles(points, tin.triangles, **given)
+    kept = {name: getattr(tin, name) for name in ("vertex_of", "report", "lines", "row_attributes")}
+    return made.replace(**kept).with_source(tin.source)
+
+
+def _turn_survey(survey: Survey, axes: Axes, crs: DrawnCRS) -> Survey:
+    """Return the points alone: what is drawn of a survey."""
+    return replace(
+        survey,
+        points=axes.turn(survey.points),
+        crs=crs,
+        **dict.fromkeys(("breaklines", "boundary", "holes", "erase", "water", "extent"), ()),
+    )
+
+
+def _turn_features(features: Features, axes: Axes, crs: DrawnCRS) -> Features:
+    columns = dict(features.columns)
+    if "rotation" in columns:
+        columns["rotation"] = _turn_texts(columns["rotation"], axes)
+    return replace(features, coordinates=axes.turn(features.coordinates), columns=columns, crs=crs)
+
+
+def _turn_texts(rotation: Any, axes: Axes) -> Float64Array:
+    """Return the rotation of texts, degrees counter-clockwise, such that they stay upright."""
+    angle = np.radians(np.asarray(rotation, np.float64))
+    x, y = axes.turn(np.column_stack([np.cos(angle), np.sin(angle)])).T
+    turned = np.degrees(np.arctan2(y, x))
+    upright: Float64Array = turned - 180.0 * np.ceil((turned - 90.0) / 180.0) + 0.0
+    return upright
+
+
+def _turn_raster(raster: Raster, axes: Axes, crs: DrawnCRS) -> Raster:
+    """Return the same cells, row 0 the northernmost, column 0 the westernmost."""
+    is_exchanged = axes.first in ("north", "south")
+    across, up = axes.labels
+    bands = {}
+    for name, band in raster.bands.items():
+        cells = np.asarray(band[:, :])[::-1]  # now both indices grow with the coordinates
+        cells = cells if is_exchanged else cells.T  # by east or west, then by north or south
+        cells = cells[:: int(across.sign), :: int(up.sign)]
+        bands[name] = np.ascontiguousarray(cells.T[::-1])
+    box = raster.grid.bounds
+    corners = axes.turn([(box.xmin, box.ymin), (box.xmax, box.ymax)])
+    shape = next(iter(bands.values())).shape
+    grid = replace(raster.grid, bounds=Bounds.of(corners), shape=shape)
+    return replace(raster, bands=bands, grid=grid, crs=crs)
