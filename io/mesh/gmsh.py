@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ..._progress import Tell
-    from ...arrays import BoolArray, Int32Array
+    from ...arrays import BoolArray, Int32Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ...policies import FacePolicy
     from ...tin import TIN, Survey
@@ -97,7 +97,7 @@ def read(
     )
 
 
-def _flag_edges(triangles: Int32Array, lines: Int32Array, n_points: int) -> BoolArray:
+def _flag_edges(triangles: Int32Array, lines: Int64Array, n_points: int) -> BoolArray:
     edges = np.stack(directed_edges(triangles), axis=-1)
     return np.isin(edge_keys(edges, n_points), edge_keys(lines, n_points))
 

@@ -81,8 +81,8 @@ def is_quantized_mesh(head: bytes) -> bool:
         return False
     center, middle = found[:3], found[5:8]
     if _LEAST_RADIUS < math.hypot(*center) < _MOST_RADIUS:
-        return bool(math.hypot(*middle) < _MOST_RADIUS and 0.0 < radius < 2 * _MOST_RADIUS)
-    return (
+        return math.hypot(*middle) < _MOST_RADIUS and 0.0 < radius < 2 * _MOST_RADIUS
+    return bool(
         1.0 < max(map(abs, center[:2])) < _HALF_WORLD
         and max(abs(center[2]), abs(middle[2])) < _MOST_HEIGHT
         and math.dist(center[:2], middle[:2]) < radius < 2 * _HALF_WORLD

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 __all__ = ["write"]
 
+_VERSION = "1.3"
+"""That of whole TINs; the triggers of 1.4 are unknown to GDAL and its validator before 3.7."""
+
 _OWN_COLUMNS = ("fid", "geom")
 _RESERVED = re.compile(r"(gpkg|rtree|sqlite)_", re.IGNORECASE)
 
@@ -67,7 +70,8 @@ def write(
         folder_beside(beside.with_name(path.name)) as folder,
     ):
         new = Path(folder, path.name)
-        write_layer(named, new, path, driver="GPKG", metadata=metadata)
+        version = {"VERSION": _VERSION}
+        write_layer(named, new, path, driver="GPKG", metadata=metadata, dataset_options=version)
         new.replace(beside)
 
 

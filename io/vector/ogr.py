@@ -39,13 +39,14 @@ def write_layer(
     metadata: Mapping[str, str] | None = None,
     geometries: ObjectArray | None = None,
     geometry_type: str | None = None,
+    dataset_options: Mapping[str, str] | None = None,
     **options: str,
 ) -> None:
     """Write features as one layer of a new file, called as the product, else as ``shown``.
 
     Sentences call the file ``shown``, too. ``names`` of columns are given if the format needs
     others, ``geometries``, (n,) well-known binary, and their type if they are others than those of
-    the features; ``metadata`` and the options of creation are those of the layer.
+    the features; ``metadata`` and further options of creation are those of the layer.
 
     Raises
     ------
@@ -72,6 +73,7 @@ def write_layer(
             encoding="UTF-8",
             promote_to_multi=False,
             layer_metadata=None if metadata is None else dict(metadata),
+            dataset_options=dataset_options,
             layer_options=options,
         )
         _require_last(pyogrio, path, len(features))

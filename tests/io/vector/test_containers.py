@@ -269,3 +269,16 @@ def test_other_formats_hold_one_thing_and_have_no_layers(one, tmp_path):
         with pytest.raises(ts.TinsmithError, match=next(iter(option))):
             ts.write(thing, path, format=one.name, **option)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_layers_have_the_form_that_older_programs_read(tmp_path):
+    """Milliseconds in the time of change, and the triggers of the version before 1.4."""
+    path = ts.write(LINES, tmp_path / "a.gpkg")
+    with closing(sqlite3.connect(path)) as file:
+        times = [row[0] for row in file.execute("SELECT last_change FROM gpkg_contents")]
+        (version,) = file.execute("PRAGMA user_version").fetchone()
+        rows = file.execute("SELECT name FROM sqlite_master WHERE type = 'trigger'")
+        triggers = {row[0] for row in rows}
+    assert times == ["1970-01-01T00:00:00.000Z"]
+    assert version == 10300
+    assert {f"rtree_contours_geom_{name}" for name in ("insert", "update1", "delete")} <= triggers
