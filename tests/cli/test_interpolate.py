@@ -45,6 +45,37 @@ def test_all_columns_are_kept_as_they_stand(tmp_path, surface):
     np.testing.assert_array_equal(found, wanted)
 
 
+@pytest.mark.parametrize(
+    ("header", "crs"),
+    [
+        ("X (Northing),Y (Easting)", "EPSG:32616"),
+        ("Hochwert,Rechtswert", "EPSG:32616"),
+        ("X,Y", "EPSG:3844"),
+    ],
+)
+def test_columns_of_places_are_named_as_in_survey_text(tmp_path, header, crs):
+    corner = {"EPSG:32616": (752_600, 4_024_100), "EPSG:3844": (586_000, 330_000)}[crs]
+    points = np.random.default_rng(1).random((80, 3)) * [100, 100, 10] + [*corner, 0]
+    tin = ts.triangulate(points, crs=crs)
+    file = ts.write(tin, tmp_path / "tin.ply")
+    rows = "".join(f"{corner[1] + 10 * k},{corner[0] + 50}\n" for k in range(3, 7))
+    out = run(
+        *("interpolate", file, "--at", places(tmp_path, f"{header}\n{rows}")),
+        *("-o", tmp_path / "out.csv"),
+    )
+    assert out.exit_code == 0, out.output
+    found = [float(r[2]) for r in csv.reader((tmp_path / "out.csv").read_text().splitlines()[1:])]
+    wanted = tin.interpolate([[corner[0] + 50, corner[1] + 10 * k] for k in range(3, 7)])
+    np.testing.assert_allclose(found, wanted, atol=1e-9)
+
+
+@pytest.mark.parametrize("header", ["-X,Y", "X (km x10),Y", "E,N (offset)", "Easting,Y"])
+def test_columns_of_places_that_say_more_are_refused(tmp_path, surface, header):
+    text = places(tmp_path, f"{header}\n10,20\n30,40\n")
+    said = refuse("interpolate", surface, "--at", text, "-o", tmp_path / "out.csv")
+    assert "easting and northing is open" in str(said)
+
+
 def test_method_extrapolation_name_and_json(tmp_path, surface):
     out = run(
         *("interpolate", surface, "--at", places(tmp_path, TABLE), "--method", "natural"),

@@ -129,6 +129,27 @@ def test_a_column_of_a_plain_name_holds_the_elevations_and_that_is_told(tmp_path
     assert survey.notes == ["Elevations are those of the column 'elev'."]
 
 
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [("Elev (ft NAVD88)", "foot"), ("Cota", None), ("elevation_us_ft", "US survey foot")],
+)
+def test_a_column_of_elevations_is_named_as_in_survey_text(tmp_path, name, unit):
+    points = make_points(9)
+    shapes = [shapely.Point(x, y) for x, y, _ in points]
+    found = read(by_ogr(tmp_path / "a.gpkg", shapes, **{name: points[:, 2]}))
+    assert found.points[:, 2].tolist() == points[:, 2].tolist()
+    assert (found.elevation_unit and found.elevation_unit.name) == unit
+
+
+@pytest.mark.parametrize(
+    "name", ["Z (sdev)", "-Z", "Z (depth)", "geoid height", "Height_instrument"]
+)
+def test_a_column_whose_name_says_more_than_elevation_is_none(tmp_path, name):
+    shapes = [shapely.Point(x, y) for x, y, _ in make_points(9)]
+    path = by_ogr(tmp_path / "a.gpkg", shapes, **{name: np.arange(9.0)})
+    assert "no column of numbers with such a name" in refuse(path)
+
+
 def test_no_elevations_are_refused(tmp_path):
     path = by_ogr(tmp_path / "p.gpkg", flat(), depth_of_well=np.arange(5.0))
     assert "depth_of_well" in refuse(path)
