@@ -92,6 +92,7 @@ def sum_between(
     other_points: Float64Array,
     other_triangles: Int32Array,
     up: float,
+    is_other_apart: bool = ...,
     threads: int = ...,
     progress: Callable[[float], None] | None = ...,
 ) -> Float64Array: ...
@@ -114,6 +115,7 @@ def overlay(
     triangles: Int32Array,
     other_points: Float64Array,
     other_triangles: Int32Array,
+    is_other_apart: bool = ...,
 ) -> tuple[
     Float64Array,
     Int32Array,

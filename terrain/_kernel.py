@@ -106,6 +106,14 @@ def overlay(
     triangles: Int32Array,
     other_points: Float64Array,
     other_triangles: Int32Array,
+    *,
+    is_other_apart: bool = False,
 ) -> OverlayMesh:
-    """Cut two surfaces along the edges of each other, where both are."""
-    return OverlayMesh(*_core.overlay(points, triangles, other_points, other_triangles))
+    """Cut two surfaces along the edges of each other, where both are.
+
+    Faster where both have many triangles in common, if it is known that those of the other one do
+    not overlap.
+    """
+    return OverlayMesh(
+        *_core.overlay(points, triangles, other_points, other_triangles, is_other_apart)
+    )

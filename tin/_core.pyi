@@ -6,6 +6,7 @@ from ..arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
 SMALLEST_COORDINATE: float
 MOST_POINTS: int
 LARGEST_COORDINATE: float
+LARGEST_ELEVATION: float
 
 class Method(enum.Enum):
     AUTOMATIC = 0

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "EXACT_RANGE",
+    "LARGEST_ELEVATION",
     "MOST_POINTS",
     "VECTOR_PATHS",
     "EditedMesh",
@@ -55,6 +56,9 @@ __all__ = [
 
 EXACT_RANGE: tuple[float, float] = (_core.SMALLEST_COORDINATE, _core.LARGEST_COORDINATE)
 """Smallest (but 0) and largest magnitude of a coordinate for which the predicates are exact."""
+
+LARGEST_ELEVATION: float = _core.LARGEST_ELEVATION
+"""Largest magnitude of an elevation: products sum and subtract some of them in doubles."""
 
 MOST_POINTS: int = _core.MOST_POINTS
 """So many points 32-bit indices can number, and their edges."""

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "EXACT_RANGE",
+    "LARGEST_ELEVATION",
     "ORIENTATION_BOUND",
     "Columns",
     "blocks",
@@ -39,6 +40,9 @@ __all__ = [
 
 EXACT_RANGE = (2.0**-200, 2.0**250)
 """Smallest (but 0) and largest magnitude of a coordinate for which the signs are exact."""
+
+LARGEST_ELEVATION = 1e300
+"""Magnitude that an elevation may have: sums and differences of some are finite."""
 
 Columns = tuple["Float64Array", "Float64Array"]
 """Eastings and northings, each contiguous."""

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-import re
-import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from ..._sentences import counted
+from ...crs import Unit
 from ...errors import OptionError, ReadError
+from .grouping import find_group
+from .names import parse_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from .grouping import Group
+
 __all__ = [
     "COORDINATES",
     "Columns",
+    "describe_doubts",
     "find_columns_by_header",
     "find_columns_by_word",
     "find_role",
@@ -25,6 +28,7 @@ __all__ = [
     "list_meanings",
     "list_names",
     "name_columns",
+    "names_coordinates",
 ]
 
 COORDINATES = ("easting", "northing", "elevation")
@@ -40,64 +44,7 @@ _LETTERS = {
     "Y": "northing",
     "-": "",
 }
-_NAMES = {
-    "easting": (
-        *("easting", "east", "e", "eastings", "xcoordinate", "xcoord", "coordx", "xutm", "utmx"),
-        *("utme", "pointx", "xcenter", "x", "rechtswert", "ostwert", "ost", "rw", "este", "est"),
-        *("coordenadax", "gridx", "gride", "grideasting"),
-        *("rechts", "abscisse"),
-    ),
-    "northing": (
-        *("northing", "north", "n", "northings", "ycoordinate", "ycoord", "coordy", "yutm", "utmy"),
-        *("utmn", "pointy", "ycenter", "y", "hochwert", "nordwert", "nord", "hw", "norte"),
-        *("coordenaday", "gridy", "gridn", "gridnorthing"),
-        *("hoch", "ordonnee"),
-    ),
-    "elevation": (
-        *("elevation", "elev", "el", "z", "zcoordinate", "zcoord", "coordz", "pointz", "height"),
-        *("rl", "reducedlevel", "level", "h", "hoehe", "hohe", "altitude", "alt", "cota", "quota"),
-        *("altura", "elevacion", "kote", "hoyde", "orthometricheight", "orthoheight", "zvalue"),
-        *("altitud", "elevacao", "hojd", "hoogte", "nhn"),
-    ),
-    "number": (
-        *("point", "pt", "pointnumber", "pointno", "pointnum", "pointid", "pointname", "ptno"),
-        *("ptnum", "ptnumber", "ptid", "ptname", "pnt", "pno", "p", "no", "nr", "num", "number"),
-        *("id", "name", "punkt", "punktnummer", "punktnr", "pktnr", "punto", "fid", "objectid"),
-        *("pkt", "ponto", "matricule", "numero"),
-        "#",
-    ),
-    "description": (
-        *("description", "desc", "descr", "code", "featurecode", "fieldcode", "rawdescription"),
-        *("fulldescription", "d", "bemerkung", "beschreibung", "descripcion", "codigo", "remark"),
-        *("remarks", "comment", "note", "notes", "feature", "label", "type"),
-        *("libelle", "descricao", "descrizione", "codice"),
-    ),
-}
-_DEGREES = {
-    "easting": ("longitude", "long", "lon", "lng", "longitud", "lange", "laenge"),
-    "northing": ("latitude", "lat", "latitud", "breite"),
-}
-_UNIT_NAMES = (
-    *("m", "metre", "metres", "meter", "meters", "mm", "cm", "dm", "km", "ft", "foot", "feet"),
-    *("usft", "us ft", "us-ft", "ussft", "ftus", "ft us", "ft-us", "us foot", "us feet", "sft"),
-    *("us survey foot", "us survey feet", "survey foot", "survey feet", "usfoot", "usfeet"),
-    *("us survey ft", "survey ft", "us-survey-foot", "us-survey-feet"),
-    *("ift", "intft", "int ft", "international foot", "international feet", "ftint"),
-    *("yd", "yard", "yards", "fathom", "fathoms"),
-)
-_UNIT_WORDS = "|".join(sorted(_UNIT_NAMES, key=len, reverse=True)).replace(" ", r"[\s._]+")
-# The brackets inside keep the pattern linear: a text of nothing but brackets is tried once.
-_UNIT = re.compile(
-    r"[\[(](?P<inside>[^\[\]()]*)[\])]"
-    rf"|(?<=[^\W_])[\W_]+(?P<behind>{_UNIT_WORDS})$",
-    re.IGNORECASE,
-)
-_NUMBER_SIGN = re.compile(r"n\s?[°º#]", re.IGNORECASE)
-_PLAIN_LETTERS = str.maketrans({"ø": "o", "æ": "ae", "ł": "l", "đ": "d", "œ": "oe"})
-_ACCENTS = re.compile("[\u0300-\u036f]")
-_SHOWN_LETTERS, _SHOWN_NAMES = 40, 12
-_LONGEST_NAME = 200
-"""Letters of a header cell that may be a name; a longer one is some other text."""
+_SHOWN_LETTERS, _SHOWN_NAMES, _SHOWN_DOUBTS = 40, 12, 3
 _ROLE_LETTERS = {
     "number": "P",
     "northing": "N",
@@ -183,41 +130,15 @@ def name_columns(names: Sequence[str], count: int) -> tuple[str, ...]:
 
 
 def find_role(name: str) -> str | None:
-    """Return what a column of this name means, None if the name says nothing.
+    """Return what a column of this name means, None if the name does not say it beyond doubt.
 
     Examples
     --------
-    >>> find_role("Easting [m]"), find_role("Höhe"), find_role("intensity")
-    ('easting', 'elevation', None)
+    >>> find_role("Easting [m]"), find_role("Höhe"), find_role("intensity"), find_role("Z (sdev)")
+    ('easting', 'elevation', None, None)
     """
-    rank = _rank(name)
-    return rank[0] if rank else None
-
-
-def _rank(name: str) -> tuple[str, bool, int] | None:
-    """Return role, whether in degrees, and how far down the list of synonyms a name stands."""
-    return _rank_of(name) if len(name) <= _LONGEST_NAME else None
-
-
-@lru_cache(maxsize=1024)  # the same cells are asked for every layout
-def _rank_of(name: str) -> tuple[str, bool, int] | None:
-    plain = _simplify_name(name)
-    for in_degrees, synonyms in ((False, _NAMES), (True, _DEGREES)):
-        for role, known in synonyms.items():
-            if plain in known:
-                return role, in_degrees, known.index(plain)
-    return None
-
-
-def _simplify_name(name: str) -> str:
-    """Strip unit, accents, case and punctuation of a name."""
-    bare = _UNIT.sub("", name.strip())
-    if bare.strip() == "#":
-        return "#"
-    if _NUMBER_SIGN.fullmatch(bare.strip()):
-        return "no"
-    letters = unicodedata.normalize("NFKD", bare).casefold().translate(_PLAIN_LETTERS)
-    return re.sub(r"[\W_]", "", _ACCENTS.sub("", letters))
+    found = parse_name(name)
+    return found.role if found.role in _ROLES and not found.doubt else None
 
 
 def find_unit_word(name: str) -> str | None:
@@ -230,18 +151,10 @@ def find_unit_word(name: str) -> str | None:
     >>> find_unit_word("Height (NAVD88)") is None
     True
     """
-    if len(name) > _LONGEST_NAME:
-        return None
-    for found in _UNIT.finditer(name.strip()):
-        word = (found["inside"] or found["behind"] or "").strip()
-        if " ".join(re.split(r"[\s._]+", word.casefold())).strip() in _UNIT_NAMES:
-            return word
-    return None
+    return parse_name(name).unit or None
 
 
-def find_columns_by_header(
-    header: Sequence[str], units: Sequence[str] = (), *, strict: bool = True
-) -> Columns | None:
+def find_columns_by_header(header: Sequence[str], units: Sequence[str] = ()) -> Columns | None:
     """Find the columns by the names in the header; None if a coordinate is not among them.
 
     Parameters
@@ -249,158 +162,73 @@ def find_columns_by_header(
     header : sequence of str
     units : sequence of str, optional
         Cells of the line of units below the header.
-    strict : bool, optional
-        Whether two equal names for a coordinate are refused.
 
     Raises
     ------
     ReadError
-        If (``strict``) two columns have the same name for a coordinate.
+        If the names leave open which column is which coordinate.
     """
-    found = _group_by_role(header)
-    pair, in_degrees, notes = _choose_pair(header, found)
-    roles = {role: columns[0] for role, columns in found.items() if role in _ROLES}
-    roles |= pair
-    if not set(COORDINATES) <= roles.keys():
+    group = find_group(header)
+    if group is None:
         return None
-    _give_number(header, roles)
-    for role in COORDINATES if strict else ():
-        same = [
-            name for name in header if _simplify_name(name) == _simplify_name(header[roles[role]])
-        ]
-        if len(same) > 1:
-            raise ReadError(
-                f"the header has {len(same)} columns named '{shorten(same[0])}' for the {role}: "
-                "say with the option columns which is meant."
-            )
-    if strict:
-        _require_one_pair(header, found, roles)
-    notes += _note_other_elevations(header, found["elevation"])
-    named = _find_unit_words(header, units, roles)
-    notes += _note_other_unit(header[roles["elevation"]], named.get("elevation"))
-    return Columns(name_columns(header, len(header)), roles, in_degrees, named, tuple(notes))
+    if group.refusal:
+        raise ReadError(group.refusal)
+    return _describe_group(header, units, group)
+
+
+def names_coordinates(header: Sequence[str]) -> Columns | None:
+    """Return the columns that a line seems to name, in whatever way; None if it is no header."""
+    has_numbers = any(cell.lstrip("+-.")[:1].isdecimal() for cell in header)
+    group = find_group(header, with_doubtful=not has_numbers)
+    return None if group is None else _describe_group(header, (), group)
+
+
+def _describe_group(header: Sequence[str], units: Sequence[str], group: Group) -> Columns:
+    named = _find_unit_words(header, units, group.roles)
+    names = name_columns(header, len(header))
+    return Columns(names, group.roles, group.is_angle, named, tuple(group.notes))
+
+
+def describe_doubts(header: Sequence[str]) -> str:
+    """Say which names of coordinates say something more that is not understood; "" if none does."""
+    doubts = [
+        f"'{shorten(name.strip())}' is not taken as the {parsed.role}: '{shorten(parsed.doubt)}' "
+        "may change what it means"
+        for name, parsed in ((name, parse_name(name)) for name in header)
+        if parsed.role in COORDINATES and parsed.doubt
+    ]
+    if not doubts:
+        return ""
+    taken = names_coordinates(header)
+    word = "" if taken is None else f"; columns='{taken.word}' takes the values as they stand"
+    return "; ".join(doubts[:_SHOWN_DOUBTS]) + word
 
 
 def _find_unit_words(
     header: Sequence[str], units: Sequence[str], roles: Mapping[str, int]
 ) -> dict[str, str]:
-    """Return the words for the units of the coordinates, in the header or the line below it."""
+    """Return the words for the units of the coordinates, in the header or the line below it.
+
+    Raises
+    ------
+    ReadError
+        If they contradict each other.
+    """
     found: dict[str, str] = {}
     for role in COORDINATES:
         column = roles[role]
         name = header[column] if column < len(header) else ""
         below = units[column].strip(" ()[]") if column < len(units) else ""
-        word = find_unit_word(name) or find_unit_word(f"({below})")
+        own, other = find_unit_word(name), find_unit_word(f"({below})")
+        if own and other and Unit.of(own) != Unit.of(other):
+            raise ReadError(
+                f"the header gives the {role} in {own} ('{shorten(name)}'), and the line below it "
+                f"in {other}: make them agree."
+            )
+        word = own or other
         if word is not None:
             found[role] = word
     return found
-
-
-def _group_by_role(header: Sequence[str]) -> dict[str, list[int]]:
-    """Return the columns of each role, those first whose names say most clearly what they are."""
-    ranked: dict[str, list[tuple[int, int]]] = {}
-    for column, name in enumerate(header):
-        rank = _rank(name)
-        if rank is not None:
-            role = rank[0] if not rank[1] else {"easting": "lon", "northing": "lat"}[rank[0]]
-            ranked.setdefault(role, []).append((rank[2], column))
-    return {role: [column for _, column in sorted(pairs)] for role, pairs in ranked.items()}
-
-
-def _is_xy(name: str) -> bool:
-    """Whether a name of an easting or northing is one with X or Y."""
-    return any(letter in _simplify_name(name) for letter in "xy")
-
-
-def _is_letter(name: str) -> bool:
-    """Whether a name is a single letter: N beside Este and Norte is the number of the point."""
-    return len(_simplify_name(name)) == 1
-
-
-def _choose_pair(
-    header: Sequence[str], found: Mapping[str, Sequence[int]]
-) -> tuple[dict[str, int], bool, list[str]]:
-    """Return the columns of easting and northing, whether in degrees, and what was assumed.
-
-    Names of one kind belong together: of N, X and Y the first is a number and no northing, and of
-    N, Este and Norte likewise.
-    """
-    eastings, northings = found.get("easting", []), found.get("northing", [])
-    pairs = [(e, n) for e in eastings for n in northings if _is_xy(header[e]) == _is_xy(header[n])]
-    pairs = pairs or [
-        (e, n) for e in eastings for n in northings if _simplify_name(header[n]) != "n"
-    ]
-    pairs.sort(key=lambda pair: _is_letter(header[pair[0]]) != _is_letter(header[pair[1]]))
-    if not pairs:
-        if not found.keys() >= {"lon", "lat"}:
-            return {}, False, []
-        return {"easting": found["lon"][0], "northing": found["lat"][0]}, True, []
-    chosen = min(pairs, key=lambda pair: _is_xy(header[pair[0]]))
-    names = [f"'{shorten(name)}'" for name in header]
-    notes = [
-        f"The header names two pairs of coordinates: {names[chosen[0]]} and {names[chosen[1]]} "
-        f"are taken, {names[e]} and {names[n]} are not."
-        for e, n in pairs
-        if e != chosen[0] and n != chosen[1]
-    ][:1]
-    if _is_xy(header[chosen[0]]) and chosen[1] < chosen[0]:
-        notes.append(
-            f"By the header {names[chosen[0]]} is the easting and {names[chosen[1]]} the "
-            "northing; where X points north it is the other way round."
-        )
-    return {"easting": chosen[0], "northing": chosen[1]}, False, notes
-
-
-def _give_number(header: Sequence[str], roles: dict[str, int]) -> None:
-    """Take a column N beside X and Y for the number of the point."""
-    column = next((i for i, name in enumerate(header) if _simplify_name(name) == "n"), None)
-    if column is not None and column != roles["northing"] and "number" not in roles:
-        roles["number"] = column
-
-
-def _require_one_pair(
-    header: Sequence[str], found: Mapping[str, Sequence[int]], roles: Mapping[str, int]
-) -> None:
-    """Refuse a northing that stands alone beside the pair N and E, or an easting: N, E, Northing.
-
-    Raises
-    ------
-    ReadError
-    """
-    if not _is_letter(header[roles["easting"]]) or _is_xy(header[roles["easting"]]):
-        return
-    words = {
-        role: [i for i in found[role] if not _is_letter(header[i]) and not _is_xy(header[i])]
-        for role in ("easting", "northing")
-    }
-    for role in words:
-        if words[role] and not all(words.values()):
-            names = list_names([f"'{header[i]}'" for i in (roles[role], words[role][0])])
-            raise ReadError(
-                f"the header has several columns for the {role} ({names}): say with the option "
-                "columns which is meant."
-            )
-
-
-def _note_other_unit(name: str, word: str | None) -> list[str]:
-    """Say that what stands in brackets behind the elevation is no unit that is known."""
-    found = None if word else _UNIT.search(name.strip())
-    inside = (found["inside"] or "").strip() if found else ""
-    if not inside or any(letter.isdecimal() for letter in inside):  # NAVD88 is no unit
-        return []
-    return [
-        f"The header's '{shorten(name.strip())}' tells no unit that is known: the option z_unit "
-        "says that of the elevations."
-    ]
-
-
-def _note_other_elevations(header: Sequence[str], columns: Sequence[int]) -> list[str]:
-    if len({_simplify_name(header[column]) for column in columns}) < 2:
-        return []
-    others = ", ".join(f"'{shorten(header[column])}'" for column in columns[1:])
-    return [
-        f"The header's '{shorten(header[columns[0]])}' is taken as the elevation, not {others}."
-    ]
 
 
 def find_columns_by_word(
@@ -458,8 +286,9 @@ def find_columns_by_word(
 def _are_degrees(names: Sequence[str], roles: Mapping[str, int]) -> bool:
     """Whether easting and northing are called longitude and latitude."""
     columns = [roles["easting"], roles["northing"]]
-    ranks = [_rank(names[column]) if column < len(names) else None for column in columns]
-    return all(rank is not None and rank[1] for rank in ranks)
+    return all(
+        column < len(names) and parse_name(names[column]).kind == "angle" for column in columns
+    )
 
 
 def _require_distinct(roles: Mapping[str, int], word: object) -> None:

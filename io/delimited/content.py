@@ -15,7 +15,9 @@ import numpy as np
 
 from ..._sentences import counted, inflect, shown
 from ...errors import ReadError
+from ...tin.screening.nodata import find_suspect_elevations
 from .columns import Columns, find_columns_by_word
+from .doubts import are_angles_in_parts, find_doubt, have_no_elevations
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -106,6 +108,7 @@ def find_columns_by_content(
     *,
     is_scan: bool = False,
     is_announced: bool = False,
+    heading: str = "",
 ) -> tuple[Columns, str]:
     """Tell the columns by what is in them.
 
@@ -118,6 +121,8 @@ def find_columns_by_content(
         Whether the suffix says that rows begin with x, y, z.
     is_announced : bool
         Whether a point count on top says it, too.
+    heading : str
+        Line near the table that speaks of coordinates, and does not say which columns they are.
 
     Returns
     -------
@@ -130,21 +135,43 @@ def find_columns_by_content(
     ReadError
         If no layout fits, or more than one.
     """
+    if are_angles_in_parts(columns):
+        raise ReadError(
+            "it has no header, and its columns may be degrees and minutes: tinsmith takes decimal "
+            "degrees, or say with the option columns what they are."
+        )
     candidates = _propose_layouts(columns)
     may_differ = len({one.start for one in candidates}) > 1
     for candidate in candidates:
         candidate.objections.extend(_find_objections(candidate, columns))
         if may_differ:
             candidate.objections.extend(_compare_columns(candidate, columns))
-    candidates = _mark_outside(candidates, columns, area)
+    candidates, agrees = _mark_outside(candidates, columns, area)
     left = [one for one in candidates if one.is_plausible]
     chosen, reason = _choose_customary(left, columns, is_scan=is_scan, is_announced=is_announced)
+    doubt = heading and f"{heading} speaks of coordinates"
+    if chosen is not None and not agrees and area is not None:
+        doubt = doubt or f"as such they lie outside the area of use of {area.label}"
     if len(left) == 1:
-        chosen, reason = left[0], _explain_choice(candidates, area)
+        chosen, reason, doubt = left[0], _explain_choice(candidates, area), ""
     if chosen is None:
         raise ReadError(_describe_refusal(candidates, left, area))
+    _require_no_doubt(chosen, columns, doubt)
     found = find_columns_by_word(chosen.word, [], len(columns))
     return found, f"No header: the columns are taken as {found.layout} ({chosen.word}){reason}."
+
+
+def _require_no_doubt(chosen: _Candidate, columns: Sequence[Column], doubt: str) -> None:
+    """Refuse x, y, z where they are but a convention that something speaks against."""
+    if chosen.start == 0:
+        doubt = doubt or find_doubt(columns)
+    if not doubt and have_no_elevations(columns[chosen.start : chosen.start + 3]):
+        doubt = "its elevations would be whole numbers beside coordinates with decimals"
+    if doubt:
+        raise ReadError(
+            f"it has no header, and it is in doubt whether its columns are {chosen.word}, since "
+            f"{doubt}: columns='{chosen.word}' says so, other letters or names what else they are."
+        )
 
 
 # ------------------------------------------------------------------ candidates
@@ -214,7 +241,10 @@ def _compare_columns(candidate: _Candidate, columns: Sequence[Column]) -> Iterat
     """Say what speaks against other columns; where only axes may be exchanged it tells nothing."""
     if any(one.text_share > _ODD_SHARE for one in columns[candidate.start : candidate.start + 3]):
         yield "would have coordinates that are no numbers"
-    relief, extent = measure_relief_and_extent(candidate.coordinates(columns))
+    points = candidate.coordinates(columns)
+    no_data = [one.value for one in find_suspect_elevations(points[:, 2])]
+    points = points[~np.isin(points[:, 2], no_data)]
+    relief, extent = measure_relief_and_extent(points)
     if is_too_steep(relief, extent):
         yield f"would rise by {relief:,.6g} within an extent of {extent:,.6g}"
 
@@ -253,17 +283,20 @@ def measure_relief_and_extent(points: Float64Array) -> tuple[float, float]:
 
 def _mark_outside(
     candidates: Sequence[_Candidate], columns: Sequence[Column], area: AreaOfUse | None
-) -> list[_Candidate]:
-    """Find out which candidates lie outside the area of use; if all do, it tells nothing."""
+) -> tuple[list[_Candidate], bool]:
+    """Find out which candidates lie outside the area of use; if all do, it tells nothing.
+
+    And whether one lies inside.
+    """
     if area is None:
-        return list(candidates)
+        return list(candidates), False
     inside = [area.covers_most(one.coordinates(columns)[:, :2]) for one in candidates]
     if not any(inside):
-        return list(candidates)
+        return list(candidates), False
     return [
         _Candidate(one.word, one.start, one.is_northing_first, one.objections, not is_in)
         for one, is_in in zip(candidates, inside, strict=True)
-    ]
+    ], True
 
 
 # ------------------------------------------------------------------ the choice

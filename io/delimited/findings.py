@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import coordinate, counted, height
-from ...crs import Unit
+from ..._sentences import counted, height
+from ...crs import METRE, Unit
 from ...errors import CrsError, OptionError, ReadError
 from ...tin.screening.nodata import describe_elevations
+from ..reprojection.placement import describe_local, require_no_degrees
+from .axes import are_named_plainly
 from .cells import is_number, split_line
-from .columns import COORDINATES, find_columns_by_header, find_unit_word, list_names
+from .columns import COORDINATES, find_unit_word, list_names, names_coordinates
 from .content import are_plausible_elevations, is_too_steep, measure_relief_and_extent
 from .lines import COMMENT_PREFIXES
 
@@ -39,9 +41,7 @@ __all__ = [
     "find_rounded_coordinates",
     "find_split_thousands",
     "find_summary_rows",
-    "find_turned_axes",
     "find_unit_words",
-    "find_units_above",
     "require_in_area",
     "require_one_header",
     "require_unit_of_crs",
@@ -51,7 +51,6 @@ _SHOWN = 5
 _LARGEST_WHOLE = 1e15
 """Below, whole point numbers are written without an exponent or decimals."""
 _SHOWN_NAME = 40
-_TOP_LINES = 100
 _STATISTICS = frozenset(
     {*("min", "max", "mean", "average", "avg", "median", "total", "totals", "sum", "count", "std")}
     | {
@@ -68,7 +67,6 @@ _STATISTICS = frozenset(
         )
     }
 )
-_UNIT_LINE = re.compile(r"\bunits?\b[\s:=;,]*(?P<word>[a-z][a-z ._-]*)", re.IGNORECASE)
 _EXPONENT = re.compile(r"[-+]?[0-9](?:[.,](?P<decimals>[0-9]*))?[eE][+]?(?P<exponent>[0-9]{1,3})")
 _SOME = 4_096
 _FEW_POINTS = 3
@@ -82,6 +80,8 @@ def require_in_area(
     columns: Columns,
     area: AreaOfUse | None,
     path: Path,
+    *,
+    is_headed: bool = False,
 ) -> list[str]:
     """Say which points lie outside the area of use of their CRS.
 
@@ -96,6 +96,9 @@ def require_in_area(
         None says nothing.
     path : Path
         For sentences.
+    is_headed : bool, optional
+        Whether a header names the columns: where it does so in plain words, it is the CRS that
+        must be wrong.
 
     Raises
     ------
@@ -104,19 +107,16 @@ def require_in_area(
     """
     if area is None:
         return []
+    require_no_degrees(
+        points, area, path, "the option source_crs names the CRS of degrees, such as EPSG:4326"
+    )
     if area.is_local(points[:, :2]):
-        x, y = points[0, :2].tolist()
-        return [
-            f"The points lie about the origin of {area.source.label} (first: easting "
-            f"{coordinate(x)}, "
-            f"northing {coordinate(y)}), outside its area of use: check that they are no local "
-            "coordinates, and no degrees."
-        ]
+        return [describe_local(points, area)]
     outside = area.find_outside(points[:, :2])
     if len(outside) == 0:
         return []
     if 2 * len(outside) > len(points):
-        _require_no_exchange(points, columns, area, path)
+        _require_no_exchange(points, columns, area, path, is_headed=is_headed)
         return [
             f"{_count(len(outside), len(points))} outside the area of use of {area.label}: check "
             "that the CRS of the points is the right one."
@@ -127,40 +127,6 @@ def require_in_area(
         f"{_count(len(outside), len(points))} outside the area of use of {area.label} "
         f"({_name_lines(rows[outside])}){exchanged}."
     ]
-
-
-def find_turned_axes(
-    points: Float64Array, columns: Columns, crs: CRS | None, area: AreaOfUse | None
-) -> list[str]:
-    """Say that the header's X is taken as the easting, where the CRS calls its northing so.
-
-    Parameters
-    ----------
-    points : (n, 3) float64 array
-        As they are in the file.
-    columns : Columns
-        Found by the header.
-    crs : CRS or None
-        Of the coordinates in the file.
-    area : AreaOfUse or None
-        Where it does not hold the points with axes exchanged, nothing is left to say.
-    """
-    name = columns.names[columns.roles["easting"]]
-    if crs is None or "x" not in name.casefold() or not _points_north(crs, "x"):
-        return []
-    if area is not None and not area.covers_most(points[:, [1, 0]]):
-        return []
-    return [
-        f"{crs.label} calls its northing X, and by the header '{name[:_SHOWN_NAME]}' is taken as "
-        f"the easting: if it is not, columns='{columns.permute((1, 0, 2)).word}' says so."
-    ]
-
-
-def _points_north(crs: CRS, name: str) -> bool:
-    return any(
-        axis.abbrev.casefold() == name and axis.direction == "north"
-        for axis in crs.to_pyproj().axis_info
-    )
 
 
 def require_one_header(
@@ -174,7 +140,7 @@ def require_one_header(
     """
     for fault in faults:
         cells = split_line(lines.decode_line(fault.line), delimiter)
-        found = find_columns_by_header(cells, strict=False)
+        found = names_coordinates(cells)
         if found is not None and _differs(found, columns):
             taken = list_names([columns.label(columns.roles[role]) for role in COORDINATES])
             raise ReadError(
@@ -267,18 +233,6 @@ def _is_statistic(name: str) -> bool:
     return name.strip(" :.").casefold() in _STATISTICS
 
 
-def find_units_above(lines: TextLines, first_row: int) -> list[str]:
-    """Say which line above the table tells a unit, which only a header or the caller can."""
-    for line, text in enumerate(lines.decode_lines(range(min(first_row, _TOP_LINES)))):
-        found = _UNIT_LINE.search(text)
-        if found is not None and find_unit_word(f"({found['word'].strip()})") is not None:
-            return [
-                f"Line {line + 1} ('{text.strip()[:_SHOWN_NAME]}') tells a unit, which is not "
-                "looked at: the option z_unit says that of the elevations."
-            ]
-    return []
-
-
 def find_split_thousands(
     points: Float64Array, attributes: Mapping[str, AnyArray], delimiter: str
 ) -> list[str]:
@@ -326,7 +280,7 @@ def _count(number: int, total: int = 0) -> str:
 
 
 def _require_no_exchange(
-    points: Float64Array, columns: Columns, area: AreaOfUse, path: Path
+    points: Float64Array, columns: Columns, area: AreaOfUse, path: Path, *, is_headed: bool
 ) -> None:
     """Refuse points that lie in the area once their columns are exchanged."""
     orders = sorted(permutations(range(3)), key=lambda order: order != (1, 0, 2))
@@ -334,6 +288,13 @@ def _require_no_exchange(
         moved = points[:, list(order)]
         if are_plausible_elevations(moved[:, 2]) and area.covers_most(moved[:, :2]):
             right = columns.permute(order)
+            if is_headed and are_named_plainly(columns):
+                raise CrsError(
+                    f"'{path}': the points lie outside the area of use of {area.label}, and would "
+                    f"lie inside it if {columns.word} were {right.word}; the header says that they "
+                    f"are not: check that {area.source.label} is the CRS of the points, or say "
+                    "with the option columns what they are."
+                )
             places = (
                 f"{role} in {right.label(right.roles[role])}"
                 for role in ("easting", "northing", "elevation")
@@ -365,7 +326,9 @@ def require_unit_of_crs(
     CrsError
         If they are not both feet, of either kind, and the caller has not told the columns.
     """
-    if crs is None or crs.is_geographic:
+    if crs is None:
+        return _require_units_of_a_kind(columns, path, is_told=is_told)
+    if crs.is_geographic:
         return []
     wanted = crs.horizontal_unit
     for role in ("easting", "northing"):
@@ -385,6 +348,22 @@ def require_unit_of_crs(
             )
         return [f"{sentence[0].upper()}{sentence[1:]}, as which they are taken."]
     return []
+
+
+def _require_units_of_a_kind(columns: Columns, path: Path, *, is_told: bool) -> list[str]:
+    """Say where the header gives eastings another unit than elevations, which no CRS then keeps."""
+    across, up = (_find_unit(columns.units.get(role)) for role in ("easting", "elevation"))
+    if across is None or across == (up or METRE):
+        return []
+    if up is not None and not is_told:
+        raise CrsError(
+            f"'{path}': the header gives the easting in {across.name} and the elevation in "
+            f"{up.name}: the option crs names the CRS that the points are in, columns tells the "
+            "columns whatever the header says."
+        )
+    return [
+        f"The header gives the easting in {across.name}, which is not kept where no CRS is named."
+    ]
 
 
 def _find_unit(word: str | None) -> Unit | None:

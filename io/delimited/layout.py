@@ -14,14 +14,12 @@ from ...errors import ReadError
 from .cells import BLANKS, is_number, is_number_like, is_padded, split_line
 from .columns import (
     Columns,
-    find_columns_by_header,
-    find_columns_by_word,
-    find_role,
     find_unit_word,
     list_meanings,
-    list_names,
+    names_coordinates,
 )
 from .content import require_no_split_decimals
+from .header import TopLines, count_told_columns, find_named_columns, join_brackets
 from .lines import COMMENT_PREFIXES
 from .marks import (
     DecimalMark,
@@ -41,6 +39,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...arrays import Int64Array
+    from .headings import Heading
     from .lines import TextLines
 
 __all__ = ["Layout", "find_layout"]
@@ -93,6 +92,8 @@ class Layout:
     """Lines that are no rows."""
     notes: tuple[str, ...] = ()
     """What was assumed, in sentences."""
+    heading: Heading | None = None
+    """A line that speaks of coordinates and does not give the order of the columns."""
 
     @property
     def elevation_unit(self) -> str | None:
@@ -164,7 +165,7 @@ def find_layout(
         if found == "," and wishes.delimiter is None:
             require_one_kind_of_comma(rows)
         if found == BLANKS:
-            require_no_blank_groups(rows, _count_told_columns(wishes))
+            require_no_blank_groups(rows, count_told_columns(wishes.columns))
         mark = _choose_decimal_mark(lines, data, cells, found, wishes)
         return _lay_out_table(lines, data, skipped, cells, (found, mark), wishes, path)
     except ReadError as error:
@@ -177,8 +178,8 @@ def _split_rows(rows: Sequence[str], delimiter: str) -> list[list[str]]:
     numbers = [sum(is_number(c, ".") or is_number(c, ",") for c in row) for row in cells]
     first = next((i for i, n in enumerate(numbers[:_TOP_LINES]) if n >= 2), 0)
     if delimiter == BLANKS:
-        cells[:first] = map(_join_units, cells[:first])
-    if any(find_columns_by_header(row, strict=False) for row in cells[:first]):
+        cells[:first] = map(join_brackets, cells[:first])
+    if any(names_coordinates(row) for row in cells[:first]):
         return cells
     counts = Counter(len(row) for row, n in zip(cells, numbers, strict=True) if n >= 2)
     for i in range(first):
@@ -234,7 +235,10 @@ def _lay_out_table(
             "the file may be truncated."
         )
     body = _select_even_rows(cells[top.n_lines :], count, has_text_tail=has_text_tail)
-    columns = _find_named_columns(lines, top, int(rows[0]), (delimiter, count), body, wishes)
+    header = TopLines(lines, rows, top.header, tuple(top.units))
+    columns, heading = find_named_columns(header, (delimiter, count), body, wishes.columns)
+    if columns is None and wishes.decimal is None:
+        require_no_split_decimals(body, delimiter)
     kinds = _Kinds.of(body, count, decimal)
     is_described = columns is not None and columns.roles.get("description") == count - 1
     return Layout(
@@ -254,6 +258,7 @@ def _lay_out_table(
         is_announced=top.announced is not None,
         skipped={what: many for what, many in (skipped + top.counts).items() if many},
         notes=((note,) if note else ()) + (() if columns is None else columns.notes),
+        heading=heading,
     )
 
 
@@ -266,25 +271,6 @@ def _select_even_rows(
     return [
         [*row[: count - 1], " ".join(row[count - 1 :])] for row in rows if len(row) >= count - 1
     ]
-
-
-def _find_named_columns(
-    lines: TextLines,
-    top: _Top,
-    first_row: int,
-    shape: tuple[str, int],
-    body: Sequence[Sequence[str]],
-    wishes: _Wishes,
-) -> Columns | None:
-    """Return what the caller or a header says of the columns; None if nobody does."""
-    delimiter, count = shape
-    header = top.header or _find_header_in_comment(lines, first_row, delimiter, count)
-    named = _fit_header(header, count, body, wishes)
-    if named or wishes.columns is not None:
-        return _find_columns_by_name(named, top.units, count, wishes)
-    if wishes.decimal is None:
-        require_no_split_decimals(body, delimiter)
-    return None
 
 
 # ------------------------------------------------------------------ lines
@@ -336,11 +322,6 @@ def _sample_lines(data: Int64Array) -> list[int]:
 # ------------------------------------------------------------------ rows
 
 
-def _count_told_columns(wishes: _Wishes) -> int:
-    told = wishes.columns
-    return 0 if told is None or isinstance(told, Mapping) else len(list_meanings(told))
-
-
 def _count_columns(
     rows: Sequence[Sequence[str]], delimiter: str, decimal: str, wishes: _Wishes
 ) -> tuple[int, bool]:
@@ -366,7 +347,7 @@ def _count_named_columns(rows: Sequence[Sequence[str]], wishes: _Wishes) -> int 
         given = list_meanings(wishes.columns)
         return len(given) if given[-1:] == ["description"] else None
     for row in rows[:_TOP_LINES]:
-        known = find_columns_by_header(row, strict=False)
+        known = names_coordinates(row)
         if known is not None and known.roles.get("description") == len(row) - 1:
             return len(row)
     return None
@@ -395,7 +376,7 @@ def _find_top(rows: Sequence[Sequence[str]], count: int, decimal: str) -> _Top:
         if kind == "point count":
             top.announced = int(row[0])
         if kind == "header lines" and not is_known:
-            is_known = find_columns_by_header(row, strict=False) is not None
+            is_known = names_coordinates(row) is not None
             top.header = list(row)
         elif kind == "header lines":
             top.units = list(row)
@@ -413,7 +394,7 @@ def _classify_line(row: Sequence[str], count: int, decimal: str, is_header_known
             for cell in row
         )
         return "header lines" if is_units and numbers == 0 else "row"
-    if find_columns_by_header(row, strict=False) is not None:
+    if names_coordinates(row) is not None:
         return "header lines"
     if len(row) == 1 and count > 1 and row[0].isdecimal() and len(row[0]) <= _COUNT_DIGITS:
         return "point count"
@@ -426,75 +407,7 @@ def _classify_line(row: Sequence[str], count: int, decimal: str, is_header_known
     return "row"
 
 
-def _find_header_in_comment(
-    lines: TextLines, first_row: int, delimiter: str, count: int
-) -> list[str] | None:
-    """Return the names in the comment line right above the table, if it is a header."""
-    if first_row == 0:
-        return None
-    above = lines.decode_line(first_row - 1).strip()
-    for prefix in ("", *COMMENT_PREFIXES):
-        if above.startswith(prefix):
-            names = split_line(above.removeprefix(prefix), delimiter)
-            if len(names) == count and find_columns_by_header(names, strict=False) is not None:
-                return names
-            other = split_header(above.removeprefix(prefix), delimiter, count)
-            if other is not None and len(other) == count:
-                return other
-    return None
-
-
 # ------------------------------------------------------------------ columns
-
-
-def _fit_header(
-    header: list[str] | None, count: int, body: Sequence[Sequence[str]], wishes: _Wishes
-) -> list[str]:
-    """Return one name a column; a delimiter at the end of rows or header makes no column."""
-    if header is None or len(header) == count:
-        return header or []
-    if len(header) == count - 1 and header[-1] and not any(row[-1] for row in body):
-        return [*header, ""]
-    if len(header) == count + 1 and not header[-1]:
-        return header[:-1]
-    n_told = _count_told_columns(wishes)
-    is_known = find_columns_by_header(header, strict=False) is not None
-    if n_told and (n_told >= count or not is_known):
-        return []
-    raise ReadError(
-        f"the header names {counted(len(header), 'column')} ({list_names(header)}), but rows have "
-        f"{count}: "
-        "say with the option columns what all of them are, and check delimiter and decimal mark."
-    )
-
-
-def _join_units(header: Sequence[str]) -> list[str]:
-    """Join units in brackets, where blanks split them off, to the names before them."""
-    joined: list[str] = []
-    for cell in header:
-        is_behind_name = bool(joined) and not joined[-1].startswith(("(", "["))
-        if is_behind_name and cell.startswith(("(", "[")) and find_unit_word(cell) is not None:
-            joined[-1] = f"{joined[-1]} {cell}"
-        else:
-            joined.append(cell)
-    return joined
-
-
-def _find_columns_by_name(
-    header: list[str], units: Sequence[str], count: int, wishes: _Wishes
-) -> Columns:
-    """Find the columns by the caller's word, else by the header."""
-    if wishes.columns is not None:
-        return find_columns_by_word(wishes.columns, header, count, units)
-    columns = find_columns_by_header(header, units)
-    if columns is None:
-        found = [f"{find_role(name)} '{name}'" for name in header[:_TOP_LINES] if find_role(name)]
-        raise ReadError(
-            f"the header ({list_names(header)}) does not name easting, northing and elevation "
-            f"(known: {', '.join(found) or 'none of it'}): say with the option columns which "
-            "columns they are."
-        )
-    return columns
 
 
 @dataclass(frozen=True, slots=True)

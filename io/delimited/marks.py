@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ...errors import OptionError, ReadError
 from .cells import BLANKS, is_grouped, is_number, is_number_like, may_group_or_divide, split_line
-from .columns import find_columns_by_header, find_role
+from .columns import find_role, names_coordinates
 from .lines import COMMENT_PREFIXES, decode_head
 
 if TYPE_CHECKING:
@@ -130,7 +130,7 @@ def split_header(line: str, delimiter: str, count: int) -> list[str] | None:
     """
     for other in _DELIMITERS:
         names = split_line(line, other) if other != delimiter else []
-        if find_columns_by_header(names, strict=False) is not None and (
+        if names_coordinates(names) is not None and (
             len(names) == count or all(map(find_role, names))
         ):
             return names
@@ -146,7 +146,7 @@ def _is_headed_by_blanks(sample: Sequence[str]) -> bool:
     top = next((i for i, row in enumerate(rows[:_TOP_LINES]) if _is_header(row)), None)
     if top is None or "," in sample[top] or len(rows) == top + 1:
         return False
-    known = find_columns_by_header(rows[top], strict=False)
+    known = names_coordinates(rows[top])
     is_described = known is not None and known.roles.get("description") == len(rows[top]) - 1
     count = len(rows[top]) - is_described
     bodies = [row[:count] for row in rows[top + 1 :] if is_described or len(row) == count]
@@ -165,7 +165,7 @@ def _is_headed_by_blanks(sample: Sequence[str]) -> bool:
 
 
 def _is_header(row: Sequence[str]) -> bool:
-    return find_columns_by_header(row, strict=False) is not None
+    return names_coordinates(row) is not None
 
 
 def require_no_delimiter(mark: str, delimiter: str, cells: Sequence[Sequence[str]]) -> None:
@@ -247,9 +247,7 @@ def _score_delimiter(sample: Sequence[str], delimiter: str) -> tuple[int, float,
     counts = [_count_numbers(row, delimiter) for row in rows]
     numbers = max(
         median_high(counts),
-        max(
-            3 * (find_columns_by_header(row, strict=False) is not None) for row in rows[:_TOP_LINES]
-        ),
+        max(3 * (names_coordinates(row) is not None) for row in rows[:_TOP_LINES]),
     )
     if numbers < 2 or max(map(len, rows)) < 3:
         return 0, 0.0, 0

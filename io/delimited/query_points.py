@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import StringIO
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -11,18 +11,22 @@ import numpy as np
 
 from ..._sentences import counted
 from ...errors import OptionError, ReadError
-from .columns import find_role
+from ...tin.screening.area_of_use import AreaOfUse
+from .axes import describe_turn, is_northing, require_one_hemisphere
+from .columns import describe_doubts
+from .grouping import find_plane_pair
+from .names import parse_name
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
     from ...arrays import Float64Array, ObjectArray
+    from ...crs import CRS
 
 __all__ = ["QueryPoints", "read_query_points"]
 
 _DELIMITERS = {",": "commas", ";": "semicolons", "\t": "tabs"}
-_IN_DEGREES = ("lon", "lat")
 _SHOWN = 5
 
 
@@ -47,7 +51,11 @@ class _Table(NamedTuple):
 
 
 def read_query_points(
-    path: Path, *, columns: tuple[str, str] | None = None, delimiter: str | None = None
+    path: Path,
+    *,
+    columns: tuple[str, str] | None = None,
+    delimiter: str | None = None,
+    crs: CRS | None = None,
 ) -> QueryPoints:
     """Read points from a text file whose first line names the columns.
 
@@ -57,6 +65,8 @@ def read_query_points(
     columns : (str, str), optional
         Names of the columns of easting (longitude) and northing (latitude); default those that
         are called so.
+    crs : CRS, optional
+        Of the points: where it calls its northing X, a column X is taken as the northing.
     delimiter : str, optional
         What separates columns; default that of comma, semicolon and tab which the header has.
 
@@ -77,12 +87,25 @@ def read_query_points(
     xy = np.column_stack([_parse_numbers(table, column, path) for column in chosen])
     cells = np.array(table.rows, object).reshape(len(table.rows), len(table.header))
     names = [table.header[column] for column in chosen]
-    return QueryPoints(
+    found = QueryPoints(
         columns={name: cells[:, k] for k, name in enumerate(table.header)},
         xy=xy,
-        is_degrees=any(_is_longitude(name) for name in names),
+        is_degrees=any(parse_name(name).kind == "angle" for name in names),
         notes=notes,
     )
+    return found if columns is not None else _settle_header(found, names, crs, path)
+
+
+def _settle_header(
+    points: QueryPoints, names: Sequence[str], crs: CRS | None, path: Path
+) -> QueryPoints:
+    """Look at what names alone leave open: hemispheres, and an X that points north."""
+    if points.is_degrees:
+        require_one_hemisphere(points.columns, path)
+    if crs is None or not is_northing(names[0], points.xy, crs, AreaOfUse.of(crs, None)):
+        return points
+    turned = points.xy[:, ::-1].copy()
+    return replace(points, xy=turned, notes=(f"{describe_turn(crs, names[0], names[1])}.",))
 
 
 def _read_table(path: Path, delimiter: str | None) -> _Table:
@@ -138,11 +161,6 @@ def _require_names(header: Sequence[str], path: Path) -> None:
             raise ReadError(f"The header of '{path}' has {what}: names must differ.", path=path)
 
 
-def _is_longitude(name: str) -> bool:
-    plain = name.casefold()
-    return plain.startswith(_IN_DEGREES) or "longitud" in plain
-
-
 def _find_coordinates(
     header: Sequence[str], named: tuple[str, str] | None, path: Path
 ) -> tuple[tuple[int, int], tuple[str, ...]]:
@@ -152,16 +170,15 @@ def _find_coordinates(
             if name not in header:
                 raise OptionError("column", name, header)
         return (header.index(named[0]), header.index(named[1])), ()
-    roles = [find_role(name) for name in header]
-    found = [[k for k, role in enumerate(roles) if role == one] for one in ("easting", "northing")]
-    if [len(one) for one in found] != [1, 1]:
-        names = ", ".join(header)
+    pair = find_plane_pair(header)
+    if pair is None:
+        names = "; ".join(filter(None, (", ".join(header), describe_doubts(header))))
         raise ReadError(
             f"Which columns of '{path}' are easting and northing is open: name them; it has "
             f"{names}.",
             path=path,
         )
-    (east,), (north,) = found
+    east, north = pair
     note = f"By the header {header[east]} is the easting and {header[north]} the northing."
     return (east, north), (note,)
 

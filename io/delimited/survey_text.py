@@ -20,6 +20,7 @@ from ...tin.types import RowSources
 from ..registry.losses import keep_on_one_line
 from ..reprojection.placement import place, settle_unit
 from ..reprojection.transformation import is_geographic
+from .axes import require_no_geocentric, require_one_hemisphere, settle_axes
 from .columns import find_unit_word
 from .content import find_columns_by_content
 from .findings import (
@@ -31,16 +32,21 @@ from .findings import (
     find_rounded_coordinates,
     find_split_thousands,
     find_summary_rows,
-    find_turned_axes,
     find_unit_words,
-    find_units_above,
     require_in_area,
     require_one_header,
     require_unit_of_crs,
 )
+from .headings import find_axes_line, find_unit_line
 from .layout import find_layout
 from .lines import COMMENT_PREFIXES, read_lines
-from .table import describe_columns, describe_faults_of_rows, read_cells, read_table
+from .table import (
+    describe_columns,
+    describe_faults_of_rows,
+    read_cells,
+    read_table,
+    require_one_mark,
+)
 from .truncation import leave_out_cut_row
 
 if TYPE_CHECKING:
@@ -51,6 +57,7 @@ if TYPE_CHECKING:
     from ...arrays import AnyArray, Float64Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from .columns import Columns
+    from .headings import AxesLine
     from .layout import Layout
     from .lines import TextLines
     from .table import Cells, Fault, Table
@@ -144,18 +151,22 @@ def read(
     area = AreaOfUse.of(source, target)
     meaning, notes = _find_columns(cells, layout, area, left_out, path)
     told_units = require_unit_of_crs(meaning, source or target, path, is_told=columns is not None)
+    require_one_mark(cells, meaning, layout, path)
     table = read_table(cells, layout, meaning, lines)
     table, told_cut = leave_out_cut_row(table, lines, layout, meaning, path, skip_bad=skip_bad)
     _require_few_faults(table.faults, lines, layout, path, skip_bad=skip_bad)
     require_one_header(table.faults, lines, layout.delimiter, meaning, path)
     told = _account_for_rows(table, left_out, path)
-    notes = [*layout.notes, *notes, *told_units, *told_cut, *told.notes]
+    unit, told_unit = _find_unit(layout, lines, Unit.of(z_unit), path)
+    is_headed = layout.columns is not None and columns is None
+    if is_headed:
+        line = find_axes_line(lines, layout.rows)
+        told, meaning = _settle_header(told, meaning, (source or target, area, line), path)
+    notes = [*layout.notes, *notes, *told_units, *told_cut, *told.notes, *told_unit]
     notes += [
-        *require_in_area(told.points, told.rows, meaning, area, path),
-        *_find_turned(told, layout, source or target, area, is_told=columns is not None),
+        *require_in_area(told.points, told.rows, meaning, area, path, is_headed=is_headed),
         *_find_odd(told, lines, layout, meaning, in_degrees=is_geographic(source)),
     ]
-    unit = settle_unit(Unit.of(z_unit), _find_header_unit(layout), path)
     placed = place(
         told.points, source=source, target=target, path=path, unit=unit, looks_at_area=False
     )
@@ -172,14 +183,6 @@ def read(
     )
 
 
-def _find_turned(
-    told: _Accounted, layout: Layout, crs: CRS | None, area: AreaOfUse | None, *, is_told: bool
-) -> list[str]:
-    if layout.columns is None or is_told:
-        return []
-    return find_turned_axes(told.points, layout.columns, crs, area)
-
-
 def _find_odd(
     told: _Accounted, lines: TextLines, layout: Layout, columns: Columns, *, in_degrees: bool
 ) -> list[str]:
@@ -189,7 +192,6 @@ def _find_odd(
         *find_repeated_numbers(numbers, told.rows),
         *find_rounded_coordinates(lines, told.rows, layout.delimiter, columns),
         *find_summary_rows(told.points, told.rows, (numbers, names)),
-        *find_units_above(lines, int(layout.rows[0])),
         *find_commented_points(lines, layout.rows, layout, columns),
         *(() if layout.columns is None else _find_split(told, layout, columns)),
     ]
@@ -201,10 +203,42 @@ def _find_split(told: _Accounted, layout: Layout, columns: Columns) -> list[str]
     return find_split_thousands(told.points, beyond, layout.delimiter)
 
 
-def _find_header_unit(layout: Layout) -> Unit | None:
-    """Return the unit of elevations that the header names; a word that is no length tells none."""
+def _settle_header(
+    told: _Accounted,
+    columns: Columns,
+    place: tuple[CRS | None, AreaOfUse | None, AxesLine | None],
+    path: Path,
+) -> tuple[_Accounted, Columns]:
+    """Refuse what no header can mean, and take X for the northing where the CRS does."""
+    if columns.is_degrees:
+        require_one_hemisphere(told.attributes, path)
+    require_no_geocentric(told.points, columns, path)
+    points, columns, notes = settle_axes(told.points, columns, *place)
+    return told._replace(points=points, notes=[*told.notes, *notes]), columns
+
+
+def _find_unit(
+    layout: Layout, lines: TextLines, declared: Unit | None, path: Path
+) -> tuple[Unit | None, list[str]]:
+    """Return the unit of elevations by the header, a line near the table or the caller."""
+    named = _find_known_unit(layout.elevation_unit)
+    line = find_unit_line(lines, layout.rows)
+    if line is None or not line.unit:
+        return settle_unit(declared, named, path), [line.note] if line else []
+    told = _find_known_unit(line.unit)
+    if named not in (None, told) or declared not in (None, told):
+        raise ReadError(
+            f"'{path}': {line.label} tells {line.unit} as the unit of the elevations, and the "
+            f"{'header' if named else 'option z_unit'} another: make them agree.",
+            path=path,
+        )
+    return told, [line.note]
+
+
+def _find_known_unit(word: str | None) -> Unit | None:
+    """Return a unit of length; a word that is none tells none."""
     try:
-        return Unit.of(layout.elevation_unit)
+        return Unit.of(word)
     except OptionError:
         return None
 
@@ -232,7 +266,11 @@ def _find_columns(
     try:
         columns = [one.without(nodata) for one in describe_columns(cells, layout)]
         found, note = find_columns_by_content(
-            columns, area, is_scan=layout.is_scan, is_announced=layout.is_announced
+            columns,
+            area,
+            is_scan=layout.is_scan,
+            is_announced=layout.is_announced,
+            heading=layout.heading.label if layout.heading else "",
         )
     except ReadError as error:
         raise ReadError(f"'{path}': {error}", path=path) from None

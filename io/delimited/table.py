@@ -51,6 +51,7 @@ __all__ = [
     "describe_faults_of_rows",
     "read_cells",
     "read_table",
+    "require_one_mark",
 ]
 
 _SHOWN = 5
@@ -360,6 +361,36 @@ def _measure_distinct_share(values: Float64Array) -> float:
 
 
 # ------------------------------------------------------------------ the table
+
+
+def require_one_mark(cells: Cells, columns: Columns, layout: Layout, path: Path) -> None:
+    """Refuse 512,350 beside 512.700: a decimal mark or a group, as no other coordinate tells.
+
+    Raises
+    ------
+    ReadError
+    """
+    mark = layout.decimal
+    texts = {
+        i: _strip_texts(cells.columns[i])
+        for i in columns.coordinates
+        if cells.columns[i].dtype.kind not in "fib" and not layout.is_decimal_told
+    }
+    grouped = {i: [c for c in column if is_grouped(c, mark)] for i, column in texts.items()}
+    if any(mark in c or proves_groups(c, mark) for found in grouped.values() for c in found):
+        return
+    for i, column in texts.items():
+        divided = next((c for c in column if mark in c and is_number(c, mark)), None)
+        if grouped[i] and divided is not None:
+            line = int(cells.rows[column.index(grouped[i][0])]) + 1
+            raise ReadError(
+                f"'{path}', line {line}: '{grouped[i][0]}' beside '{divided}' in "
+                f"{columns.label(i)} may have a decimal mark or separate thousands: write all "
+                f"numbers in one way, or decimal='{mark}' takes the other mark as that of "
+                "thousands.",
+                path=path,
+                lines=[line],
+            )
 
 
 def read_table(cells: Cells, layout: Layout, columns: Columns, lines: TextLines) -> Table:

@@ -24,6 +24,7 @@ from ...tin.screening.nodata import describe_elevations, parse_nodata
 from ..isolated import Limits, choose_limits, run_isolated, stream_isolated
 from ..isolated.free_memory import measure_free_memory
 from ..reprojection.placement import place, settle_unit
+from .meaning import Meaning, find_meaning, settle_axes
 from .virtual import is_virtual, require_plain_sources
 
 if TYPE_CHECKING:
@@ -196,13 +197,12 @@ def make_survey(
 
     ``open_strips`` takes what to read, and gives the strips that ``gdal_child.read_strips`` yields.
     """
-    path = dataset.path
-    number = choose_band(dataset, choice.band, path)
-    require_elevation_band(dataset, number, choice.band is not None, path)
-    target, source = CRS.of(crs), CRS.of(dataset.crs)
-    unit, said = find_elevation_unit(dataset, number, source, Unit.of(z_unit))
+    path, target = dataset.path, CRS.of(crs)
+    number, dataset, said = choose_elevations(dataset, choice.band)
+    dataset, source, told = settle_axes(dataset, target)
+    unit, told_unit = find_elevation_unit(dataset, number, source, Unit.of(z_unit))
     cells = _choose_cells(dataset, choice, path)
-    said = [*said, *_describe_window(dataset, choice)]
+    said = [*said, *told, *told_unit, *_describe_window(dataset, choice)]
     left_out = 0 if choice.most_cells is None else cells.width * cells.height - cells.count
     marks = parse_nodata(choice.nodata)
     _require_few_cells(cells, path)
@@ -341,6 +341,10 @@ class Header:
     offsets: list[float]
     units: list[str | None]
     crs: str | None
+    meanings: list[dict[str, str]]
+    """Of the first bands: what names and describes them."""
+    tags: dict[str, str]
+    """Units and standard names of the variables of netCDF."""
     limits: Limits | None
 
     @property
@@ -376,6 +380,21 @@ def _measure_files(path: Path) -> int:
     """Return the bytes of a raster, those of the sources of a virtual one included."""
     sources = require_plain_sources(path) if is_virtual(path) else []
     return sum(one.stat().st_size for one in [path, *sources] if one.is_file())
+
+
+def choose_elevations(dataset: Header, band: int | None) -> Meaning:
+    """Return the band of elevations, the one asked for or the one that the file tells.
+
+    Raises
+    ------
+    ReadError
+        If it is none, or the raster has no place.
+    OptionError
+        If there is no such band.
+    """
+    found = find_meaning(dataset, band, choose_band(dataset, band, dataset.path))
+    require_elevation_band(dataset, found.band, band is not None, dataset.path)
+    return found
 
 
 def choose_band(dataset: Header, band: int | None, path: Path) -> int:

@@ -18,13 +18,13 @@ from ..isolated.spooling import is_pipe, require_readable
 from ..reprojection.placement import place
 from .dem import (
     Header,
-    choose_band,
+    choose_elevations,
     find_elevation_unit,
     find_middle,
     read_header,
-    require_elevation_band,
     stream_strips,
 )
+from .meaning import settle_axes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -117,9 +117,9 @@ def _make_raster(
     band: int | None,
     marks: Float64Array,
 ) -> Raster:
-    path, source = header.path, CRS.of(header.crs)
-    number = choose_band(header, band, path)
-    require_elevation_band(header, number, band is not None, path)
+    path = header.path
+    number, header, said = choose_elevations(header, band)
+    header, source, told = settle_axes(header, target)
     unit, notes = find_elevation_unit(header, number, source, declared)
     grid = to_grid(header.transform, (header.height, header.width), os.fspath(path))
     if source is not None and target is not None and not source.is_same(target):
@@ -132,7 +132,7 @@ def _make_raster(
         crs=placed.crs,
         units={"elevation": placed.elevation_unit},
         name=path.stem,
-        notes=[*notes, *placed.notes],
+        notes=[*said, *told, *notes, *placed.notes],
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,6 +16,11 @@ from ..isolated.gdal import RASTER_DRIVERS, REFERRING_DRIVERS, make_environment
 __all__ = ["ENVIRONMENT", "cut_strips", "describe", "prepare", "read_header", "read_strips"]
 
 ENVIRONMENT = make_environment()
+
+_SAID = 64
+"""Bands of which is told what they are said to hold."""
+_WORDS = ("standard_name", "long_name", "positive", "NETCDF_VARNAME")
+_AXIS = re.compile(r"[^#]+#(units|standard_name)|NETCDF_DIM_EXTRA")
 
 
 def prepare() -> None:
@@ -53,7 +59,15 @@ def describe(dataset: Any) -> dict[str, Any]:
         "offsets": list(dataset.offsets),
         "units": [unit or None for unit in dataset.units],
         "crs": dataset.crs.to_wkt() if dataset.crs else None,
+        "meanings": [_list_words(dataset, band) for band in range(1, dataset.count + 1)[:_SAID]],
+        "tags": {key: value for key, value in dataset.tags().items() if _AXIS.fullmatch(key)},
     }
+
+
+def _list_words(dataset: Any, band: int) -> dict[str, str]:
+    """Return what a dataset says of the meaning of a band."""
+    tags = {key: value for key, value in dataset.tags(band).items() if key in _WORDS}
+    return {**tags, "description": dataset.descriptions[band - 1] or ""}
 
 
 def read_strips(

@@ -161,6 +161,9 @@ class _Cells:
         self.nodatavals = (about["nodata"],)
         self.scales, self.offsets = (about.get("scale", 1.0),), (about.get("offset", 0.0),)
         self.units = (about["unit"],)
+        self.descriptions = ("",)
+        self._words = about.get("words", {})
+        self._axis_words = about.get("axis_words", {})
         text = about["crs"]
         self.crs = None if text is None else SimpleNamespace(to_wkt=lambda: text)
 
@@ -168,6 +171,10 @@ class _Cells:
         """Return the cells of a window."""
         (top, bottom), (left, right) = window
         return np.ma.getdata(np.asarray(self.values[top:bottom, left:right]))
+
+    def tags(self, band: int | None = None) -> dict[str, str]:
+        """Return what names and describes the band, or the axes, as GDAL does for netCDF."""
+        return dict(self._axis_words if band is None else self._words)
 
     def read_masks(self, band: int, *, window: Any) -> UInt8Array:
         """Return 255 for every cell: what has no data is told by its value."""
@@ -206,6 +213,14 @@ def _describe_array(array: Any, band: int | None) -> _Cells:
         scale=float(attributes.get("scale_factor", 1.0)),
         offset=float(attributes.get("add_offset", 0.0)),
         crs=mapping.get("crs_wkt") or mapping.get("spatial_ref"),
+        words={key: str(value) for key, value in attributes.items()}
+        | {"NETCDF_VARNAME": str(array.name or "")},
+        axis_words={
+            f"{axis}#{key}": str(value)
+            for axis in (across, up)
+            if axis in array.coords
+            for key, value in array.coords[axis].attrs.items()
+        },
     )
 
 

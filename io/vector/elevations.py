@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -10,32 +9,30 @@ import numpy as np
 from ..._sentences import counted, height
 from ...crs import FOOT, US_SURVEY_FOOT, Unit
 from ...errors import OptionError, ReadError
+from ..delimited.columns import find_role, find_unit_word
+from ..reprojection.placement import settle_unit
 
 if TYPE_CHECKING:
     from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from .features import Features
 
-__all__ = ["Elevations", "find_elevations", "find_named_unit"]
+__all__ = [
+    "Elevations",
+    "find_elevation_unit",
+    "find_elevations",
+    "find_named_unit",
+    "list_elevation_columns",
+]
 
 GEOMETRY = "geometry"
-_NAMES = frozenset(
-    (
-        *("z", "elev", "elevation", "elevations", "height", "altitude", "level", "alt", "hgt"),
-        *("hoehe", "höhe", "kote", "quote", "quota", "cota", "altitud", "altitude_m", "rl"),
-        *("z_value", "zvalue", "elev_m", "elev_ft", "elevation_m", "elevation_ft", "contour"),
-        *("height_m", "z_m", "z_ft", "ele", "point_z", "grid_code", "gridcode", "orthometric"),
-    )
-)
-"""Columns that hold elevations, by the names that programs and people give them."""
+_NAMES = frozenset(("contour", "grid_code", "gridcode", "orthometric", "quote", "ele"))
+"""Names that programs give to columns of elevations, beside those that headers of texts have."""
+
+_HEIGHTS_OF_ANYTHING = frozenset(("h",))
+"""Beside elevations in the geometry these are columns like any other."""
 
 _SAME = 0.006
 """CRS units by which a rounded column and the geometry may differ: half a hundredth."""
-
-
-_UNIT_AT_END = re.compile(
-    r"[\s_.(\[-]+(us[\s_-]?ft|ft[\s_-]?us|ft|feet|foot|m|met(?:er|re)s?)[)\]]?$"
-)
-"""A unit behind the name of a column, as in ``elev_ft`` or ``Height (m)``."""
 
 
 class Elevations(NamedTuple):
@@ -49,13 +46,33 @@ class Elevations(NamedTuple):
     """What was assumed."""
 
 
+def find_elevation_unit(features: Features, declared: Unit | None) -> Unit | None:
+    """Return the unit of the elevations in geometries that the file or the caller tells.
+
+    Raises
+    ------
+    OptionError
+        If the two differ.
+    """
+    try:
+        told = Unit.of(features.elevation_unit or None)
+    except OptionError:  # such as "unknown", which is what we write
+        told = None
+    vertical = None if features.crs is None else features.crs.vertical_unit
+    return settle_unit(declared, told or vertical, features.path)
+
+
+def list_elevation_columns(features: Features) -> list[str]:
+    """Return the names of the columns that hold elevations."""
+    return list(_find_columns(features))
+
+
 def find_named_unit(name: str, features: Features) -> Unit | None:
-    """Return the unit that the name of a column ends with; None if it ends with none.
+    """Return the unit that the name of a column tells, as in ``elev_ft``; None if it tells none.
 
     Feet are those of the CRS, as "ft" is written for either kind.
     """
-    found = _UNIT_AT_END.search(name.lower())
-    unit = None if found is None else Unit.of(found[1])
+    unit = Unit.of(find_unit_word(name))
     if unit != FOOT or features.crs is None or features.crs.is_geographic:
         return unit
     units = (features.crs.vertical_unit, features.crs.horizontal_unit)
@@ -96,6 +113,8 @@ def find_elevations(
         return _take_column(features, columns, rows)
     z = _require_all(features, z, has_z, rows)
     for name, values in columns.items():
+        if name.lower() in _HEIGHTS_OF_ANYTHING:
+            continue
         _require_same(features, z, values[rows], name, rows)
     return Elevations(z)
 
@@ -152,7 +171,8 @@ def _find_columns(features: Features) -> dict[str, Float64Array]:
     """Return the columns that hold elevations, by their names."""
     found = {}
     for name, column in features.columns.items():
-        values = _as_numbers(column) if name.lower() in _NAMES else None
+        is_named = name.lower() in _NAMES or find_role(name) == "elevation"
+        values = _as_numbers(column) if is_named else None
         if values is not None and np.isfinite(values).any():
             found[name] = values
     return found
@@ -183,7 +203,7 @@ def _take_column(
         raise ReadError(
             f"'{features.path}' has no elevations: none in the geometry, and "
             + (f"no column of numbers with such a name ({known}): " if known else "no column: ")
-            + "the option z_field names the column that holds them.",
+            + " ".join(("the option z_field names the column that holds them.", *features.notes)),
             path=features.path,
         )
     name, values = next(iter(columns.items()))

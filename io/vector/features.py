@@ -35,6 +35,7 @@ _FOLDERS = (".gdb",)
 
 _DRAWING = ".dxf"
 _PARQUET = (".parquet", ".geoparquet")
+_ABOVE_GROUND = ("relativeToGround", "clampToGround", "relativeToSeaFloor", "clampToSeaFloor")
 _SHAPEFILE = b"\x00\x00\x27\x0a"
 
 
@@ -94,18 +95,45 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
     crs = None if head.names_no_crs else _find_file_crs(value["crs"], path)
     in_metres = head.is_json and crs is not None and crs.is_geographic  # by RFC 7946
     unit = value["elevation_unit"] or head.elevation_unit or ("metre" if in_metres else "")
-    return _drop_without_geometry(
-        Features(
-            path,
-            arrays["numbers"],
-            _parse_shapes(arrays, path, has_surfaces=not lines_only),
-            _decode_columns(value, arrays),
-            crs,
-            tuple(value.get("notes", ())),
-            tuple(name_apart(value["names"])),
-            unit,
-        )
+    found = Features(
+        path,
+        arrays["numbers"],
+        _parse_shapes(arrays, path, has_surfaces=not lines_only),
+        _decode_columns(value, arrays),
+        crs,
+        tuple(value.get("notes", ())),
+        tuple(name_apart(value["names"])),
+        unit,
     )
+    return _drop_heights_above_ground(_drop_without_geometry(found))
+
+
+def _drop_heights_above_ground(features: Features) -> Features:
+    """Leave heights of KML aside that are none above the sea: its altitude modes tell."""
+    modes = features.find_column("altitudemode")
+    if modes is None:
+        return features
+    shapely = _optional.load("shapely")
+    has_z = shapely.has_z(features.geometries)
+    told = np.array([str(mode or "") for mode in modes.tolist()], object)
+    is_above_ground = np.isin(told, _ABOVE_GROUND) & has_z
+    silent = int((has_z & (told == "")).sum())
+    if silent:
+        note = (
+            f"'{features.path.name}': {counted(silent, 'feature')} with heights and without an "
+            "altitudeMode, for which KML ignores them: they are taken as elevations."
+        )
+        features = features._replace(notes=(*features.notes, note))
+    if not is_above_ground.any():
+        return features
+    shapes = features.geometries.copy()
+    shapes[is_above_ground] = shapely.force_2d(shapes[is_above_ground])
+    named = sorted(set(told[is_above_ground].tolist()))
+    note = (
+        f"'{features.path.name}': heights of {counted(int(is_above_ground.sum()), 'feature')} are "
+        f"no elevations, by their altitudeMode {' and '.join(named)}, and are left out."
+    )
+    return features._replace(geometries=shapes, notes=(*features.notes, note))
 
 
 def _find_file_crs(text: str | None, path: Path) -> CRS | None:

@@ -11,8 +11,9 @@ from ..._sentences import counted
 from ...crs import assume_elevation_unit
 from ...errors import ReadError
 from ...tin.topology import find_offsets
-from ..reprojection.placement import place, settle_unit
+from ..reprojection.placement import place
 from ..reprojection.transformation import find_conversion_factor
+from .elevations import find_elevation_unit
 
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array, ObjectArray
@@ -207,14 +208,13 @@ def find_elevation_factor(features: Features, wanted: Wanted, *, notes: list[str
     Raises
     ------
     OptionError
-        If the unit declared is not that of the file's CRS.
+        If the unit declared is not the one that the file tells.
     ReadError
         If the unit of the points is known, that of the file is not, and its CRS is usual with
         another one.
     """
     source = features.crs or wanted.crs
-    vertical = None if features.crs is None else features.crs.vertical_unit
-    theirs = settle_unit(wanted.z_unit, vertical, features.path)
+    theirs = find_elevation_unit(features, wanted.z_unit)
     ours = wanted.elevation_unit or (None if wanted.crs is None else wanted.crs.vertical_unit)
     if theirs is None and features.crs is None:
         return 1.0

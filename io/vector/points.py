@@ -20,7 +20,7 @@ from ...tin.screening.nodata import describe_elevations, parse_nodata
 from ...tin.topology import find_offsets
 from ..mesh.common import Reference, make_tin
 from ..reprojection.placement import place, settle_unit
-from .elevations import find_elevations
+from .elevations import find_elevation_unit, find_elevations
 from .features import Features, read_features
 
 if TYPE_CHECKING:
@@ -87,9 +87,8 @@ def read(
     role = None if lines_as is None else choice("lines_as", lines_as, LineReading)
     features = read_features(path, layer=layer, where=where)
     declared = Unit.of(z_unit)
-    asked = _Asked(
-        CRS.of(crs), declared, _find_unit(features, declared), z_field, parse_nodata(nodata)
-    )
+    unit = find_elevation_unit(features, declared)
+    asked = _Asked(CRS.of(crs), declared, unit, z_field, parse_nodata(nodata))
     kinds = _list_kinds(features)
     if kinds == {_POINT}:
         return _make_survey(_gather_points(features), features, asked)
@@ -128,16 +127,6 @@ class _Vertices(NamedTuple):
     rows: Int64Array
     bounds: Int64Array
     has_z: BoolArray
-
-
-def _find_unit(features: Features, declared: Unit | None) -> Unit | None:
-    """Return the unit of elevations that the file or the caller tells."""
-    try:
-        told = Unit.of(features.elevation_unit or None)
-    except OptionError:  # such as "unknown", which is what we write
-        told = None
-    vertical = None if features.crs is None else features.crs.vertical_unit
-    return settle_unit(declared, told or vertical, features.path)
 
 
 # ----------------------------------------------------------------------- the geometry

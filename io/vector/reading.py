@@ -11,19 +11,20 @@ from typing import TYPE_CHECKING, get_args
 import numpy as np
 
 from ..._atomic import as_path
-from ..._sentences import height
+from ..._sentences import height, inflect
 from ...crs import CRS, Unit
 from ...errors import ReadError
 from ...policies import BreaklineKind
 from ...tin import Breakline, Water
 from ...tin.constraints.breaklines import as_ring
 from ..reprojection.placement import settle_unit
-from .elevations import find_named_unit
+from .elevations import find_named_unit, list_elevation_columns
 from .features import Features, read_features
 from .parts import Part, Wanted, find_elevation_factor, split_into_parts
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Sequence
 
     from ...arrays import Float64Array
     from ...crs import CrsLike, UnitLike
@@ -109,6 +110,8 @@ def read_lines(
     parts = split_into_parts(
         features, _parse_wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes
     )
+    if notes is not None and not drape:
+        notes.extend(_describe_unused(features, parts))
     kinds = _parse_kinds(features) if kind is None else [kind] * len(features.numbers)
     priorities, names = _parse_priorities(features), _find_texts(features, "name")
     return [
@@ -116,6 +119,19 @@ def read_lines(
             part.coords, kind=kinds[part.row], priority=priorities[part.row], name=names[part.row]
         )
         for part in parts
+    ]
+
+
+def _describe_unused(features: Features, parts: Sequence[Part]) -> list[str]:
+    """Tell of a column of elevations beside lines that have none in their geometry."""
+    columns = list_elevation_columns(features)
+    count = sum(part.coords.shape[1] == 2 for part in parts)
+    if not columns or count == 0:
+        return []
+    lines = inflect("[line|lines] without elevations [takes its|take theirs]", count)
+    return [
+        f"'{features.path.name}': {count} {lines} from the surface, and not from the column "
+        f"'{columns[0]}'; if these are contours, ts.from_contours (--from-contours) reads it."
     ]
 
 
@@ -375,6 +391,7 @@ def _find_levels(features: Features, wanted: Wanted, z: float | str | None) -> l
     unit = find_named_unit(name, features)
     if unit is not None:
         wanted = wanted._replace(z_unit=settle_unit(wanted.z_unit, unit, features.path))
+        features = features._replace(elevation_unit="")  # is that of the geometries
     factor = find_elevation_factor(features, wanted, notes=[])
     return [None if level is None else level * factor for level in found]
 

@@ -77,6 +77,8 @@ def blunder_map(tin: TIN, table: Table, *, title: str | None = None) -> Any:
     require_type("table", table, Table)
     if "reason" not in table.columns or "certainty" not in table.columns:
         raise OptionError("table", table, "one of ts.blunders")
+    if len(table) and table["row"].max() >= len(tin.vertex_of):
+        raise OptionError("table", table, f"one of the {len(tin.vertex_of)} points of the surface")
     ground, table = _leave_out(tin, table), _turn(table, tin)
     drawn = start_map(
         ground,

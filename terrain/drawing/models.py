@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -113,7 +114,7 @@ def parse_exaggeration(exaggeration: float) -> float:
 
 
 def _round_down_to_power(extent: float) -> float:
-    return 10.0 ** math.floor(math.log10(extent)) if extent > 0 else 1.0
+    return 10.0 ** math.floor(math.log10(extent)) if extent > sys.float_info.min else 1.0
 
 
 def _parse_origin(origin: ArrayLike) -> Float64Array:

@@ -143,6 +143,6 @@ def _sum(pieces: Pieces, second: Surface) -> dict[str, float]:
     own = pieces.surface
     groups = np.zeros(len(own.triangles), np.int32)
     sums = _kernel.sum_between(
-        own.points, own.triangles, groups, 1, second.points, second.triangles, 1.0, 1, None
+        own.points, own.triangles, groups, 1, second.points, second.triangles, 1.0, False, 1, None
     )
     return dict(zip(_kernel.SUMS, sums[0].tolist(), strict=True))

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...tin import TIN
 from ...tin.topology import NO_NEIGHBOR
 
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
-__all__ = ["leave_out_slivers", "measure_rounding"]
+__all__ = ["find_slivers", "leave_out_slivers", "measure_rounding", "take_without_slivers"]
 
 _ROUNDINGS = 8.0
 """Points on a line, turned and rounded, lie off it by some three roundings of a coordinate."""
@@ -28,16 +29,9 @@ def leave_out_slivers(
     neighbors: Int32Array,
     rounding: float | None = None,
 ) -> tuple[Int32Array, Int32Array]:
-    """Return triangles and neighbours without those along the boundary by rounding only.
-
-    The boundary points of a turned grid, or of a slanted line, are collinear as surveyed and not in
-    doubles: the hull has triangles there with a height of a few roundings and any slope. Without
-    them the boundary moves by no more than their heights. All are kept if none would be left.
-    """
-    if rounding is None:
-        rounding = measure_rounding(points)
-    is_kept = ~_find_slivers(points, triangles, neighbors, rounding)
-    if is_kept.all() or not is_kept.any():
+    """Return triangles and neighbours without those that :func:`find_slivers` finds."""
+    is_kept = ~find_slivers(points, triangles, neighbors, rounding)
+    if is_kept.all():
         return triangles, neighbors
     number = np.append(np.cumsum(is_kept) - 1, NO_NEIGHBOR)  # the last for no neighbour
     number[:-1][~is_kept] = NO_NEIGHBOR
@@ -45,13 +39,27 @@ def leave_out_slivers(
     return kept, number[neighbors[is_kept]].astype(np.int32)
 
 
-def _find_slivers(
-    points: Float64Array, triangles: Int32Array, neighbors: Int32Array, rounding: float
-) -> BoolArray:
-    """Tell which thin triangles have their longest edge in the boundary, or two of their edges.
+def take_without_slivers(tin: TIN) -> TIN:
+    """Return a TIN without the triangles that :func:`find_slivers` finds."""
+    triangles, _ = leave_out_slivers(tin.points, tin.triangles, tin.neighbors)
+    return tin if triangles is tin.triangles else TIN.from_triangles(tin.points, triangles)
 
-    Those that lie in the boundary without these follow.
+
+def find_slivers(
+    points: Float64Array,
+    triangles: Int32Array,
+    neighbors: Int32Array,
+    rounding: float | None = None,
+) -> BoolArray:
+    """Tell which triangles lie along the boundary by rounding only: (m,).
+
+    The boundary points of a turned grid, or of a slanted line, are collinear as surveyed and not in
+    doubles: the hull has triangles there with a height of a few roundings and any slope, whose
+    longest edge lies in the boundary, or two of their edges. Without them others do, and follow.
+    The boundary moves by no more than their heights. None is one if all would be.
     """
+    if rounding is None:
+        rounding = measure_rounding(points)
     is_thin, longest = _find_thin(points, triangles, _ROUNDINGS * rounding)
     is_sliver = np.zeros(len(triangles), bool)
     pending = np.flatnonzero(is_thin).tolist()
@@ -64,7 +72,7 @@ def _find_slivers(
         if is_open[longest[triangle]] or sum(is_open) > 1:
             is_sliver[triangle] = True
             pending += [other for other in across if other != NO_NEIGHBOR and is_thin[other]]
-    return is_sliver
+    return is_sliver & ~is_sliver.all()
 
 
 def _find_thin(

@@ -134,7 +134,9 @@ def _refuse_empty(first: Surface, second: Surface) -> NoReturn:
 
 def _overlay(first: Surface, second: Surface) -> _kernel.OverlayMesh:
     try:
-        return _kernel.overlay(first.points, first.triangles, second.points, second.triangles)
+        return _kernel.overlay(
+            first.points, first.triangles, second.points, second.triangles, is_other_apart=True
+        )
     except OverflowError:
         raise PointsError(
             f"The overlay of both surfaces has more than {_MOST_VERTICES:,} vertices: subtract "

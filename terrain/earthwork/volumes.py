@@ -218,6 +218,8 @@ def _sum_between(
     up: float,
     threads: int,
     progress: Tell | None = None,
+    *,
+    is_other_apart: bool = True,
 ) -> Float64Array:
     return _kernel.sum_between(
         pieces.surface.points,
@@ -227,6 +229,7 @@ def _sum_between(
         other.points,
         other.triangles,
         up,
+        is_other_apart,
         threads,
         progress,
     )
@@ -245,7 +248,7 @@ def _describe_overlaps(parts: Pieces | None, names: list[str]) -> list[str]:
     """Tell how much regions overlap: what lies in several counts in each of them."""
     if parts is None or len(names) < 2:
         return []
-    sums = _sum_between(parts, len(names), parts.surface, 1.0, 1)
+    sums = _sum_between(parts, len(names), parts.surface, 1.0, 1, is_other_apart=False)
     doubled = _subtract(sums[:, 0], _measure_areas(parts, len(names)))
     if not doubled.any():
         return []

@@ -11,6 +11,7 @@ from ...errors import OptionError
 from ...tin.topology import NO_NEIGHBOR, find_boundary_vertices, gather
 from ...tin.validation.options import as_flag, is_finite_number
 from ..earthwork.reference import find_reference
+from ..earthwork.slivers import find_slivers
 from ..relief.dissolving import number_components
 from ..results import Features
 from .descent import Walker
@@ -363,7 +364,9 @@ def _draw_waters(
     name: str,
     notes: tuple[str, ...],
 ) -> Features:
-    drawn = gather_polygons(cut_below(tin.points, tin.triangles, waters))
+    is_drawn = ~find_slivers(tin.points, tin.triangles, tin.neighbors)[waters.triangles]
+    seen = Waters(waters.triangles[is_drawn], waters.numbers[is_drawn], waters.levels)
+    drawn = gather_polygons(cut_below(tin.points, tin.triangles, seen))
     levels = np.repeat(
         waters.levels[drawn.regions],
         np.diff(drawn.ring_offsets[drawn.polygon_offsets[drawn.feature_offsets]]),

@@ -12,6 +12,7 @@ from ..._products import product
 from ...errors import OptionError
 from ...tin.predicates import orientation
 from ...tin.validation.options import require_tin
+from ..earthwork.slivers import take_without_slivers
 from ..results import Features
 
 if TYPE_CHECKING:
@@ -89,8 +90,9 @@ def check_contours(tin: TIN, lines: Features) -> ContourCheck:
     -----
     It knows nothing of how the lines were made. Whether segments meet is decided by the robust
     predicates of GEOS; elevations are compared at every edge of the TIN that a segment crosses,
-    between which they vary linearly. Near exact lines the deviation is rounding: that of a
-    coordinate times the slope.
+    between which they vary linearly; in triangles along the boundary that are thinner than the
+    rounding of their coordinates nothing is compared. Near exact lines the deviation is rounding:
+    that of a coordinate times the slope.
 
     Examples
     --------
@@ -105,7 +107,8 @@ def check_contours(tin: TIN, lines: Features) -> ContourCheck:
         raise OptionError("lines", lines, allowed="contours, as lines with elevations")
     segments = _list_segments(lines)
     contacts, shared, pairs = _find_contacts(tin, segments)
-    return ContourCheck(contacts, pairs, shared, _find_largest_deviation(tin, segments))
+    largest = _find_largest_deviation(take_without_slivers(tin), segments)
+    return ContourCheck(contacts, pairs, shared, largest)
 
 
 def _list_segments(lines: Features) -> _Segments:

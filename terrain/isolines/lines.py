@@ -9,6 +9,7 @@ from ..._progress import Progress
 from ...tin.types import seal
 from ...tin.validation.options import require_tin
 from .. import _kernel
+from ..earthwork.slivers import take_without_slivers
 from ..georeference import describe_unknown, find_plane_units
 from ..results import Features
 from .levels import LevelOptions, Levels
@@ -82,6 +83,8 @@ def contours(
 
     Smoothed and simplified lines never touch or cross one another, but where exact lines meet in a
     vertex at their level, and never leave the tolerance: :func:`tinsmith.check_contours` proves it.
+    They have no part in triangles along the boundary that are thinner than the rounding of their
+    coordinates.
 
     Levels are computed as decimal numbers: three steps of 0.1 are 0.3, as a vertex has it.
 
@@ -102,11 +105,12 @@ def contours(
         for name, value in (("smooth", smooth), ("simplify", simplify))
     ]
     done(0.05)
-    lines = _trace(tin, chosen, options)
+    surface = take_without_slivers(tin) if any(tolerances) else tin
+    lines = _trace(surface, chosen, options)
     done(0.4 if any(tolerances) else 0.9)
     if any(tolerances) and len(lines.level):
         lines = smooth_lines(
-            tin, lines, chosen.values, smooth=tolerances[0], simplify=tolerances[1]
+            surface, lines, chosen.values, smooth=tolerances[0], simplify=tolerances[1]
         )
     done(0.9)
     found = _as_features(tin, lines, chosen)

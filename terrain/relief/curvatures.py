@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..._products import product
-from ...errors import choice
+from ...errors import PointsError, choice
 from ...policies import CurvatureKind, SurfacePart
 from ...tin.validation.options import require_tin
 from ...tin.validation.threads import thread_count
@@ -61,6 +61,8 @@ def curvature(
     ------
     OptionError
         For another kind, or another place.
+    PointsError
+        If curvatures overflow.
 
     Notes
     -----
@@ -93,7 +95,13 @@ def curvature(
     found = np.empty(derivatives.shape[1])
     for start in range(0, len(found), _CHUNK):
         rows = slice(start, start + _CHUNK)
-        found[rows] = _FORMULAS[kind](_Derivatives(*derivatives[:, rows]))
+        with np.errstate(over="ignore", invalid="ignore"):  # refused below
+            found[rows] = _FORMULAS[kind](_Derivatives(*derivatives[:, rows]))
+    if np.isinf(derivatives).any() or np.isinf(found).any():
+        raise PointsError(
+            "Elevations are too large, or points too near to each other, for curvatures in double "
+            "precision: they overflow."
+        )
     if per == "triangle":
         found = found[tin.triangles].mean(axis=1)
     return found
@@ -111,40 +119,51 @@ def _fit(tin: TIN) -> Float64Array:
 # ------------------------------------------------------------------------------ formulas
 
 
+# In the direction (x, y) / hypot(x, y) of the gradient and in its secant hypot(1, x, y), rather
+# than in powers of x and y: these overflow where it is steep.
+
+
 def _compute_profile(d: _Derivatives) -> Float64Array:
-    along = d.xx * d.x**2 + 2 * d.xy * d.x * d.y + d.yy * d.y**2
-    return _divide(-along, _measure_steepness(d) * (1 + _measure_steepness(d)) ** 1.5)
+    x, y = _find_direction(d)
+    secant = _measure_secant(d)
+    return -(d.xx * x**2 + 2 * d.xy * x * y + d.yy * y**2) / secant / secant / secant
 
 
 def _compute_plan(d: _Derivatives) -> Float64Array:
-    return _divide(-_sum_across(d), _measure_steepness(d) ** 1.5)
+    with np.errstate(invalid="ignore", divide="ignore"):  # NaN where it is level
+        return -_sum_across(d) / np.hypot(d.x, d.y)
 
 
 def _compute_tangential(d: _Derivatives) -> Float64Array:
-    return _divide(-_sum_across(d), _measure_steepness(d) * np.sqrt(1 + _measure_steepness(d)))
+    return -_sum_across(d) / _measure_secant(d)
 
 
 def _compute_mean(d: _Derivatives) -> Float64Array:
-    bend = (1 + d.y**2) * d.xx - 2 * d.x * d.y * d.xy + (1 + d.x**2) * d.yy
-    return _divide(-bend, 2 * (1 + _measure_steepness(d)) ** 1.5)
+    secant = _measure_secant(d)
+    x, y, up = d.x / secant, d.y / secant, 1 / secant
+    bend = (up**2 + y**2) * d.xx - 2 * x * y * d.xy + (up**2 + x**2) * d.yy
+    return -bend / (2 * secant)
 
 
 def _compute_gaussian(d: _Derivatives) -> Float64Array:
-    return _divide(d.xx * d.yy - d.xy**2, (1 + _measure_steepness(d)) ** 2)
+    secant = _measure_secant(d)
+    xx, xy, yy = (side / secant / secant for side in (d.xx, d.xy, d.yy))
+    return xx * yy - xy**2
 
 
-def _measure_steepness(d: _Derivatives) -> Float64Array:
-    return np.asarray(d.x**2 + d.y**2)
+def _find_direction(d: _Derivatives) -> tuple[Float64Array, Float64Array]:
+    """Return the unit vector of the gradient; NaN where it is 0."""
+    with np.errstate(invalid="ignore"):
+        return d.x / np.hypot(d.x, d.y), d.y / np.hypot(d.x, d.y)
+
+
+def _measure_secant(d: _Derivatives) -> Float64Array:
+    return np.hypot(1.0, np.hypot(d.x, d.y))
 
 
 def _sum_across(d: _Derivatives) -> Float64Array:
-    return np.asarray(d.xx * d.y**2 - 2 * d.xy * d.x * d.y + d.yy * d.x**2)
-
-
-def _divide(value: Float64Array, divisor: Float64Array) -> Float64Array:
-    """Divide, and return NaN where the divisor is 0."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(divisor == 0.0, np.nan, value / divisor)
+    x, y = _find_direction(d)
+    return np.asarray(d.xx * y**2 - 2 * d.xy * x * y + d.yy * x**2)
 
 
 _FORMULAS = {

@@ -12,20 +12,20 @@ import numpy as np
 
 from ...policies import CrossingPolicy, DuplicatePolicy
 from .. import _kernel
-from ..constraints.clipping import Surface, in_rings
+from ..constraints.clipping import Surface
 from ..constraints.conforming import conform
 from ..constraints.constraint_set import ABOVE_ALL, BELOW_ALL, LineSet
 from ..constraints.noding import Noded, accept_noded, node
 from ..constraints.polylines import Polylines
 from ..constraints.pslg import build_mesh, build_mesh_of_growth, force
 from ..report import Overruled
-from ..topology import edge_keys
 from ..validation.points import require_three
 from .duplicates import merge_rows
+from .water import leave_out_water
 
 if TYPE_CHECKING:
     from ..._progress import Tell
-    from ...arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
+    from ...arrays import Float64Array, Int32Array, Int64Array
 
 __all__ = ["ConstrainedTriangulation", "CrossingPolicy", "LineOptions", "triangulate_constrained"]
 
@@ -105,10 +105,8 @@ def triangulate_constrained(
     """
     xyz = points[rows]
     merged = _merge(xyz, rows, lines, options, progress)
-    mesh, noded = (
-        build_mesh_of_growth(merged.points, merged.growth),
-        accept_noded(merged.polylines, lines.elevations),
-    )
+    mesh = build_mesh_of_growth(merged.points, merged.growth)
+    noded = accept_noded(merged.polylines, lines.elevations)
     is_simple = options.snap == 0.0 and not (lines.priorities == ABOVE_ALL).any()
     is_forced = is_simple and _is_forced(mesh, noded.polylines)
     if not is_forced:
@@ -119,7 +117,9 @@ def triangulate_constrained(
             mesh.insert(np.ascontiguousarray(noded.new_points[:, :2]))
     points = np.concatenate([merged.points, noded.new_points])
     overruled = _add_touches(points, noded, merged.overruled)
-    polylines, wet, overruled = _leave_out_water(points, noded.polylines, lines, overruled)
+    polylines, wet, overruled = leave_out_water(
+        points, noded.polylines, lines, overruled, threads=options.threads
+    )
     if not is_forced:
         mesh.remove(np.flatnonzero(wet).astype(np.int32))
         force(mesh, polylines)
@@ -253,104 +253,3 @@ def _add_touches(points: Float64Array, noded: Noded, overruled: Overruled) -> Ov
         np.append(overruled.elevations, touches.elevation[other]),
         np.append(overruled.vertex_elevations, elevation[other]),
     )
-
-
-# ------------------------------------------------------------------------ water
-
-
-def _leave_out_water(
-    points: Float64Array, polylines: Polylines, lines: LineSet, overruled: Overruled
-) -> tuple[Polylines, BoolArray, Overruled]:
-    """Put shores at the elevation of their water, in place, and leave out what is in it.
-
-    Returns the polylines without the segments in water, but for those of boundaries and holes,
-    which lie on it; (n,) flags of the vertices in water, which go; and what is overruled, with the
-    elevations that the water overrules.
-    """
-    wet = np.zeros(len(points), np.bool_)
-    if not (lines.priorities == ABOVE_ALL).any():
-        return polylines, wet, overruled
-    is_ring = lines.table.is_kind("boundary", "hole")
-    given = polylines
-    for line in np.flatnonzero(lines.priorities == ABOVE_ALL).tolist():
-        shore = given.vertices[given.offsets[line] : given.offsets[line + 1]]
-        inside = _find_inside(points[:, :2], points[shore, :2])
-        segments, line_of = polylines.segments(), polylines.segment_lines()
-        in_water = inside[segments].any(axis=1) | _are_chords_within(points[:, :2], segments, shore)
-        stays = (line_of == line) | is_ring[line_of] | _runs_along(segments, shore, len(points))
-        held = np.unique(segments[in_water & is_ring[line_of]])
-        level = float(lines.elevations[lines.offsets[line]])
-        overruled = _set_level(points, np.union1d(shore, held), level, overruled)
-        polylines = polylines.keep(~in_water | stays)
-        inside[held] = False
-        wet |= inside
-    is_dry = np.asarray(~wet[polylines.segments()].any(axis=1), np.bool_)
-    return polylines.keep(is_dry), wet, overruled
-
-
-def _set_level(
-    points: Float64Array, vertices: Int32Array, level: float, overruled: Overruled
-) -> Overruled:
-    wrong = vertices[points[vertices, 2] != level]
-    before = points[wrong, 2]
-    points[wrong, 2] = level
-    return Overruled(
-        np.append(overruled.vertices, wrong).astype(np.int32),
-        np.append(overruled.lines, np.full(len(wrong), -1, np.int32)),
-        np.append(overruled.elevations, before),
-        np.append(overruled.vertex_elevations, np.full(len(wrong), level)),
-    )
-
-
-def _are_chords_within(xy: Float64Array, segments: Int32Array, shore: Int32Array) -> BoolArray:
-    """Tell which segments go through water from shore to shore; noded, all others end in it.
-
-    Their middles, rounded, may lie on the wrong side of a shore that is near.
-    """
-    is_shore = np.zeros(len(xy), np.bool_)
-    is_shore[shore] = True
-    is_chord = is_shore[segments].all(axis=1) & ~_runs_along(segments, shore, len(xy))
-    ring = np.ascontiguousarray(xy[shore])
-    for segment in np.flatnonzero(is_chord).tolist():
-        start, end = xy[segments[segment]]
-        is_chord[segment] = _is_ring_around(ring, start, end)
-    return is_chord
-
-
-def _is_ring_around(ring: Float64Array, start: Float64Array, end: Float64Array) -> bool:
-    """Tell if a segment that no edge of a closed ring crosses lies inside, exactly.
-
-    Inside, a ray from the segment over its end crosses an odd number of edges: to the left of the
-    line those with one end there and the segment's end not behind them::
-
-                     left
-        start ------- end -----|--->
-                               |
-    """
-    on_left = _orient(start, end, ring) > 0
-    crosses = np.flatnonzero(on_left[:-1] != on_left[1:])
-    is_down = on_left[crosses]
-    left, right = (ring[crosses + np.where(is_down, k, 1 - k)] for k in (0, 1))
-    return bool(np.count_nonzero(_orient(left, right, end) <= 0) % 2)
-
-
-def _orient(a: Float64Array, b: Float64Array, c: Float64Array) -> Int8Array:
-    a, b, c = (np.ascontiguousarray(places) for places in np.broadcast_arrays(a, b, c))
-    return _kernel.orientation(a, b, c)
-
-
-def _runs_along(segments: Int32Array, chain: Int32Array, n_vertices: int) -> BoolArray:
-    own = np.stack([chain[:-1], chain[1:]], axis=1)
-    return np.isin(edge_keys(segments, n_vertices), edge_keys(own, n_vertices))
-
-
-def _find_inside(xy: Float64Array, ring: Float64Array) -> BoolArray:
-    """Tell which places lie strictly inside a ring whose first corner is repeated."""
-    if len(ring) < 4:
-        return np.zeros(len(xy), np.bool_)
-    low, high = ring.min(axis=0), ring.max(axis=0)
-    near = np.flatnonzero(((xy > low) & (xy < high)).all(axis=1))
-    inside = np.zeros(len(xy), np.bool_)
-    if len(near):
-        inside[near] = in_rings(xy[near], [ring[:-1]]) > 0
-    return inside

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import topology
-from ..predicates import EXACT_RANGE, blocks
+from ..predicates import EXACT_RANGE, LARGEST_ELEVATION, blocks
 from ..report import LEFT_OUT
 
 if TYPE_CHECKING:
@@ -73,6 +73,13 @@ def _check_coordinates(points: Float64Array, found: Findings) -> None:
         ),
         "{count} [vertex lies|vertices lie] outside the range of exact arithmetic, magnitudes "
         f"{smallest:.0e} to {largest:.0e} (first: [vertex|vertices] {{first}}).",
+    )
+    height = np.abs(points[:, 2])
+    found.report(
+        "coordinates",
+        np.flatnonzero((height > LARGEST_ELEVATION) & np.isfinite(height)),
+        "{count} [vertex has|vertices have] an elevation of a magnitude above "
+        f"{LARGEST_ELEVATION:.0e} (first: [vertex|vertices] {{first}}).",
     )
 
 

@@ -154,6 +154,7 @@ def gather_lines(
     if found is None:
         found = _gather(breaklines, boundary, holes, water)
     _require_exact_range(found)
+    _require_elevations(found)
     require_length(found)
     return found
 
@@ -359,5 +360,19 @@ def _require_exact_range(lines: LineSet) -> None:
             f"{label[0].upper() + label[1:]} has a vertex outside the exact range "
             f"(x {x!r}, y {y!r}): magnitudes from {smallest:.0e} to {largest:.0e}, or 0, are "
             "allowed.",
+            lines=[line],
+        )
+
+
+def _require_elevations(lines: LineSet) -> None:
+    highest = _kernel.LARGEST_ELEVATION
+    wrong = np.abs(lines.elevations) > highest  # NaN is draped
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        line = int(lines.line_of[row])
+        label = lines.label(line)
+        raise LinesError(
+            f"{label[0].upper() + label[1:]} has an elevation of {lines.elevations[row]:.3g}: "
+            f"magnitudes up to {highest:.0e} are allowed.",
             lines=[line],
         )

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..._sentences import counted, shown
 from ...errors import PointsError
+from .._kernel import LARGEST_ELEVATION
 from ..constraints.breaklines import as_coords
 from ..validation.geometries import find_geometries
 from ..validation.points import as_elevations, as_points, clean_points
@@ -116,7 +116,7 @@ def as_point(point: Any) -> Float64Array:
 
 def as_vertex_elevations(z: ArrayLike, count: int) -> list[float]:
     """Return the elevation of each of so many vertices, given one for all or one for each."""
-    if type(z) is float and isfinite(z):
+    if type(z) is float and abs(z) <= LARGEST_ELEVATION:
         return [z + 0.0] * count
     elevations = as_elevations(z) + 0.0  # no -0.0
     if elevations.ndim == 1 and len(elevations) != count:

@@ -36,9 +36,12 @@ class AreaOfUse:
 
     @classmethod
     def of(cls, source: CRS | None, target: CRS | None) -> AreaOfUse | None:
-        """Return the areas to look at; None if nothing is known of them."""
+        """Return the areas to look at; None if nothing is known of them.
+
+        A CRS that PROJ cannot transform, such as one of a building site, has none.
+        """
         declared = source or target
-        if declared is None:
+        if declared is None or not _has_angles(declared):
             return None
         targets = {crs: None for crs in (declared, target) if crs is not None}
         known = tuple(crs for crs in targets if _find_area(crs) is not None)
@@ -62,6 +65,15 @@ class AreaOfUse:
             inside &= _is_within(_find_area(crs), longitude, latitude, margin)
         return inside
 
+    def holds_as_degrees(self, xy: Float64Array) -> bool:
+        """Whether most points lie in the areas if their coordinates are longitude and latitude."""
+        some = xy[:: max(1, len(xy) // _SPREAD), :2]
+        longitude, latitude = some.T
+        inside = np.ones(len(some), np.bool_)
+        for crs in self.targets:
+            inside &= _is_within(_find_area(crs), longitude, latitude, 0.0)
+        return bool(2 * inside.sum() > len(some))
+
     def covers_most(self, xy: Float64Array) -> bool:
         """Whether more than half of some points, spread over all of them, lie in the areas."""
         some = xy[:: max(1, len(xy) // _SPREAD)]
@@ -80,6 +92,16 @@ class AreaOfUse:
         if len(xy) == 0 or self.covers(xy[_find_outermost(xy)]).all():
             return np.empty(0, np.int64)
         return np.flatnonzero(~self.covers(xy))
+
+
+def _has_angles(source: CRS) -> bool:
+    from pyproj.exceptions import ProjError
+
+    try:
+        _make_angle_transformer(source)
+    except ProjError:
+        return False
+    return True
 
 
 def _find_outermost(xy: Float64Array) -> list[int]:

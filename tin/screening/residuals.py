@@ -21,6 +21,8 @@ _TERMS = 3
 """Of a plane: fewer neighbours than these and one more say nothing about a point."""
 _MOST_LEVERAGE = 16.0
 """A plane tells elevations within so much, which is the square of four standard deviations."""
+_MOST_PASSED = 64
+"""Neighbours of a vertex over which others are near: all points around a far one are not."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,11 +37,14 @@ class Residuals:
     chords: Int32Array
     """(n, 2), the vertices before and behind it where exactly two such edges meet, else -1."""
     _without: _kernel.LeaveOneOut = field(init=False)
+    _is_hub: BoolArray = field(init=False)
 
     def __post_init__(self) -> None:
         surface = self.surface
         without = _kernel.LeaveOneOut(self.xyz, surface.triangles, surface.neighbors)
         object.__setattr__(self, "_without", without)
+        degree = np.bincount(surface.triangles.ravel(), minlength=len(self.xyz))
+        object.__setattr__(self, "_is_hub", degree > _MOST_PASSED)
 
     @classmethod
     def of(cls, surface: Triangulation) -> Residuals:
@@ -142,11 +147,16 @@ class Residuals:
         return most
 
     def list_wide_neighbors(self, vertices: Int32Array) -> tuple[Int64Array, Int32Array]:
-        """Return the vertices within two edges of some, as offsets and vertices."""
+        """Return the vertices within two edges of some, as offsets and vertices.
+
+        A vertex of more than 64 neighbours is one of them, but they are not reached over it: the
+        pairs stay in proportion to the vertices.
+        """
         offsets, near = self.list_neighbors(vertices)
-        wide, around = self.list_neighbors(near)
         owner = find_owners(offsets)
-        owner = np.concatenate([owner, owner[find_owners(wide)]])
+        goes_on = ~self._is_hub[near]
+        wide, around = self.list_neighbors(near[goes_on])
+        owner = np.concatenate([owner, owner[goes_on][find_owners(wide)]])
         reach = np.concatenate([near, around])
         owner, reach = np.divmod(np.unique(owner * len(self.xyz) + reach), len(self.xyz))
         elsewhere = reach != vertices[owner]

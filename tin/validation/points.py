@@ -89,6 +89,7 @@ def clean_points(table: Table, *, threads: int | None = 1) -> Table:
     if not is_sound:
         _require_finite(clean)
         require_exact_range(clean[:, :2], "Points")
+        _require_elevations(clean)
     return Table(clean, is_masked)
 
 
@@ -161,6 +162,11 @@ def as_elevations(values: Any) -> Float64Array:
         raise PointsError("An elevation is masked: numbers are needed.")
     if not np.isfinite(elevations).all():
         raise PointsError("An elevation is not finite: every coordinate must be a finite number.")
+    size = np.abs(elevations)
+    if (size > _kernel.LARGEST_ELEVATION).any():
+        raise PointsError(
+            f"An elevation has a magnitude of {size.max():.3g}: {_allowed_elevations()}."
+        )
     return elevations
 
 
@@ -176,6 +182,21 @@ def _require_finite(xyz: Float64Array) -> None:
             f"{name} {xyz[row, column]}): every coordinate must be a finite number.",
             rows=rows[:SHOWN],
         )
+
+
+def _require_elevations(xyz: Float64Array) -> None:
+    rows = np.flatnonzero(np.abs(xyz[:, 2]) > _kernel.LARGEST_ELEVATION)
+    if len(rows):
+        has = inflect("[has|have] an elevation", len(rows))
+        raise PointsError(
+            f"{len(rows)} of {counted(len(xyz), 'point')} {has} out of range (first: row "
+            f"{rows[0]}, elevation {xyz[rows[0], 2]:.3g}): {_allowed_elevations()}.",
+            rows=rows[:SHOWN],
+        )
+
+
+def _allowed_elevations() -> str:
+    return f"magnitudes up to {_kernel.LARGEST_ELEVATION:.0e} are allowed"
 
 
 def require_exact_range(xy: Float64Array, what: str, names: Sequence[str] = ("x", "y")) -> None:

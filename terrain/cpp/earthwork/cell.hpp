@@ -18,6 +18,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "../../../tin/cpp/predicates/predicates.hpp"
 #include "facet.hpp"
 #include "vertical.hpp"
 
@@ -66,7 +67,22 @@ class Cell {
     for (int which = 1; which >= 0; --which) {
       const Facet& corners = *facet_[which];
       const Facet& edges = *facet_[1 - which];
-      for (std::uint32_t i = 0; i < 3; ++i) load_areas(edges, corners.corner[i], area_[which][i]);
+      Estimate estimates[3];
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        estimates[i] = estimate(edges, corners.corner[i], area_[which][i]);
+      }
+      for (std::uint32_t j = 0; j < 3; ++j) {
+        if (!estimates[0].may_be_left[j] && !estimates[1].may_be_left[j] &&
+            !estimates[2].may_be_left[j]) {
+          return false;
+        }
+      }
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        if (estimates[i].are_precise) continue;
+        for (std::uint32_t j = 0; j < 3; ++j) {
+          area_[which][i][j] = twice_area(edges.start(j), edges.end(j), corners.corner[i]);
+        }
+      }
       for (std::uint32_t j = 0; j < 3; ++j) {
         bool has_left = false;
         for (std::uint32_t i = 0; i < 3; ++i) has_left |= area_[which][i][j] > 0.0;
@@ -76,22 +92,33 @@ class Cell {
     return true;
   }
 
-  // Of a point and the three edges.
-  static void load_areas(const Facet& edges, Point p, double (&area)[3]) {
+  // What rounded areas of a point and the three edges tell: of thin triangles beside each other,
+  // such as those of a fan, that they are apart.
+  struct Estimate {
+    bool are_precise = true;
+    bool may_be_left[3];
+  };
+
+  static Estimate estimate(const Facet& edges, Point p, double (&area)[3]) {
     double x[3], y[3];
+    bool is_at[3];  // a corner: the areas of its edges are 0
     for (std::uint32_t k = 0; k < 3; ++k) {
       x[k] = edges.corner[k].x - p.x;
       y[k] = edges.corner[k].y - p.y;
+      is_at[k] = edges.corner[k] == p;
     }
-    bool are_precise = true;
+    Estimate found;
     for (std::uint32_t j = 0; j < 3; ++j) {
       const double left = x[corner_after(j)] * y[corner_before(j)],
                    right = y[corner_after(j)] * x[corner_before(j)];
+      const bool is_zero = is_at[corner_after(j)] || is_at[corner_before(j)];
+      const double error =
+          tinsmith::detail::kOrientationBound * (std::fabs(left) + std::fabs(right));
       area[j] = left - right;
-      are_precise &= is_precise(left, right);
+      found.are_precise &= is_zero || is_precise(left, right);
+      found.may_be_left[j] = !is_zero && !(area[j] < -error);
     }
-    if (are_precise) return;
-    for (std::uint32_t j = 0; j < 3; ++j) area[j] = twice_area(edges.start(j), edges.end(j), p);
+    return found;
   }
 
   // The part of an edge within the other triangle.

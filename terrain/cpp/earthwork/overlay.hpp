@@ -80,10 +80,10 @@ class Overlay {
     double difference;  // of the second surface above the first
   };
 
-  Overlay(const Surface& first, const Surface& second, Team& team)
+  Overlay(const Surface& first, const Surface& second, bool is_second_apart, Team& team)
       : vertex_of_{std::vector<Vertex>(first.point_count, kNoVertex),
                    std::vector<Vertex>(second.point_count, kNoVertex)} {
-    const Pairs pairs(first, second);
+    const Pairs pairs(first, second, is_second_apart);
     pairs.visit(team, [&](int, const Facet& one, const Facet& other) {
       const bool is_kept = is_measured_along(one, other);
       Cell cell;

@@ -2,12 +2,15 @@
 //
 // One surface is taken block by block along Hilbert's curve; of the other those near the block are
 // looked up once in a tree of boxes. Nothing is asked of the surfaces: they may be clipped, of
-// several parts, or pieces.
+// several parts, or pieces. If it is known that the triangles of the second do not overlap, then one
+// that is also in the first meets no other, and two versions of a survey are joined triangle by
+// triangle.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "../../../tin/cpp/base/box.hpp"
@@ -15,17 +18,20 @@
 #include "../../../tin/cpp/base/pulse.hpp"
 #include "../../../tin/cpp/index/box_tree.hpp"
 #include "../../../tin/cpp/location/ordered_surface.hpp"
+#include "equal_triangles.hpp"
 #include "facet.hpp"
 
 namespace tinsmith::earthwork {
 
 class Pairs {
  public:
-  Pairs(const Surface& first, const Surface& second)
+  Pairs(const Surface& first, const Surface& second, bool is_second_apart)
       : first_(without_neighbors(first)),
         second_(without_neighbors(second)),
         tree_(static_cast<std::int32_t>(second.triangle_count),
-              [this](std::int32_t i) { return box_of(second_, i); }) {}
+              [this](std::int32_t i) { return box_of(second_, i); }) {
+    if (is_second_apart) equal_.emplace(second_);
+  }
 
   // visit(part, triangle, other triangle) for every pair, on all threads of the team.
   template <typename Visit>
@@ -72,8 +78,11 @@ class Pairs {
   void visit_block(std::int64_t begin, std::int64_t end, std::vector<Item>& near,
                    Visit&& visit) const {
     Box boxes[kBlock], all;
+    Triangle equal[kBlock];
     double sum = 0.0;
     for (std::int64_t i = begin; i < end; ++i) {
+      equal[i - begin] = find_equal(i);
+      if (equal[i - begin] != kNoTriangle) continue;
       boxes[i - begin] = box_of(first_, i);
       all.include(boxes[i - begin]);
       sum += boxes[i - begin].width() * boxes[i - begin].height();
@@ -82,6 +91,10 @@ class Pairs {
     const bool is_scattered = all.width() * all.height() > kScattered * sum;
     if (!is_scattered) gather(all, near);
     for (std::int64_t i = begin; i < end; ++i) {
+      if (equal[i - begin] != kNoTriangle) {
+        visit(Facet::of(first_, triangle_numbered(i)), Facet::of(second_, equal[i - begin]));
+        continue;
+      }
       const Box& box = boxes[i - begin];
       if (is_scattered) gather(box, near);
       if (near.empty()) continue;
@@ -90,6 +103,11 @@ class Pairs {
         if (item.box.meets(box)) visit(facet, item.facet);
       }
     }
+  }
+
+  Triangle find_equal(std::int64_t i) const {
+    if (!equal_) return kNoTriangle;
+    return equal_->find(Facet::of(first_.surface(), triangle_numbered(i)));
   }
 
   void gather(const Box& box, std::vector<Item>& near) const {
@@ -106,7 +124,8 @@ class Pairs {
   }
 
   OrderedSurface first_, second_;
-  BoxTree tree_;  // of the second
+  BoxTree tree_;                         // of the second
+  std::optional<EqualTriangles> equal_;  // in the second
 };
 
 }  // namespace tinsmith::earthwork

@@ -59,9 +59,9 @@ inline std::vector<double> all_steepness(const Surface& surface, double up) {
 
 // Of the second surface above the first; `groups` has the group of each triangle of the first.
 inline std::vector<Sums> sum_between(const Surface& first, const std::int32_t* groups,
-                                     std::int32_t group_count, const Surface& second, double up,
-                                     Team& team) {
-  const Pairs pairs(first, second);
+                                     std::int32_t group_count, const Surface& second,
+                                     bool is_second_apart, double up, Team& team) {
+  const Pairs pairs(first, second, is_second_apart);
   const auto steep = all_steepness(first, up), other_steep = all_steepness(second, up);
   std::vector<std::vector<Sums>> parts(team.size(), std::vector<Sums>(group_count));
   pairs.visit(team, [&](int part, const Facet& one, const Facet& other) {

@@ -7,87 +7,16 @@
 // b between a and c is the same step backwards. Both are decided by exact predicates.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <initializer_list>
 #include <stdexcept>
 #include <vector>
 
-#include "../../../tin/cpp/base/box.hpp"
-#include "../../../tin/cpp/predicates/predicates.hpp"
 #include "elevation_walk.hpp"
 #include "line_tracing.hpp"
+#include "node_tree.hpp"
 
 namespace tinsmith::isolines {
-
-enum class Node : std::int32_t {};
-constexpr Node kNoNode{-1};
-constexpr std::int32_t number(Node n) { return static_cast<std::int32_t>(n); }
-
-// Whether a point lies in the closed triangle, which may be flat and turn either way.
-inline bool is_in_closed_triangle(Point a, Point b, Point c, Point p) {
-  const int ab = orientation(a, b, p);
-  const int bc = orientation(b, c, p);
-  const int ca = orientation(c, a, p);
-  if (ab == 0 && bc == 0 && ca == 0) {  // a flat triangle, and p on its line
-    const auto [least, greatest] = std::minmax({a, b, c}, lexicographically_before);
-    return !lexicographically_before(p, least) && !lexicographically_before(greatest, p);
-  }
-  return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
-}
-
-// Vertices by the cells of a grid.
-class NodeGrid {
- public:
-  explicit NodeGrid(const std::vector<Point>& points) {
-    if (points.empty()) return;
-    for (const Point p : points) box_.include(p);
-    const double width = box_.width(), height = box_.height();
-    const double cells = std::max<double>(1.0, static_cast<double>(points.size()));
-    size_ = std::max(std::sqrt(width * height / cells), std::max(width, height) / cells);
-    if (!(size_ > 0.0)) size_ = 1.0;
-    columns_ = static_cast<std::int64_t>(width / size_) + 1;
-    rows_ = static_cast<std::int64_t>(height / size_) + 1;
-    first_.assign(static_cast<std::size_t>(columns_ * rows_), kNoNode);
-  }
-
-  void add(Node node, Point p) {
-    const std::size_t cell = std::size_t(row(p.y) * columns_ + column(p.x));
-    if (std::size_t(number(node)) >= next_.size()) next_.resize(std::size_t(number(node)) + 1);
-    next_[number(node)] = first_[cell];
-    first_[cell] = node;
-  }
-
-  // Whether a test holds for any vertex whose cell meets the box of some points.
-  template <typename Test>
-  bool any_near(std::initializer_list<Point> around, const Test& test) const {
-    Box box;
-    for (const Point p : around) box.include(p);
-    for (std::int64_t r = row(box.south); r <= row(box.north); ++r) {
-      for (std::int64_t c = column(box.west); c <= column(box.east); ++c) {
-        for (Node n = first_[std::size_t(r * columns_ + c)]; n != kNoNode; n = next_[number(n)]) {
-          if (test(n)) return true;
-        }
-      }
-    }
-    return false;
-  }
-
- private:
-  std::int64_t column(double x) const { return clamp((x - box_.west) / size_, columns_); }
-  std::int64_t row(double y) const { return clamp((y - box_.south) / size_, rows_); }
-  static std::int64_t clamp(double cell, std::int64_t count) {
-    return std::min(std::max(static_cast<std::int64_t>(cell), std::int64_t{0}), count - 1);
-  }
-
-  Box box_;
-  double size_ = 1.0;
-  std::int64_t columns_ = 0, rows_ = 0;
-  std::vector<Node> first_;
-  std::vector<Node> next_;
-};
 
 class LineNetwork {
  public:
@@ -95,7 +24,7 @@ class LineNetwork {
 
   // `triangles` holds one for each point: one that it lies in.
   LineNetwork(const TracedLines& lines, const std::int32_t* triangles)
-      : points_(lines.points.begin(), lines.points.end()), grid_(points_) {
+      : points_(lines.points.begin(), lines.points.end()), tree_(points_) {
     const std::size_t count = points_.size();
     if (count > kMostNodes) throw std::length_error("too many points of lines");
     previous_.resize(count);
@@ -104,7 +33,6 @@ class LineNetwork {
     is_alive_.assign(count, 1);
     for (std::size_t i = 0; i < count; ++i) {
       triangle_[i] = triangle_numbered(triangles[i]);
-      grid_.add(Node(i), points_[i]);
     }
     for (const Line& line : lines.lines) {
       for (std::size_t i = line.begin; i < line.end; ++i) {
@@ -125,14 +53,14 @@ class LineNetwork {
   std::size_t size() const { return points_.size(); }
 
   // Whether a closed triangle holds no vertices but the three given.
-  bool is_free(Point p, Point q, Point r, Node a, Node b, Node c) const {
-    return !grid_.any_near({p, q, r}, [&](Node n) {
-      return n != a && n != b && n != c && is_alive(n) && is_in_closed_triangle(p, q, r, point(n));
-    });
+  bool is_free(Point p, Point q, Point r, Node a, Node b, Node c) {
+    return !tree_.any_in(SearchTriangle(p, q, r),
+                         [&](Node n) { return n != a && n != b && n != c; });
   }
 
   void drop(Node n) {
     is_alive_[number(n)] = 0;
+    tree_.drop(n);
     following_[number(previous(n))] = following(n);
     previous_[number(following(n))] = previous(n);
   }
@@ -147,13 +75,13 @@ class LineNetwork {
     is_alive_.push_back(1);
     following_[number(before)] = made;
     previous_[number(after)] = made;
-    grid_.add(made, place.point);
+    tree_.add(made);
     return made;
   }
 
  private:
   std::vector<Point> points_;
-  NodeGrid grid_;
+  NodeTree tree_;
   std::vector<Node> previous_, following_;
   std::vector<Triangle> triangle_;
   std::vector<char> is_alive_;

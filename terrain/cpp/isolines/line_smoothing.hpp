@@ -38,7 +38,8 @@ class LineSmoother {
   }
 
   // Drop vertices, those of the smallest triangle with their neighbours first, as long as the
-  // tolerance allows.
+  // tolerance allows. Where the line is straight those of the nearest neighbours are first: it
+  // loses every second vertex, and again, so that no part of it is walked often.
   void simplify(double tolerance) {
     for (const Line& line : lines_.lines) {
       if (!team_.keeps_going(0)) return;
@@ -143,7 +144,7 @@ class LineSmoother {
     return to.triangle != kNoTriangle && walk_.stays_within(to, back, level, tolerance);
   }
 
-  using Candidate = std::tuple<double, std::int32_t, std::int32_t, std::int32_t>;
+  using Candidate = std::tuple<double, double, std::int32_t, std::int32_t, std::int32_t>;
 
   void simplify_line(const Line& line, double tolerance) {
     std::priority_queue<Candidate, std::vector<Candidate>, std::greater<Candidate>> queue;
@@ -153,13 +154,14 @@ class LineSmoother {
     const auto offer = [&](Node n) {
       if (n == kNoNode || network_.is_end(n)) return;
       const Node a = network_.previous(n), c = network_.following(n);
-      const double area =
-          std::fabs(measure_turn(network_.point(a), network_.point(n), network_.point(c)).value);
-      queue.emplace(area, number(n), number(a), number(c));
+      const Point pa = network_.point(a), pc = network_.point(c);
+      const double area = std::fabs(measure_turn(pa, network_.point(n), pc).value);
+      const double base = area > 0.0 ? 0.0 : std::hypot(pc.x - pa.x, pc.y - pa.y);
+      queue.emplace(area, base, number(n), number(a), number(c));
     };
     for (const Node n : nodes) offer(n);
     while (!queue.empty() && left > least) {
-      const auto [area, node, before, after] = queue.top();
+      const auto [area, base, node, before, after] = queue.top();
       queue.pop();
       const Node b{node}, a{before}, c{after};
       if (!network_.is_alive(b) || network_.previous(b) != a || network_.following(b) != c)
@@ -172,7 +174,7 @@ class LineSmoother {
     }
   }
 
-  bool can_drop(Node a, Node b, Node c, const Line& line, double tolerance) const {
+  bool can_drop(Node a, Node b, Node c, const Line& line, double tolerance) {
     const Point pa = network_.point(a), pb = network_.point(b), pc = network_.point(c);
     if (pa == pc || !network_.is_free(pa, pb, pc, a, b, c)) return false;
     Place end = network_.place(c);

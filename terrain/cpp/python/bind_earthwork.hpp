@@ -41,12 +41,14 @@ inline SumTable hand_over(const std::vector<earthwork::Sums>& sums) {
 inline SumTable sum_between(const GivenXyz& points, const GivenTriples& triangles,
                             const GivenNumbers& groups, std::int32_t group_count,
                             const GivenXyz& other_points, const GivenTriples& other_triangles,
-                            double up, int threads, const Listener::Tell& tell) {
+                            double up, bool is_other_apart, int threads,
+                            const Listener::Tell& tell) {
   const Surface first = exact_surface_of(points, triangles);
   const Surface second = exact_surface_of(other_points, other_triangles);
   require_groups(groups, triangles.shape(0), group_count);
   const auto sum = [&](Team& team) {
-    return earthwork::sum_between(first, groups.data(), group_count, second, up, team);
+    return earthwork::sum_between(first, groups.data(), group_count, second, is_other_apart, up,
+                                  team);
   };
   return hand_over(unlocked(threads, sum, tell));
 }
@@ -74,11 +76,12 @@ inline Elevations sum_areas(const GivenXyz& points, const GivenTriples& triangle
 }
 
 inline auto overlay(const GivenXyz& points, const GivenTriples& triangles,
-                    const GivenXyz& other_points, const GivenTriples& other_triangles) {
+                    const GivenXyz& other_points, const GivenTriples& other_triangles,
+                    bool is_other_apart) {
   const Surface first = exact_surface_of(points, triangles);
   const Surface second = exact_surface_of(other_points, other_triangles);
-  const earthwork::Overlay made =
-      unlocked(1, [&](Team& team) { return earthwork::Overlay(first, second, team); });
+  const earthwork::Overlay made = unlocked(
+      1, [&](Team& team) { return earthwork::Overlay(first, second, is_other_apart, team); });
   return std::make_tuple(
       copy_over<Xyz, double>(made.vertices, {made.vertices.size(), 3}),
       copy_over<Pairs, std::int32_t>(made.origins, {made.origins.size(), 2}),
@@ -103,7 +106,8 @@ inline StageTable stage_sums(const GivenXyz& points, const GivenTriples& triangl
 inline void bind_earthwork(nb::module_& m) {
   m.def("sum_between", &sum_between, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "groups"_a.noconvert(), "group_count"_a, "other_points"_a.noconvert(),
-        "other_triangles"_a.noconvert(), "up"_a, "threads"_a = 1, "progress"_a = nb::none(),
+        "other_triangles"_a.noconvert(), "up"_a, "is_other_apart"_a = false, "threads"_a = 1,
+        "progress"_a = nb::none(),
         "Cut and fill from one surface to another, a row for each group of the first's triangles.");
   m.def("sum_heights", &sum_heights, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "heights"_a.noconvert(), "groups"_a.noconvert(), "group_count"_a, "up"_a,
@@ -112,7 +116,7 @@ inline void bind_earthwork(nb::module_& m) {
         "groups"_a.noconvert(), "group_count"_a, "The area in the plane of each group.");
   m.def(
       "overlay", &overlay, "points"_a.noconvert(), "triangles"_a.noconvert(),
-      "other_points"_a.noconvert(), "other_triangles"_a.noconvert(),
+      "other_points"_a.noconvert(), "other_triangles"_a.noconvert(), "is_other_apart"_a = false,
       "Vertices with differences, their origins, offsets and corners of cells, triangles of each.");
   m.def("stage_sums", &stage_sums, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "levels"_a.noconvert(), "up"_a, "Area, area in space and volume under each level.");

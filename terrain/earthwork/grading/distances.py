@@ -7,60 +7,76 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ....tin import TIN, triangulate
+from .edge_cells import find_rays
 
 if TYPE_CHECKING:
-    from ....arrays import Float64Array
+    from ....arrays import Float64Array, Int64Array
 
 __all__ = ["measure_distances"]
 
-_QUARTER = 45
-"""Facets of a cone in a right angle, each two degrees."""
-_SHARE = 5e-4
-"""Of the largest distance: so much the surface may be off."""
-_MOST_RINGS = 64
+_SHARE = 1e-6
+"""Of the largest distance: what is nearer to each other is one place."""
 
 
-def measure_distances(pad: Any, reach: float) -> TIN:
+def measure_distances(pad: Any, reach: float, tolerance: float) -> TIN:
     """Return the distance from a polygon without holes around it, as elevations.
 
-    They are exact at the vertices: those of the polygon, and of lines of equal distance, as many as
-    it takes to be exact within 0.0005 of ``reach`` in the middles of triangles, at most 64.
+    It is exact where an edge is nearest, and along the rays of corners, which are two degrees
+    apart: between them the cone about a corner is cut flat. Where slopes meet it breaks. Places
+    nearer than ``tolerance`` are one.
     """
     import shapely
 
-    count = 1
-    while True:
-        surface = _surround(pad, reach, count)
-        middles = surface.points[surface.triangles].mean(axis=1)
-        apart = np.abs(shapely.distance(pad, shapely.points(middles[:, :2])) - middles[:, 2])
-        if count >= _MOST_RINGS or float(apart.max()) <= _SHARE * reach:
-            return surface
-        count *= 4
-
-
-def _surround(pad: Any, reach: float, count: int) -> TIN:
-    """Return the surface over some lines of equal distance."""
-    import shapely
-
-    inner = _measure(pad, shapely.get_coordinates(pad.exterior))
-    inner[:, 2] = 0.0
-    lines = [inner]
-    for number in range(1, count + 1):
-        around = shapely.buffer(pad, reach * number / count, quad_segs=_QUARTER)
-        lines += [_measure(pad, shapely.get_coordinates(ring)) for ring in _list_rings(around)]
-    outer = [ring for ring in lines[1:] if shapely.is_ccw(shapely.linearrings(ring[:, :2]))][-1]
+    ring = shapely.get_coordinates(pad.exterior)[:-1]
+    origin = ring.mean(axis=0)
+    rays, is_free = find_rays(ring - origin, reach)
+    places = np.concatenate([ring, rays.ends + origin])
+    distances = np.concatenate([np.zeros(len(ring)), rays.length])
+    places = np.column_stack([places, distances])
+    number = _merge(places[:, :2], max(tolerance, _SHARE * reach))
+    ends = number[len(ring) :]
+    follows = rays.cell[1:] == rays.cell[:-1]
+    tops = np.stack([ends[:-1], ends[1:]], axis=1)
+    is_fan = rays.cell >= len(ring)
+    fans = np.stack([rays.cell[is_fan] - len(ring), ends[is_fan]], axis=1)
+    segments = np.concatenate([tops[follows], fans])
+    rings = [
+        np.column_stack([own, np.full(len(own), reach)])
+        for own in _list_rings(places[:, :2], tops[is_free[:-1]], pad)
+    ]
+    edge = np.column_stack([ring, np.zeros(len(ring))])
+    segments = np.unique(np.sort(segments, axis=1), axis=0)
+    lines = list(places[segments[segments[:, 0] != segments[:, 1]]])
     return triangulate(
-        np.concatenate(lines), breaklines=lines, boundary=[outer], holes=[inner], duplicates="last"
+        places[np.unique(number)],
+        breaklines=lines,
+        boundary=rings[:1],
+        holes=[edge, *rings[1:]],
+        duplicates="last",
     )
 
 
-def _list_rings(polygon: Any) -> list[Any]:
+def _merge(xy: Float64Array, tolerance: float) -> Int64Array:
+    """Return for each place the first one that is the same within a tolerance."""
     import shapely
 
-    return list(shapely.get_rings(shapely.orient_polygons(polygon)))
+    points = shapely.points(xy)
+    pairs = shapely.STRtree(points).query(points, predicate="dwithin", distance=tolerance)
+    first = np.arange(len(xy))
+    while True:
+        least = first.copy()
+        np.minimum.at(least, pairs[0], first[pairs[1]])
+        if (least == first).all():
+            return first
+        first = least
 
 
-def _measure(pad: Any, xy: Float64Array) -> Float64Array:
+def _list_rings(xy: Float64Array, segments: Int64Array, pad: Any) -> list[Float64Array]:
+    """Return the ring around a pad that segments make, and those of what they leave open."""
     import shapely
 
-    return np.column_stack([xy, shapely.distance(pad, shapely.points(xy))])
+    lines = shapely.linestrings(xy[segments[segments[:, 0] != segments[:, 1]]])
+    noded = shapely.get_parts(shapely.union_all(lines))  # where slopes just meet, lines overlap
+    faces = shapely.get_parts(shapely.polygonize(noded))
+    face = faces[shapely.contains_properly(faces, shapely.point_on_surface(pad))][0]
+    return [shapely.get_coordinates(ring) for ring in shapely.get_rings(face)]

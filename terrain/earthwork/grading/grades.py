@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from ...._products import product
@@ -84,10 +85,10 @@ def grade(
 
     Notes
     -----
-    Beside a convex pad slopes are exact planes, and cones have facets of two degrees: daylight is
-    short by at most 0.00016 of its distance. Where the pad has a notch, the slopes meet along
-    curves: their distance from the pad is interpolated between lines of equal distance. What is
-    cut or filled farther away, and does not reach the pad along its slope, stays ground.
+    Slopes beside edges are exact planes, and cones have facets of two degrees: daylight is short by
+    at most 0.00016 of its distance. Where the pad has a notch, slopes meet where they are as far
+    from both edges. What is cut or filled farther away, and does not reach the pad along its slope,
+    stays ground. Time and vertices are in proportion to the corners of the pad.
 
     Examples
     --------
@@ -110,9 +111,12 @@ def grade(
     used = tin.points[tin.triangles, 2]
     farthest = {cut: (used.max() - level) / cut, fill: (used.min() - level) / fill}
     slopes = []
+    # Farther away is no ground.
+    across = math.hypot(*(tin.points.max(axis=0) - tin.points.min(axis=0))[:2])
     for number, (rate, reach) in enumerate(farthest.items(), 1):
         if reach > 0:
-            slopes.append(find_slope(local, area, polygon, level, rate, float(reach)))
+            slope = find_slope(local, area, polygon, level, rate, min(float(reach), across))
+            slopes.append(slope)
         done(number * _SLOPE)
     patch = build_patch(tin, polygon, level, slopes)
     _require_within(area, patch)

@@ -79,7 +79,7 @@ def find_slope(tin: TIN, area: Any, pad: Any, level: float, rate: float, reach: 
     far: float = min(reach, _estimate_reach(tin, pad, level, rate))
     tolerance = measure_tolerance(tin.points)
     while True:
-        distances = measure_distances(pad, far * _MARGIN)
+        distances = measure_distances(pad, far * _MARGIN, tolerance)
         points = distances.points * (1.0, 1.0, rate) + (0.0, 0.0, level)
         skirt = TIN.from_triangles(points, distances.triangles)
         found = difference(_take_near(tin, skirt), skirt).tin

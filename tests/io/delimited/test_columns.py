@@ -55,10 +55,6 @@ def test_units_stand_in_brackets_or_behind_a_name(name, unit):
 
 
 TWO_PAIRS = "The header names two pairs of coordinates: {} are taken, {} are not."
-TURNED = (
-    "By the header 'X' is the easting and 'Y' the northing; where X points north it is the other "
-    "way round."
-)
 HEIGHTS = "The header's 'Z' is taken as the elevation, not {}."
 
 
@@ -66,8 +62,8 @@ HEIGHTS = "The header's 'Z' is taken as the elevation, not {}."
     ("header", "word", "notes"),
     [
         ("E N Z", "ENZ", []),
-        ("X Y Z E N", "--ZEN", [TWO_PAIRS.format("'E' and 'N'", "'X' and 'Y'")]),
-        ("East North x y H", "EN--Z", [TWO_PAIRS.format("'East' and 'North'", "'x' and 'y'")]),
+        ("X Y E N Z", "--ENZ", [TWO_PAIRS.format("'E' and 'N'", "'X' and 'Y'")]),
+        ("East North RL x y", "ENZ", [TWO_PAIRS.format("'East' and 'North'", "'x' and 'y'")]),
         ("N Este Norte Cota", "PENZ", []),
         ("N° Est Nord Altitude", "PENZ", []),
         ("N. RW HW H", "PENZ", []),
@@ -75,21 +71,24 @@ HEIGHTS = "The header's 'Z' is taken as the elevation, not {}."
         ("E Easting Northing Z", "-ENZ", []),
         ("Pkt Rechts Hoch NHN Libellé", "PENZD", []),
         ("№ Øst Nord Høyde", "PENZ", []),
-        ("Y X Z", "NEZ", [TURNED]),
+        ("Y X Z", "NEZ", []),
         ("N E Z", "NEZ", []),
         ("N X Y Z", "PENZ", []),
         ("No N X Y Z", "P-ENZ", []),
-        ("N Y X Z D", "PNEZD", [TURNED]),
+        ("N Y X Z D", "PNEZD", []),
         ("E N Z Height", "ENZ", [HEIGHTS.format("'Height'")]),
-        ("Height E N Z RL", "-ENZ", [HEIGHTS.format("'Height', 'RL'")]),
-        ("E N Z z", "ENZ", []),
-        ("Lon Lat Elev Easting Northing", "--ZEN", []),
+        ("Height E N Z", "-ENZ", [HEIGHTS.format("'Height'")]),
+        (
+            "Lon Lat Elev Easting Northing",
+            "--ZEN",
+            [TWO_PAIRS.format("'Easting' and 'Northing'", "'Lon' and 'Lat'")],
+        ),
         ("P N E Z D", "PNEZD", []),
         ("a E N Z b", "-ENZ", []),
     ],
 )
 def test_a_header_names_the_columns_and_what_it_leaves_open_is_told(header, word, notes):
-    found = columns.find_columns_by_header(header.split(), strict=False)
+    found = columns.find_columns_by_header(header.split())
     assert found.word == word
     assert list(found.notes) == notes
     assert not found.is_degrees
@@ -107,18 +106,51 @@ def test_letters_of_other_alphabets_are_no_blanks():
     ]
 
 
+@pytest.mark.parametrize("name", ["Z (pieds)", "Z (')", "Z (sdev)", "-Z", "Z2", "Geoid height"])
+def test_a_name_with_words_that_are_not_known_is_no_coordinate(name):
+    assert columns.find_columns_by_header(["E", "N", name]) is None
+    assert columns.find_columns_by_header(["E", "N", name, "H"]).word == "EN-Z"
+    told = columns.describe_doubts(["E", "N", name])
+    assert f"'{name}' is not taken as the elevation" in told
+    assert "columns='ENZ'" in told
+
+
 @pytest.mark.parametrize(
-    ("name", "told"),
-    [("Z (pieds)", True), ("Z (')", True), ("Z (NAVD88)", False), ("Z (m)", False), ("Z", False)],
+    ("header", "word"),
+    [
+        ("X (Northing);Y (Easting);Z", "NEZ"),
+        ("X(N);Y(E);H", "NEZ"),
+        ("X [m];Y [m];Elev (ft NAVD88)", "ENZ"),
+        ("Easting / Rechtswert;Northing / Hochwert;Höhe (NHN)", "ENZ"),
+        ("E (UTM 32N);N (UTM 32N);Height (EGM96)", "ENZ"),
+        ("Easting (local);Northing (local);E;N;H", "--ENZ"),
+        ("X;Y;Z;Easting;Northing;Height", "---ENZ"),
+        ("Lat;Lon;Height;E;N;Level", "---ENZ"),
+        ("E;sE;N;sN;Z;sZ", "E-N-Z"),
+        ("Lat (N);Lon (E);Alt", "NEZ"),
+        ("E;N;Height (instrument);RL", "EN-Z"),
+    ],
 )
-def test_brackets_behind_the_elevation_that_are_no_unit_are_told(name, told):
-    notes = columns.find_columns_by_header(["E", "N", name]).notes
-    assert [f"'{name}' tells no unit that is known" in note for note in notes] == [True] * told
+def test_every_word_of_a_name_counts(header, word):
+    assert columns.find_columns_by_header(header.split(";")).word == word
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        *("X;Y;Z;E;N", "East;North;x;y;H", "Height;E;N;Z;RL", "E;N;Z;Elevation", "E;N;H;Height"),
+        *("E (local);N (local);E (grid);N (grid);Z", "E;N;Z;Easting;Northing;Elevation"),
+        *("E (UTM);N (UTM);Z (local)",),
+    ],
+)
+def test_coordinates_of_several_groups_are_refused(header):
+    with pytest.raises(ReadError):
+        columns.find_columns_by_header(header.split(";"))
 
 
 @pytest.mark.parametrize("header", ["E N", "X Z q", "Lon N Z", "E Lat Z", "", "P D"])
 def test_a_header_without_three_coordinates_names_none(header):
-    assert columns.find_columns_by_header(header.split(), strict=False) is None
+    assert columns.names_coordinates(header.split()) is None
 
 
 def test_longitude_and_latitude_are_degrees():
@@ -138,11 +170,17 @@ def test_units_stand_in_the_header_or_below_it():
     units = {"easting": "ft", "elevation": "m"}
     assert columns.find_columns_by_header(["E (ft)", "N", "Z"], ["", "", "(m)"]).units == units
     assert (
-        columns.find_columns_by_word("ENZ", ["E (ft)", "N", "Z"], 3, ["m", "q", "[m]"]).units
+        columns.find_columns_by_word("ENZ", ["E (ft)", "N", "Z"], 3, ["ft", "q", "[m]"]).units
         == units
     )
     assert columns.find_columns_by_header(["E", "N", "Z"], ["m"]).units == {"easting": "m"}
     assert columns.find_columns_by_header(["E", "N", "Z"]).units == {}
+
+
+def test_units_that_contradict_each_other_are_refused():
+    with pytest.raises(ReadError, match=r"in ft .* and the line below it in m"):
+        columns.find_columns_by_header(["E", "N", "Z (ft)"], ["", "", "m"])
+    assert columns.find_columns_by_header(["E", "N (m)", "Z (feet)"], ["m", "m", "ft"]).units
 
 
 def test_equal_names_of_a_coordinate_are_refused():
@@ -153,7 +191,7 @@ def test_equal_names_of_a_coordinate_are_refused():
         "the header has 2 columns named 'E' for the easting: say with the option columns which is "
         "meant."
     )
-    assert columns.find_columns_by_header(header, strict=False).word == "ENZ"
+    assert columns.names_coordinates(header).word == "ENZ"  # it is a header nonetheless
 
 
 # ---------------------------------------------------------------- the caller's word

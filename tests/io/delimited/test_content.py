@@ -154,7 +154,8 @@ def test_what_counts_the_rows_is_no_coordinate():
         assert f"NEZ {words}; XYZ {words}" in str(caught.value)
     with pytest.raises(ReadError, match="coordinates that count 1, 2, 3"):
         find_columns_by_content([NUMBERS, NORTHING, ELEVATION], None)
-    find_columns_by_content([NUMBERS, whole(NORTHING), ELEVATION], None)  # a regular profile
+    with pytest.raises(ReadError, match="grows by 1 from row to row"):
+        find_columns_by_content([NUMBERS, whole(NORTHING), ELEVATION], None)
     few = [Column(one.values[:2], is_whole=one.is_whole) for one in (NUMBERS, EASTING, ELEVATION)]
     find_columns_by_content(few, None)
 
@@ -172,8 +173,73 @@ def test_a_column_with_words_or_a_cliff_is_no_coordinate():
         assert f"PENZ {words}" in str(caught.value)
 
 
-def test_whole_eastings_of_three_columns_are_coordinates():
-    assert find_columns_by_content([whole(EASTING), NORTHING, ELEVATION], None)[0].word == "ENZ"
+def test_whole_numbers_before_two_columns_with_decimals_may_be_point_numbers():
+    with pytest.raises(ReadError, match="its first column may be point numbers"):
+        find_columns_by_content([whole(EASTING), NORTHING, ELEVATION], None)
+    grid = Column(740_000.0 + np.arange(N) % 8, is_whole=True, distinct_share=0.2)
+    rows = Column(4_024_000.5 + np.arange(N) // 8)
+    assert find_columns_by_content([grid, rows, ELEVATION], None)[0].word == "ENZ"
+    with pytest.raises(ReadError, match="its first column may be point numbers"):
+        find_columns_by_content([grid, NORTHING, ELEVATION], None)
+
+
+def test_whole_numbers_again_and_again_are_elevations_of_a_grid_only():
+    codes = Column(np.arange(N) % 4.0, is_whole=True, distinct_share=0.1)
+    with pytest.raises(ReadError, match="its elevations would be whole numbers"):
+        find_columns_by_content([EASTING, NORTHING, codes], None)
+    centres = [Column(0.5 + np.arange(N) % 8), Column(0.5 + np.arange(N) // 8)]
+    assert find_columns_by_content([*centres, codes], None)[0].word == "ENZ"
+
+
+def rounded(column, digits):
+    return Column(np.round(column.values, digits))
+
+
+EAST, NORTH = (Column(low + np.round(RNG.uniform(0, 150, N), 3)) for low in (5_000, 1_000))
+CHAINAGE = Column(20.0 * np.arange(N))
+TIMES = Column(np.round(432_000 + np.cumsum(RNG.uniform(1, 5, N)), 3))
+PART = Column(np.round(RNG.uniform(0, 59.9, N), 3))
+
+
+@pytest.mark.parametrize(
+    ("columns", "words"),
+    [
+        ([CHAINAGE, EAST, NORTH, ELEVATION], "grows by 20 from row to row"),
+        ([CHAINAGE, EAST, NORTH], "grows by 20 from row to row"),
+        ([TIMES, EAST, NORTH, ELEVATION], "easting and northing may be the second and third"),
+        (
+            [rounded(one, k) for one, k in ((MIXED, 1), (EAST, 3), (NORTH, 3))],
+            "its first column may be point numbers",
+        ),
+        (
+            [rounded(one, k) for one, k in ((ELEVATION, 1), (EAST, 3), (NORTH, 3))],
+            "its first column has fewer decimals than the others",
+        ),
+        ([EAST, NORTH, NUMBERS], "its third column may be point numbers"),
+        (
+            [Column(np.full(N, 36.0)), Column(np.full(N, 20.0)), PART] * 2 + [ELEVATION],
+            "may be degrees and minutes",
+        ),
+        ([Column(np.full(N, 36.0)), PART] * 2 + [ELEVATION], "may be degrees and minutes"),
+        ([MIXED, *[Column(np.full(N, 36.0)), PART] * 2, ELEVATION], "may be degrees and minutes"),
+    ],
+)
+@pytest.mark.parametrize("is_scan", [False, True])
+def test_x_y_z_by_convention_is_doubted(columns, words, is_scan):
+    with pytest.raises(ReadError) as caught:
+        find_columns_by_content(columns, None, is_scan=is_scan)
+    assert words in str(caught.value)
+
+
+def test_no_convention_holds_where_a_line_speaks_of_coordinates_or_the_area_of_use_is_elsewhere():
+    for heading, area, words in (
+        ("line 1 ('N E Z')", None, "line 1 ('N E Z') speaks of coordinates"),
+        ("", AreaOfUse.of(CRS.of("EPSG:2056"), None), "lie outside the area of use of EPSG:2056"),
+    ):
+        with pytest.raises(ReadError) as caught:
+            find_columns_by_content([EASTING, NORTHING, ELEVATION], area, heading=heading)
+        assert words in str(caught.value)
+        assert "columns='XYZ' says so" in str(caught.value)
 
 
 # ------------------------------------------------------------------ measures

@@ -106,7 +106,12 @@ CASES = {
         "# E,N,Z\n# of 1999\n1.5,2.5,3.5\n",
         3,
         [2],
-        {"divided": [0, 1, 2], "skipped": {"comment lines": 2}},
+        {
+            "divided": [0, 1, 2],
+            "skipped": {"comment lines": 2},
+            "word": "ENZ",
+            "notes": ("Line 1 ('# E,N,Z') gives the order of the columns.",),
+        },
     ),
     "semicolon comment": (
         "1.5,2.5,3.5\n;no row\n4.5,5.5,6.5\n",

@@ -254,9 +254,12 @@ def test_crs_decides_whether_northing_comes_first(survey):
 
 def test_named_columns_are_refused_where_only_the_exchanged_ones_fit(survey):
     """Neither a header nor the caller's word may put a site on another continent silently."""
-    content = "northing,easting,z\n752646,4024238,1\n752647,4024238,1\n"
+    axes = "y,x,z\n752646,4024238,1\n752647,4024238,1\n"
+    said = str(fault(survey, axes, CrsError, crs="EPSG:32616"))
+    assert "columns='ENZ' takes the easting in column 1 ('y')" in said
+    content = axes.replace("y,x", "northing,easting")
     said = str(fault(survey, content, CrsError, crs="EPSG:32616"))
-    assert "columns='ENZ' takes the easting in column 1 ('northing')" in said
+    assert "check that EPSG:32616 is the CRS of the points" in said  # not that names are wrong
     assert survey(content).points[0].tolist() == [4024238, 752646, 1]
     found = survey(content, crs="EPSG:32616", columns="ENZ")
     assert found.points[0].tolist() == [752646, 4024238, 1]
@@ -393,12 +396,12 @@ def test_files_of_scans_begin_with_x_y_z(survey, suffix):
     assert "columns='XYZ'" in str(fault(survey, rows, name="scan.txt"))
 
 
-@pytest.mark.parametrize("header", ["", "easting,northing,elevation\n"])
-def test_points_far_from_their_crs_are_told(survey, header):
+def test_points_far_from_their_crs_are_told(survey):
     """Norway uses the zone of its middle for all of it: no exchange helps, and all is said."""
-    rows = header + "".join(f"-5{i}000.5,6650{i}00.5,12.5\n" for i in range(9))
-    found = survey(rows, crs="EPSG:25833")
+    rows = "".join(f"-5{(4 * i) % 9}000.5,6650{i}00.5,12.5\n" for i in range(9))
+    found = survey("easting,northing,elevation\n" + rows, crs="EPSG:25833")
     assert "9 of 9 points lie outside the area of use of EPSG:25833" in found.notes[-1]
+    assert "outside the area of use" in str(fault(survey, rows, crs="EPSG:25833"))
     far = survey("x,y,z\n752700,4024240,322\n752701,4024240,322\n4024241,752700,321\n", crs=UTM)
     assert "1 of 3 points lies outside" in far.notes[0]
     assert "(line 4); 1 lies inside if exchanged" in far.notes[0]
@@ -427,8 +430,10 @@ def test_n_beside_x_and_y_is_the_number(survey):
 def test_what_a_header_leaves_open_is_told(survey):
     (note,) = survey("Nr;Y;X;H\n1;10;20;30\n2;11;21;31\n").notes
     assert "'X' is the easting and 'Y' the northing" in note
-    (note,) = survey("E,N,X,Y,Z\n1,2,30,40,5\n2,3,31,41,6\n").notes
+    (note,) = survey("X,Y,E,N,Z\n1,2,30,40,5\n2,3,31,41,6\n").notes
     assert "'E' and 'N' are taken, 'X' and 'Y' are not" in note
+    text = "E,N,X,Y,Z\n1,2,30,40,5\n2,3,31,41,6\n"
+    assert "('E', 'N'; 'X', 'Y', 'Z')" in str(fault(survey, text, ReadError))
     (note,) = survey("E,N,Height,Elevation\n1,2,30,40\n2,3,31,41\n").notes
     assert "'Elevation' is taken as the elevation, not 'Height'" in note
 
@@ -524,6 +529,27 @@ def test_thousands_separators_are_taken_out_where_they_are_proved(survey):
     assert swiss.points[0].tolist() == [2600000.5, 1200000, 432]
     point = survey("x;y;z\n752.700,5;4.024.240;1.032,5\n752701,5;4024241;1033,5\n")
     assert point.points[0].tolist() == [752700.5, 4024240, 1032.5]
+
+
+@pytest.mark.parametrize(("comma", "point"), [("512,350", "512.700"), ("512,700", "512.350")])
+def test_a_comma_and_a_point_between_digits_of_one_column_are_refused(survey, comma, point):
+    rows = (
+        f"1;5400100.5;4570200.5;{comma}\n2;5400110.5;4570210.5;{point}\n3;5400120.5;4570200.5;513\n"
+    )
+    text = f"Nr;Hoch;Rechts;Höhe\n{rows}"
+    assert f"'{comma}' beside '{point}' in column 4" in str(fault(survey, text))
+    assert survey(text, decimal=".").points[0, 2] == float(comma.replace(",", ""))
+
+
+def test_three_elevations_of_zero_leave_the_layout_plain(survey):
+    heights = [0 if i % 5 == 0 else 512 + i for i in range(17)]
+    rows = "".join(
+        f"{i},{5400100 + 9 * (i % 4)}.123,{4570200 + 8 * (i // 4)}.417,{heights[i]},G\n"
+        for i in range(1, 17)
+    )
+    notes = survey(rows, crs="EPSG:31468").notes
+    assert "(PNEZD)" in notes[0]
+    assert "3 points have the elevation 0" in notes[1]
 
 
 def test_nodata_in_text_is_told_and_left_out_on_request(survey):
@@ -931,7 +957,11 @@ def test_source_crs_is_left_for_another(survey):
     move = pyproj.Transformer.from_crs("EPSG:4269", "EPSG:2274", always_xy=True)
     assert np.allclose(found.points[0, :2], move.transform(-84.2, 36.4), rtol=0, atol=1e-6)
     fault(survey, "lon,lat,z\n5000,95,1\n", CrsError, crs="EPSG:32616")
-    assert survey(content, source_crs="EPSG:32616").crs == "EPSG:32616"
+    said = str(fault(survey, content, CrsError, source_crs="EPSG:32616"))
+    assert "as longitude and latitude" in said
+    assert "source_crs" in said
+    moved = content.replace("-84.2,36.4", "752640,4024180").replace("-84.3,36.5", "752650,4024190")
+    assert survey(moved, source_crs="EPSG:32616").crs == "EPSG:32616"
 
 
 # ------------------------------------------------------------------ writing
@@ -1043,7 +1073,6 @@ def test_the_examples_of_the_page_on_survey_text_run(tmp_path, monkeypatch, caps
     ("rows", "is_told"),
     [
         ("1.5,2.5,100\n300,20,101\n40,400,103\n", True),  # a local grid
-        ("8.1,47.2,100\n8.4,47.1,101\n8.3,47.6,103\n", True),  # degrees
         ("500001,5200002,100\n500300,5200020,101\n500040,5200400,103\n", False),
         # Zone 32 is kept by surveys beyond its eastern edge.
         ("900001,5300002,100\n900300,5300020,101\n900040,5300400,103\n", False),
@@ -1151,7 +1180,10 @@ def test_a_unit_in_the_header_that_the_crs_has_not_is_refused(tmp_path, unit):
         _with_units(tmp_path, unit, crs="EPSG:32617", source_crs="EPSG:32616")
     told = _with_units(tmp_path, unit, crs="EPSG:32616", columns="PNEZ")
     assert "measures in metre, as which they are taken" in " ".join(told.notes)
-    assert len(_with_units(tmp_path, unit)) == 4
+    with pytest.raises(ts.CrsError, match="and the elevation in metre: the option crs names"):
+        _with_units(tmp_path, unit)  # no CRS would keep the unit
+    told = _with_units(tmp_path, unit, columns="PNEZ")
+    assert "which is not kept where no CRS is named" in " ".join(told.notes)
 
 
 @pytest.mark.parametrize(("unit", "crs"), [("m", "EPSG:32616"), ("usft", "EPSG:2274")])
@@ -1311,17 +1343,83 @@ def test_codes_that_are_units_in_few_rows_are_not_told(survey):
     assert survey("E,N,Z,Code\n1.5,2.5,3.5,M\n2.5,7.5,4.5,EP\n3.5,8.5,5.5,\n").notes == []
 
 
-def test_an_x_that_the_crs_calls_northing_is_told(survey):
-    text = "Nr;X;Y;H\n1;500084.8;250013.6;325.8\n2;500029.1;250046.2;322.1\n3;500040;250090;323\n"
-    told = [
-        "EPSG:2180 calls its northing X, and by the header 'X' is taken as the easting: if it is "
-        "not, columns='PNEZ' says so."
+@pytest.mark.parametrize("header", ["Nr;X;Y;H", "Nr;Y;X;H", "Nr;Coord. X;Coord. Y;Z"])
+@pytest.mark.parametrize(
+    ("crs", "east", "north"),
+    [
+        ("EPSG:2180", 500_084.8, 500_013.6),
+        ("EPSG:3844", 586_100.5, 330_100.5),
+        ("EPSG:6677", -12_100.5, -35_100.5),
+        ("EPSG:21781", 600_100.5, 200_100.5),
+        ("EPSG:31468", 4_570_200.5, 5_400_100.5),
+    ],
+)
+def test_an_x_that_header_and_crs_call_northing_is_the_northing(survey, header, crs, east, north):
+    place = {"X": north, "Y": east}
+    rows = [
+        [i] + [place[name[-1]] + 7 * i for name in header.split(";")[1:3]] + [300 + i]
+        for i in range(5)
     ]
-    assert survey(text, crs="EPSG:2180").notes == told
-    assert survey(text, crs="EPSG:2180", columns="PNEZ").points[0].tolist() == [
-        *(250013.6, 500084.8, 325.8)
+    text = header + "\n" + "".join(";".join(map(str, row)) + "\n" for row in rows)
+    found = survey(text, crs=crs)
+    assert found.points[0].tolist() == [east, north, 300]
+    assert any(f"{crs} calls its northing X, as the header does" in note for note in found.notes)
+
+
+def test_an_x_that_only_the_crs_or_the_area_of_use_turns(survey):
+    text = "Nr;X;Y;H\n1;500084.8;250013.6;325.8\n2;500029.1;250046.2;322.1\n3;500040;250090;323\n"
+    assert survey(text, crs="EPSG:2180", columns="PENZ").points[0].tolist() == [
+        *(500084.8, 250013.6, 325.8)
     ]
     assert not any("calls its northing" in note for note in survey(text, crs="EPSG:32634").notes)
+    gis = "X;Y;Z\n4570200;5400100;512\n4570210;5400110;513\n4570220;5400100;512\n"
+    assert survey(gis, crs="EPSG:31468").points[0].tolist() == [4570200, 5400100, 512]
+
+
+@pytest.mark.parametrize(
+    ("line", "is_turned"),
+    [
+        ("# X = Northing, Y = Easting", True),
+        ("# X: north, Y: east", True),
+        ("X is the Hochwert and Y is the Rechtswert", True),
+        ("# Northing (X), Easting (Y)", True),
+        ("# X=N Y=E", True),
+        ("# X = Easting, Y = Northing", False),
+        ("# site North, block Y", False),
+        ("# two lines", False),
+    ],
+)
+def test_a_line_that_says_where_x_points_is_followed(survey, line, is_turned):
+    text = f"{line}\nP,X,Y,Z\n1,2000,1000,5\n2,2010,1000,6\n3,2000,1020,7\n"
+    found = survey(text)
+    assert found.points[0].tolist() == ([1000, 2000, 5] if is_turned else [2000, 1000, 5])
+    assert any("'X' is taken as the northing" in note for note in found.notes) == is_turned
+    assert survey(text, columns="PENZ").points[0].tolist() == [2000, 1000, 5]
+
+
+def test_brackets_between_blanks_belong_to_the_name_before_them(survey):
+    text = "P X (Northing) Y (Easting) Elev (US survey ft)\n1 20 10 5\n2 21 10 6\n3 20 12 7\n"
+    found = survey(text, name="a.txt")
+    assert found.points[0].tolist() == [10, 20, 5]
+    assert found.elevation_unit.name == "US survey foot"
+
+
+@pytest.mark.parametrize(
+    ("header", "row", "is_read"),
+    [
+        ("Lat,N/S,Lon,E/W,Elev", "36.3{0},N,84.2{0},W,{0}", False),
+        ("Lat,N/S,Lon,E/W,Elev", "36.3{0},S,84.2{0},E,{0}", False),
+        ("Lat,N/S,Lon,E/W,Elev", "36.3{0},N,84.2{0},E,{0}", True),
+        ("Lat,Dir1,Lon,Dir2,Elev", "36.3{0},N,84.2{0},W,{0}", False),
+        ("Lat,LatDir,Lon,LonDir,Elev", "36.3{0},1,84.2{0},-1,{0}", False),
+    ],
+)
+def test_columns_of_hemispheres_are_never_thrown_away(survey, header, row, is_read):
+    text = header + "\n" + "".join(row.format(i) + "\n" for i in range(1, 6))
+    if is_read:
+        assert len(survey(text, crs="EPSG:3857")) == 5
+    else:
+        assert "may turn the sign" in str(fault(survey, text, crs="EPSG:3857"))
 
 
 def test_points_whose_numbers_begin_as_comments_do_are_told(survey):
@@ -1362,8 +1460,8 @@ def test_elevations_of_no_data_say_nothing_of_a_layout(survey):
         f"{i},{4024240 + i % 4}.5,{752700 + i // 3}.5,{-9999 if i % 3 == 0 else 322}.25,GS\n"
         for i in range(1, 13)
     ]
-    with pytest.raises(ReadError, match="PNEZD would rise by"):
-        survey("".join(rows), crs="EPSG:32616")
+    told = survey("".join(rows), crs="EPSG:32616")
+    assert any("4 points have the elevation -9999.25, far from" in note for note in told.notes)
     found = survey("".join(rows), crs="EPSG:32616", nodata=-9999.25)
     assert found.skipped["nodata points"] == 4
     assert found.points[0].tolist() == [752700.5, 4024241.5, 322.25]
@@ -1436,6 +1534,33 @@ def test_a_unit_above_the_table_is_told(survey, line):
     (note,) = found.notes
     assert note.startswith(f"Line 1 ('{line}') tells a unit")
     assert survey(f"United we stand\nUnits: many\n{WITH_HEADER}").notes == []
+
+
+@pytest.mark.parametrize(
+    ("line", "unit"),
+    [
+        ("# elevations in US survey feet", "US survey foot"),
+        ("# Elevation unit: ft", "foot"),
+        ("// Heights are given in metres", "metre"),
+        ("# Höhen in m", None),
+        ("# elevations relative to the floor, in ft", None),
+        ("# spacing 5 ft", None),
+    ],
+)
+def test_a_line_that_gives_the_unit_of_elevations_is_followed(survey, line, unit):
+    found = survey(f"{line}\n{WITH_HEADER}")
+    assert (found.elevation_unit and found.elevation_unit.name) == unit
+    assert bool(found.notes) == ("5 ft" not in line and "Höhen" not in line)
+    if unit is not None:
+        assert "gives the unit of the elevations" in found.notes[0]
+        said = str(fault(survey, f"{line}\n{WITH_HEADER}", z_unit="cm"))
+        assert "as the unit of the elevations, and the option z_unit another" in said
+
+
+def test_geocentric_coordinates_are_no_eastings(survey):
+    rows = "".join(f"{i},{630000.5 + i},{-5100000.5 + 2 * i},{3760000.25 - i}\n" for i in range(9))
+    assert "geocentric" in str(fault(survey, "P,X,Y,Z\n" + rows))
+    assert len(survey("P,E,N,Z\n" + rows)) == len(survey("P,X,Y,Z\n" + rows, columns="PXYZ")) == 9
 
 
 def test_white_space_of_any_kind_may_stand_around_a_number(tmp_path):

@@ -25,7 +25,7 @@ def header(**given):
         "block_width": 7, "scales": [1.0, 1.0], "offsets": [0.0, 0.0], "units": [None, None],
         "crs": None, "limits": Limits(5.0, 1 << 30),
     }  # fmt: skip
-    return dem.Header(**{**usual, **given})
+    return dem.Header(**{**usual, "meanings": [], "tags": {}, **given})
 
 
 def choose_cells(stride=1, **part):

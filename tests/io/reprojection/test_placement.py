@@ -1,6 +1,7 @@
 """Points of a file in the CRS wanted: what is told of areas of use, whatever the format."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -36,26 +37,37 @@ def test_points_outside_the_area_of_either_crs_are_told():
     assert _place(one, UTM, None)[0].startswith("1 of 4 points lies outside")
 
 
-def test_points_that_would_lie_inside_exchanged_are_told_so():
-    told = f"3 of 3 points lie outside the area of use of {ZONE} and, exchanged, inside"
-    assert _place(SITE[:, [1, 0, 2]], UTM, None)[0].startswith(told)
+def test_points_that_would_lie_inside_exchanged_are_refused():
+    exchanged = SITE[:, [1, 0, 2]]
+    words = f"3 of 3 points lie outside the area of use of {re.escape(ZONE)} and, exchanged, inside"
+    with pytest.raises(ts.CrsError, match=words):
+        _place(exchanged, UTM, None)
+    few = np.vstack([SITE, exchanged[:1]])
+    assert "and, exchanged, inside: check the order" in _place(few, UTM, None)[0]
 
 
-def test_local_coordinates_are_told_where_they_are_reprojected():
+@pytest.mark.parametrize("source", [UTM, None])
+def test_degrees_declared_to_be_lengths_are_refused(source):
+    degrees = np.array([[-84.2, 36.3, 320.0], [-84.201, 36.3, 321.0], [-84.2, 36.301, 322.0]])
+    with pytest.raises(ts.CrsError, match=r"as longitude and latitude.*measures in metre"):
+        _place(degrees, source, UTM)
+
+
+def test_local_coordinates_are_told():
     local = SITE - [752690.0, 4024190.0, 0.0] - [3000.0, 9000.0, 0.0]
-    assert _place(local, UTM, None) == ()
+    assert "check that they are no local coordinates" in _place(local, UTM, None)[0]
     assert "outside the area of use" in _place(local, UTM, CRS.of("EPSG:2274"))[0]
 
 
-def test_latitude_before_longitude_in_geojson_is_told(tmp_path):
+def test_latitude_before_longitude_in_geojson_is_refused(tmp_path):
     features = [
         {"type": "Feature", "properties": {}, "geometry": {"type": "Point", "coordinates": place}}
         for place in ([36.1, -84.2, 320], [36.1, -84.201, 321], [36.101, -84.2, 322])
     ]
     path = tmp_path / "swapped.geojson"
     path.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
-    notes = ts.read(path, crs="EPSG:32616").notes
-    assert any("exchanged, inside: check the order of the coordinates" in one for one in notes)
+    with pytest.raises(ts.CrsError, match=r"swapped.geojson.*and, exchanged, inside"):
+        ts.read(path, crs="EPSG:32616")
 
 
 @pytest.mark.parametrize("suffix", ["gpkg", "las", "tif"])

@@ -395,7 +395,11 @@ def test_lines_far_from_the_points_have_the_wrong_crs(tmp_path):
     degrees = write(
         tmp_path / "a.shp", [shapely.LineString([(-84.2, 36.3), (-84.1, 36.4)])], crs=None
     )
-    refused("nowhere near the points", with_lines, survey(), breaklines=[degrees])
+    with pytest.raises(ts.CrsError, match="as longitude and latitude"):
+        with_lines(survey(), breaklines=[degrees])
+    far = CORNER + np.array([[9e4, 9e4], [9.01e4, 9.01e4]])
+    beside = write(tmp_path / "b.shp", [shapely.LineString(far)], crs=None)
+    refused("nowhere near the points", with_lines, survey(), breaklines=[beside])
 
 
 def test_lines_of_our_own_geojson_come_back(tmp_path):
@@ -406,3 +410,62 @@ def test_lines_of_our_own_geojson_come_back(tmp_path):
     assert (line.kind, line.name) == ("soft", "a")
     (chain,) = built.lines.chains()
     assert line.coords == pytest.approx(built.points[chain], abs=1e-3)
+
+
+# -------------------------------------------------------------- elevations and their units
+
+
+def write_kml(path, mode):
+    """Five points; elements as Google Earth writes them."""
+    told = "" if mode is None else f"<altitudeMode>{mode}</altitudeMode>"
+    marks = "".join(
+        f"<Placemark><Point>{told}<coordinates>{-84.5 + 0.002 * i},{36.3 + 0.001 * i * i},{300 + i}"
+        "</coordinates></Point></Placemark>"
+        for i in range(5)
+    )
+    path.write_text(
+        f'<kml xmlns="http://www.opengis.net/kml/2.2"><Document>{marks}</Document></kml>'
+    )
+    return path
+
+
+@pytest.mark.parametrize("mode", ["relativeToGround", "clampToGround"])
+def test_heights_above_ground_of_kml_are_no_elevations(tmp_path, mode):
+    with pytest.raises(ts.ReadError, match=f"no elevations.*altitudeMode {mode}"):
+        ts.read(write_kml(tmp_path / "a.kml", mode), crs=UTM)
+
+
+def test_elevations_of_kml_are_absolute_or_told(tmp_path):
+    found = ts.read(write_kml(tmp_path / "a.kml", "absolute"), crs=UTM)
+    assert (found.points[:, 2].min(), found.notes) == (300, [])
+    (note,) = ts.read(write_kml(tmp_path / "b.kml", None), crs=UTM).notes
+    assert "without an altitudeMode" in note
+
+
+@pytest.mark.parametrize("suffix", ["gpkg", "fgb", "parquet", "geojson"])
+def test_lines_have_the_unit_that_their_layer_tells(tmp_path, suffix):
+    """As points of the same file have it."""
+    metres = survey()
+    feet = ts.triangulate(metres.points / [1, 1, 0.3048], crs=UTM, z_unit="ft")
+    path, options = tmp_path / f"lines.{suffix}", {}
+    if suffix == "geojson":
+        options = {"projected": True}
+    ts.write(ts.contours(feet, interval=0.5), path, **options)
+    notes = []
+    lines = read_lines(path, crs=UTM, elevation_unit="m", notes=notes)
+    elevations = np.concatenate([line.coords[:, 2] for line in lines])
+    assert metres.points[:, 2].min() <= elevations.min()
+    assert elevations.max() <= metres.points[:, 2].max()
+    assert any("converted from foot to metre" in note for note in notes)
+    with pytest.raises(ts.OptionError, match="foot"):
+        read_lines(path, crs=UTM, z_unit="m")
+
+
+def test_a_column_of_elevations_that_lines_do_not_take_is_told(tmp_path):
+    lines = [shapely.LineString(KERB_Z[:, :2]), shapely.LineString(KERB_Z[:, :2] + 5)]
+    path = write(tmp_path / "a.gpkg", lines, columns={"ELEV": [300.0, 301.0]})
+    notes = []
+    read_lines(path, crs=UTM, notes=notes)
+    assert any("not from the column 'elev'" in note for note in notes)
+    read_lines(path, crs=UTM, notes=(quiet := []), drape=True)
+    assert not any("column" in note for note in quiet)

@@ -298,7 +298,7 @@ def test_a_step_at_edges_that_meet_but_for_a_rounding_keeps_both_elevations():
 
 
 def test_an_overlay_of_too_many_vertices_is_refused(monkeypatch):
-    def overlay(*_):
+    def overlay(*_, **__):
         raise OverflowError
 
     monkeypatch.setattr("tinsmith.terrain._kernel.overlay", overlay)

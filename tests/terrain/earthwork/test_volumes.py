@@ -424,4 +424,29 @@ def test_a_base_and_another_surface_are_refused():
 
 def test_elevations_beyond_double_precision_are_refused():
     with pytest.raises(ts.PointsError, match="too large"):
-        ts.volume(square([0] * 4), square([1e308] * 4))
+        ts.volume(square([0] * 4, side=1e5), square([1e300] * 4, side=1e5))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_surfaces_that_share_most_of_their_triangles(seed):
+    """Shared ones meet no others; numbered and turned in another way they are the same."""
+    rng = np.random.default_rng(seed)
+    tin = rough(60, seed)
+    points = np.add(tin.points, [0, 0, 0.1])
+    inner = np.setdiff1d(np.arange(len(points)), tin.hull)[:6]
+    points[inner] += rng.random((6, 3))
+    other = ts.triangulate(points)
+    shared = {frozenset(map(tuple, corners)) for corners in tin.points[tin.triangles, :2].tolist()}
+    kept = [
+        frozenset(map(tuple, corners)) in shared
+        for corners in other.points[other.triangles, :2].tolist()
+    ]
+    assert 0.2 < np.mean(kept) < 1.0
+    turned = rng.permutation(other.triangles)[:, [1, 2, 0]]
+    exact = exact_volume(tin, other)
+    for version in (other, ts.TIN.from_triangles(other.points, turned)):
+        for name in NAMES:
+            expected = float(getattr(exact, name))
+            assert one(ts.volume(tin, version), name) == pytest.approx(expected, rel=1e-12)
+            found = ts.difference(tin, version).volumes
+            assert one(found, name) == pytest.approx(expected, rel=1e-12)

@@ -194,3 +194,17 @@ def test_ridges_and_valleys_of_a_folded_sheet():
     assert (np.diff(found.coordinates[:, 2].reshape(-1, 2)) < 0).all()
     bend = np.degrees(2 * np.arctan(1 / np.sqrt(1 + 0.1**2)))
     assert found.columns["angle"] == pytest.approx(bend)
+
+
+@pytest.mark.parametrize("turn", [(1, 3), (3, 1), (-7, 11)])
+def test_waters_along_a_slanted_line_are_whole_polygons(turn):
+    """Its triangles are thinner than rounding, and hang together with none but in decimals."""
+    along = np.arange(300.0)
+    line = np.column_stack([along * turn[0] / 3, along * turn[1] / 3, np.sin(along)])
+    aside = [[450.0 * turn[1] / 10, -450.0 * turn[0] / 10, 0.0]]
+    tin = ts.triangulate(np.vstack([line, aside]))
+    for found in (ts.ponds(tin, 0.01), ts.depressions(tin)):
+        assert not any("met themselves" in note for note in found.notes)
+        shapes = found.to_shapely()
+        assert shapely.is_valid(shapes).all()
+        assert shapely.area(shapes) == pytest.approx(found.columns["area"], rel=1e-9, abs=1e-9)

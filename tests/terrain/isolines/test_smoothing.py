@@ -171,3 +171,34 @@ def test_each_point_of_a_line_is_known_in_a_triangle_that_holds_it(make):
         along, to = end - start, xy - start
         length = np.hypot(*along.T)
         assert ((along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0]) / length > -1e-9).all()
+
+
+def test_clusters_far_apart_are_smoothed_and_stay_apart():
+    cluster = np.random.default_rng(1).random((150, 3))
+    tin = ts.triangulate(np.concatenate([cluster, cluster + np.array([1e6, 1e6, 0.0])]))
+    lines = ts.contours(tin, interval=0.1, smooth=0.1)
+    assert len(lines.coordinates) > 2 * len(ts.contours(tin, interval=0.1).coordinates)
+    found = ts.check_contours(tin, lines)
+    assert found.is_apart
+    assert found.deviation <= 0.1 + 1e-9
+
+
+def test_straight_contours_are_left_with_their_ends():
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(300.0), np.arange(4.0)))
+    tin = ts.triangulate(np.column_stack([x, y, y]))
+    lines = ts.contours(tin, levels=[0.25, 1.5, 2.75], simplify=0.1)
+    assert np.diff(lines.offsets[0]).tolist() == [2, 2, 2]
+
+
+@pytest.mark.parametrize("turn", [(3, 1), (1, 3), (-7, 11)])
+def test_contours_along_a_slanted_line_stay_within_their_tolerance(turn):
+    """Its triangles along the boundary are thinner than rounding, and as long as the line."""
+    along = np.arange(200.0)
+    line = np.column_stack([along * turn[0] / 3, along * turn[1] / 3, np.sin(along)])
+    aside = [[300.0 * turn[1] / 10, -300.0 * turn[0] / 10, 0.0]]
+    tin = ts.triangulate(np.vstack([line, aside]))
+    lines = ts.contours(tin, 0.2, smooth=0.1, simplify=0.05)
+    found = ts.check_contours(tin, lines)
+    assert found.is_apart
+    assert 0.0 < found.deviation <= 0.15
+    assert len(lines.coordinates) < 20 * len(tin.points)

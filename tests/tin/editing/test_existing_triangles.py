@@ -7,6 +7,7 @@ import pytest
 
 import tinsmith as ts
 from tinsmith.tin.editing import mesh_editor
+from tinsmith.tin.predicates import LARGEST_ELEVATION
 
 CORNERS = [[0, 0, 0], [8, 0, 0], [8, 8, 0], [0, 8, 0], [1, 4, 10], [7, 4, 10]]
 ARRAYS = ("points", "triangles", "neighbors", "constrained")
@@ -212,7 +213,7 @@ def test_a_vertex_moved_beside_a_line_is_where_a_fresh_build_has_it(roundings, a
 
 
 def test_the_mean_of_the_largest_elevations_of_either_sign_is_between():
-    largest = float(np.finfo(float).max)
+    largest = LARGEST_ELEVATION
     tin = ts.triangulate([[0, 0, largest], [4, 0, 0], [0, 4, 0]])
     tin.insert([[0, 0, -largest]], duplicates="mean")
     assert tin.points[0, 2] == 0.0

@@ -15,6 +15,7 @@ from support import oracles
 
 import tinsmith as ts
 from tinsmith.tin import TIN, PointsError, _kernel
+from tinsmith.tin.predicates import LARGEST_ELEVATION
 
 UTM = (500_000.0, 4_000_000.0)
 
@@ -260,7 +261,7 @@ class TestInterpolate:
         np.testing.assert_allclose(heights[~beyond], on_edge[~beyond, 2], rtol=0, atol=1e-7)
 
     def test_largest_heights_do_not_overflow(self):
-        top = np.finfo(float).max
+        top = LARGEST_ELEVATION
         tin = TIN.from_triangles([(0, 0, -top), (4, 0, top), (0, 4, top)], [(0, 1, 2)])
         assert tin.interpolate([(2, 0), (0, 0), (4, 0)]).tolist() == [0.0, -top, top]
 

@@ -151,3 +151,17 @@ def test_the_rounding_is_that_of_the_decimals():
         assert find_rounding(z) == pytest.approx(lost.std(), rel=0.02)
     assert find_rounding(rng.random(900) * 500) < 1e-6
     assert find_rounding(np.full(5, 318.2)) < 0.03
+
+
+def test_the_pairs_within_two_edges_are_in_proportion_where_all_meet_in_one_vertex():
+    """Over it each of 20,000 points would be near all others."""
+    angle = 2 * np.pi * np.arange(20_000) / 20_000
+    ring = np.column_stack([100 * np.cos(angle), 100 * np.sin(angle), np.sin(9 * angle)])
+    tin = ts.triangulate(np.vstack([[0, 0, 0], ring]), boundary=[ring])
+    hub = tin.vertex_of[0]
+    known = Residuals.of(tin.triangulation)
+    everyone = np.arange(len(tin.points), dtype=np.int32)
+    offsets, around = known.list_wide_neighbors(everyone)
+    assert len(around) < 10 * len(tin.points)
+    assert offsets[hub + 1] - offsets[hub] == len(ring)
+    assert (np.bincount(around, minlength=len(everyone))[hub]) == len(ring)

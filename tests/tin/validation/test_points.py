@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.tin import PointsError, _kernel, check
+from tinsmith.tin import PointsError, _kernel, check, predicates
 from tinsmith.tin.validation.points import as_points, as_xy, require_exact_range
 
 GOOD = np.array([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [1, 2, 9]], float)
@@ -89,16 +89,40 @@ def test_coordinates_beyond_the_exact_range(column, value):
     assert repr(value) in str(caught.value)
 
 
-def test_elevations_may_have_any_finite_size():
+def test_elevations_may_have_any_size_to_the_largest():
     points = GOOD.copy()
     points[:2, 2] = 1e300, 5e-324
     assert ts.triangulate(points).points[:2, 2].tolist() == [1e300, 5e-324]
+    assert predicates.LARGEST_ELEVATION == _kernel.LARGEST_ELEVATION == 1e300
 
 
-def test_elevations_whose_sum_overflows_are_finite_all_the_same():
+BEYOND = [np.nextafter(1e300, np.inf), -1.7e308]
+
+
+@pytest.mark.parametrize("z", BEYOND)
+def test_elevations_above_the_largest_are_refused_at_every_door(z):
     points = GOOD.copy()
-    points[:, 2] = 1.7e308
-    assert len(ts.triangulate(points).points) == 5
+    points[2, 2] = z
+    with pytest.raises(ts.PointsError, match=r"row 2, elevation .*up to 1e\+300") as caught:
+        ts.triangulate(points)
+    assert caught.value.rows == (2,)
+    tin = ts.triangulate(GOOD)
+    x, y = GOOD[:, :2].mean(axis=0).tolist()
+    doors = {
+        "insert": lambda: tin.insert([[x, y, z]]),
+        "move": lambda: tin.move(0, [x, y, z]),
+        "set one": lambda: tin.set_elevation(0, z),
+        "set": lambda: tin.set_elevation([0, 1], [1.0, z]),
+        "line": lambda: tin.add_breakline([[x, y, z], [x + 0.1, y, 1.0]]),
+        "triangles": lambda: ts.TIN.from_triangles(points, tin.triangles),
+        "breakline": lambda: ts.triangulate(GOOD, breaklines=[[[x, y, z], [x + 0.1, y, 1.0]]]),
+        "array": lambda: ts.triangulate(GOOD, breaklines=[np.array([[x, y, 0], [x, y + 0.1, z]])]),
+    }
+    before = tin.points.copy()
+    for door in doors.values():
+        with pytest.raises(ts.TinsmithError, match=r"levation.*up to 1e\+300"):
+            door()
+    assert np.array_equal(tin.points, before)
 
 
 NO_NUMBERS = {

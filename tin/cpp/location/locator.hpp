@@ -73,6 +73,7 @@ class Locator {
   bool visit_queries(const Point* all_queries, std::int64_t count, KeepGoing&& keep_going,
                      Visit&& visit) const {
     Triangle last = kNoTriangle;
+    int longest_walk = kLongestWalk;
     for (std::int64_t begin = 0; begin < count; begin += kQueriesAtATime) {
       const auto size = static_cast<std::int32_t>(std::min(kQueriesAtATime, count - begin));
       const Point* queries = all_queries + begin;
@@ -84,7 +85,7 @@ class Locator {
         for (std::int32_t i = first; i < end; ++i) block[i - first] = queries[order[i]];
         for (std::int32_t i = first; i < end; ++i) {
           const Point p = block[i - first];
-          const Triangle triangle = find(p, last);
+          const Triangle triangle = find(p, last, longest_walk);
           if (triangle != kNoTriangle) last = triangle;
           visit(begin + order[i], p, triangle);
         }
@@ -102,16 +103,22 @@ class Locator {
   static constexpr std::int64_t kQueriesAtATime = std::int64_t{1} << 22;  // bounds the memory
   static constexpr int kCellsPerQuery = 1;      // within one the order matters little
   static constexpr std::int32_t kBlock = 4096;  // fits the first-level cache
-  static constexpr int kLongestWalk = 24;       // as costly as a search
+  static constexpr int kLongestWalk = 24;       // as costly as a search among even triangles
 
-  Triangle find(Point p, Triangle start) const {
-    const Triangle guess = start == kNoTriangle ? kNoTriangle : walk(p, start);
-    return guess == kNoTriangle ? search(p) : guess;
+  // A walk may be as long as the last search was: among long triangles aslant, most of whose boxes
+  // overlap, that is many steps.
+  Triangle find(Point p, Triangle start, int& longest_walk) const {
+    const Triangle guess = start == kNoTriangle ? kNoTriangle : walk(p, start, longest_walk);
+    if (guess != kNoTriangle) return guess;
+    std::int32_t tested = 0;
+    const Triangle found = search(p, tested);
+    longest_walk = std::max(kLongestWalk, tested);
+    return found;
   }
 
   // The triangle that certainly holds p strictly inside, or kNoTriangle for "cannot say".
-  Triangle walk(Point p, Triangle triangle) const {
-    for (int step = 0; step < kLongestWalk && surface_.is_triangle(triangle); ++step) {
+  Triangle walk(Point p, Triangle triangle, int longest) const {
+    for (int step = 0; step < longest && surface_.is_triangle(triangle); ++step) {
       const Point a = surface_.corner(triangle, 0);
       const Point b = surface_.corner(triangle, 1);
       const Point c = surface_.corner(triangle, 2);
@@ -135,10 +142,11 @@ class Locator {
   }
 
   // The triangle that holds p, boundary included, and of several the one that the caller calls by
-  // the smallest number; exact and complete.
-  Triangle search(Point p) const {
+  // the smallest number; exact and complete. Counts the triangles that are tested.
+  Triangle search(Point p, std::int32_t& tested) const {
     Triangle best = kNoTriangle, smallest = kNoTriangle;  // the largest number of all
     tree_.visit_leaves(p, [&](std::int32_t begin, std::int32_t end) {
+      tested += end - begin;
       for (std::int32_t i = begin; i < end; ++i) {
         const Triangle triangle = triangle_numbered(i), given = copy_.given_number(triangle);
         if (given > smallest) continue;

@@ -24,7 +24,7 @@ struct GivenVertex {
 
   Point place() const { return {x + 0.0, y + 0.0}; }
   double elevation() const { return z + 0.0; }
-  bool is_sound() const { return is_in_exact_range(x) && is_in_exact_range(y) && std::isfinite(z); }
+  bool is_sound() const { return is_in_exact_range(x) && is_in_exact_range(y) && is_elevation(z); }
 };
 
 // An edit of one vertex that was done: the vertex as it was numbered then, its slot, and what was
@@ -116,7 +116,7 @@ class EditedMesh {
   }
 
   bool set_elevation(std::int32_t vertex, double z) {
-    if (!is_lent_ || !is_sound_ || !std::isfinite(z)) return false;
+    if (!is_lent_ || !is_sound_ || !is_elevation(z)) return false;
     if (!numbers_.is_vertex(vertex)) return false;
     const Vertex slot = numbers_.slot_of(vertex);
     if (has_lines_ && (!mesh_ || editor().has_fixed_edge(slot))) return false;

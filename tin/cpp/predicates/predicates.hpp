@@ -25,11 +25,14 @@ namespace tinsmith {
 
 constexpr double kSmallestCoordinate = 0x1p-200;
 constexpr double kLargestCoordinate = 0x1p250;
+constexpr double kLargestElevation = 1e300;  // sums and differences of some are finite
 
 inline bool is_in_exact_range(double coordinate) {
   const double size = std::fabs(coordinate);
   return size == 0.0 || (size >= kSmallestCoordinate && size <= kLargestCoordinate);
 }
+
+inline bool is_elevation(double z) { return std::fabs(z) <= kLargestElevation; }
 
 constexpr double kUnitRoundoff = 0x1p-53;
 

@@ -70,6 +70,7 @@ Signs signs_of(const GivenXy& a, const More&... more) {
 inline void bind_points(nb::module_& m) {
   m.attr("SMALLEST_COORDINATE") = kSmallestCoordinate;
   m.attr("LARGEST_COORDINATE") = kLargestCoordinate;
+  m.attr("LARGEST_ELEVATION") = kLargestElevation;
   m.def("clean", &clean, "points"_a.noconvert(), "threads"_a = 1,
         "A copy without -0.0, and whether the growth can work with it.");
   m.def("are_in_exact_range", &are_in_exact_range, "xy"_a.noconvert(),

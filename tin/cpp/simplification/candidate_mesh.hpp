@@ -317,11 +317,14 @@ class CandidateMesh {
 
   // After the vertex was put back, its triangles hold what they held.
   void restore_star(Vertex v) {
+    const auto comes_before = [](const Spared& one, const Spared& other) {
+      return one.from < other.from;
+    };
+    std::sort(spared_.begin(), spared_.end(), comes_before);
     for (const HalfEdge e : mesh().around(v)) {
-      const Vertex from = mesh().from(Mesh::after(e));
-      for (const Spared& spared : spared_) {
-        if (spared.from == from) lists_[number(triangle_of(e))] = spared.list;
-      }
+      const Spared same{mesh().from(Mesh::after(e)), kGhost, {}};
+      const auto at = std::lower_bound(spared_.begin(), spared_.end(), same, comes_before);
+      if (at != spared_.end() && at->from == same.from) lists_[number(triangle_of(e))] = at->list;
     }
     editor_.take_touched(touched_);
   }

@@ -23,13 +23,14 @@ struct GapTriangle {
 class StarGap {
  public:
   // For a vertex inside, without fixed edges. False if it cannot be told so, which is where fixed
-  // edges hide corners from each other.
+  // edges hide corners from each other, or would take long: ears are looked for among all corners.
   bool find(const MeshEditor& editor, Vertex v) {
     ring_.clear();
     triangles_.clear();
     for (const HalfEdge e : editor.mesh().around(v)) {
       const Vertex end = editor.mesh().to(e);
       ring_.push_back({end, editor.point(end)});
+      if (ring_.size() > kMostCorners) return false;
     }
     while (ring_.size() > 3) {
       if (!cut_ear()) return false;
@@ -42,6 +43,8 @@ class StarGap {
   const std::vector<GapTriangle>& triangles() const { return triangles_; }
 
  private:
+  static constexpr std::size_t kMostCorners = 64;
+
   struct Corner {
     Vertex vertex;
     Point at;

@@ -71,6 +71,7 @@ def interpolate(
       tinsmith interpolate sample_data/site_survey.csv --crs EPSG:32616
         --at places.csv --method natural -o elevations.csv
     """  # noqa: D301 - click reads the control character
+    from ...crs import CRS
     from ...io.delimited.query_points import read_query_points
     from ...terrain.georeference import describe_unknown
 
@@ -81,6 +82,7 @@ def interpolate(
         points_file,
         columns=asked["at_columns"] or None,
         delimiter=asked["at_delimiter"],
+        crs=CRS.of(asked["at_crs"]) or tin.crs,
     )
     notes = [*describe_unknown(tin.crs, tin.elevation_unit), *points.notes]
     with request.step(f"Interpolating {counted(len(points.xy), 'point')}"):

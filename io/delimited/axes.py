@@ -1,0 +1,166 @@
+"""Which way coordinates count: an X that points north, a longitude that counts to the west."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...errors import ReadError
+from .columns import COORDINATES, shorten
+from .names import parse_name
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from ...arrays import AnyArray, Float64Array
+    from ...crs import CRS
+    from ...tin.screening.area_of_use import AreaOfUse
+    from .columns import Columns
+    from .headings import AxesLine
+
+__all__ = [
+    "are_named_plainly",
+    "describe_turn",
+    "is_northing",
+    "require_no_geocentric",
+    "require_one_hemisphere",
+    "settle_axes",
+]
+
+_POSITIVE = frozenset({"n", "e", "north", "east"})
+_NEGATIVE = frozenset({"s", "w", "o", "south", "west", "sud", "ouest", "oeste"})
+
+_EARTH = (6_330_000.0, 6_400_000.0)
+"""Metres from its centre to places on the earth."""
+_FOOT = 0.3048
+_HIGHEST = 30_000.0
+"""Elevations are never so high, in feet; geocentric Z is, but near the equator."""
+
+
+def settle_axes(
+    points: Float64Array,
+    columns: Columns,
+    crs: CRS | None,
+    area: AreaOfUse | None,
+    line: AxesLine | None = None,
+) -> tuple[Float64Array, Columns, list[str]]:
+    """Take the header's X for the northing where a line near the table, or the CRS, does.
+
+    Where only one reading lies in the area of use it is taken.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+        As they are in the file, with X as the easting.
+    columns : Columns
+        Found by the header.
+    crs : CRS or None
+        Of the coordinates in the file.
+    area : AreaOfUse or None
+        None says nothing.
+    line : AxesLine or None
+        What says of X and Y which way they point.
+
+    Returns
+    -------
+    points : (n, 3) float64 array
+    columns : Columns
+    notes : list of str
+    """
+    east, north = (columns.names[columns.roles[role]] for role in COORDINATES[:2])
+    if parse_name(east).kind != "axis":
+        return points, columns, []
+    if line is None and crs is not None and is_northing(east, points[:, :2], crs, area):
+        why = describe_turn(crs, east, north)
+    elif line is not None and line.is_turned:
+        why = f"By {line.label} {_name_turn(east, north)}"
+    else:
+        is_odd = line is None and columns.roles["northing"] < columns.roles["easting"]
+        return points, columns, [_describe_order(east, north)] if is_odd else []
+    note = f"{why}; columns='{columns.word}' takes them the other way round."
+    return points[:, [1, 0, 2]], columns.permute((1, 0, 2)), [note]
+
+
+def _describe_order(east: str, north: str) -> str:
+    return (
+        f"By the header '{shorten(east)}' is the easting and '{shorten(north)}' the northing; "
+        "where X points north it is the other way round."
+    )
+
+
+def is_northing(name: str, xy: Float64Array, crs: CRS, area: AreaOfUse | None) -> bool:
+    """Whether a column called X is the northing, as its CRS says and the area of use allows."""
+    if parse_name(name).kind != "axis" or not _points_north(crs, "x"):
+        return False
+    return area is None or not area.covers_most(xy) or area.covers_most(xy[:, ::-1])
+
+
+def describe_turn(crs: CRS, east: str, north: str) -> str:
+    """Say that the columns called X and Y are taken as northing and easting."""
+    return f"{crs.label} calls its northing X, as the header does: {_name_turn(east, north)}"
+
+
+def _name_turn(east: str, north: str) -> str:
+    return f"'{shorten(east)}' is taken as the northing and '{shorten(north)}' as the easting"
+
+
+def _points_north(crs: CRS, name: str) -> bool:
+    return any(
+        axis.abbrev.casefold() == name and axis.direction == "north"
+        for axis in crs.to_pyproj().axis_info
+    )
+
+
+def are_named_plainly(columns: Columns) -> bool:
+    """Whether the names of easting and northing say beyond doubt which is which: not X and Y."""
+    names = [parse_name(columns.names[columns.roles[role]]) for role in COORDINATES[:2]]
+    return all(
+        name.kind in ("word", "letter") and name.role == role
+        for name, role in zip(names, COORDINATES, strict=False)
+    )
+
+
+def require_one_hemisphere(attributes: Mapping[str, AnyArray], path: Path) -> None:
+    """Refuse degrees beside a column that turns their sign: N or S, E or W.
+
+    Raises
+    ------
+    ReadError
+        Unless all of it is N and E.
+    """
+    for name, values in attributes.items():
+        letters = {str(one).strip(" .").casefold() for one in values.tolist()} - {""}
+        is_named = parse_name(name).role == "hemisphere"
+        is_hemisphere = bool(letters) and letters <= _POSITIVE | _NEGATIVE
+        if (is_named or is_hemisphere) and not letters <= _POSITIVE:
+            raise ReadError(
+                f"'{path}': the column '{shorten(name)}' may turn the sign of latitudes and "
+                f"longitudes ({', '.join(sorted(letters)[:4])}): write those to the south and west "
+                "as negative numbers, and leave the column out.",
+                path=path,
+            )
+
+
+def require_no_geocentric(points: Float64Array, columns: Columns, path: Path) -> None:
+    """Refuse X, Y, Z that count from the centre of the earth.
+
+    Raises
+    ------
+    ReadError
+    """
+    names = (parse_name(columns.names[column]) for column in columns.coordinates)
+    if len(points) == 0 or any(name.kind != "axis" for name in names):
+        return
+    with np.errstate(over="ignore"):
+        radius = float(np.median(np.sqrt((points**2).sum(axis=1))))
+    is_high = abs(float(np.median(points[:, 2]))) > _HIGHEST
+    low, high = _EARTH
+    if is_high and (low <= radius <= high or low <= _FOOT * radius <= high):
+        raise ReadError(
+            f"'{path}': its X, Y and Z lie {radius:,.0f} from their origin, as geocentric "
+            "coordinates do, which are no easting, northing and elevation: transform them first, "
+            f"or columns='{columns.word}' takes them nonetheless.",
+            path=path,
+        )

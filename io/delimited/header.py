@@ -1,0 +1,174 @@
+"""What the caller, the header above a table, or a line near it, says of the columns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+from ..._sentences import counted
+from ...errors import ReadError
+from .cells import split_line
+from .columns import (
+    Columns,
+    describe_doubts,
+    find_columns_by_header,
+    find_columns_by_word,
+    find_role,
+    list_meanings,
+    list_names,
+    names_coordinates,
+)
+from .headings import find_heading
+from .lines import COMMENT_PREFIXES
+from .marks import split_header
+from .names import read_words
+
+if TYPE_CHECKING:
+    from ...arrays import Int64Array
+    from .headings import Heading
+    from .lines import TextLines
+
+__all__ = ["Told", "TopLines", "count_told_columns", "find_named_columns", "join_brackets"]
+
+Told: TypeAlias = "str | Sequence[str] | Mapping[str, str | int]"
+"""What the caller says that the columns are."""
+
+_SHOWN_NAMES = 100
+
+
+class TopLines(NamedTuple):
+    """A text file, the lines of its table, and what stands above them."""
+
+    lines: TextLines
+    rows: Int64Array
+    header: list[str] | None
+    units: tuple[str, ...]
+
+
+def find_named_columns(
+    top: TopLines,
+    shape: tuple[str, int],
+    body: Sequence[Sequence[str]],
+    told: Told | None,
+) -> tuple[Columns | None, Heading | None]:
+    """Return what the caller, a header or a line near the table says of the columns.
+
+    Parameters
+    ----------
+    top : TopLines
+    shape : (str, int)
+        Delimiter, and number of columns.
+    body : sequence of sequence of str
+        Cells of some rows.
+    told : str, sequence of str or mapping, optional
+        What the caller says.
+
+    Returns
+    -------
+    columns : Columns or None
+        None if nobody says it.
+    heading : Heading or None
+        A line that speaks of coordinates, and does not say which columns they are.
+    """
+    delimiter, count = shape
+    first_row = int(top.rows[0])
+    header = top.header or _find_header_in_comment(top.lines, first_row, delimiter, count)
+    header = None if header is None else _drop_label(header)
+    heading = None
+    if told is None and (header is None or names_coordinates(header) is None):
+        heading = find_heading(top.lines, top.rows, count)
+    if heading is not None and heading.names:
+        found = _find_columns_by_name(list(heading.names), heading.units, count, None)
+        return replace(found, notes=(heading.note, *found.notes)), None
+    named = _fit_header(header, count, body, told)
+    if named or told is not None:
+        return _find_columns_by_name(named, top.units, count, told), None
+    return None, heading
+
+
+def _drop_label(header: list[str]) -> list[str]:
+    """Return a header without what stands before its first name: "Columns: N", "E", "Z"."""
+    label, _, name = header[0].rpartition(":")
+    is_label = bool(name.strip()) and not read_words(label).roles and "(" not in label
+    return [name.strip(), *header[1:]] if is_label else header
+
+
+def _find_header_in_comment(
+    lines: TextLines, first_row: int, delimiter: str, count: int
+) -> list[str] | None:
+    """Return the names in the comment line right above the table, if it is a header."""
+    if first_row == 0:
+        return None
+    above = lines.decode_line(first_row - 1).strip()
+    found: list[list[str]] = []
+    for prefix in ("", *COMMENT_PREFIXES):
+        if above.startswith(prefix):
+            names = split_line(above.removeprefix(prefix), delimiter)
+            if len(names) == count and names_coordinates(names) is not None:
+                found.append(names)
+            other = split_header(above.removeprefix(prefix), delimiter, count)
+            if other is not None and len(other) == count:
+                found.append(other)
+    plain = (names for names in found if not describe_doubts(names))
+    return next(plain, found[0] if found else None)
+
+
+def _fit_header(
+    header: list[str] | None, count: int, body: Sequence[Sequence[str]], told: Told | None
+) -> list[str]:
+    """Return one name a column; a delimiter at the end of rows or header makes no column."""
+    if header is None or len(header) == count:
+        return header or []
+    if len(header) == count - 1 and header[-1] and not any(row[-1] for row in body):
+        return [*header, ""]
+    if len(header) == count + 1 and not header[-1]:
+        return header[:-1]
+    n_told = count_told_columns(told)
+    is_known = names_coordinates(header) is not None
+    if n_told and (n_told >= count or not is_known):
+        return []
+    raise ReadError(
+        f"the header names {counted(len(header), 'column')} ({list_names(header)}), but rows have "
+        f"{count}: "
+        "say with the option columns what all of them are, and check delimiter and decimal mark."
+    )
+
+
+def _find_columns_by_name(
+    header: list[str], units: Sequence[str], count: int, told: Told | None
+) -> Columns:
+    """Find the columns by the caller's word, else by the header."""
+    if told is not None:
+        return find_columns_by_word(told, header, count, units)
+    columns = find_columns_by_header(header, units)
+    if columns is None:
+        found = [f"{find_role(name)} '{name}'" for name in header[:_SHOWN_NAMES] if find_role(name)]
+        doubts = describe_doubts(header)
+        if doubts:
+            raise ReadError(f"the header ({list_names(header)}) leaves its meaning open: {doubts}.")
+        raise ReadError(
+            f"the header ({list_names(header)}) does not name easting, northing and elevation "
+            f"(known: {', '.join(found) or 'none of it'}): say with the option columns which "
+            "columns they are."
+        )
+    return columns
+
+
+def join_brackets(header: Sequence[str]) -> list[str]:
+    """Join brackets, where blanks split them off, to the names before them: "Z (US survey ft)"."""
+    joined: list[str] = []
+    depth = 0
+    for cell in header:
+        is_behind_name = bool(joined) and not joined[-1].startswith(("(", "["))
+        if depth > 0 or (is_behind_name and cell.startswith(("(", "["))):
+            joined[-1] = f"{joined[-1]} {cell}"
+            depth += cell.count("(") + cell.count("[") - cell.count(")") - cell.count("]")
+        else:
+            joined.append(cell)
+    return joined
+
+
+def count_told_columns(told: Told | None) -> int:
+    """Return how many columns the caller names, 0 if not in their order."""
+    return 0 if told is None or isinstance(told, Mapping) else len(list_meanings(told))
