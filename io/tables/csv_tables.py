@@ -12,6 +12,7 @@ from ..._atomic import replacing
 from ...errors import FormatError
 from ...terrain.results import Features, Table
 from ...terrain.results.columns import unit_text
+from ..registry.losses import tell_formulas
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -43,6 +44,7 @@ def write(obj: Table | Features, path: Path, *, progress: Tell | None = None) ->
     table = obj if isinstance(obj, Table) else _require_points(obj, path)
     names = [header_text(name, table.units) for name in table.columns]
     columns = list(table.columns.values())
+    tell_formulas(table.columns, path)
     delimiter = "\t" if path.suffix.lower() == ".tsv" else ","
     with replacing(path, binary=False) as file:
         writer = csv.writer(file, delimiter=delimiter, lineterminator="\r\n")
