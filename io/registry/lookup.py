@@ -218,9 +218,10 @@ def find_writers(path: Path, name: str | None, kinds: Sequence[str]) -> dict[str
 
 def _list_writers(path: Path, name: str | None, kind: str) -> list[Format]:
     """Return the formats that a kind of thing can be written in, of a name or else a suffix."""
-    fitting = [one for one in known_formats() if one.write is not None and kind in one.writes]
+    able = [one for one in known_formats() if one.write is not None]
     if name is None:
-        return list_claims(fitting, path)
+        return [one for one in list_claims(able, path) if kind in one.writes]
+    fitting = [one for one in able if kind in one.writes]
     named = [one for one in fitting if one.name == name.strip().lower()]
     return named or [one for one in fitting if _as_suffix(name) in one.suffixes]
 

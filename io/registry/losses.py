@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted
+from ..._sentences import counted, shown
 from ...errors import LossWarning
 from ...terrain.results import Features
 
@@ -23,11 +23,13 @@ if TYPE_CHECKING:
 __all__ = [
     "keep_on_one_line",
     "select_attributes",
+    "tell_formulas",
     "tell_lost_attributes",
     "tell_lost_lines",
     "tell_unknown_elevations",
 ]
 
+_FORMULA = re.compile(r"\s*[=+@-].")
 _BREAKS = re.compile("[\r\n\x00]+")
 _PLURALS = {"boundary": "boundaries", "water body": "water bodies"}
 
@@ -69,6 +71,32 @@ def keep_on_one_line(columns: Mapping[str, Any], path: Path) -> dict[str, AnyArr
             stacklevel=4,
         )
     return kept
+
+
+def tell_formulas(columns: Mapping[str, Any], path: Path) -> None:
+    """Warn of texts that spreadsheets compute as formulas; numbers written as texts are none."""
+    found = [
+        text
+        for values in map(np.asarray, columns.values())
+        if values.dtype.kind in "OU"
+        for text in values.tolist()
+        if isinstance(text, str) and _FORMULA.match(text) and not _is_number(text)
+    ]
+    if found:
+        warnings.warn(
+            f"'{path}': {counted(len(found), 'text')} begin with =, +, - or @, which spreadsheets "
+            f"compute as formulas (first: {shown(found[0])}): import these columns as text.",
+            LossWarning,
+            stacklevel=4,
+        )
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def tell_lost_lines(survey: Survey, chosen: Format, file: Path) -> None:

@@ -12,6 +12,7 @@ from ..._atomic import replacing
 from ...errors import FormatError
 from ...terrain.results import Features, Table
 from ...terrain.results.columns import unit_text
+from ..registry.losses import tell_formulas
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from ...arrays import AnyArray
     from ...terrain.results.columns import Units
 
-__all__ = ["header_text", "write"]
+__all__ = ["header_text", "tabulate_points", "write"]
 
 _CHUNK_ROWS = 100_000
 _AXES = ("easting", "northing", "elevation")
@@ -40,9 +41,10 @@ def write(obj: Table | Features, path: Path, *, progress: Tell | None = None) ->
     as the same float64; NaN and missing texts are empty. Lines end with CR LF, as RFC 4180 has it.
     Notes and the CRS have no place in a CSV.
     """
-    table = obj if isinstance(obj, Table) else _tabulate_points(obj, path)
+    table = obj if isinstance(obj, Table) else _require_points(obj, path)
     names = [header_text(name, table.units) for name in table.columns]
     columns = list(table.columns.values())
+    tell_formulas(table.columns, path)
     delimiter = "\t" if path.suffix.lower() == ".tsv" else ","
     with replacing(path, binary=False) as file:
         writer = csv.writer(file, delimiter=delimiter, lineterminator="\r\n")
@@ -61,8 +63,8 @@ def header_text(name: str, units: Units) -> str:
     return f"{name} ({unit})" if unit else name
 
 
-def _tabulate_points(features: Features, path: Path) -> Table:
-    """Return points as a table of their coordinates and columns."""
+def _require_points(features: Features, path: Path) -> Table:
+    """Return points as a table, or refuse features that cannot be one."""
     if features.kind != "points":
         raise FormatError(
             f"Cannot write '{path}': CSV holds points, not {features.kind}; GeoJSON and GeoPackage "
@@ -75,11 +77,19 @@ def _tabulate_points(features: Features, path: Path) -> Table:
             f"Cannot write '{path}': the points have a coordinate and a column that are both "
             f"called '{taken[0]}': rename the column."
         )
+    return tabulate_points(features)
+
+
+def tabulate_points(features: Features) -> Table:
+    """Return points as a table of their coordinates and columns; a column of such a name counts."""
+    axes = _AXES[: features.coordinates.shape[1]]
     units = {} if features.crs is None else dict.fromkeys(axes[:2], features.crs.horizontal_unit)
     heights = {"elevation": features.elevation_unit} if features.has_elevations else {}
     return Table(
         {**dict(zip(axes, features.coordinates.T, strict=True)), **features.columns},
         units={**units, **heights, **features.units},
+        name=features.name,
+        notes=features.notes,
     )
 
 

@@ -12,6 +12,7 @@ from ... import _optional
 from ..._sentences import counted
 from ...errors import OptionError, ReadError
 from ..cad.dxf.drawing import Drawing, read_drawing
+from ..cad.dxf.names import ELEVATION_PROPERTY, UNKNOWN
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -35,6 +36,9 @@ class DrawnFeatures(NamedTuple):
     columns: dict[str, AnyArray]
     crs: CRS | None
     notes: tuple[str, ...]
+    names: tuple[str, ...] = ()
+    elevation_unit: str = ""
+    """Where the drawing tells its CRS too: else its unit may be a program's default."""
 
 
 def read_drawing_features(
@@ -81,7 +85,15 @@ def read_drawing_features(
         {name: column[kept] for name, column in columns.items()},
         drawing.stated.crs,
         tuple(notes),
+        elevation_unit=_find_elevation_unit(drawing),
     )
+
+
+def _find_elevation_unit(drawing: Drawing) -> str:
+    crs, unit = drawing.stated.crs, drawing.stated.unit
+    if crs is None or unit is None or crs.horizontal_unit != unit:
+        return ""
+    return "" if dict(drawing.value["properties"]).get(ELEVATION_PROPERTY) == UNKNOWN else unit.text
 
 
 def _gather_shapes(

@@ -112,11 +112,33 @@ def find_elevations(
     if not has_z.any():
         return _take_column(features, columns, rows)
     z = _require_all(features, z, has_z, rows)
+    notes = []
     for name, values in columns.items():
         if name.lower() in _HEIGHTS_OF_ANYTHING:
             continue
-        _require_same(features, z, values[rows], name, rows)
-    return Elevations(z)
+        unit = _find_other_unit(z, values[rows])
+        if unit is None:
+            _require_same(features, z, values[rows], name, rows)
+        else:
+            notes.append(
+                f"The column '{name}' tells the elevations of the geometry in {unit.name}."
+            )
+    return Elevations(z, notes=tuple(notes))
+
+
+def _find_other_unit(z: Float64Array, values: Float64Array) -> Unit | None:
+    """Return the unit in which a column tells the elevations of a geometry in metres, if in feet.
+
+    So GeoJSON has them, whose geometries are in metres.
+    """
+    with np.errstate(invalid="ignore", over="ignore"):
+        if not np.isfinite(values).all() or (np.abs(values - z) <= _SAME).all():
+            return None
+        for unit in (FOOT, US_SURVEY_FOOT):
+            factor = unit.metres or 1.0
+            if (np.abs(values * factor - z) <= _SAME * factor).all():
+                return unit
+    return None
 
 
 def _take_asked(

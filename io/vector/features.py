@@ -11,8 +11,9 @@ import numpy as np
 from ... import _optional
 from ..._sentences import counted
 from ...crs import CRS
-from ...errors import CrsError, ReadError
-from ..cad.signatures import is_dxf
+from ...errors import CrsError, OptionError, ReadError
+from ...tin import TIN
+from ..cad.signatures import is_dxf, is_landxml
 from ..isolated import choose_limits, run_isolated
 from ..isolated.local_files import require_local
 from ..isolated.spooling import open_ordinary_file, translate_system_errors
@@ -77,6 +78,8 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
     if is_dxf(content) or path.suffix.lower() == _DRAWING:
         drawn = read_drawing_features(path, layer=layer, where=where, lines_only=lines_only)
         return Features(path, *drawn)
+    if is_landxml(content):
+        return _read_design(path, layer, where)
     library = "pyarrow" if is_parquet(content) else "pyogrio"
     _optional.require(library, "Reading vector files")
     head = read_json_members(content, path)
@@ -106,6 +109,27 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
         unit,
     )
     return _drop_heights_above_ground(_drop_without_geometry(found))
+
+
+def _read_design(path: Path, layer: str | None, where: str | None) -> Features:
+    """Read the lines of a LandXML file: contours and breaklines."""
+    from ..cad.landxml.reading import read
+
+    if where is not None:
+        raise OptionError("where", where, "None for LandXML, whose lines have no columns")
+    found = read(path, surface=layer)
+    lines = [] if isinstance(found, TIN) else [*found.breaklines]
+    if isinstance(found, TIN) or not lines:
+        what = "a surface" if isinstance(found, TIN) else "points"
+        raise ReadError(f"'{path}' holds {what}, and no contours or breaklines.", path=path)
+    shapely = _optional.load("shapely")
+    coords = [np.asarray(getattr(line, "coords", line)) for line in lines]
+    shapes = np.empty(len(coords), object)
+    shapes[:] = [shapely.LineString(one) for one in coords]
+    names = np.array([getattr(line, "name", "") for line in lines], object)
+    unit = "" if found.elevation_unit is None else found.elevation_unit.text
+    numbers = np.arange(len(coords))
+    return Features(path, numbers, shapes, {"name": names}, found.crs, found.notes, ("name",), unit)
 
 
 def _drop_heights_above_ground(features: Features) -> Features:

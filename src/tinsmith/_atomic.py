@@ -30,6 +30,8 @@ __all__ = [
 ]
 
 _SCRATCH = "tinsmith-"
+_FULL = 1 << 20
+"""Bytes below which a disk is full: libraries write blocks of some hundred thousand."""
 _STEM = 40
 """Letters of a name that the name of the file beside it begins with: names have 255 bytes."""
 
@@ -97,8 +99,9 @@ def replacing_path(path: Path) -> Iterator[Path]:
         beside = _choose_path_beside(target)
         try:  # begins before the file is there, so that no signal can come in between
             _create(beside, target)
-            yield beside
-            beside.replace(target)
+            with _telling_full_disks(path, target):
+                yield beside
+                beside.replace(target)
         finally:
             beside.unlink(missing_ok=True)
 
@@ -139,6 +142,22 @@ def _translate_faults(path: Path) -> Iterator[None]:
     except OSError as error:
         reason = error.strerror or str(error) or type(error).__name__
         raise WriteError(f"Cannot write '{path}': {reason}.", path=path) from error
+
+
+@contextmanager
+def _telling_full_disks(path: Path, target: Path) -> Iterator[None]:
+    """Name a full disk as the cause of a failure, which libraries tell in words of their own.
+
+    Looked at before what was written is removed again.
+    """
+    try:
+        yield
+    except (WriteError, OSError, RuntimeError) as error:
+        if shutil.disk_usage(target.parent).free < _FULL:
+            raise WriteError(
+                f"Cannot write '{path}': no space is left on the disk.", path=path
+            ) from error
+        raise
 
 
 def _find_target(path: Path) -> Path:
@@ -277,8 +296,9 @@ def replacing_files(path: Path, *, parts: Sequence[str] = ()) -> Iterator[Path]:
         folder = _name_beside(target)
         try:  # begins before the folder is there, so that no signal can come in between
             folder.mkdir()
-            yield folder / target.name
-            _move(folder, target, parts)
+            with _telling_full_disks(path, target):
+                yield folder / target.name
+                _move(folder, target, parts)
         finally:
             shutil.rmtree(folder, ignore_errors=True)
 

@@ -13,6 +13,8 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from .... import _optional
 from ...._atomic import replacing
 from ....errors import FormatError, LossWarning, OptionError, choice
@@ -37,6 +39,9 @@ if TYPE_CHECKING:
 __all__ = ["write"]
 
 _CHUNK = 10_000
+_WIDE = 1.5
+"""Width of a window by its height."""
+_AIR = 1.1
 
 
 def write(
@@ -93,7 +98,7 @@ def write(
             stacklevel=3,
         )
     with _fix_dates():
-        document = _make_document(ezdxf, obj, version, along)
+        document = _make_document(ezdxf, obj, version, along, factor)
         head, tail, encoding, writer = _split(document, version)
     _add_content(writer, obj, select_texts(obj, path), factor, labels=labels)
     tell_unknown_elevations(obj, path)
@@ -132,7 +137,7 @@ def _add_content(
 
 
 def _make_document(
-    ezdxf: Any, obj: TIN | Survey | Features, version: str, unit: Unit | None
+    ezdxf: Any, obj: TIN | Survey | Features, version: str, unit: Unit | None, factor: float
 ) -> Any:
     """Return an empty drawing with units, layers and properties, the same at any time."""
     document = ezdxf.new(version)
@@ -142,16 +147,29 @@ def _make_document(
     document.appids.add(APPLICATION)
     for name, colour in LAYERS.items():
         document.layers.add(name, color=colour)
-    points = obj.coordinates if isinstance(obj, Features) else obj.points
-    if len(points):
-        low, high = points.min(axis=0), points.max(axis=0)
-        document.header["$EXTMIN"] = (*low.tolist(), 0.0)[:3]
-        document.header["$EXTMAX"] = (*high.tolist(), 0.0)[:3]
+    _set_view(document, obj, factor)
     if obj.crs is not None:
         document.header.custom_vars.append(CRS_PROPERTY, " ".join(str(obj.crs).split()))
         if obj.elevation_unit is None:
             document.header.custom_vars.append(ELEVATION_PROPERTY, UNKNOWN)
     return document
+
+
+def _set_view(document: Any, obj: TIN | Survey | Features, factor: float) -> None:
+    """Let programs open the drawing with all that is in it in view."""
+    points = obj.coordinates if isinstance(obj, Features) else obj.points
+    if isinstance(obj, Survey):
+        lines = [np.asarray(getattr(line, "coords", line))[:, :2] for line in obj.breaklines]
+        points = np.vstack([points[:, :2], *lines]) if len(points) == 0 else points
+    if len(points) == 0:
+        return
+    known = np.column_stack([points, np.zeros(len(points))])[:, :3] * (1.0, 1.0, factor)
+    known = np.nan_to_num(known)
+    low, high = known.min(axis=0), known.max(axis=0)
+    document.modelspace().reset_extents(tuple(low.tolist()), tuple(high.tolist()))
+    middle, sides = (low + high)[:2] / 2, (high - low)[:2]
+    height = float(max(sides[1], sides[0] / _WIDE)) * _AIR
+    document.set_modelspace_vport(height or 1.0, center=tuple(middle.tolist()))
 
 
 def _split(document: Any, version: str) -> tuple[str, str, str, EntityWriter]:

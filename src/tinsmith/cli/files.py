@@ -393,7 +393,7 @@ def _describe_option_not_taken(name: str) -> click.UsageError:
     from ..io import known_formats
 
     takers = [one.name for one in known_formats() if name in one.options("write")]
-    flag = f"--{name.replace('_', '-')}"
+    flag = "--name" if name == "surface" else f"--{name.replace('_', '-')}"
     return click.UsageError(
         f"No output takes the option {flag}: "
         + (f"only {', '.join(takers)} can." if takers else "no format can.")

@@ -44,6 +44,9 @@ MESH_WRITING = (
         "with a world file beside it.",
     ),
     click.option(
+        "--name", "surface_name", metavar="NAME", help="Name of the surface in a LandXML file."
+    ),
+    click.option(
         "--solid",
         is_flag=True,
         help="Close an STL file with a base and walls, for 3D printing.",

@@ -184,6 +184,7 @@ class SurfaceWriting(Writing):
 
     multipatch: bool = False
     texture: Path | None = None
+    surface_name: str | None = None
     solid: bool = False
     thickness: float | None = None
     scale: float | None = None
@@ -192,6 +193,12 @@ class SurfaceWriting(Writing):
     precision: float | None = None
     max_level: int | None = None
     gzipped: bool = False
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """All that a writer may take, by the names of its options."""
+        found = super().options
+        return found | {"surface": found.pop("surface_name")}
 
 
 def _gather(name: str, factory: type, *options: Decorator) -> Callable[[Function], Function]:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
+    from ..terrain import Features, Table
     from .files import Output
     from .options import Writing
     from .output.console import Console
@@ -31,6 +32,8 @@ class Products:
     console: Console
     outputs: dict[str, list[Output]]
     pictures: list[Path] = field(default_factory=list)
+    tabulates: bool = False
+    """Whether tables are those of the features' columns."""
 
     def holds(self, kind: str) -> bool:
         """Whether something of a kind is to be written."""
@@ -39,6 +42,10 @@ class Products:
     def write(self, kind: str, product: Any) -> None:
         """Write a product to all outputs of its kind."""
         write_outputs(product, self.outputs.get(kind, []), self.console)
+        if kind == "Features" and self.tabulates and self.holds("Table"):
+            table, note = _tabulate(product)
+            self.console.note(note)
+            write_outputs(table, self.outputs["Table"], self.console)
 
     def draw(self, make_figure: Callable[[], Any]) -> None:
         """Write the pictures."""
@@ -70,8 +77,12 @@ def plan_products(
 ) -> Products:
     """Choose what each output holds, before any work is done.
 
-    What there will be is of the ``kinds`` "Table", "Features", "TIN" and "picture".
+    What there will be is of the ``kinds`` "Table", "Features", "TIN" and "picture". Features that
+    have no table of their own are written to tables too.
     """
+    tabulates = "Features" in kinds and "Table" not in kinds
+    if tabulates:
+        kinds = (*kinds, "Table")
     plain = [path for path in paths if split_output(path)[1] is None]
     require_separate(inputs, [Named(path, "--output") for path in plain])
     groups: dict[str, list[Path]] = {}
@@ -85,7 +96,29 @@ def plan_products(
         kind: plan_outputs(group, writing, inputs=(), console=console, kinds=(kind,))
         for kind, group in groups.items()
     }
-    return Products(console=console, outputs=planned, pictures=pictures)
+    return Products(console=console, outputs=planned, pictures=pictures, tabulates=tabulates)
+
+
+def _tabulate(features: Features) -> tuple[Table, list[str]]:
+    """Return features as a table: of points their coordinates too; and what it lacks, if any."""
+    from ..io.tables.csv_tables import tabulate_points
+    from ..terrain.results.table import tabulate_columns
+
+    if features.kind == "points":
+        return tabulate_points(features), []
+    return tabulate_columns(features), [
+        f"Tables hold the columns of the {features.kind}, not their geometries: GeoPackage and "
+        "GeoJSON hold both."
+    ]
+
+
+def _find_suffix(path: Path) -> str:
+    """Return the longest suffix of a format that a name ends in: .city.json before .json."""
+    from ..io import known_formats
+
+    suffixes = {suffix for one in known_formats() for suffix in one.suffixes}
+    fitting = [suffix for suffix in suffixes if path.name.lower().endswith(suffix)]
+    return max(fitting, key=len, default=path.suffix.lower())
 
 
 def _find_kind(path: Path, writing: Writing, kinds: Sequence[str]) -> str:
@@ -93,8 +126,8 @@ def _find_kind(path: Path, writing: Writing, kinds: Sequence[str]) -> str:
     from ..io import known_formats
 
     name = writing.output_format
-    suffix = path.suffix.lower() if name is None else f".{name.strip().lower().lstrip('.')}"
-    if suffix in _TABLES:
+    suffix = _find_suffix(path) if name is None else f".{name.strip().lower().lstrip('.')}"
+    if suffix in _TABLES and "Table" in kinds:
         return "Table"
     if suffix == _PICTURE and "picture" in kinds:
         return "picture"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import stat
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -252,6 +253,19 @@ def test_full_disk_is_a_sentence(tmp_path):
                 file.write("x")
 
     assert "No space left" in fault(WriteError, write_to_full)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_is_told_whatever_a_library_says(tmp_path, monkeypatch):
+    """Libraries say "HDF error" or "write error"; the disk is asked before the file is removed."""
+    monkeypatch.setattr("shutil.disk_usage", lambda _: SimpleNamespace(free=4096))
+
+    def fail():
+        with replacing_path(tmp_path / "a.nc") as beside:
+            beside.write_text("half")
+            raise RuntimeError("NetCDF: HDF error")
+
+    assert "no space is left on the disk" in fault(WriteError, fail)
     assert list(tmp_path.iterdir()) == []
 
 

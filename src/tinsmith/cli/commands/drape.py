@@ -50,7 +50,7 @@ def drape(
 
     path, layer = split_layer(features)
     inputs = request.list_inputs(file, more=[Named(path, "the file of features")])
-    planned = request.plan(inputs, "Features")
+    planned = request.plan_products(inputs, "Features")
     tin = request.read_tin(file)
     with request.step("Draping"):
         given = read_geometries(path, crs=tin.crs, layer=layer)
