@@ -76,8 +76,8 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
         _optional.require("pyogrio", "Reading vector files")
     content = _require_whole_file(path)
     if is_dxf(content) or path.suffix.lower() == _DRAWING:
-        found = read_drawing_features(path, layer=layer, where=where, lines_only=lines_only)
-        return Features(path, *found)
+        drawn = read_drawing_features(path, layer=layer, where=where, lines_only=lines_only)
+        return Features(path, *drawn)
     if is_landxml(content):
         return _read_design(path, layer, where)
     library = "pyarrow" if is_parquet(content) else "pyogrio"
@@ -129,7 +129,9 @@ def _read_design(path: Path, layer: str | None, where: str | None) -> Features:
     names = np.array([getattr(line, "name", "") for line in lines], object)
     unit = "" if found.elevation_unit is None else found.elevation_unit.text
     numbers = np.arange(len(coords))
-    return Features(path, numbers, shapes, {"name": names}, found.crs, found.notes, ("name",), unit)
+    return Features(
+        path, numbers, shapes, {"name": names}, found.crs, tuple(found.notes), ("name",), unit
+    )
 
 
 def _drop_heights_above_ground(features: Features) -> Features:

@@ -49,7 +49,11 @@ def _turn_surface(tin: Surface, axes: Axes, crs: DrawnCRS) -> TIN:
     points = axes.turn(tin.points)
     if not axes.are_mirrored:
         return tin.replace(points=points, crs=crs)
-    given = {"constrained": tin.constrained, "crs": crs, "z_unit": tin.elevation_unit}
+    given: dict[str, Any] = {
+        "constrained": tin.constrained,
+        "crs": crs,
+        "z_unit": tin.elevation_unit,
+    }
     made = type(tin.to_tin()).from_triangles(points, tin.triangles, **given)
     kept = {name: getattr(tin, name) for name in ("vertex_of", "report", "lines", "row_attributes")}
     return made.replace(**kept).with_source(tin.source)
@@ -57,12 +61,10 @@ def _turn_surface(tin: Surface, axes: Axes, crs: DrawnCRS) -> TIN:
 
 def _turn_survey(survey: Survey, axes: Axes, crs: DrawnCRS) -> Survey:
     """Return the points alone: what is drawn of a survey."""
-    return replace(
-        survey,
-        points=axes.turn(survey.points),
-        crs=crs,
-        **dict.fromkeys(("breaklines", "boundary", "holes", "erase", "water", "extent"), ()),
+    none: dict[str, Any] = dict.fromkeys(
+        ("breaklines", "boundary", "holes", "erase", "water", "extent"), ()
     )
+    return replace(survey, points=axes.turn(survey.points), crs=crs, **none)
 
 
 def _turn_features(features: Features, axes: Axes, crs: DrawnCRS) -> Features:
