@@ -129,7 +129,9 @@ def _read_design(path: Path, layer: str | None, where: str | None) -> Features:
     names = np.array([getattr(line, "name", "") for line in lines], object)
     unit = "" if found.elevation_unit is None else found.elevation_unit.text
     numbers = np.arange(len(coords))
-    return Features(path, numbers, shapes, {"name": names}, found.crs, found.notes, ("name",), unit)
+    return Features(
+        path, numbers, shapes, {"name": names}, found.crs, tuple(found.notes), ("name",), unit
+    )
 
 
 def _drop_heights_above_ground(features: Features) -> Features:
