@@ -22,12 +22,14 @@ _LEAST_RADIUS, _MOST_RADIUS, _MOST_HEIGHT = 6.2e6, 6.6e6, 1e5
 """Metres: how far from its centre the surface of the Earth is, and how high above the ellipsoid."""
 
 _OFF = re.compile(rb"\s*(?:ST)?C?N?4?n?OFF\s")
+_2DM = re.compile(rb"(?:[ \t]*(?:#[^\n]*)?\r?\n)*\s*MESH2D")
+"""Comments may stand before the keyword."""
 _CITYJSON = re.compile(rb'"type"\s*:\s*"CityJSON"')
 
 
 def is_2dm(head: bytes) -> bool:
     """Whether the file is a 2DM mesh."""
-    return head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"MESH2D")
+    return _2DM.match(head.removeprefix(b"\xef\xbb\xbf")) is not None
 
 
 def is_off(head: bytes) -> bool:
