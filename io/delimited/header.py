@@ -96,6 +96,8 @@ def find_named_columns(
 
 def _drop_label(header: list[str]) -> list[str]:
     """Return a header without what stands before its first name: "Columns: N", "E", "Z"."""
+    if not header:
+        return header
     if len(header) > 1 and is_label(header[0]):
         return header[1:]
     label, _, name = header[0].replace("=", ":").rpartition(":")
@@ -114,7 +116,7 @@ def _find_header_in_comment(
     for prefix in ("", *COMMENT_PREFIXES):
         if above.startswith(prefix):
             names = _drop_label(split_line(above.removeprefix(prefix), delimiter))
-            is_sign = delimiter == BLANKS and names[0] in COMMENT_PREFIXES  # and no column "#"
+            is_sign = delimiter == BLANKS and names[:1] == ["#"]  # and no column "#"
             if len(names) == count and not is_sign and names_coordinates(names) is not None:
                 found.append(names)
             is_bare = bool(prefix) or not above.startswith(COMMENT_PREFIXES)

@@ -77,6 +77,14 @@ def test_what_stands_before_an_order_is_no_column(tmp_path, label):
     assert np.array_equal(survey.points, POINTS)
 
 
+@pytest.mark.parametrize("line", ["", "#", "//", "# ", ";;", "#;"])
+@pytest.mark.parametrize("separator", [",", " ", ";", "\t"])
+def test_a_line_without_words_above_rows_says_nothing(tmp_path, line, separator):
+    rows = [row.replace(",", separator) for row in ROWS]
+    survey = read(tmp_path, ["# job A7", line, *rows], columns="PENZ")
+    assert np.array_equal(survey.points, POINTS)
+
+
 @pytest.mark.parametrize("header", ["Nr;X;Y;Wysokość", "点名;X座標;Y座標;標高", "Имя;X;Y;Отметка"])
 def test_languages_that_call_the_northing_x(tmp_path, header):
     """Where neither a CRS nor the area of use decides, the file is refused."""
