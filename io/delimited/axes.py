@@ -8,7 +8,8 @@ import numpy as np
 
 from ...errors import ReadError
 from .columns import COORDINATES, shorten
-from .names import parse_name
+from .languages import LANGUAGES
+from .names import find_languages, parse_name
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -44,7 +45,8 @@ def settle_axes(
     columns: Columns,
     crs: CRS | None,
     area: AreaOfUse | None,
-    line: AxesLine | None = None,
+    line: AxesLine | None,
+    path: Path,
 ) -> tuple[Float64Array, Columns, list[str]]:
     """Take the header's X for the northing where a line near the table, or the CRS, does.
 
@@ -62,12 +64,19 @@ def settle_axes(
         None says nothing.
     line : AxesLine or None
         What says of X and Y which way they point.
+    path : Path
+        For sentences.
 
     Returns
     -------
     points : (n, 3) float64 array
     columns : Columns
     notes : list of str
+
+    Raises
+    ------
+    ReadError
+        If the header is in a language whose maps call the northing X, and nothing says so here.
     """
     east, north = (columns.names[columns.roles[role]] for role in COORDINATES[:2])
     if parse_name(east).kind != "axis":
@@ -76,11 +85,46 @@ def settle_axes(
         why = describe_turn(crs, east, north)
     elif line is not None and line.is_turned:
         why = f"By {line.label} {_name_turn(east, north)}"
+    elif line is None and (language := _find_language(columns)):
+        if not _lies_turned(points[:, :2], area, language, columns, path):
+            return points, columns, []
+        why = f"Only so do the points lie in the area of use: {_name_turn(east, north)}"
     else:
         is_odd = line is None and columns.roles["northing"] < columns.roles["easting"]
         return points, columns, [_describe_order(east, north)] if is_odd else []
     note = f"{why}; columns='{columns.word}' takes them the other way round."
     return points[:, [1, 0, 2]], columns.permute((1, 0, 2)), [note]
+
+
+def _find_language(columns: Columns) -> str:
+    """Return the language of a header where X is the northing on maps; "" for others."""
+    spoken = [one for one in map(find_languages, columns.names) if one]
+    languages = frozenset.intersection(*spoken) if spoken else frozenset()
+    are_all = bool(languages) and all(LANGUAGES[one].x_is_north for one in languages)
+    return min(languages) if are_all else ""
+
+
+def _lies_turned(
+    xy: Float64Array, area: AreaOfUse | None, language: str, columns: Columns, path: Path
+) -> bool:
+    """Whether only with X as the northing the points lie in the area of use.
+
+    Raises
+    ------
+    ReadError
+        If the area leaves it open.
+    """
+    lies = area is not None and area.covers_most(xy)
+    lies_turned = area is not None and area.covers_most(xy[:, ::-1])
+    if lies != lies_turned:
+        return lies_turned
+    turned = columns.permute((1, 0, 2)).word
+    raise ReadError(
+        f"'{path}': its header is in {language}, where X is the northing on maps, and the area of "
+        f"use of the CRS does not tell: columns='{turned}' takes X for it, "
+        f"columns='{columns.word}' takes Y.",
+        path=path,
+    )
 
 
 def _describe_order(east: str, north: str) -> str:

@@ -19,6 +19,7 @@ __all__ = [
     "parse_number",
     "proves_groups",
     "split_line",
+    "with_hyphen",
 ]
 
 BLANKS = " "
@@ -27,18 +28,21 @@ BLANKS = " "
 _LONGEST_NUMBER = 1_000
 """Letters of a number: the exact decimals of a float64 have up to 767 digits."""
 
+MINUS_SIGNS = "-\u2212\uff0d"
+"""Signs of numbers below zero: the hyphen, the minus sign of typesetting, and that of Japanese."""
+_PLAIN_MINUS = str.maketrans(MINUS_SIGNS, "-" * len(MINUS_SIGNS))
+
 # No pattern may try a text in more than a few ways: cells come from files that nobody vouches for.
 _NUMBER = {
-    ".": re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"),
-    ",": re.compile(r"[-+]?(?:[0-9]+(?:,[0-9]*)?|,[0-9]+)(?:[eE][-+]?[0-9]+)?"),
+    ".": re.compile(r"[-+\u2212\uff0d]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"),
+    ",": re.compile(r"[-+\u2212\uff0d]?(?:[0-9]+(?:,[0-9]*)?|,[0-9]+)(?:[eE][-+]?[0-9]+)?"),
 }
+_DIGITS_IN_GROUPS = (
+    r"[-+\u2212\uff0d]?[1-9][0-9]{0,2}([%s'\u2019 \u00a0\u202f])[0-9]{3}(?:\1[0-9]{3})*"
+)
 _GROUPED = {
-    ".": re.compile(
-        r"[-+]?[1-9][0-9]{0,2}([,'\u2019 \u00a0\u202f])[0-9]{3}(?:\1[0-9]{3})*(?:\.[0-9]*)?"
-    ),
-    ",": re.compile(
-        r"[-+]?[1-9][0-9]{0,2}([.'\u2019 \u00a0\u202f])[0-9]{3}(?:\1[0-9]{3})*(?:,[0-9]*)?"
-    ),
+    ".": re.compile(_DIGITS_IN_GROUPS % "," + r"(?:\.[0-9]*)?"),
+    ",": re.compile(_DIGITS_IN_GROUPS % "." + r"(?:,[0-9]*)?"),
 }
 _GROUP_OR_DECIMALS = re.compile(r"[-+]?[1-9][0-9]{0,2},[0-9]{3}")
 _MISSING = re.compile(r"[-+]?(?:nan|na|n/a|null|none|-|\*+)?", re.IGNORECASE)
@@ -94,7 +98,7 @@ def is_grouped(cell: str, decimal: str) -> bool:
 
 def proves_groups(cell: str, decimal: str) -> bool:
     """Whether a grouped number cannot be read another way; 1,234 may be 1.234."""
-    marks = [letter for letter in cell.lstrip("+-") if not letter.isdecimal()]
+    marks = [letter for letter in cell.lstrip(f"+{MINUS_SIGNS}") if not letter.isdecimal()]
     return is_grouped(cell, decimal) and (len(marks) > 1 or marks[0] not in ".,")
 
 
@@ -108,15 +112,20 @@ def is_padded(cell: str) -> bool:
     return len(cell) > 1 and cell[0] == "0" and cell.isdecimal()
 
 
+def with_hyphen(cell: str) -> str:
+    """Return the text of a number with a hyphen for another sign of minus."""
+    return cell if cell.isascii() else cell.translate(_PLAIN_MINUS)
+
+
 def parse_number(cell: str, decimal: str) -> float:
     """Return the nearest float64 of a cell, NaN if it is no number."""
-    text = cell.strip()
+    text = with_hyphen(cell.strip())
     return float(text.replace(decimal, ".")) if is_number(text, decimal) else float("nan")
 
 
 def parse_grouped(cell: str, decimal: str) -> float:
     """Return the nearest float64 of a number with thousands separators, NaN if it is none."""
-    text = cell.strip()
+    text = with_hyphen(cell.strip())
     if not is_grouped(text, decimal):
         return float("nan")
     digits = "".join(letter for letter in text if letter.isdecimal() or letter in "+-" + decimal)

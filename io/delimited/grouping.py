@@ -121,7 +121,11 @@ def _find_own(
     low, high = sorted((pair.east, pair.north))
     behind = [max(other.east, other.north) + 1 for other in pairs if other is not pair]
     low -= bool(behind)
-    return tuple(z for z in heights if low <= z <= high + 1 and z not in behind)
+    return tuple(
+        z
+        for z in heights
+        if (low <= z <= high + 1 and z not in behind) or pair.name.kind == names[z].kind == "axis"
+    )
 
 
 def _choose_pair(

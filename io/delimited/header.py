@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from ..._sentences import counted
 from ...errors import ReadError
-from .cells import split_line
+from .cells import BLANKS, is_number_like, split_line
 from .columns import (
     Columns,
     describe_doubts,
@@ -22,14 +22,21 @@ from .columns import (
 from .headings import find_heading
 from .lines import COMMENT_PREFIXES
 from .marks import split_header
-from .names import read_words
+from .names import is_label, is_phrase, parse_name, read_words
 
 if TYPE_CHECKING:
     from ...arrays import Int64Array
     from .headings import Heading
     from .lines import TextLines
 
-__all__ = ["Told", "TopLines", "count_told_columns", "find_named_columns", "join_brackets"]
+__all__ = [
+    "Told",
+    "TopLines",
+    "count_told_columns",
+    "find_named_columns",
+    "join_brackets",
+    "join_numbers",
+]
 
 Told: TypeAlias = "str | Sequence[str] | Mapping[str, str | int]"
 """What the caller says that the columns are."""
@@ -89,9 +96,13 @@ def find_named_columns(
 
 def _drop_label(header: list[str]) -> list[str]:
     """Return a header without what stands before its first name: "Columns: N", "E", "Z"."""
-    label, _, name = header[0].rpartition(":")
-    is_label = bool(name.strip()) and not read_words(label).roles and "(" not in label
-    return [name.strip(), *header[1:]] if is_label else header
+    if not header:
+        return header
+    if len(header) > 1 and is_label(header[0]):
+        return header[1:]
+    label, _, name = header[0].replace("=", ":").rpartition(":")
+    stands_alone = bool(name.strip()) and not read_words(label).roles and "(" not in label
+    return [name.strip(), *header[1:]] if stands_alone else header
 
 
 def _find_header_in_comment(
@@ -104,12 +115,14 @@ def _find_header_in_comment(
     found: list[list[str]] = []
     for prefix in ("", *COMMENT_PREFIXES):
         if above.startswith(prefix):
-            names = split_line(above.removeprefix(prefix), delimiter)
-            if len(names) == count and names_coordinates(names) is not None:
+            names = _drop_label(split_line(above.removeprefix(prefix), delimiter))
+            is_sign = delimiter == BLANKS and names[:1] == ["#"]  # and no column "#"
+            if len(names) == count and not is_sign and names_coordinates(names) is not None:
                 found.append(names)
-            other = split_header(above.removeprefix(prefix), delimiter, count)
-            if other is not None and len(other) == count:
-                found.append(other)
+            is_bare = bool(prefix) or not above.startswith(COMMENT_PREFIXES)
+            other = split_header(above.removeprefix(prefix), delimiter, count) if is_bare else None
+            if other is not None and len(_drop_label(other)) == count:
+                found.append(_drop_label(other))
     plain = (names for names in found if not describe_doubts(names))
     return next(plain, found[0] if found else None)
 
@@ -167,6 +180,41 @@ def join_brackets(header: Sequence[str]) -> list[str]:
         else:
             joined.append(cell)
     return joined
+
+
+def join_numbers(header: Sequence[str], body: Sequence[Sequence[str]]) -> list[str]:
+    """Join two words for the number of a point, where blanks split them: "Point No.".
+
+    Raises
+    ------
+    ReadError
+        If they may be two columns as well.
+    """
+    are_numbers = [parse_name(name).role == "number" for name in header]
+    at = next((i for i in range(len(header) - 1) if all(are_numbers[i : i + 2])), None)
+    if at is None or not body:
+        return list(header)
+    joined = [*header[:at], f"{header[at]} {header[at + 1]}", *header[at + 2 :]]
+    lengths = {len(row) for row in body}
+    fitting = [names for names in (joined, list(header)) if _fits(names, body)]
+    if len(fitting) < 2 or lengths == {len(joined)}:
+        return (fitting or [list(header)])[0]
+    if lengths == {len(header)} and not is_phrase(joined[at]):
+        return list(header)
+    raise ReadError(
+        f"the header ({list_names(header)}) leaves open whether '{joined[at]}' is one column or "
+        "two: say with the option columns what all of them are."
+    )
+
+
+def _fits(header: Sequence[str], body: Sequence[Sequence[str]]) -> bool:
+    """Whether all rows have numbers where the header names coordinates."""
+    columns = names_coordinates(header)
+    return columns is not None and all(
+        at < len(row) and (is_number_like(row[at], ".") or is_number_like(row[at], ","))
+        for row in body
+        for at in columns.coordinates
+    )
 
 
 def count_told_columns(told: Told | None) -> int:

@@ -14,7 +14,7 @@ import numpy as np
 from ...errors import ReadError
 from .columns import describe_doubts, find_columns_by_header, find_unit_word
 from .lines import COMMENT_PREFIXES
-from .names import read_words
+from .names import is_label, parse_name, read_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -134,7 +134,13 @@ def _read_order(text: str, count: int) -> tuple[str, ...] | None:
             cells = [one.strip(" \"'") for one in re.split(split, _BEFORE_BRACKET.sub("", part))]
             cells = [one for one in cells if one]
             for names, before in _list_readings(cells, count):
-                if len(names) == count and _are_names(names) and not _name_coordinates(before):
+                if (
+                    len(names) == count > 0
+                    and not is_label(names[0])
+                    and (not before or parse_name(names[0]).role)  # or it is one of the words
+                    and _are_names(names)
+                    and not _name_coordinates(before)
+                ):
                     return tuple(names)
     return None
 
@@ -242,7 +248,7 @@ def find_unit_line(lines: TextLines, rows: Int64Array) -> UnitLine | None:
         if named == {"elevation"} and plain <= _FILLERS and len(set(words.units)) == 1:
             note = f"L{whole[1:]} gives the unit of the elevations."
             return UnitLine(words.units[0], whole, note)
-        if plain & _UNIT_NOUNS or "elevation" in named:
+        if plain & _UNIT_NOUNS or "elevation" in named or words.has_datum:
             return UnitLine(
                 "",
                 whole,

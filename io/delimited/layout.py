@@ -19,7 +19,13 @@ from .columns import (
     names_coordinates,
 )
 from .content import require_no_split_decimals
-from .header import TopLines, count_told_columns, find_named_columns, join_brackets
+from .header import (
+    TopLines,
+    count_told_columns,
+    find_named_columns,
+    join_brackets,
+    join_numbers,
+)
 from .lines import COMMENT_PREFIXES
 from .marks import (
     DecimalMark,
@@ -33,6 +39,7 @@ from .marks import (
     require_one_kind_of_comma,
     split_header,
 )
+from .page_breaks import PageBreaks, find_page_breaks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -47,6 +54,7 @@ __all__ = ["Layout", "find_layout"]
 _TOP_LINES = 100
 _SPREAD_LINES = 200
 _MOST_COLUMNS = 1_000
+_MOST_ROWS = 0.9
 _COUNT_DIGITS = 18
 """A number of points has no more."""
 _SCAN_SUFFIXES = frozenset({".xyz", ".pts"})
@@ -94,6 +102,8 @@ class Layout:
     """What was assumed, in sentences."""
     heading: Heading | None = None
     """A line that speaks of coordinates and does not give the order of the columns."""
+    left_out: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    """Lines (from 1) among the rows that are no rows: the header again, "END"."""
 
     @property
     def elevation_unit(self) -> str | None:
@@ -117,6 +127,8 @@ class _Top:
 
     header: list[str] | None = None
     units: list[str] = field(default_factory=list)
+    headers: list[int] = field(default_factory=list)
+    """Places of the header and the line of units among the lines."""
     n_lines: int = 0
     announced: int | None = None
     counts: Counter[str] = field(default_factory=Counter)
@@ -179,6 +191,8 @@ def _split_rows(rows: Sequence[str], delimiter: str) -> list[list[str]]:
     first = next((i for i, n in enumerate(numbers[:_TOP_LINES]) if n >= 2), 0)
     if delimiter == BLANKS:
         cells[:first] = map(join_brackets, cells[:first])
+        body = [row for row, n in zip(cells, numbers, strict=True) if n >= 2]
+        cells[:first] = [join_numbers(row, body) for row in cells[:first]]
     if any(names_coordinates(row) for row in cells[:first]):
         return cells
     counts = Counter(len(row) for row, n in zip(cells, numbers, strict=True) if n >= 2)
@@ -225,16 +239,10 @@ def _lay_out_table(
     if count > _MOST_COLUMNS:
         raise ReadError(f"its rows have {count:,} columns; at most {_MOST_COLUMNS:,} are read.")
     top = _find_top(cells[:_TOP_LINES], count, decimal)
-    rows = data[top.n_lines :]
-    if len(rows) == 0:
-        raise ReadError("there is no row of numbers below the header.")
-    if top.announced not in (None, len(rows)):
-        raise ReadError(
-            f"the first line announces {counted(top.announced or 0, 'point')}, but "
-            f"{counted(len(rows), 'row')} {'follows' if len(rows) == 1 else 'follow'}: "
-            "the file may be truncated."
-        )
-    body = _select_even_rows(cells[top.n_lines :], count, has_text_tail=has_text_tail)
+    rows, breaks = _select_rows(lines, data, top, delimiter, decimal)
+    headers = [cells[k] for k in top.headers]
+    below = [row for row in cells[top.n_lines :] if row not in headers]
+    body = _select_even_rows(below, count, has_text_tail=has_text_tail)
     header = TopLines(lines, rows, top.header, tuple(top.units))
     columns, heading = find_named_columns(header, (delimiter, count), body, wishes.columns)
     if columns is None and wishes.decimal is None:
@@ -257,9 +265,29 @@ def _lay_out_table(
         is_scan=path.suffix.lower() in _SCAN_SUFFIXES,
         is_announced=top.announced is not None,
         skipped={what: many for what, many in (skipped + top.counts).items() if many},
-        notes=((note,) if note else ()) + (() if columns is None else columns.notes),
+        notes=((note,) if note else ()) + (() if columns is None else columns.notes) + breaks.notes,
         heading=heading,
+        left_out=breaks.lines,
     )
+
+
+def _select_rows(
+    lines: TextLines, data: Int64Array, top: _Top, delimiter: str, decimal: str
+) -> tuple[Int64Array, PageBreaks]:
+    """Return the rows of the table, and the lines among them that are none."""
+    rows = data[top.n_lines :]
+    breaks = find_page_breaks(lines, rows, data[top.headers].tolist(), delimiter, decimal)
+    out = [line - 1 for found in breaks.lines.values() for line in found]
+    rows = rows[~np.isin(rows, out)]
+    if len(rows) == 0:
+        raise ReadError("there is no row of numbers below the header.")
+    if top.announced not in (None, len(rows)):
+        raise ReadError(
+            f"the first line announces {counted(top.announced or 0, 'point')}, but "
+            f"{counted(len(rows), 'row')} {'follows' if len(rows) == 1 else 'follow'}: "
+            "the file may be truncated."
+        )
+    return rows, breaks
 
 
 def _select_even_rows(
@@ -332,13 +360,21 @@ def _count_columns(
     if delimiter != BLANKS and not any(row[-1] for row in body):  # delimiters at their ends
         return count, False
     told = _count_named_columns(rows, wishes)
-    if told and (delimiter == BLANKS or told <= count):
+    if told and (max(counts) >= told if delimiter == BLANKS else told <= count):
         return told, True
+    if _MOST_ROWS * len(body) <= counts[count] and _is_headed(rows, count):
+        return count, False
     tails = Counter(_find_text_tail(row, decimal) for row in body)
     tail = tails.most_common(1)[0][0]
     if tail is None or (delimiter != BLANKS and len(counts) == 1):
         return count, False
     return (tail + 1, True) if delimiter == BLANKS or tail + 1 <= count else (count, False)
+
+
+def _is_headed(rows: Sequence[Sequence[str]], count: int) -> bool:
+    """Whether a header names as many columns, and the coordinates among them."""
+    top = (row for row in rows[:_TOP_LINES] if len(row) == count)
+    return any(names_coordinates(row) is not None for row in top)
 
 
 def _count_named_columns(rows: Sequence[Sequence[str]], wishes: _Wishes) -> int | None:
@@ -369,8 +405,11 @@ def _find_top(rows: Sequence[Sequence[str]], count: int, decimal: str) -> _Top:
     """Walk down to the first row of the table."""
     top = _Top()
     is_known = False
-    for row in rows:
+    n_titles = _count_titles(rows, decimal)
+    for place, row in enumerate(rows):
         kind = _classify_line(row, count, decimal, is_known)
+        if place < n_titles and kind != "point count":
+            kind = "title lines"
         if kind == "row":
             break
         if kind == "point count":
@@ -380,9 +419,21 @@ def _find_top(rows: Sequence[Sequence[str]], count: int, decimal: str) -> _Top:
             top.header = list(row)
         elif kind == "header lines":
             top.units = list(row)
+        if kind == "header lines":
+            top.headers.append(top.n_lines)
         top.counts[kind] += 1
         top.n_lines += 1
     return top
+
+
+def _count_titles(rows: Sequence[Sequence[str]], decimal: str) -> int:
+    """Return how many lines stand above the first header, none of them with two numbers."""
+    for place, row in enumerate(rows):
+        if sum(is_number(cell, decimal) for cell in row) > 1:
+            return 0
+        if names_coordinates(row) is not None:
+            return place
+    return 0
 
 
 def _classify_line(row: Sequence[str], count: int, decimal: str, is_header_known: bool) -> str:
@@ -402,7 +453,7 @@ def _classify_line(row: Sequence[str], count: int, decimal: str, is_header_known
         is_number_like(cell, decimal) for cell in row if cell
     ):
         return "header lines" if len(row) > 1 else "title lines"
-    if len(row) != count and numbers < 2 and not is_number_like(row[0], decimal):
+    if len(row) != count and numbers < 2 and not (row[0] and is_number_like(row[0], decimal)):
         return "title lines"
     return "row"
 

@@ -29,6 +29,8 @@ __all__ = [
     "split_header",
 ]
 
+_NUMBERS_OF_HEADER = 2.5
+"""What a header counts for: less than the three numbers of rows, it may have its own delimiter."""
 _TOP_LINES = 100
 _DELIMITERS = ("\t", ";", "|", ",", BLANKS)
 _VISIBLE = (",", ";", "|")
@@ -241,19 +243,17 @@ def _is_grouped_by_commas(cell: str) -> bool:
     return "," in cell and is_grouped(cell, ".")
 
 
-def _score_delimiter(sample: Sequence[str], delimiter: str) -> tuple[int, float, int]:
+def _score_delimiter(sample: Sequence[str], delimiter: str) -> tuple[float, float, int]:
     """Return how many numbers a line has, the share of lines that are even, and their cells."""
     rows = [split_line(line, delimiter) for line in sample]
-    counts = [_count_numbers(row, delimiter) for row in rows]
-    numbers = max(
-        median_high(counts),
-        max(3 * (names_coordinates(row) is not None) for row in rows[:_TOP_LINES]),
-    )
+    found = median_high(_count_numbers(row, delimiter) for row in rows)
+    is_headed = any(names_coordinates(row) is not None for row in rows[:_TOP_LINES])
+    numbers = max(min(found, 3), _NUMBERS_OF_HEADER * is_headed)
     if numbers < 2 or max(map(len, rows)) < 3:
         return 0, 0.0, 0
     even = [row for row in rows if delimiter != BLANKS or not any(map(_is_beside_delimiter, row))]
     count, times = Counter(map(len, even)).most_common(1)[0] if even else (0, 0)
-    return min(numbers, 3), times / len(rows), count
+    return numbers, times / len(rows), count
 
 
 # ------------------------------------------------------------------ decimal marks
@@ -289,6 +289,10 @@ def find_decimal_mark(rows: Iterable[Sequence[str]], delimiter: str) -> DecimalM
     may_delimit = delimiter == BLANKS or any(cell.endswith(",") for cell in numbers)
     sure_commas = sum(_proves_comma(c, row, may_delimit=may_delimit) for row in rows for c in row)
     sure_points = sum(not may_group_or_divide(cell.replace(".", ",")) for cell in points)
+    if delimiter != ",":  # 1.109,850 and 1,109.850
+        both = [cell for cell in cells if "," in cell and "." in cell]
+        sure_commas += sum(is_grouped(cell, ",") for cell in both)
+        sure_points += sum(is_grouped(cell, ".") for cell in both)
     if sure_commas or sure_points:
         return DecimalMark("," if sure_commas > sure_points else ".")
     if delimiter == "," or (points and not commas):

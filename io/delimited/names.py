@@ -12,14 +12,22 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
-from .vocabulary import CONTEXT, find_sense, simplify
+from .vocabulary import CONTEXT, find_sense, list_languages, simplify
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from .vocabulary import Kind, Sense
 
-__all__ = ["ColumnName", "Words", "parse_name", "read_words"]
+__all__ = [
+    "ColumnName",
+    "Words",
+    "find_languages",
+    "is_label",
+    "is_phrase",
+    "parse_name",
+    "read_words",
+]
 
 _LONGEST_NAME = 200
 """Letters of a header cell that may be a name; a longer one is some other text."""
@@ -27,8 +35,21 @@ _LONGEST_PHRASE = 6
 _NUMBER_SIGN = re.compile(r"(?<![^\W_])n\s?[°º#]|№|#", re.IGNORECASE)
 _NO_NAME = re.compile(r"\s*([-+.,]*[0-9]|[^\w#№]*$)")
 """Numbers, among them 1e5, and texts without a letter."""
-_WORD = re.compile(r"[^\W\d_]+|\d+|[^\w\s]|_")
-_JOINED_WORDS = re.compile(r"(?<=[a-z]{2})(?=[A-Z])")
+_MARKS = "\u0300-\u036f\u0591-\u05c7\u064b-\u065f\u0670\u0e31\u0e34-\u0e3a\u0e47-\u0e4e"
+"""Accents that stand alone, vowels of Hebrew, Arabic and Thai."""
+_WORD = re.compile(rf"(?:[^\W\d_][{_MARKS}]*)+|\d+|[^\w\s]|_")
+_JOINED_WORDS = re.compile(
+    r"(?<=[a-z]{2})(?=[A-Z])|(?<=[A-Za-z])(?=[\u3040-\u9fff\uac00-\ud7af])"
+    r"|(?<=[\u3040-\u9fff\uac00-\ud7af])(?=[A-Za-z])"
+)
+_LABELS = frozenset(
+    (
+        *("order", "columns", "column", "cols", "format", "fields", "field", "header", "layout"),
+        *("sequence", "names", "headings", "spalten", "reihenfolge", "felder", "colonnes", "ordre"),
+        *("columnas", "orden", "campos", "ordem", "colunas", "colonne", "kolommen", "kolumner"),
+        *("kolonner", "kolumny", "sloupce", "порядок", "формат", "столбцы"),
+    )
+)
 _OPENING, _CLOSING = "([{", ")]}"
 _NO_BRACKETS = str.maketrans(dict.fromkeys(_OPENING + _CLOSING, " "))
 _SEPARATORS = frozenset('_.,:;/|"=\u2013-')
@@ -118,6 +139,38 @@ def _parse(name: str) -> ColumnName:
     return ColumnName(role.role, role.kind, system, unit, doubt, word, role.rank)
 
 
+def find_languages(name: str) -> frozenset[str]:
+    """Return the languages that a name may be in; none if English or all of them have its words.
+
+    Examples
+    --------
+    >>> sorted(find_languages("Wysokość")), sorted(find_languages("X"))
+    (['Polish'], [])
+    """
+    found: frozenset[str] = frozenset()
+    for words in _divide(_NUMBER_SIGN.sub(" no ", name)):
+        place = 0
+        for count, _ in _divide_phrases(words):
+            spoken = list_languages("".join(word.plain for word in words[place : place + count]))
+            found = (found & spoken or found) if found and spoken else found | spoken
+            place += count
+    return found
+
+
+def is_label(word: str) -> bool:
+    """Whether a word stands before names and is none itself: "order:", "columns"."""
+    bare = word.strip()
+    is_marked = bare.endswith((":", "=")) and not read_words(bare).roles
+    is_marked |= not any(sign.isalnum() or sign in "#№" for sign in bare)
+    return is_marked or simplify(bare.rstrip(":=")) in _LABELS
+
+
+def is_phrase(name: str) -> bool:
+    """Whether the words of a name are known as one: "Point No."."""
+    found = _divide(_NUMBER_SIGN.sub(" no ", name))
+    return len(found) == 1 and [count for count, _ in _divide_phrases(found[0])] == [len(found[0])]
+
+
 class Words(NamedTuple):
     """What the words of a line of text say."""
 
@@ -126,6 +179,8 @@ class Words(NamedTuple):
     units: tuple[str, ...]
     """Units of length, as they are written."""
     unknown: tuple[str, ...]
+    has_datum: bool
+    """Whether a height system is named: NAVD88."""
 
 
 def read_words(text: str) -> Words:
@@ -140,7 +195,7 @@ def read_words(text: str) -> Words:
     found = _Found()
     _read_part(_divide(text)[0], text, found, is_bracket=True)
     units = tuple(shown for _, shown in found.units)
-    return Words(tuple(found.roles), units, tuple(found.unknown))
+    return Words(tuple(found.roles), units, tuple(found.unknown), found.has_datum)
 
 
 def _divide(text: str) -> list[list[_Word]]:
@@ -174,8 +229,7 @@ def _divide_capitals(found: re.Match[str]) -> Iterator[_Word]:
 def _read_part(words: list[_Word], text: str, found: _Found, *, is_bracket: bool) -> None:
     """Read the words of a part, the longest phrase that is known at a time."""
     place = 0
-    while place < len(words):
-        count, senses = _find_phrase(words[place:])
+    for count, senses in _divide_phrases(words):
         phrase = "".join(word.plain for word in words[place : place + count])
         shown = text[words[place].start : words[place + count - 1].end]
         is_first = place == 0 and not is_bracket
@@ -199,12 +253,22 @@ def _end_short_form(shown: str, last: _Word, text: str) -> str:
     return f"{shown}." if text[last.end : last.end + 1] == "." else shown
 
 
-def _find_phrase(words: Sequence[_Word]) -> tuple[int, list[Sense]]:
-    for count in range(min(_LONGEST_PHRASE, len(words)), 1, -1):
-        senses = find_sense("".join(word.plain for word in words[:count]))
-        if senses:
-            return count, senses
-    return 1, find_sense(words[0].plain)
+def _divide_phrases(words: Sequence[_Word]) -> list[tuple[int, list[Sense]]]:
+    """Return the numbers of words of the phrases that leave the fewest unknown, and their senses.
+
+    Of "E_L93" the phrases are E and L93, not EL and 93.
+    """
+    best: list[tuple[int, int, list[tuple[int, list[Sense]]]]] = [(0, 0, [])]
+    for start in range(len(words) - 1, -1, -1):
+        found = []
+        for count in range(min(_LONGEST_PHRASE, len(words) - start), 0, -1):
+            senses = find_sense("".join(word.plain for word in words[start : start + count]))
+            if count == 1 or len(senses) == 1:  # two are an axis and a word, which stand alone
+                n_unknown, n_phrases, rest = best[-count]
+                score = (n_unknown + (not senses), n_phrases + 1)
+                found.append((*score, [(count, senses), *rest]))
+        best.append(min(found, key=lambda one: one[:2]))
+    return best[-1][2]
 
 
 def _settle_role(found: Sequence[tuple[str, Sense]]) -> tuple[Sense | None, str, str]:

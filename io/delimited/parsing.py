@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .cells import is_infinite, is_number
+from .cells import is_infinite, is_number, with_hyphen
 
 if TYPE_CHECKING:
     from ...arrays import AnyArray, BoolArray, Float64Array, Int8Array, Int64Array
@@ -122,7 +122,7 @@ def _parse_numbers(bounds: CellBounds, column: int, decimal: str) -> AnyArray | 
         whole = _take_whole(digits) if integers is not None else None
         odd = np.flatnonzero(digits.is_odd)
         for k, cell in zip(odd.tolist(), _take_texts(bounds, starts[odd], ends[odd]), strict=True):
-            text = cell.strip()
+            text = with_hyphen(cell.strip())
             number = _read_number(text, decimal)
             if number is None:
                 return None

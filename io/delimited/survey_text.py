@@ -163,14 +163,15 @@ def read(
     placed = place(
         told.points, source=source, target=target, path=path, unit=unit, looks_at_area=False
     )
+    left_out_lines = {**layout.left_out, **told.lines}
     return Survey(
         points=placed.points,
         attributes=told.attributes,
         crs=placed.crs,
         elevation_unit=placed.elevation_unit,
         source=path.name,
-        skipped={**layout.skipped, **{what: len(at) for what, at in told.lines.items()}},
-        skipped_lines=told.lines,
+        skipped={**layout.skipped, **{what: len(at) for what, at in left_out_lines.items()}},
+        skipped_lines=left_out_lines,
         notes=[*notes, *placed.notes],
         row_sources=RowSources.of_file(path.name, told.rows + 1),
     )
@@ -223,7 +224,7 @@ def _settle_places(
             require_one_hemisphere(told.attributes, path)
         require_no_geocentric(points, columns, path)
         crs, line = where.source or where.target, find_axes_line(lines, layout.rows)
-        points, columns, turned = settle_axes(points, columns, crs, where.area, line)
+        points, columns, turned = settle_axes(points, columns, crs, where.area, line, path)
         notes += turned
     told = told._replace(points=points)
     notes += require_in_area(points, told.rows, columns, where.area, path, is_headed=is_headed)

@@ -10,9 +10,14 @@ from __future__ import annotations
 import re
 import unicodedata
 from functools import cache
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
-__all__ = ["CONTEXT", "Kind", "Sense", "find_sense", "simplify"]
+from .languages import LANGUAGES, LOOK_ALIKES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["CONTEXT", "Kind", "Sense", "find_sense", "list_languages", "simplify"]
 
 Kind = Literal["word", "letter", "axis", "angle", "sure", "open", ""]
 """How a word names its role.
@@ -34,45 +39,44 @@ class Sense(NamedTuple):
 
 
 _ROLES: dict[tuple[str, Kind], str] = {
-    ("easting", "word"): "easting eastings east rechtswert ostwert ost rechts rw este est leste",
-    ("easting", "letter"): "e",
+    ("easting", "word"): "easting eastings east",
+    ("easting", "letter"): "e ø",
     ("easting", "axis"): "x abscisse",
-    ("easting", "angle"): "longitude long lon lng longitud lange laenge",
-    ("northing", "word"): "northing northings north hochwert nordwert nord hoch hw norte",
+    ("easting", "angle"): "longitude long lon lng",
+    ("northing", "word"): "northing northings north",
     ("northing", "letter"): "n",
     ("northing", "axis"): "y ordonnee",
-    ("northing", "angle"): "latitude lat latitud breite",
+    ("northing", "angle"): "latitude lat",
     ("elevation", "axis"): "z",
     ("elevation", "sure"): (
-        "elevation elevations elev elevacion elevacao el rl reducedlevel level cota quota kote "
-        "orthometricheight orthoheight orthometricelevation nhn"
+        "elevation elevations elev el rl reducedlevel level orthometricheight orthoheight "
+        "orthometricelevation orthoelevation mslheight mslelevation"
     ),
-    ("elevation", "open"): (
-        "height heights hgt h hoehe hohe altitude altitud alt altura hoyde hojd hoogte ele"
-    ),
+    ("elevation", "open"): "height heights hgt h altitude alt ele up u",
     ("number", ""): (
         "point points pt pts pointnumber pointno pointnr pointnum pointid pointname ptno ptnr "
-        "ptnum ptnumber ptid ptname pnt pno p no nr num number id name punkt punktnummer punktnr "
-        "pktnr punto fid objectid pkt ponto matricule numero"
+        "ptnum ptnumber ptid ptname pnt pno p no nr num number id name fid objectid station "
+        "stationid stn stationname target targetid"
     ),
     ("description", ""): (
-        "description desc descr code featurecode fieldcode rawdescription fulldescription "
-        "pointcode pointdescription d bemerkung beschreibung descripcion codigo remark remarks "
-        "comment note notes feature label type libelle descricao descrizione codice"
+        "description desc descr code featurecode fieldcode rawdescription rawdesc fulldescription "
+        "pointcode pointdescription d remark remarks comment comments note notes feature label type"
     ),
     ("hemisphere", ""): (
         "ns ew latdir londir latns lonew longew hemisphere hemi latitudedirection "
         "longitudedirection latdirection londirection lathemisphere lonhemisphere latref lonref"
     ),
 }
+"""Words in English, and letters."""
 CONTEXT = frozenset(("point", "points", "pt", "pnt", "punkt", "pkt", "punto", "ponto"))
 """Words for a point, which beside that for a coordinate say nothing: POINT_X."""
 
 _NOUNS = (
-    "coordinate coordinates coord coords coor koordinate koordinaten koord coordenada coordenadas "
-    "coordinata coordonnee coordonnees center centre value wert valor valeur position up positiveup"
+    "coordinate coordinates coord coords coor center centre value position positiveup mn me "
+    "м 米 公尺 メートル 미터 metri metros metro metrów metra מ"
 )
 _AFFIXES = (*("coordinate", "coord", "koordinate", "koord", "coordenada", "coordonnee"),
+            *("koordinaatti", "koordinat", "coordinaat", "coordinata"),
             *("point", "center", "centre", "utm", "grid", "value"))  # fmt: skip
 """Words that are written together with the letter of an axis: xcoord, utmx."""
 
@@ -86,25 +90,46 @@ _UNITS = (
 _DEGREES = "deg degs degree degrees ° dd decdeg decimaldegree decimaldegrees grad° wgs84degrees"
 _DATUMS = re.compile(
     "navd(88)?|ngvd(29)?|egm(84|96|2008|08)|geoid(03|09|12a?|12b|18)|cgvd(28|2013)|nhn|nn|mnn|unn|"
-    "uebernn|ubernn|ueberm?nhn|uberm?nhn|munhn|mnhn|dhhn(85|92|2016)?|evrf(2000|2007|2019)|a?msl|"
-    "masl|asl|abovemsl|(above)?(mean)?sealevel|verticaldatum|datum|aod|odn|od|malin|ahd(71)?|nap|"
-    "ngf(ign69)?|ign69|ln02|lhn95|rh(70|2000)|nn(1954|2000)|dvr90|n(60|2000)|bpv|kronstadt|"
-    "nzvd(2009|2016)|mum|umm|masm|orthometric|orthom|ortho|vertical|chartdatum"
+    "uebernn|ubernn|ueberm?nhn|uberm?nhn|munhn|mnhn|dhhn(12|85|92|2016)?|a?msl|"
+    "evrf(2000|2007|2019)(nh)?|"
+    "masl|asl|abovemsl|(above)?(mean)?sealevel|verticaldatum|datum|aod|odn?|malin(head)?|belfast|"
+    "ahd(71)?|nap|mnap|taw|mtaw|ran95|orth|ngf(ign69)?|ign69|ngg|ln02|lhn95|rh(00|70|2000)|nn(1954|2000)|"
+    "dvr90|n(43|60|2000)|eh2000|las(2000|07)?(5|h)?|las2000h5|bpv|kst|kronstadt(86)?|kronsztadt(86)?|nh|hvrs71|dnn|"
+    "sno|nvn99|nzvd(2009|2016)|mum|umm|masm|m?snm|slm|orthometric|orthom|ortho|vertical|"
+    "chartdatum|mpd|hkpd|tp|jgd(2000|2011)?vertical|(1985|1956)?(国家)?(黄海)?高程(基准|系统)(1985|1956)?|"
+    "(1985|1956)国家高程基准|黄海|twvd(2001)?|imbituba|mbf|mbalti|балт(ииская)?|бс(77)?|kn"
 )
+_ZONE = "(fuso|huso|uso|fuseau|zone|zona|zon|strefa|pas)?[0-9]{0,3}(tm)?[nse]?"
 _SYSTEMS = re.compile(
-    "(wgs)?(19)?84?utm(zone)?[0-9]{0,2}[ns]?|utm(zone)?[0-9]{0,2}[ns]?|zone[0-9]{1,2}[ns]?|"
-    "wgs(19)?(72|84)|nad(27|83)([0-9]{4})?|etrs(89|1989)?|epsg[0-9]{4,6}|gda(94|2020)|"
-    "mga(94|2020)?(zone)?[0-9]{0,2}|osgb(36)?|bng|itm|lv(03|95)|ch1903|rgf93|"
-    "lambert(ii|iii|iv|i|93|72|2008|cc[0-9]{2})?|l93|gk[0-9]?|gausskr(ue|u)ger|dhdn|mgi|"
-    "sweref99(tm)?|rt90|rd(new)?|sirgas(2000)?|sad69|pz90|sk42|jgd(2000|2011)|nzgd2000|nztm(2000)?|"
-    "hd72|eov|sjtsk|spcs|stateplane|grid|ground|local|global|world|map|projected|projection|plane"
+    f"((wgs)?(19)?(84)?utm|mtm|ntm|mga(94|2020)?|amg(66|84)?|map?grid|gk|gausskr(ue|u)ger|"
+    "sirgas(2000)?|wgs(19)?(72|84)|etrs(19)?(89)?|nad(27|83)([0-9]{4})?|gda(94|2020)|rgf93|"
+    "ed(19)?50|pl2000|pl1992|posgar(94|98|2007|07)?|sad69|psad56|lambert|lamb|cc|lcc|ctm|lo|wg|zone|"
+    f"zona|fuso|huso|sk(42|63|95)|ск(42|63|95)|cgcs2000|turef|itrf[0-9]{{0,4}}|sweref99|d96|d48){_ZONE}|"
+    "epsg[0-9]{4,6}|osgb(36)?|osgm(02|15)|bng|ig75|irenet95|itm(95)?|(lv|mn)(03|95)|svy21|ch1903|"
+    "lambert(ii|iii|iv|i|cc)|cc(4[2-9]|50)|l93|l(2|ii)e?|dhdn|mgi|rt90|rd(new)?|"
+    "pz90|jgd(2000|2011)|tokyo|nzgd2000|nztm(2000)?|nzmg|hd72|eov|s?jtsk(03)?|stereo70|"
+    "s42|spcs(83|27)?|stateplane|htrs96(tm)?|isn(93|2004|2016)|(pt)?tm(06|35fin|30|65)|tm75|"
+    "lks(92|94)|lest(97)?|twd(67|97)(tm2)?|origennacional|magna(sirgas)?|bogota|xian80|西安80|"
+    "bj54|beijing54|北京54|国家2000|大地2000|2000国家大地坐标系|kkj|ykj|vn2000|gdm2000|rso|cassini|"
+    "hartebeesthoek94|hart94|ggrs87|egsa87|εγσα87|εγσα|igd05|sirgaschile|bgs2005|ccs2005|"
+    "уск2000|ucs2000|мск[0-9]{0,2}|msk[0-9]{0,2}|"
+    "grid|ground|local|global|world|map|projected|projection|plane"
 )
-_PLAIN_LETTERS = str.maketrans({"ø": "o", "æ": "ae", "ł": "l", "đ": "d", "œ": "oe"})
+_PLAIN_LETTERS = str.maketrans(
+    {"ø": "o", "æ": "ae", "ł": "l", "đ": "d", "œ": "oe", "ı": "i", "ð": "d", "þ": "th"}
+)
+_SINGLE_LETTERS = {"ø": "ø", "ö": "ø"}
+"""Short for "øst" and "öst", where O is short for "oeste"."""
+_WORDS = re.compile(r"[^\s/'№]+|№")
 _ACCENTS = re.compile("[\u0300-\u036f]")
 
 
 def simplify(word: str) -> str:
     """Return a word without case and accents."""
+    if len(word) == 1:
+        word = word.translate(LOOK_ALIKES)
+        if word.casefold() in _SINGLE_LETTERS:
+            return _SINGLE_LETTERS[word.casefold()]
     letters = unicodedata.normalize("NFKD", word).casefold().translate(_PLAIN_LETTERS)
     return _ACCENTS.sub("", letters)
 
@@ -117,8 +142,56 @@ def _make_vocabulary() -> dict[str, Sense]:
         for rank, word in enumerate(text.split())
     }
     for what, text in (("unit", _UNITS), ("degree", _DEGREES), ("noun", _NOUNS)):
-        words |= {word: Sense(what) for word in text.split()}  # type: ignore[arg-type]
+        words |= {simplify(word): Sense(what) for word in text.split()}  # type: ignore[arg-type]
+    for language in LANGUAGES.values():
+        for texts, sense in (
+            (language.easting, Sense("role", "easting", "word")),
+            (language.northing, Sense("role", "northing", "word")),
+            (language.elevation, Sense("role", "elevation", "sure")),
+            (language.height, Sense("role", "elevation", "open")),
+            (language.longitude, Sense("role", "easting", "angle")),
+            (language.latitude, Sense("role", "northing", "angle")),
+            (language.number, Sense("role", "number")),
+            (language.description, Sense("role", "description")),
+            (language.coordinate, Sense("noun")),
+        ):
+            for rank, phrase in enumerate(_list_phrases(texts)):
+                words.setdefault(phrase, sense._replace(rank=rank))
     return words
+
+
+@cache
+def _make_languages() -> dict[str, frozenset[str]]:
+    english = {word for text in _ROLES.values() for word in text.split()} | {*_NOUNS.split()}
+    found: dict[str, set[str]] = {}
+    for name, language in LANGUAGES.items():
+        for text in language[:-1]:
+            for phrase in _list_phrases(text):
+                found.setdefault(phrase, set()).add(name)
+    return {word: frozenset(names) for word, names in found.items() if word not in english}
+
+
+def list_languages(phrase: str) -> frozenset[str]:
+    """Return the languages that have a phrase, none if English has it; affixes apart.
+
+    Examples
+    --------
+    >>> sorted(list_languages("wysokosc"))
+    ['Polish']
+    """
+    known = _make_languages()
+    if phrase in known:
+        return known[phrase]
+    for affix in map(simplify, _AFFIXES):
+        if phrase.endswith(affix) and affix in known:
+            return known[affix]
+    return frozenset()
+
+
+def _list_phrases(text: str) -> Iterator[str]:
+    """Return the phrases of a text as names are compared: their words joined."""
+    for phrase in text.split(",") if text else ():
+        yield "".join(simplify(word) for word in _WORDS.findall(phrase))
 
 
 def find_sense(phrase: str) -> list[Sense]:
@@ -138,7 +211,7 @@ def find_sense(phrase: str) -> list[Sense]:
         return [Sense("datum")]
     if _SYSTEMS.fullmatch(phrase):
         return [Sense("system", phrase)]
-    for affix in _AFFIXES:
+    for affix in map(simplify, _AFFIXES):
         is_behind = phrase.endswith(affix)
         rest = phrase.removesuffix(affix) if is_behind else phrase.removeprefix(affix)
         role = _make_vocabulary().get(rest)

@@ -10,8 +10,8 @@ _GSI = re.compile(
     rb"(?:\xef\xbb\xbf)?\s*(?:\*?(?:11|41)[\d.]{4}[+-][^\s,;]{8}(?:[^\s,;]{8})?"
     rb"(?:[ \t]*[\r\n]|[ \t]*\Z| (?:\d\d[\d.]|\d{3})[\d.]{3}[+-]))"
 )
-_SDR = re.compile(rb"(?:\xef\xbb\xbf)?00[A-Z]{2}SDR[23]\d", re.IGNORECASE)
-_DC = re.compile(rb"(?:\xef\xbb\xbf)?00[A-Z]{2}(?:SC|DC) ?V\d", re.IGNORECASE)
+_SDR = re.compile(rb"(?:\xef\xbb\xbf)?[\x02\s]*00[A-Z]{2}SDR[23]\d", re.IGNORECASE)
+_DC = re.compile(rb"(?:\xef\xbb\xbf)?[\x02\s]*00[A-Z]{2}(?:SC|DC) ?V\d", re.IGNORECASE)
 _JOBXML = re.compile(rb"<JOBFile[\s>]")
 
 

@@ -35,12 +35,14 @@ _HALF_WORLD = 20_037_508.35
 _GZIP = b"\x1f\x8b"
 
 _OFF = re.compile(rb"\s*(?:ST)?C?N?4?n?OFF\s")
+_2DM = re.compile(rb"(?:[ \t]*(?:#[^\n]*)?\r?\n)*\s*MESH2D")
+"""Comments may stand before the keyword."""
 _CITYJSON = re.compile(rb'"type"\s*:\s*"CityJSON"')
 
 
 def is_2dm(head: bytes) -> bool:
     """Whether the file is a 2DM mesh."""
-    return head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"MESH2D")
+    return _2DM.match(head.removeprefix(b"\xef\xbb\xbf")) is not None
 
 
 def is_off(head: bytes) -> bool:

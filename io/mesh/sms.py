@@ -6,6 +6,7 @@ along lines. 2DM has no place for CRS and units.
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,6 +40,7 @@ _FACES = {
     "E8Q": (8, ((0, 1, 7), (1, 2, 3), (3, 4, 5), (5, 6, 7), (1, 3, 5, 7))),
     "E9Q": (9, ((0, 1, 8, 7), (1, 2, 3, 8), (8, 3, 4, 5), (7, 8, 5, 6))),
 }
+_COMMENT = re.compile(r"(?:^|(?<=\s))#.*")
 _EDGES = ("E2L", "E3L")
 
 
@@ -85,6 +87,7 @@ def read(
 def _sort_cards(rows: TextRows) -> dict[str, TextRows]:
     """Return the rows of each card, by its name."""
     path = rows.path
+    rows = _drop_comments(rows)
     if not rows.texts or not rows.texts[0].startswith("MESH2D"):
         raise ReadError(f"'{path}' is no 2DM mesh: it must begin with 'MESH2D'.", path=path)
     cards: dict[str, TextRows] = {}
@@ -93,6 +96,17 @@ def _sort_cards(rows: TextRows) -> dict[str, TextRows]:
         card.texts.append(text)
         card.lines.append(line)
     return cards
+
+
+def _drop_comments(rows: TextRows) -> TextRows:
+    """Return the rows without what stands behind a "#", unless it may be in a quoted name."""
+    kept = TextRows(rows.path)
+    for text, line in zip(rows.texts, rows.lines, strict=True):
+        bare = text if '"' in text else _COMMENT.sub("", text)
+        if bare.strip():
+            kept.texts.append(bare)
+            kept.lines.append(line)
+    return kept
 
 
 def _parse_nodes(rows: TextRows) -> tuple[Int64Array, Float64Array]:

@@ -41,6 +41,8 @@ _LENGTHS["7"] = (1e4, False)
 _ANGLES = {"2": "gon", "3": "degrees", "4": "sexagesimal", "5": "mil"}
 _ANGLE_DIGITS = 1e5
 _MIL_DIGITS = 1e4
+_NO_VALUE = re.compile(r"0*-+")
+"""What Leica writes for a value that could not be computed."""
 _WORD = re.compile(r"(?:\d\d[\d.]|\d{3})[\d.]{3}[+-]")
 _TARGET, _STATION = (81, 82, 83), (84, 85, 86)
 _SAME_PLACE = 0.05
@@ -300,7 +302,7 @@ class _Reader:
         unit = _ANGLES[word.unit]
         value = self._parse_number(block, word) / (_MIL_DIGITS if unit == "mil" else _ANGLE_DIGITS)
         angle = to_radians(value, unit)
-        if math.isnan(angle):
+        if math.isnan(angle) and not math.isnan(value):
             raise self._fail_value(block, word, "minutes and seconds below 60")
         return angle
 
@@ -314,6 +316,8 @@ class _Reader:
         return word
 
     def _parse_number(self, block: _Block, word: _Word) -> float:
+        if _NO_VALUE.fullmatch(word.data.strip()):
+            return math.nan
         if not (word.data.isascii() and word.data.isdigit()):
             raise self._fail_value(block, word, "digits alone")
         return float(word.sign + word.data)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Protocol
 
+import numpy as np
+
 from ....errors import ReadError
 from ...delimited.cells import is_number
 
@@ -15,6 +17,9 @@ if TYPE_CHECKING:
     from .records import Book
 
 __all__ = ["describe_head_fault", "find_head", "parse_coordinate", "read_records"]
+
+
+_STX = "\x02"
 
 
 class _Reader(Protocol):
@@ -33,8 +38,9 @@ class _Reader(Protocol):
 
 
 def find_head(lines: TextLines) -> str:
-    """Return the first line that is not blank, or an empty one."""
-    return next((lines.decode_line(i) for i in range(len(lines)) if not lines.is_blank[i]), "")
+    """Return the first line that is not blank, or an empty one; STX begins a download."""
+    heads = (lines.decode_line(i).lstrip(_STX) for i in np.flatnonzero(~lines.is_blank).tolist())
+    return next(filter(str.strip, heads), "")
 
 
 def describe_head_fault(path: Path, what: str) -> ReadError:

@@ -80,6 +80,16 @@ def test_gsi_blocks_in_one_line(tmp_path):
     assert survey.attributes["number"].tolist() == [1, 2, 3]
 
 
+@pytest.mark.parametrize("data", ["00000000000-----", "----------------", "            ----"])
+def test_gsi_dashes_are_no_value(tmp_path, data):
+    """Leica writes them where a value could not be computed."""
+    whole = "*110001+0000000000000001 81..10+0000000000001000 82..10+0000000000002000 "
+    text = f"{whole}83..10+0000000000003000 \n{whole.replace('1 81', '2 81')}83..10+{data} \n"
+    survey = read(tmp_path, "a.gsi", text)
+    assert survey.points.tolist() == [[1.0, 2.0, 3.0]]
+    assert survey.skipped_lines == {"points without elevation": (2,)}
+
+
 COORDINATES = "81..00+00001000 82..00+00002000 83..00+00003000"
 CODE = "410001+00000013 42....+000TREES 43....+000004.5"
 
@@ -238,6 +248,14 @@ def test_sdr33_coordinates(tmp_path):
     assert survey.skipped_lines == {"points without elevation": (5,)}
     east_first = read(tmp_path, "a.sdr", text.replace("211111", "211121"))
     assert east_first.points.tolist() == [[510.504, 908.838, 19.699]]
+
+
+@pytest.mark.parametrize("start", ["\x02\n", "\x02\r\n", "\x02", "\n\x02\n"])
+def test_sdr_after_the_mark_of_a_download(tmp_path, start):
+    rows = [header(), sdr33("08TP", "1", "5.000", "7.000", "3.000", "a")]
+    plain = read(tmp_path, "a.sdr", "\n".join(rows) + "\n")
+    marked = read(tmp_path, "b.txt", start + "\n".join(rows) + "\n\x03\n")
+    assert marked.points.tolist() == plain.points.tolist() == [[7.0, 5.0, 3.0]]
 
 
 def test_sdr20_has_narrow_columns(tmp_path):

@@ -53,6 +53,22 @@ def test_qgis_opens_our_2dm(tmp_path):
     assert seen["groups"]["Bed Elevation"] == pytest.approx([z.min(), z.max()])
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"# from the survey of May\n{NODES}E3T 1 1 2 3 1\n",
+        f"\n#\n  # two\r\n\n{NODES}E3T 1 1 2 3 1\n",
+        f"MESH2D # units: m\n# nodes\n{NODES.partition(chr(10))[2]}E3T 1 1 2 3 1 # the only one\n",
+    ],
+)
+def test_comments_stand_anywhere(tmp_path, text):
+    path = tmp_path / "comment.2dm"
+    path.write_text(text)
+    tin = ts.read(path)
+    assert tin.points.tolist() == [[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]]
+    assert tin.triangles.tolist() == [[0, 1, 2]]
+
+
 def test_numbers_with_gaps():
     tin = ts.read(DATA / "mesh_with_numbering_gaps.2dm")
     assert len(tin.points) == 5
