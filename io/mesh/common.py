@@ -14,6 +14,7 @@ from ...tin import TIN, Surface, Survey
 from ...tin.checking.overlaps import describe_overlaps
 from ...tin.screening.nodata import find_suspect_elevations
 from ...tin.validation.options import is_finite_number
+from ..reprojection.contradictions import look_at_crs
 from ..reprojection.placement import settle_unit
 
 if TYPE_CHECKING:
@@ -189,16 +190,20 @@ def make_tin(
     reference: Reference,
     attributes: Mapping[str, AnyArray] | None = None,
     notes: Sequence[str] = (),
+    looks_at_crs: bool = True,
 ) -> TIN:
     """Make a TIN of what a file holds; what makes no TIN is a fault of the file.
 
     What makes one in which triangles overlap, and the like, is told in the notes of its report,
-    behind the ``notes`` given.
+    behind the ``notes`` given. Whether the coordinates contradict their CRS is looked at, unless
+    the reader has done so.
 
     Raises
     ------
     ReadError
         As ``TIN.from_triangles`` raises PointsError.
+    CrsError
+        If the coordinates contradict their CRS.
     """
     try:
         tin = TIN.from_triangles(
@@ -211,6 +216,7 @@ def make_tin(
         )
     except PointsError as error:
         raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
+    notes = [*notes, *(look_at_crs(tin.points, reference.crs, path) if looks_at_crs else ())]
     told = [*notes, *describe_overlaps(tin), *_describe_suspects(tin.points[:, 2])]
     return add_notes(tin, told) if told else tin
 
@@ -284,7 +290,7 @@ def make_survey(
         crs=reference.crs,
         elevation_unit=reference.elevation_unit,
         source=path.name,
-        notes=list(notes),
+        notes=[*notes, *look_at_crs(points, reference.crs, path)],
     )
 
 

@@ -18,13 +18,20 @@ from ... import _optional
 from ..._atomic import replacing_path
 from ...tin.topology import NO_NEIGHBOR, directed_edges, edge_keys, ends
 from ..isolated import run_isolated
-from .common import choose_reference, make_survey, make_tin, read_content, require_tin
+from .common import (
+    choose_reference,
+    cut_into_fans,
+    make_survey,
+    make_tin,
+    read_content,
+    require_tin,
+)
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ..._progress import Tell
-    from ...arrays import BoolArray, Int32Array
+    from ...arrays import AnyArray, BoolArray, Int32Array, Int64Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
 
@@ -55,12 +62,23 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
         read_content(path)  # says why it cannot be read
     where = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
     arrays = run_isolated(f"{__package__}.gmsh_child:read_mesh", where, path=path).arrays
-    points, triangles = arrays["points"], arrays["triangles"]
+    points = arrays["points"]
+    triangles, notes = _cut_faces(arrays, path)
     reference = choose_reference(crs, z_unit, path)
     if len(triangles) == 0:
         return make_survey(points, path, reference=reference)
     flags = _flag_edges(triangles, arrays["lines"], len(points))
-    return make_tin(points, triangles, path, constrained=flags, reference=reference)
+    return make_tin(points, triangles, path, constrained=flags, reference=reference, notes=notes)
+
+
+def _cut_faces(arrays: dict[str, AnyArray], path: Path) -> tuple[Int64Array, tuple[str, ...]]:
+    """Return the triangles, and those into which quadrilaterals are cut."""
+    triangles, quadrilaterals = arrays["triangles"], arrays["quadrilaterals"]
+    if len(quadrilaterals) == 0:
+        return triangles, ()
+    corners, offsets = quadrilaterals.ravel(), np.arange(0, quadrilaterals.size + 1, 4)
+    made = cut_into_fans(corners, offsets, arrays["points"], path)
+    return np.concatenate([triangles, made.triangles]), made.notes
 
 
 def _flag_edges(triangles: Int32Array, lines: Int32Array, n_points: int) -> BoolArray:

@@ -17,18 +17,26 @@ if TYPE_CHECKING:
 __all__ = ["prepare", "read_mesh"]
 
 
+_READ = frozenset({"vertex", "line", "triangle", "quad"})
+
+
 def prepare() -> None:
     """Load the library."""
     import_module("meshio")
 
 
 def read_mesh(path: str, shown: str) -> Answer:
-    """Return the ``points``, ``triangles`` and ``lines`` of a file."""
+    """Return the ``points``, ``triangles``, ``quadrilaterals`` and ``lines`` of a file."""
     found = _read_with_meshio(path, shown)
     points = np.asarray(found.points, np.float64)
     if points.ndim != 2 or points.shape[1] != 3:
         raise Refusal(f"'{shown}' is a damaged Gmsh file: its points have not three coordinates.")
-    cells = {"triangles": _find_cells(found, "triangle", 3), "lines": _find_cells(found, "line", 2)}
+    _require_known_cells(found, shown)
+    cells = {
+        "triangles": _find_cells(found, "triangle", 3),
+        "quadrilaterals": _find_cells(found, "quad", 4),
+        "lines": _find_cells(found, "line", 2),
+    }
     for name, numbers in cells.items():
         wrong = (numbers < 0) | (numbers >= len(points))
         if wrong.any():
@@ -38,6 +46,17 @@ def read_mesh(path: str, shown: str) -> Answer:
                 "that it does not hold."
             )
     return Answer(None, {"points": points, **cells})
+
+
+def _require_known_cells(found: Any, shown: str) -> None:
+    """Refuse faces of other kinds, which would be lost."""
+    kinds = {block.type: len(block.data) for block in found.cells if len(block.data)}
+    odd = sorted(kinds.keys() - _READ)
+    if odd:
+        raise Refusal(
+            f"'{shown}' holds {kinds[odd[0]]} elements of the type {odd[0]}: triangles and "
+            "quadrilaterals with straight edges can be read."
+        )
 
 
 def _read_with_meshio(path: str, shown: str) -> Any:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..._sentences import counted
 from ..isolated import Answer, Refusal
+from ..raster.gdal_child import DEPTHS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -23,11 +24,6 @@ _ELEVATIONS = frozenset(
 )  # fmt: skip
 """Standard names of what grows upwards."""
 
-_DEPTHS = frozenset(
-    {"depth", "sea_floor_depth", "sea_floor_depth_below_geoid",
-     "sea_floor_depth_below_mean_sea_level", "sea_floor_depth_below_sea_surface",
-     "sea_floor_depth_below_geopotential_datum"}
-)  # fmt: skip
 _CRS_NAMES = ("projected_coordinate_system", "wgs84", "crs", "spatial_ref")
 """What programs call the variable of the CRS where no attribute points to it."""
 
@@ -139,7 +135,7 @@ def _tell_axis(variable: Any) -> str:
         ("degrees_n", "degree_n")
     ):
         return "y"
-    return "z" if name in _ELEVATIONS | _DEPTHS else ""
+    return "z" if name in _ELEVATIONS | DEPTHS else ""
 
 
 def _read_numbers(variable: Any, shown: str) -> Float64Array:
@@ -201,7 +197,7 @@ def _is_at_nodes(variable: Any, data: Any, mesh: Any) -> bool:
 def _is_depth(variable: Any) -> bool:
     """Whether the numbers grow downwards."""
     told = _get_text(variable, "positive").lower()
-    return told == "down" if told else _get_text(variable, "standard_name") in _DEPTHS
+    return told == "down" if told else _get_text(variable, "standard_name") in DEPTHS
 
 
 def _read_faces(data: Any, mesh: Any, shown: str) -> tuple[Int64Array, Int64Array]:

@@ -24,6 +24,7 @@ from ...tin.screening.nodata import describe_elevations, parse_nodata
 from ..isolated import Limits, choose_limits, run_isolated, stream_isolated
 from ..isolated.free_memory import measure_free_memory
 from ..reprojection.placement import place, settle_unit
+from .bands import describe_band, find_default_band, look_at_axes
 from .virtual import is_virtual, require_plain_sources
 
 if TYPE_CHECKING:
@@ -47,6 +48,7 @@ __all__ = [
     "find_elevation_unit",
     "find_middle",
     "is_raster",
+    "make_header",
     "make_survey",
     "read",
     "read_georeference",
@@ -135,7 +137,8 @@ def read(
     Parameters
     ----------
     band : int, optional
-        Band to read, from 1; default the first.
+        Band to read, from 1; default the only one that is described as
+        elevations, else the first.
     window : Bounds or (4,) sequence of float, optional
         Part to read: west, south, east and north limit in the raster's own CRS, which hold the
         centres of the cells wanted.
@@ -198,9 +201,10 @@ def make_survey(
     """
     path = dataset.path
     number = choose_band(dataset, choice.band, path)
-    require_elevation_band(dataset, number, choice.band is not None, path)
+    of_band = require_elevation_band(dataset, number, choice.band is not None, path)
     target, source = CRS.of(crs), CRS.of(dataset.crs)
     unit, said = find_elevation_unit(dataset, number, source, Unit.of(z_unit))
+    said = [*of_band, *said, *look_at_axes(dataset, source, target)]
     cells = _choose_cells(dataset, choice, path)
     said = [*said, *_describe_window(dataset, choice)]
     left_out = 0 if choice.most_cells is None else cells.width * cells.height - cells.count
@@ -342,6 +346,14 @@ class Header:
     units: list[str | None]
     crs: str | None
     limits: Limits | None
+    descriptions: Sequence[str] = ()
+    """Of the bands; empty where none is described."""
+    depths: Sequence[bool] = ()
+    """Whether the numbers of each band grow downwards; ``scales`` and ``offsets`` turn them."""
+    series: Sequence[str] = ()
+    """Where each band stands along a further axis, such as "time 0"; empty if nowhere."""
+    axis_units: Sequence[str] = ()
+    """Of easting and northing, in the words of the file; empty if it does not say."""
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -359,8 +371,18 @@ def read_header(path: Path) -> Header:
     found = run_isolated(
         f"{_choose_reader(path)}:read_header", _name_for_gdal(path), path=path, limits=limits
     ).value
-    transform = Affine(*found.pop("transform"))
-    return Header(path=path, transform=transform, limits=limits, **found)
+    return make_header(found, path, limits)
+
+
+def make_header(found: dict[str, Any], path: Path, limits: Limits | None) -> Header:
+    """Return a header of what ``gdal_child.describe`` says; depths are turned to elevations."""
+    signs = [-1.0 if is_depth else 1.0 for is_depth in found["depths"]]
+    turned = {
+        name: [sign * value for sign, value in zip(signs, found[name], strict=True)]
+        for name in ("scales", "offsets")
+    }
+    transform = Affine(*found["transform"])
+    return Header(path=path, limits=limits, **{**found, **turned, "transform": transform})
 
 
 def _choose_reader(path: Path) -> str:
@@ -387,7 +409,7 @@ def choose_band(dataset: Header, band: int | None, path: Path) -> int:
             + (f" but several rasters ({parts}): extract one of them first." if parts else "."),
             path=path,
         )
-    number = 1 if band is None else band
+    number = find_default_band(dataset.descriptions) if band is None else band
     if not isinstance(number, Integral) or not 1 <= number <= dataset.count:
         known = (
             "1, the only band" if dataset.count == 1 else f"one of the bands 1 to {dataset.count}"
@@ -396,8 +418,8 @@ def choose_band(dataset: Header, band: int | None, path: Path) -> int:
     return int(number)
 
 
-def require_elevation_band(dataset: Header, band: int, is_told: bool, path: Path) -> None:
-    """Refuse pictures, complex numbers and rasters whose place is unknown."""
+def require_elevation_band(dataset: Header, band: int, is_told: bool, path: Path) -> list[str]:
+    """Refuse pictures, complex numbers and rasters whose place is unknown; return notes."""
     meaning = dataset.colours[band - 1]
     if meaning in _COLOURS and not is_told:
         raise ReadError(
@@ -408,6 +430,7 @@ def require_elevation_band(dataset: Header, band: int, is_told: bool, path: Path
     if dataset.dtypes[band - 1].startswith("complex"):
         raise ReadError(f"'{path}': band {band} holds complex numbers, no elevations.", path=path)
     _require_position(dataset, path)
+    return describe_band(dataset, band, is_told=is_told)
 
 
 def _require_position(dataset: Header, path: Path) -> None:

@@ -16,6 +16,7 @@ from ...tin.screening.nodata import parse_nodata
 from ..isolated.local_files import require_local
 from ..isolated.spooling import is_pipe, require_readable
 from ..reprojection.placement import place
+from .bands import look_at_axes
 from .dem import (
     Header,
     choose_band,
@@ -119,8 +120,9 @@ def _make_raster(
 ) -> Raster:
     path, source = header.path, CRS.of(header.crs)
     number = choose_band(header, band, path)
-    require_elevation_band(header, number, band is not None, path)
+    of_band = require_elevation_band(header, number, band is not None, path)
     unit, notes = find_elevation_unit(header, number, source, declared)
+    notes = [*of_band, *notes, *look_at_axes(header, source, target)]
     grid = to_grid(header.transform, (header.height, header.width), os.fspath(path))
     if source is not None and target is not None and not source.is_same(target):
         raise OptionError("crs", target, f"that of '{path}', {source}: cells are not transformed")

@@ -12,9 +12,30 @@ import numpy as np
 from ..isolated import Answer
 from ..isolated.gdal import RASTER_DRIVERS, REFERRING_DRIVERS, make_environment
 
-__all__ = ["ENVIRONMENT", "cut_strips", "describe", "prepare", "read_header", "read_strips"]
+__all__ = [
+    "DEPTHS",
+    "ENVIRONMENT",
+    "cut_strips",
+    "describe",
+    "prepare",
+    "read_header",
+    "read_strips",
+]
 
 ENVIRONMENT = make_environment()
+
+DEPTHS = frozenset(
+    {"depth", "sea_floor_depth", "sea_floor_depth_below_geoid",
+     "sea_floor_depth_below_mean_sea_level", "sea_floor_depth_below_sea_surface",
+     "sea_floor_depth_below_geopotential_datum"}
+)  # fmt: skip
+"""Standard names of the CF conventions for numbers that grow downwards."""
+
+_AXIS = "NETCDF_DIM_"
+_AXIS_NAMES = (
+    frozenset({"x", "lon", "longitude", "easting", "projection_x_coordinate"}),
+    frozenset({"y", "lat", "latitude", "northing", "projection_y_coordinate"}),
+)
 
 
 def prepare() -> None:
@@ -53,7 +74,39 @@ def describe(dataset: Any) -> dict[str, Any]:
         "offsets": list(dataset.offsets),
         "units": [unit or None for unit in dataset.units],
         "crs": dataset.crs.to_wkt() if dataset.crs else None,
+        "descriptions": [text or "" for text in dataset.descriptions],
+        "depths": [_is_depth(dataset.tags(band)) for band in dataset.indexes],
+        "series": [_find_place_in_series(dataset.tags(band)) for band in dataset.indexes],
+        "axis_units": _find_axis_units(dataset.tags()),
     }
+
+
+def _is_depth(tags: dict[str, str]) -> bool:
+    """Whether the numbers of a band grow downwards, by the conventions of netCDF."""
+    told = tags.get("positive", "").lower()
+    return told == "down" if told else tags.get("standard_name", "") in DEPTHS
+
+
+def _find_place_in_series(tags: dict[str, str]) -> str:
+    """Return where a band of netCDF stands on a further axis, such as "time 0"; empty if none."""
+    places = [
+        f"{key[len(_AXIS) :]} {value}" for key, value in tags.items() if key.startswith(_AXIS)
+    ]
+    return ", ".join(places)
+
+
+def _find_axis_units(tags: dict[str, str]) -> list[str]:
+    """Return the units of the x and y of netCDF, in the words of the file; empty if not told."""
+    found = []
+    for names in _AXIS_NAMES:
+        variables = (key.rpartition("#")[0] for key in tags if key.endswith("#units"))
+        units = [
+            tags[f"{one}#units"].strip()
+            for one in variables
+            if {one.lower(), tags.get(f"{one}#standard_name", "")} & names
+        ]
+        found.append(units[0] if units else "")
+    return found if all(found) else []
 
 
 def read_strips(

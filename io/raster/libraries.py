@@ -15,7 +15,7 @@ from ... import _optional
 from ...errors import OptionError
 from ...terrain.results import Raster
 from ...tin.validation.options import require_type
-from .dem import Affine, Choice, Header, make_survey
+from .dem import Choice, make_header, make_survey
 from .gdal_child import cut_strips, describe
 
 if TYPE_CHECKING:
@@ -98,11 +98,7 @@ def from_raster(
     <TIN: 5 vertices, 3 triangles, z 5 to 8, crs EPSG:32616>
     """
     dataset, number = _open(raster, band)
-    header = Header(
-        path=Path(str(dataset.name) or "raster"),
-        limits=None,
-        **{**(about := describe(dataset)), "transform": Affine(*about["transform"])},
-    )
+    header = make_header(describe(dataset), Path(str(dataset.name) or "raster"), None)
     choice = Choice(number, window, cells, stride, nodata, fill)
     return make_survey(header, partial(_cut, dataset), choice, crs=crs, z_unit=z_unit)
 
@@ -161,8 +157,14 @@ class _Cells:
         self.nodatavals = (about["nodata"],)
         self.scales, self.offsets = (about.get("scale", 1.0),), (about.get("offset", 0.0),)
         self.units = (about["unit"],)
+        self.descriptions, self.indexes = ("",), (1,)
+        self._tags = {name: str(text) for name, text in about.get("tags", {}).items()}
         text = about["crs"]
         self.crs = None if text is None else SimpleNamespace(to_wkt=lambda: text)
+
+    def tags(self, band: int = 0) -> dict[str, str]:
+        """Return what is said of a band, or of all by 0."""
+        return self._tags if band else {}
 
     def read(self, band: int, *, window: Any) -> AnyArray:  # noqa: ARG002 - as rasterio
         """Return the cells of a window."""
@@ -206,6 +208,7 @@ def _describe_array(array: Any, band: int | None) -> _Cells:
         scale=float(attributes.get("scale_factor", 1.0)),
         offset=float(attributes.get("add_offset", 0.0)),
         crs=mapping.get("crs_wkt") or mapping.get("spatial_ref"),
+        tags=attributes,
     )
 
 

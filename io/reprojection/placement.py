@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 import numpy as np
 
-from ..._sentences import coordinate, counted
-from ...crs import require_same_unit
+from ..._sentences import coordinate
+from ...crs import CRS, require_same_unit
 from ...errors import CrsError, ReadError
-from ...tin.screening.area_of_use import AreaOfUse
+from .contradictions import are_small_degrees, look_at_degrees, look_at_place
 from .transformation import convert_elevations, find_utm_zone, reproject, transform_points
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...arrays import Float64Array
-    from ...crs import CRS, Unit
+    from ...crs import Unit
 
 __all__ = ["DegreesError", "Placed", "place", "settle_unit"]
 
@@ -54,19 +54,29 @@ def place(
 
     Points without a source are declared to be in the target. ``unit`` is that of the elevations, if
     it is known otherwise than by the source. Which points lie outside the area of use of either CRS
-    is not told where the reader has looked at it.
+    is not looked at where the reader has done so.
 
     Raises
     ------
     ReadError
         If the points would be in degrees.
     CrsError
-        If they cannot be transformed.
+        If they cannot be transformed, or contradict their CRS: they lie in its area of use only
+        exchanged, or only as degrees.
     """
+    notes: tuple[str, ...] = ()
+    if source is None and target is not None and are_small_degrees(points, target):
+        source = CRS.of(_WGS84)
+        notes = (
+            f"The file names no CRS, and its coordinates lie in the area of {target.label} as "
+            "longitude and latitude only: they were taken to be degrees of WGS 84.",
+        )
     wanted = target if target is not None else source
     if wanted is not None and wanted.is_geographic:
         _refuse_degrees(points, wanted, source or wanted, path)
-    told = _describe_outside(points, source, target) if looks_at_area else ()
+    told = (*notes, *look_at_degrees(points, source or target, path))
+    if looks_at_area:
+        told += look_at_place(points, source, target, path)
     if source is None or wanted is None or source.is_same(wanted):
         placed = _keep_in_place(points, wanted, unit)
         return placed._replace(notes=(*told, *placed.notes))
@@ -75,27 +85,6 @@ def place(
     except CrsError as error:
         raise CrsError(f"'{path}': {error}", crs=wanted) from error
     return Placed(moved.points, wanted, moved.unit, (*told, *moved.notes))
-
-
-def _describe_outside(
-    points: Float64Array, source: CRS | None, target: CRS | None
-) -> tuple[str, ...]:
-    """Tell how many points lie outside the areas of use, and whether an exchange would help."""
-    area = AreaOfUse.of(source, target)
-    is_moved = source is not None and target is not None and not source.is_same(target)
-    if area is None or (not is_moved and area.is_local(points[:, :2])):
-        return ()
-    outside = area.find_outside(points[:, :2])
-    if len(outside) == 0:
-        return ()
-    helps = area.covers_most(points[outside][:, [1, 0]])
-    check = "the order of the coordinates" if helps else "that the CRS is the right one"
-    lie = "lies" if len(outside) == 1 else "lie"
-    exchanged = " and, exchanged, inside" if helps else ""
-    return (
-        f"{len(outside):,} of {counted(len(points), 'point')} {lie} outside the area of use of "
-        f"{area.label}{exchanged}: check {check}.",
-    )
 
 
 def _keep_in_place(points: Float64Array, crs: CRS | None, unit: Unit | None) -> Placed:

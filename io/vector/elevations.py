@@ -15,7 +15,13 @@ if TYPE_CHECKING:
     from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from .features import Features
 
-__all__ = ["Elevations", "find_elevations", "find_named_unit"]
+__all__ = [
+    "Elevations",
+    "describe_unused_columns",
+    "find_elevations",
+    "find_named_unit",
+    "require_absolute",
+]
 
 GEOMETRY = "geometry"
 _NAMES = frozenset(
@@ -27,6 +33,12 @@ _NAMES = frozenset(
     )
 )
 """Columns that hold elevations, by the names that programs and people give them."""
+
+_ALTITUDE_MODE = "altitudemode"
+_RELATIVE = frozenset(
+    {"relativetoground", "clamptoground", "relativetoseafloor", "clamptoseafloor"}
+)
+"""Modes of KML, of which only "absolute" means elevations."""
 
 _SAME = 0.006
 """CRS units by which a rounded column and the geometry may differ: half a hundredth."""
@@ -95,6 +107,7 @@ def find_elevations(
     if not has_z.any():
         return _take_column(features, columns, rows)
     z = _require_all(features, z, has_z, rows)
+    require_absolute(features, has_z, rows, "z_field='geometry' takes them as they are")
     for name, values in columns.items():
         _require_same(features, z, values[rows], name, rows)
     return Elevations(z)
@@ -126,6 +139,49 @@ def _take_asked(
             path=features.path,
         )
     return Elevations(values[rows], find_named_unit(name, features))
+
+
+def describe_unused_columns(features: Features) -> list[str]:
+    """Tell of columns of elevations beside lines without any, which are draped."""
+    names = ", ".join(_find_columns(features))
+    if not names:
+        return []
+    return [
+        f"'{features.path.name}': the lines have no elevations in their geometry and are draped on "
+        f"the surface; the column {names} is not used."
+    ]
+
+
+def require_absolute(features: Features, has_z: BoolArray, rows: Int64Array, remedy: str) -> None:
+    """Refuse heights that KML says are above the ground, or are to be ignored.
+
+    Parameters
+    ----------
+    features : Features
+    has_z : (n,) bool array
+        Whether a vertex has a height.
+    rows : (n,) int array
+        Feature of each vertex.
+    remedy : str
+        The option that settles it, and what it does.
+
+    Raises
+    ------
+    ReadError
+    """
+    column = features.find_column(_ALTITUDE_MODE)
+    if column is None:
+        return
+    modes = [str(mode or "") for mode in column.tolist()]
+    relative = np.array([mode.rpartition(":")[2].lower() in _RELATIVE for mode in modes], np.bool_)
+    wrong = has_z & relative[rows]
+    if wrong.any():
+        row = int(rows[np.argmax(wrong)])
+        raise ReadError(
+            f"{features.label(row)} has the altitudeMode '{modes[row]}': its heights are not "
+            f"elevations but measured from the ground, or to be ignored; the option {remedy}.",
+            path=features.path,
+        )
 
 
 def _require_all(

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
+from ...crs import Unit
+from ...errors import OptionError
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
@@ -32,6 +35,15 @@ class Features(NamedTuple):
     """Of the columns, as the file writes them."""
     elevation_unit: str = ""
     """What the file calls the unit of its elevations, apart from its CRS; empty if it does not."""
+
+    @property
+    def told_unit(self) -> Unit | None:
+        """Unit of the elevations, as the layer or the vertical axis of its CRS says."""
+        try:
+            told = Unit.of(self.elevation_unit or None)
+        except OptionError:  # such as "unknown", which is what we write
+            told = None
+        return told or (None if self.crs is None else self.crs.vertical_unit)
 
     def label(self, row: int) -> str:
         """Return what a feature is called in sentences."""

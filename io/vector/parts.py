@@ -13,6 +13,7 @@ from ...errors import ReadError
 from ...tin.topology import find_offsets
 from ..reprojection.placement import place, settle_unit
 from ..reprojection.transformation import find_conversion_factor
+from .elevations import describe_unused_columns, require_absolute
 
 if TYPE_CHECKING:
     from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array, ObjectArray
@@ -91,11 +92,14 @@ def split_into_parts(
     has_z = shapely.has_z(lines.shapes) & (not drape)
     _require_finite_vertices(xyz, np.repeat(has_z, np.diff(bounds)), bounds, lines.rows, features)
     said = list(features.notes) + crs_notes(features, wanted)
+    if not drape and not has_z.any():
+        said += describe_unused_columns(features)
     if has_z.any():
+        require_absolute(features, has_z, lines.rows, "drape takes them from the surface")
         xyz[:, 2] *= find_elevation_factor(features, wanted, notes=said)
+    xyz[:, :2] = move_to_crs(xyz[:, :2], features, wanted.crs, notes=said)
     if notes is not None:
         notes.extend(said)
-    xyz[:, :2] = move_to_crs(xyz[:, :2], features, wanted.crs)
     return [
         Part(xyz[start:end, :width], row, is_closed, ring)
         for start, end, width, row, is_closed, ring in zip(
@@ -163,8 +167,12 @@ def _require_finite_vertices(
 # --------------------------------------------------------------------------- CRS
 
 
-def move_to_crs(xy: Float64Array, features: Features, crs: CRS | None) -> Float64Array:
+def move_to_crs(
+    xy: Float64Array, features: Features, crs: CRS | None, *, notes: list[str] | None = None
+) -> Float64Array:
     """Reproject places of features in the plane.
+
+    What is odd about where they lie is appended to ``notes``.
 
     Raises
     ------
@@ -173,7 +181,10 @@ def move_to_crs(xy: Float64Array, features: Features, crs: CRS | None) -> Float6
     """
     level = np.column_stack([xy, np.zeros(len(xy))])
     source, target = _drop_vertical_axis(features.crs), _drop_vertical_axis(crs)
-    return place(level, source=source, target=target, path=features.path).points[:, :2]
+    placed = place(level, source=source, target=target, path=features.path)
+    if notes is not None:
+        notes.extend(f"'{features.path.name}': {note}" for note in placed.notes)
+    return placed.points[:, :2]
 
 
 def _drop_vertical_axis(crs: CRS | None) -> CRS | None:
@@ -213,8 +224,7 @@ def find_elevation_factor(features: Features, wanted: Wanted, *, notes: list[str
         another one.
     """
     source = features.crs or wanted.crs
-    vertical = None if features.crs is None else features.crs.vertical_unit
-    theirs = settle_unit(wanted.z_unit, vertical, features.path)
+    theirs = settle_unit(wanted.z_unit, features.told_unit, features.path)
     ours = wanted.elevation_unit or (None if wanted.crs is None else wanted.crs.vertical_unit)
     if theirs is None and features.crs is None:
         return 1.0

@@ -132,12 +132,7 @@ class _Vertices(NamedTuple):
 
 def _find_unit(features: Features, declared: Unit | None) -> Unit | None:
     """Return the unit of elevations that the file or the caller tells."""
-    try:
-        told = Unit.of(features.elevation_unit or None)
-    except OptionError:  # such as "unknown", which is what we write
-        told = None
-    vertical = None if features.crs is None else features.crs.vertical_unit
-    return settle_unit(declared, told or vertical, features.path)
+    return settle_unit(declared, features.told_unit, features.path)
 
 
 # ----------------------------------------------------------------------- the geometry
@@ -325,6 +320,7 @@ def _make_triangles(features: Features, asked: _Asked) -> TIN:
         triangles,
         features.path,
         reference=Reference(placed.crs, placed.elevation_unit),
+        looks_at_crs=False,
     )
     notes = [*features.notes, *placed.notes]
     if placed.points is not points:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ....errors import ReadError
+from .strips import STRIPS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -44,14 +45,14 @@ class Table:
 
 
 def read_tables(content: bytes, header: Header, path: Path) -> dict[str, Table]:
-    """Read the tables up to the last of ``vertex``, ``face`` and edges that are constrained.
+    """Read the tables up to the last of ``vertex``, faces and edges that are constrained.
 
     Raises
     ------
     ReadError
         If the file ends before a table does, or text holds something that is no number.
     """
-    names = ("vertex", "face") if header.lines is None else ("vertex", "face", "edge")
+    names = ("vertex", "face", STRIPS, *(() if header.lines is None else ("edge",)))
     wanted = [i for i, element in enumerate(header.elements) if element.name in names]
     body = _Body(content, header, path)
     read = header.elements[: max(wanted, default=-1) + 1]

@@ -30,6 +30,7 @@ from .lines import (
     require_edges,
     take_edges,
 )
+from .strips import STRIPS, unroll_strips
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -76,7 +77,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     reference = common.choose_reference(
         crs, z_unit, path, found_crs=header.crs, found_unit=header.elevation_unit
     )
-    faces = _find_face_list(tables.get("face"))
+    faces = _find_faces(tables, path)
     attributes = _find_vertex_attributes(vertices)
     if faces is None or len(faces.offsets) == 1:
         return common.make_survey(
@@ -86,7 +87,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
         _require_whole_numbers(faces.items, path), faces.offsets, points, path
     )
     notes += made.notes
-    flags = _find_edge_flags(tables["face"], len(made.triangles))
+    flags = _find_edge_flags(tables.get("face"), len(made.triangles))
     has_lines = header.lines is not None and "edge" in tables
     edges = require_edges(tables["edge"], path, len(points)) if has_lines else None
     if flags is None and edges is not None:
@@ -105,6 +106,18 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     lines = read_lines(header.lines, edges, path)
     _require_edges_of_tin(tin, lines, path)
     return tin.replace(lines=lines)
+
+
+def _find_faces(tables: dict[str, Table], path: Path) -> Ragged | None:
+    """Return the lists of vertices of faces, those of triangle strips included."""
+    faces = _find_face_list(tables.get("face"))
+    strips = _find_face_list(tables.get(STRIPS))
+    if strips is None or len(strips.items) == 0:
+        return faces
+    triangles = unroll_strips(_require_whole_numbers(strips.items, path), strips.offsets)
+    if faces is not None and len(faces.items):
+        raise ReadError(f"'{path}' has faces and triangle strips: one is needed.", path=path)
+    return Ragged(triangles.ravel(), np.arange(0, triangles.size + 1, 3))
 
 
 def _require_edges_of_tin(tin: TIN, lines: Lines, path: Path) -> None:
@@ -139,8 +152,10 @@ def _require_whole_numbers(items: AnyArray, path: Path) -> Int64Array:
     return whole
 
 
-def _find_edge_flags(faces: Table, n_triangles: int) -> BoolArray | None:
+def _find_edge_flags(faces: Table | None, n_triangles: int) -> BoolArray | None:
     """Return the edge flags if the file has them and every face is a triangle."""
+    if faces is None:
+        return None
     columns = [faces.columns[name] for name in _FLAGS if name in faces.columns]
     if len(columns) < len(_FLAGS) or len(columns[0]) != n_triangles:
         return None

@@ -8,6 +8,7 @@ import pytest
 
 import tinsmith as ts
 from tinsmith.crs import CRS
+from tinsmith.io.reprojection.contradictions import checking_crs
 from tinsmith.io.reprojection.placement import place
 
 NORTH = np.array([0.0, 5e6, 0.0])
@@ -36,9 +37,12 @@ def test_points_outside_the_area_of_either_crs_are_told():
     assert _place(one, UTM, None)[0].startswith("1 of 4 points lies outside")
 
 
-def test_points_that_would_lie_inside_exchanged_are_told_so():
-    told = f"3 of 3 points lie outside the area of use of {ZONE} and, exchanged, inside"
-    assert _place(SITE[:, [1, 0, 2]], UTM, None)[0].startswith(told)
+def test_points_that_would_lie_inside_exchanged_are_refused_or_told():
+    told = f"3 of 3 points lie outside the area of use of {ZONE} and, with easting and northing ex"
+    with pytest.raises(ts.CrsError, match="in the other order; check_crs=False takes them"):
+        _place(SITE[:, [1, 0, 2]], UTM, None)
+    with checking_crs(False):
+        assert _place(SITE[:, [1, 0, 2]], UTM, None)[0].startswith(told)
 
 
 def test_local_coordinates_are_told_where_they_are_reprojected():
@@ -47,15 +51,17 @@ def test_local_coordinates_are_told_where_they_are_reprojected():
     assert "outside the area of use" in _place(local, UTM, CRS.of("EPSG:2274"))[0]
 
 
-def test_latitude_before_longitude_in_geojson_is_told(tmp_path):
+def test_latitude_before_longitude_in_geojson_is_refused(tmp_path):
     features = [
         {"type": "Feature", "properties": {}, "geometry": {"type": "Point", "coordinates": place}}
         for place in ([36.1, -84.2, 320], [36.1, -84.201, 321], [36.101, -84.2, 322])
     ]
     path = tmp_path / "swapped.geojson"
     path.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
-    notes = ts.read(path, crs="EPSG:32616").notes
-    assert any("exchanged, inside: check the order of the coordinates" in one for one in notes)
+    with pytest.raises(ts.CrsError, match="exchanged, inside: the coordinates are in the other"):
+        ts.read(path, crs="EPSG:32616")
+    notes = ts.read(path, crs="EPSG:32616", check_crs=False).notes
+    assert any("exchanged, inside: the coordinates are in the other order" in one for one in notes)
 
 
 @pytest.mark.parametrize("suffix", ["gpkg", "las", "tif"])

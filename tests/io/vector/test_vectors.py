@@ -393,7 +393,7 @@ def test_a_layer_stands_behind_a_colon(tmp_path):
 
 def test_lines_far_from_the_points_have_the_wrong_crs(tmp_path):
     degrees = write(
-        tmp_path / "a.shp", [shapely.LineString([(-84.2, 36.3), (-84.1, 36.4)])], crs=None
+        tmp_path / "a.shp", [shapely.LineString([(10.2, 36.3), (10.1, 36.4)])], crs=None
     )
     refused("nowhere near the points", with_lines, survey(), breaklines=[degrees])
 
