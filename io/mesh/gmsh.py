@@ -78,10 +78,10 @@ def _cut_faces(arrays: dict[str, AnyArray], path: Path) -> tuple[Int64Array, tup
         return triangles, ()
     corners, offsets = quadrilaterals.ravel(), np.arange(0, quadrilaterals.size + 1, 4)
     made = cut_into_fans(corners, offsets, arrays["points"], path)
-    return np.concatenate([triangles, made.triangles]), made.notes
+    return np.concatenate([triangles, made.triangles.astype(triangles.dtype)]), made.notes
 
 
-def _flag_edges(triangles: Int32Array, lines: Int32Array, n_points: int) -> BoolArray:
+def _flag_edges(triangles: Int64Array, lines: Int64Array, n_points: int) -> BoolArray:
     edges = np.stack(directed_edges(triangles), axis=-1)
     return np.isin(edge_keys(edges, n_points), edge_keys(lines, n_points))
 

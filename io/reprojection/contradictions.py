@@ -164,6 +164,12 @@ def look_at_degrees(points: Float64Array, crs: CRS | None, path: Path) -> tuple[
             f"latitude in degrees, inside ({first}): the CRS of the file is to be one in degrees"
         )
         return (refuse(told, path, crs),)
+    if area.covers_as_degrees(points[:, [1, 0]]):
+        told = (
+            f"the points lie outside the area of use of {area.label} and, as latitude and "
+            f"longitude in degrees, inside ({first}): the coordinates are in the other order"
+        )
+        return (refuse(told, path, crs),)
     return (
         f"The points lie about the origin of {crs.label} ({first}), outside its area of use: check "
         "that they are no local coordinates, and no degrees.",
