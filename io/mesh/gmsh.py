@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ..._progress import Tell
-    from ...arrays import AnyArray, BoolArray, Int32Array, Int64Array
+    from ...arrays import AnyArray, BoolArray, Int32Array
     from ...crs import CrsLike, UnitLike
     from ...tin import TIN, Survey
 
@@ -71,7 +71,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     return make_tin(points, triangles, path, constrained=flags, reference=reference, notes=notes)
 
 
-def _cut_faces(arrays: dict[str, AnyArray], path: Path) -> tuple[Int64Array, tuple[str, ...]]:
+def _cut_faces(arrays: dict[str, AnyArray], path: Path) -> tuple[AnyArray, tuple[str, ...]]:
     """Return the triangles, and those into which quadrilaterals are cut."""
     triangles, quadrilaterals = arrays["triangles"], arrays["quadrilaterals"]
     if len(quadrilaterals) == 0:
@@ -81,7 +81,7 @@ def _cut_faces(arrays: dict[str, AnyArray], path: Path) -> tuple[Int64Array, tup
     return np.concatenate([triangles, made.triangles.astype(triangles.dtype)]), made.notes
 
 
-def _flag_edges(triangles: Int64Array, lines: Int64Array, n_points: int) -> BoolArray:
+def _flag_edges(triangles: AnyArray, lines: AnyArray, n_points: int) -> BoolArray:
     edges = np.stack(directed_edges(triangles), axis=-1)
     return np.isin(edge_keys(edges, n_points), edge_keys(lines, n_points))
 
