@@ -33,6 +33,7 @@ from .isolated.spooling import (
 from .raster.virtual import is_virtual
 from .registry import lookup, signatures
 from .registry.format import Format, require_options, takes_progress
+from .reprojection.contradictions import checking_crs
 
 if TYPE_CHECKING:
     import os
@@ -73,6 +74,7 @@ def read(
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
     remote: bool = False,
+    check_crs: bool = True,
     progress: Callable[[float], None] | None = None,
     **options: Any,
 ) -> Any: ...
@@ -86,6 +88,7 @@ def read(
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
     remote: bool = False,
+    check_crs: bool = True,
     progress: Callable[[float], None] | None = None,
     **options: Any,
 ) -> Survey: ...
@@ -98,6 +101,7 @@ def read(
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
     remote: bool = False,
+    check_crs: bool = True,
     progress: Callable[[float], None] | None = None,
     **options: Any,
 ) -> Any:
@@ -122,6 +126,10 @@ def read(
     remote : bool
         Whether paths may be addresses of HTTP or HTTPS, which are copied to a temporary file.
         Nothing is fetched otherwise.
+    check_crs : bool
+        Refuse coordinates that contradict their CRS: that lie in its area of use only with easting
+        and northing exchanged, or only as degrees, or are in another unit by what the file says.
+        False takes them as they are, with a note.
     progress : callable, optional
         Called with the fraction done, ascending to 1.0: within files of lidar, rasters and
         delimited text, else file by file. What it raises ends the call.
@@ -141,8 +149,8 @@ def read(
     FormatError
         If no format fits, or the format has no such option.
     CrsError
-        If the CRS is unknown, or another than that of a TIN; if several files are in several and
-        ``crs`` does not say which is wanted.
+        If the CRS is unknown, or another than that of a TIN; if coordinates contradict it; if
+        several files are in several and ``crs`` does not say which is wanted.
     OptionError
         If there is no path; if an option has a value that it cannot have; if the unit is unknown,
         or another than the one that the file gives.
@@ -168,6 +176,7 @@ def read(
         crs=crs,
         z_unit=z_unit,
         remote=remote,
+        check_crs=check_crs,
         progress=progress,
         **options,
     )
@@ -181,6 +190,7 @@ def read_as_wished(
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
     remote: bool = False,
+    check_crs: bool = True,
     progress: Callable[[float], None] | None = None,
     **options: Any,
 ) -> Survey | TIN:
@@ -201,7 +211,7 @@ def read_as_wished(
     with ExitStack() as copies:
         if remote:
             places = [copies.enter_context(_localise(place)) for place in places]
-        with done.passing_on():
+        with done.passing_on(), checking_crs(check_crs):
             found = _read_several(_require_paths(places), asked)
     done.end()
     return found
@@ -373,6 +383,7 @@ def read_stream(
     format: str | None = None,  # noqa: A002 - as in read
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
+    check_crs: bool = True,
     **options: Any,
 ) -> Survey | TIN:
     """Read elevation points or a TIN from a stream, such as standard input; as :func:`read`.
@@ -387,7 +398,7 @@ def read_stream(
     """
     source = Path(name)
     declared = _collect_declared(crs, z_unit)
-    with spool(stream, source) as local, unpack(local) as inner:
+    with spool(stream, source) as local, unpack(local) as inner, checking_crs(check_crs):
         return _restore_source(_read_file(inner, format, declared, options, wishes), inner, source)
 
 

@@ -13,7 +13,6 @@ from ..._sentences import counted, height
 from ...crs import METRE, Unit
 from ...errors import CrsError, OptionError, ReadError
 from ...tin.screening.nodata import describe_elevations
-from ..reprojection.placement import describe_local, require_no_degrees
 from .axes import are_named_plainly
 from .cells import is_number, split_line
 from .columns import COORDINATES, find_unit_word, list_names, names_coordinates
@@ -107,11 +106,8 @@ def require_in_area(
     """
     if area is None:
         return []
-    require_no_degrees(
-        points, area, path, "the option source_crs names the CRS of degrees, such as EPSG:4326"
-    )
-    if area.is_local(points[:, :2]):
-        return [describe_local(points, area)]
+    if area.is_local(points[:, :2]):  # which is told where the points are placed
+        return []
     outside = area.find_outside(points[:, :2])
     if len(outside) == 0:
         return []

@@ -14,6 +14,7 @@ from ...tin import TIN, Surface, Survey
 from ...tin.checking.overlaps import describe_overlaps
 from ...tin.screening.nodata import find_suspect_elevations
 from ...tin.validation.options import is_finite_number
+from ..reprojection.contradictions import look_at_crs
 from ..reprojection.placement import settle_unit
 from .surface_part import make_surface
 
@@ -194,11 +195,13 @@ def make_tin(
     notes: Sequence[str] = (),
     faces: FacePolicy = "all",
     rounding: float = 0.0,
+    looks_at_crs: bool = True,
 ) -> TIN:
     """Make a TIN of what a file holds; what makes none is a fault of the file.
 
     Triangles that overlap without a common edge, and the like, are told in the notes of its report,
-    behind the ``notes`` given.
+    behind the ``notes`` given. Whether the coordinates contradict their CRS is looked at, unless
+    the reader has done so.
 
     Parameters
     ----------
@@ -211,6 +214,8 @@ def make_tin(
     ------
     ReadError
         As :func:`make_surface` raises PointsError.
+    CrsError
+        If the coordinates contradict their CRS.
     """
 
     def make(kept: AnyArray | slice) -> TIN:
@@ -227,7 +232,8 @@ def make_tin(
         tin, told = make_surface(make, points, triangles, faces=faces, rounding=rounding)
     except PointsError as error:
         raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
-    told = [*notes, *told, *_describe_oddities(tin, faces)]
+    placed = look_at_crs(tin.points, reference.crs, path) if looks_at_crs else ()
+    told = [*notes, *told, *placed, *_describe_oddities(tin, faces)]
     told += _describe_suspects(tin.points[:, 2])
     return add_notes(tin, told) if told else tin
 
@@ -321,7 +327,7 @@ def make_survey(
         crs=reference.crs,
         elevation_unit=reference.elevation_unit,
         source=path.name,
-        notes=list(notes),
+        notes=[*notes, *look_at_crs(points, reference.crs, path)],
     )
 
 

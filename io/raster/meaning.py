@@ -30,6 +30,7 @@ _ERROR = frozenset(
     *("count", "counts", "density", "weight", "intensity"),
 }
 _DEPTH = frozenset(("depth", "depths"))
+_DEPTH_NAME = re.compile(r"depth|sea_floor_depth(_below_\w+)?")
 _AXES = {
     "x": frozenset(("projection_x_coordinate", "longitude")),
     "y": frozenset(("projection_y_coordinate", "latitude")),
@@ -107,7 +108,7 @@ def _turn_depths(header: Header, band: int, notes: list[str]) -> Meaning:
     tags = header.meanings[band - 1] if band <= len(header.meanings) else {}
     positive = tags.get("positive", "").strip().lower()
     name = tags.get("standard_name", "")
-    if positive == "down" or (not positive and "depth_below" in name):
+    if positive == "down" or (not positive and _DEPTH_NAME.fullmatch(name)):
         reason = "positive is 'down'" if positive else f"its standard name is '{name}'"
         scales, offsets = list(header.scales), list(header.offsets)
         scales[band - 1], offsets[band - 1] = -scales[band - 1], -offsets[band - 1]
@@ -188,10 +189,10 @@ def _take_degrees(header: Header, target: CRS) -> tuple[CRS | None, list[str]]:
     west, south, east, north = header.bounds
     corners = np.array([[west, south], [east, north], [west, north], [east, south]])
     area = AreaOfUse.of(None, target)
-    if area is None or not area.is_local(corners) or not area.holds_as_degrees(corners):
+    if area is None or not area.is_local(corners) or not area.covers_as_degrees(corners):
         return None, []
     told = (
         f"It has no CRS, and lies inside the area of use of {area.label} as longitude and latitude "
-        f"alone (west {west:.10g}, south {south:.10g}): these are taken as of WGS 84."
+        f"alone (west {west:.10g}, south {south:.10g}): they were taken to be degrees of WGS 84."
     )
     return CRS.of(_WGS84), [told]

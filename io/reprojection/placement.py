@@ -6,32 +6,21 @@ from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 import numpy as np
 
-from ..._sentences import coordinate, counted
-from ...crs import require_same_unit
+from ..._sentences import coordinate
+from ...crs import CRS, require_same_unit
 from ...errors import CrsError, ReadError
-from ...tin.screening.area_of_use import AreaOfUse
+from .contradictions import are_small_degrees, look_at_degrees, look_at_place
 from .transformation import convert_elevations, find_utm_zone, reproject, transform_points
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...arrays import Float64Array
-    from ...crs import CRS, Unit
+    from ...crs import Unit
 
-__all__ = [
-    "DegreesError",
-    "Placed",
-    "describe_local",
-    "place",
-    "require_no_degrees",
-    "settle_unit",
-]
+__all__ = ["DegreesError", "Placed", "place", "settle_unit"]
 
 _WGS84 = "EPSG:4326"
-_DEGREES_ADVICE = (
-    "set the CRS of the file to the one of its degrees, such as EPSG:4326, or read it without a "
-    "CRS if they are lengths"
-)
 _MOST_DEGREES = 540.0
 """Longitudes go on beyond 360 where data cross the antimeridian; latitudes never do."""
 
@@ -65,20 +54,28 @@ def place(
 
     Points without a source are declared to be in the target. ``unit`` is that of the elevations, if
     it is known otherwise than by the source. Which points lie outside the area of use of either CRS
-    is not told where the reader has looked at it.
+    is not looked at where the reader has done so.
 
     Raises
     ------
     ReadError
         If the points would be in degrees.
     CrsError
-        If they cannot be transformed; if most lie outside the area of use, and inside it with
-        coordinates exchanged, or as longitude and latitude.
+        If they cannot be transformed, or contradict their CRS: they lie in its area of use only
+        exchanged, or only as degrees.
     """
+    notes: tuple[str, ...] = ()
+    if source is None and target is not None and are_small_degrees(points, target):
+        source = CRS.of(_WGS84)
+        notes = (
+            f"The file names no CRS, and its coordinates lie in the area of {target.label} as "
+            "longitude and latitude only: they were taken to be degrees of WGS 84.",
+        )
     wanted = target if target is not None else source
     if wanted is not None and wanted.is_geographic:
         _refuse_degrees(points, wanted, source or wanted, path)
-    told = _require_in_area(points, source, target, path) if looks_at_area else ()
+    outside = look_at_place(points, source, target, path) if looks_at_area else ()
+    told = (*notes, *(outside or look_at_degrees(points, source or target, path)))
     if source is None or wanted is None or source.is_same(wanted):
         placed = _keep_in_place(points, wanted, unit)
         return placed._replace(notes=(*told, *placed.notes))
@@ -87,72 +84,6 @@ def place(
     except CrsError as error:
         raise CrsError(f"'{path}': {error}", crs=wanted) from error
     return Placed(moved.points, wanted, moved.unit, (*told, *moved.notes))
-
-
-def _require_in_area(
-    points: Float64Array, source: CRS | None, target: CRS | None, path: Path
-) -> tuple[str, ...]:
-    """Tell how many points lie outside the areas of use; refuse those that are plainly others.
-
-    Raises
-    ------
-    CrsError
-    """
-    area = AreaOfUse.of(source, target)
-    if area is None or len(points) == 0:
-        return ()
-    is_moved = source is not None and target is not None and not source.is_same(target)
-    require_no_degrees(points, area, path, "")
-    if not is_moved and area.is_local(points[:, :2]):
-        return (describe_local(points, area),)
-    outside = area.find_outside(points[:, :2])
-    if len(outside) == 0:
-        return ()
-    lie = "lies" if len(outside) == 1 else "lie"
-    told = (
-        f"{len(outside):,} of {counted(len(points), 'point')} {lie} outside the area of use of "
-        f"{area.label}"
-    )
-    if not area.covers_most(points[outside][:, [1, 0]]):
-        return (f"{told}: check that the CRS is the right one.",)
-    if 2 * len(outside) <= len(points):
-        return (f"{told} and, exchanged, inside: check the order of the coordinates.",)
-    raise CrsError(
-        f"'{path}': {told} and, exchanged, inside: the file has them in another order than "
-        "easting (longitude), northing (latitude), or is in another CRS; put right whichever is "
-        "wrong.",
-        crs=area.source,
-    )
-
-
-def require_no_degrees(points: Float64Array, area: AreaOfUse, path: Path, advice: str) -> None:
-    """Refuse longitudes and latitudes that are declared to be eastings and northings.
-
-    Raises
-    ------
-    CrsError
-        If the points lie about the origin of the coordinates, far from the area of use, and inside
-        it as degrees.
-    """
-    xy = points[:, :2]
-    if area.is_local(xy) and area.holds_as_degrees(xy):
-        x, y = xy[0].tolist()
-        raise CrsError(
-            f"'{path}': the coordinates (first: {x:.10g}, {y:.10g}) lie inside the area of use of "
-            f"{area.label} as longitude and latitude, and {area.source.label} measures in "
-            f"{area.source.horizontal_unit.name}: {advice or _DEGREES_ADVICE}.",
-            crs=area.source,
-        )
-
-
-def describe_local(points: Float64Array, area: AreaOfUse) -> str:
-    """Tell of points about the origin of the coordinates, which may be local or degrees."""
-    x, y = points[0, :2].tolist()
-    return (
-        f"The points lie about the origin of {area.source.label} (first: easting {coordinate(x)}, "
-        f"northing {coordinate(y)}), outside its area of use: check that they are no local "
-        "coordinates, and no degrees."
-    )
 
 
 def _keep_in_place(points: Float64Array, crs: CRS | None, unit: Unit | None) -> Placed:

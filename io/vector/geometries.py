@@ -75,13 +75,14 @@ def read_geometries(
         columns = {name: column[rows] for name, column in columns.items()}
     _, coordinates, levels = shapely.to_ragged_array(shapes)
     _require_finite(coordinates, read)
+    notes = [*read.notes, *crs_notes(read, wanted)]
     return Features(
         kind=kind,
-        coordinates=move_to_crs(coordinates, read, wanted.crs),
+        coordinates=move_to_crs(coordinates, read, wanted.crs, notes=notes),
         offsets=tuple(levels),
         columns=columns,
         crs=read.crs if wanted.crs is None else wanted.crs,
-        notes=(*read.notes, *crs_notes(read, wanted)),
+        notes=notes,
     )
 
 

@@ -94,9 +94,9 @@ def split_into_parts(
     said = list(features.notes) + crs_notes(features, wanted)
     if has_z.any():
         xyz[:, 2] *= find_elevation_factor(features, wanted, notes=said)
+    xyz[:, :2] = move_to_crs(xyz[:, :2], features, wanted.crs, notes=said)
     if notes is not None:
         notes.extend(said)
-    xyz[:, :2] = move_to_crs(xyz[:, :2], features, wanted.crs)
     return [
         Part(xyz[start:end, :width], row, is_closed, ring)
         for start, end, width, row, is_closed, ring in zip(
@@ -164,8 +164,12 @@ def _require_finite_vertices(
 # --------------------------------------------------------------------------- CRS
 
 
-def move_to_crs(xy: Float64Array, features: Features, crs: CRS | None) -> Float64Array:
+def move_to_crs(
+    xy: Float64Array, features: Features, crs: CRS | None, *, notes: list[str]
+) -> Float64Array:
     """Reproject places of features in the plane.
+
+    What is odd about where they lie is appended to ``notes``.
 
     Raises
     ------
@@ -174,7 +178,9 @@ def move_to_crs(xy: Float64Array, features: Features, crs: CRS | None) -> Float6
     """
     level = np.column_stack([xy, np.zeros(len(xy))])
     source, target = _drop_vertical_axis(features.crs), _drop_vertical_axis(crs)
-    return place(level, source=source, target=target, path=features.path).points[:, :2]
+    placed = place(level, source=source, target=target, path=features.path)
+    notes.extend(f"'{features.path.name}': {note}" for note in placed.notes)
+    return placed.points[:, :2]
 
 
 def _drop_vertical_axis(crs: CRS | None) -> CRS | None:

@@ -317,6 +317,7 @@ def _make_triangles(features: Features, asked: _Asked, faces: FacePolicy) -> TIN
         features.path,
         reference=Reference(placed.crs, placed.elevation_unit),
         faces=faces,
+        looks_at_crs=False,
     )
     notes = [*features.notes, *placed.notes]
     if placed.points is not points:

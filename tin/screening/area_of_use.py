@@ -36,16 +36,17 @@ class AreaOfUse:
 
     @classmethod
     def of(cls, source: CRS | None, target: CRS | None) -> AreaOfUse | None:
-        """Return the areas to look at; None if nothing is known of them.
+        """Return the areas to look at; None if nothing is known of them, or of the places.
 
-        A CRS that PROJ cannot transform, such as one of a building site, has none.
+        Of places nothing is known in an engineering CRS, or one whose projection PROJ lacks.
         """
         declared = source or target
-        if declared is None or not _has_angles(declared):
+        if declared is None:
             return None
         targets = {crs: None for crs in (declared, target) if crs is not None}
         known = tuple(crs for crs in targets if _find_area(crs) is not None)
-        return cls(declared, known) if known else None
+        has_places = bool(known) and _make_angle_transformer(declared) is not None
+        return cls(declared, known) if has_places else None
 
     @property
     def label(self) -> str:
@@ -65,19 +66,16 @@ class AreaOfUse:
             inside &= _is_within(_find_area(crs), longitude, latitude, margin)
         return inside
 
-    def holds_as_degrees(self, xy: Float64Array) -> bool:
-        """Whether most points lie in the areas if their coordinates are longitude and latitude."""
-        some = xy[:: max(1, len(xy) // _SPREAD), :2]
-        longitude, latitude = some.T
-        inside = np.ones(len(some), np.bool_)
-        for crs in self.targets:
-            inside &= _is_within(_find_area(crs), longitude, latitude, 0.0)
-        return bool(2 * inside.sum() > len(some))
-
     def covers_most(self, xy: Float64Array) -> bool:
         """Whether more than half of some points, spread over all of them, lie in the areas."""
         some = xy[:: max(1, len(xy) // _SPREAD)]
         return bool(2 * self.covers(some).sum() > len(some))
+
+    def covers_as_degrees(self, xy: Float64Array) -> bool:
+        """Whether points, spread over all of them, lie in all areas as longitude and latitude."""
+        longitude, latitude = xy[_find_outermost(xy)].T
+        areas = (_find_area(crs) for crs in self.targets)
+        return all(_is_within(area, longitude, latitude, 0.0).all() for area in areas)
 
     def is_local(self, xy: Float64Array) -> bool:
         """Whether points lie about the origin of the coordinates, and in no area but its margin."""
@@ -92,16 +90,6 @@ class AreaOfUse:
         if len(xy) == 0 or self.covers(xy[_find_outermost(xy)]).all():
             return np.empty(0, np.int64)
         return np.flatnonzero(~self.covers(xy))
-
-
-def _has_angles(source: CRS) -> bool:
-    from pyproj.exceptions import ProjError
-
-    try:
-        _make_angle_transformer(source)
-    except ProjError:
-        return False
-    return True
 
 
 def _find_outermost(xy: Float64Array) -> list[int]:
@@ -119,15 +107,22 @@ def _convert_to_degrees(source: CRS, xy: Float64Array) -> tuple[AnyArray, AnyArr
     They are those of the CRS's own datum, which are found fast and near enough for a margin of
     degrees.
     """
-    to_angles, degrees, meridian = _make_angle_transformer(source)
+    found = _make_angle_transformer(source)
+    if found is None:  # which AreaOfUse.of has looked at
+        return np.full(len(xy), np.nan), np.full(len(xy), np.nan)
+    to_angles, degrees, meridian = found
     longitude, latitude = to_angles.transform(xy[:, 0], xy[:, 1])
     return np.asarray(longitude) * degrees + meridian, np.asarray(latitude) * degrees
 
 
 @lru_cache(maxsize=8)
-def _make_angle_transformer(source: CRS) -> tuple[pyproj.Transformer, float, float]:
-    """Return what makes longitude and latitude, the degrees of their unit, and the meridian."""
+def _make_angle_transformer(source: CRS) -> tuple[pyproj.Transformer, float, float] | None:
+    """Return what makes longitude and latitude, the degrees of their unit, and the meridian.
+
+    None where PROJ cannot transform the CRS.
+    """
     import pyproj
+    from pyproj.exceptions import ProjError
 
     crs = source.to_pyproj()
     crs = crs.sub_crs_list[0] if crs.is_compound else crs
@@ -137,7 +132,10 @@ def _make_angle_transformer(source: CRS) -> tuple[pyproj.Transformer, float, flo
     meridian = 0.0
     if prime is not None:
         meridian = float(np.degrees(prime.longitude * float(prime.unit_conversion_factor)))
-    transformer = pyproj.Transformer.from_crs(crs.to_2d(), base.to_2d(), always_xy=True)
+    try:
+        transformer = pyproj.Transformer.from_crs(crs.to_2d(), base.to_2d(), always_xy=True)
+    except ProjError:
+        return None
     return transformer, degrees, meridian
 
 

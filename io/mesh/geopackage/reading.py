@@ -12,7 +12,8 @@ import numpy as np
 from ....errors import PointsError, ReadError
 from ....tin import TIN
 from ...isolated import run_isolated
-from ..common import choose_reference, make_tin
+from ...reprojection.contradictions import look_at_crs
+from ..common import add_notes, choose_reference, make_tin
 from .digests import digest_arrays
 from .records import Record, unpack_tin
 
@@ -85,8 +86,11 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     if (mesh, answer.value["lines"]) != (digests.get("mesh"), digests.get("lines")):
         tin = make_tin(points, triangles, path, constrained=constrained, reference=reference)
         return _add_note(tin)
+    declared = _declare(record, reference)
+    told = () if record.document.get("crs") else look_at_crs(points, reference.crs, path)
     try:
-        return unpack_tin(_declare(record, reference), points, triangles, constrained)
+        tin = unpack_tin(declared, points, triangles, constrained)
+        return add_notes(tin, told) if told else tin
     except PointsError as error:
         raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
 

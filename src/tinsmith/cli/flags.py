@@ -46,6 +46,7 @@ def name_flags(text: str, **renamed: str) -> str:
         text = re.sub(rf"\b[Tt]he option '?{name}\b'?", flag, text)
         text = re.sub(rf"\b(Invalid|Unknown option) '?{name}\b'?(?! of\b)", rf"\1 {flag}", text)
         text = re.sub(rf"(?<![\w-]){name}=True\b", flag, text)
+        text = re.sub(rf"(?<![\w-]){name}=False\b", flag.replace("--", "--no-", 1), text)
         text = re.sub(rf"(?<![\w-]){name}=(?=['\"\w.-])", f"{flag} ", text)
         if "_" in name:
             text = re.sub(rf"(?<![\w'\"./-]){name}(?![\w'\"/-])(?!\.\w)", flag, text)

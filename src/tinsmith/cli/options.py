@@ -63,6 +63,7 @@ class Reading:
     delimiter: str | None = None
     decimal: str | None = None
     skip_bad: bool | None = None
+    check_crs: bool | None = None
     band: int | None = None
     window: tuple[float, float, float, float] | None = None
     stride: int | None = None
@@ -258,6 +259,11 @@ _COORDINATES = under(
         metavar="UNIT",
         help="Unit of the elevations, if the file does not state it: m, ft, 'US survey foot'. "
         "Points that are reprojected get the unit of --crs.",
+    ),
+    click.option(
+        "--check-crs/--no-check-crs",
+        default=None,
+        help="Refuse coordinates that contradict their CRS (the default), or tell it only.",
     ),
     crs_option("--source-crs", "CRS that the points are in, if it is not --crs."),
     crs_option(

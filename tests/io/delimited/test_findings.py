@@ -83,14 +83,6 @@ def test_few_points_outside_are_named_by_their_lines():
     assert "check that the CRS" in told([HERE] * 6 + [away] * 7)[0]
 
 
-def test_local_coordinates_are_told():
-    (note,) = told([[100.5, 200.25, 3.0], [101.0, 201.0, 3.0]])
-    assert note == (
-        "The points lie about the origin of EPSG:32616 (first: easting 100.5, northing 200.25), "
-        "outside its area of use: check that they are no local coordinates, and no degrees."
-    )
-
-
 # ------------------------------------------------------------------ elevations
 
 

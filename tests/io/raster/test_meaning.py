@@ -137,7 +137,7 @@ def test_axes_in_degrees_are_of_wgs84_and_told(netcdf):
 def test_a_raster_that_lies_in_the_area_as_degrees_alone_is_taken_so(tiff):
     path = tiff([("", LEVELS)], crs=None, at=(-84.5, 36.3, 1e-3))
     found = ts.read(path, crs=UTM)
-    assert any("as of WGS 84" in note for note in found.notes)
+    assert any("degrees of WGS 84" in note for note in found.notes)
     x, y, _ = ts.transform_points(np.array([[-84.4995, 36.2995, 0.0]]), "EPSG:4326", UTM)[0]
     assert np.hypot(found.points[:, 0] - x, found.points[:, 1] - y).min() < 1e-3
     with pytest.raises(ts.OptionError, match="cells are not transformed"):
