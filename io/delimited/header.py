@@ -98,7 +98,7 @@ def _drop_label(header: list[str]) -> list[str]:
     """Return a header without what stands before its first name: "Columns: N", "E", "Z"."""
     if not header:
         return header
-    if len(header) > 1 and is_label(header[0]):
+    if len(header) > 1 and header[0] and is_label(header[0]):
         return header[1:]
     label, _, name = header[0].replace("=", ":").rpartition(":")
     stands_alone = bool(name.strip()) and not read_words(label).roles and "(" not in label

@@ -39,6 +39,8 @@ class Placed(NamedTuple):
     """None if it is not known."""
     notes: tuple[str, ...]
     """What was done to the elevations, and whether points lie where the CRS does not apply."""
+    told: tuple[str, ...] = ()
+    """The latter alone."""
 
 
 def place(
@@ -78,12 +80,12 @@ def place(
     told = (*notes, *(outside or look_at_degrees(points, source or target, path)))
     if source is None or wanted is None or source.is_same(wanted):
         placed = _keep_in_place(points, wanted, unit)
-        return placed._replace(notes=(*told, *placed.notes))
+        return placed._replace(notes=(*told, *placed.notes), told=told)
     try:
         moved = reproject(points, source, wanted, unit=unit)
     except CrsError as error:
         raise CrsError(f"'{path}': {error}", crs=wanted) from error
-    return Placed(moved.points, wanted, moved.unit, (*told, *moved.notes))
+    return Placed(moved.points, wanted, moved.unit, (*told, *moved.notes), told)
 
 
 def _keep_in_place(points: Float64Array, crs: CRS | None, unit: Unit | None) -> Placed:

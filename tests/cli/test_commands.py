@@ -276,7 +276,7 @@ def test_check_fails_a_tin_that_is_not_delaunay(tmp_path):
     ts.io.write(flat, tmp_path / "flat.ply")
     result = run("check", tmp_path / "flat.ply", code=1)
     assert "a sound surface, not Delaunay" in result.stderr
-    assert "Problem" in result.stdout
+    assert "Reason" in result.stdout
     assert json.loads(run("check", tmp_path / "flat.ply", "--json", code=1).stdout)["ok"] is False
     run("check", tmp_path / "flat.ply", "--level", "2")
 
@@ -331,7 +331,8 @@ def test_view_shows_or_writes(pyramid, tmp_path, asked, as_json, writes):
     assert "Warning: Mind the gap." in result.stderr
     if writes and as_json:
         record = json.loads(result.stdout)
-        assert record == {"input": str(pyramid), "output": str(picture), "notes": []}
+        notes = list(ts.read(pyramid).notes)
+        assert record == {"input": str(pyramid), "output": str(picture), "notes": notes}
     else:
         assert result.stdout == ""
 

@@ -95,3 +95,12 @@ def test_languages_that_call_the_northing_x(tmp_path, header):
     grid = [f"{i};{5788000 + i}.5;{7501000 + 2 * i}.5;{90 + i}.5" for i in range(8)]
     survey = read(tmp_path, [header, *grid], crs="EPSG:2178")
     assert survey.points[0].tolist() == [7501000.5, 5788000.5, 90.5]
+
+
+def test_the_empty_name_of_an_index_is_a_column(tmp_path):
+    """As pandas and R write the numbers of rows."""
+    path = tmp_path / "a.csv"
+    for name in ("", '""'):
+        rows = "".join(f"{i},{1000.25 + 3 * i},{90.125 + i},{11 + i % 3}\n" for i in range(8))
+        path.write_text(f"{name},easting,northing,elevation\n{rows}")
+        assert ts.read(path).points[0].tolist() == [1000.25, 90.125, 11.0]
