@@ -1,9 +1,10 @@
 """How the time of every product grows with the points: ``python -m benchmarks.growth``.
 
 Data sets are those on which algorithms grow out of proportion: points on a slanted line, which are
-collinear in decimals and not in doubles, rails, rotated grids, a fan. Each product runs on n,
-2 n, 4 n ... points until it takes more than the limit; the exponent is that of the least squares
-line through the logarithms of the last four processor times. 1 is linear.
+collinear in decimals and not in doubles, rails, rotated grids, a fan, clusters far apart. Each
+product runs on n, 2 n, 4 n ... points until it takes more than the limit; then builds with waters
+over and in each other, and a pad with many notches. The exponent is that of the least squares line
+through the logarithms of the last four processor times. 1 is linear.
 """
 
 from __future__ import annotations
@@ -13,12 +14,23 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 
 import tinsmith as ts
 
-__all__ = ["DATASETS", "PRODUCTS", "Growth", "measure"]
+from .datasets.uneven import (
+    make_clusters,
+    make_fan,
+    make_ground,
+    make_nested_waters,
+    make_overlapping_waters,
+    make_sawtooth,
+)
+
+__all__ = ["DATASETS", "PRODUCTS", "TASKS", "Growth", "measure"]
 
 Product = Callable[[ts.TIN], object]
 
@@ -46,12 +58,6 @@ def make_rotated_grid(n: int) -> np.ndarray:
     return np.column_stack([np.round(_turn(x, y), 3), z])
 
 
-def make_fan(n: int) -> np.ndarray:
-    along = np.linspace(0, 1, n)
-    curve = np.column_stack([1000 * along, 1000 * along**2, np.sin(40 * along)])
-    return np.vstack([curve, [[0, 1000, 0]]])
-
-
 def make_hills(n: int) -> np.ndarray:
     xy = np.random.default_rng(1).random((n, 2)) * math.sqrt(n)
     return np.column_stack([xy, 3 * np.sin(xy[:, 0] / 9) + 2 * np.cos(xy[:, 1] / 7)])
@@ -67,6 +73,7 @@ DATASETS: dict[str, Callable[[int], np.ndarray]] = {
     "rails": make_rails,
     "rotated grid": make_rotated_grid,
     "fan": make_fan,
+    "clusters": make_clusters,
     "hills": make_hills,
 }
 """Points of about a number, by name."""
@@ -86,7 +93,7 @@ def _step(tin: ts.TIN) -> float:
 
 
 def _paste_middle(tin: ts.TIN) -> ts.TIN:
-    inner = np.abs(tin.points[:, 0] - np.median(tin.points[:, 0])) < np.ptp(tin.points[:, 0]) / 5
+    inner = np.argsort(tin.points[:, 0])[len(tin.points) // 3 : -len(tin.points) // 3]
     return ts.paste(tin, ts.triangulate(np.add(tin.points[inner], [0, 0, 0.5])))
 
 
@@ -124,6 +131,25 @@ PRODUCTS: dict[str, Product] = {
 """Products of a surface, by name."""
 
 
+TASKS: dict[str, tuple[Callable[[int], Any], Callable[[Any], object]]] = {
+    "waters over each other": (
+        make_overlapping_waters,
+        lambda waters: ts.triangulate(make_ground(), water=waters),
+    ),
+    "waters in each other": (
+        make_nested_waters,
+        lambda waters: ts.triangulate(make_ground(), water=waters),
+    ),
+    "pad with notches": (
+        make_sawtooth,
+        lambda ring: ts.grade(
+            ts.triangulate(make_ground()), ring, 15.0, cut_slope=2.0, fill_slope=2.0
+        ),
+    ),
+}
+"""What is made for a size, and what is done with it, by name."""
+
+
 @dataclass(frozen=True)
 class Growth:
     """Processor seconds of a product on growing numbers of points, and why it ended."""
@@ -146,19 +172,24 @@ class Growth:
 
 
 def measure(
-    make: Callable[[int], np.ndarray], product: Product, *, start: int, most: int, limit: float
+    make: Callable[[int], Any],
+    run: Callable[[Any], object],
+    *,
+    start: int,
+    most: int,
+    limit: float,
 ) -> Growth:
-    """Run a product on ``start`` points and twice as many again, until it takes ``limit`` s."""
+    """Run on what is made for sizes that double, until it takes more than ``limit`` seconds."""
     sizes: list[int] = []
     seconds: list[float] = []
     for count in _double(start, most):
-        tin = ts.triangulate(make(count))
+        made = make(count)
         begin = time.process_time()
         try:
-            product(tin)
+            run(made)
         except ts.TinsmithError as error:
             return Growth(tuple(sizes), tuple(seconds), f"{count}: {error}")
-        sizes.append(len(tin.points))
+        sizes.append(count)
         seconds.append(time.process_time() - begin)
         if seconds[-1] > limit:
             break
@@ -181,19 +212,23 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--most", type=int, default=16_000, help="points; default 16,000")
     parser.add_argument("--limit", type=float, default=2.0, help="seconds; default 2")
     given = parser.parse_args(arguments)
-    print(f"{'data':14} {'product':26} {'points':>8} {'seconds':>8} {'exponent':>8}")
-    for data in given.data:
-        for name in given.products:
-            found = measure(
-                DATASETS[data],
-                PRODUCTS[name],
-                start=given.start,
-                most=given.most,
-                limit=given.limit,
-            )
-            size, seconds = (found.sizes or (0,))[-1], (found.seconds or (math.nan,))[-1]
-            row = f"{data:14} {name:26} {size:8,} {seconds:8.3f} {found.exponent:8.2f}"
-            print(f"{row}  {found.refusal}".rstrip(), flush=True)
+    print(f"{'data':14} {'product':26} {'size':>8} {'seconds':>8} {'exponent':>8}")
+    runs = [
+        (data, name, partial(_build, DATASETS[data]), PRODUCTS[name])
+        for data in given.data
+        for name in given.products
+    ]
+    if len(given.data) == len(DATASETS):
+        runs += [("", name, *task) for name, task in TASKS.items()]
+    for data, name, make, run in runs:
+        found = measure(make, run, start=given.start, most=given.most, limit=given.limit)
+        size, seconds = (found.sizes or (0,))[-1], (found.seconds or (math.nan,))[-1]
+        row = f"{data:14} {name:26} {size:8,} {seconds:8.3f} {found.exponent:8.2f}"
+        print(f"{row}  {found.refusal}".rstrip(), flush=True)
+
+
+def _build(make: Callable[[int], np.ndarray], count: int) -> ts.TIN:
+    return ts.triangulate(make(count))
 
 
 if __name__ == "__main__":
