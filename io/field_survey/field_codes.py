@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ... import _optional
 from ..._sentences import counted
-from ...errors import LinesError, OptionError
-from ...policies import BreaklineKind, CodeStyle, LineRole
+from ...errors import LinesError, OptionError, choice
+from ...policies import BreaklineKind, CodeStyle, LineRole, ShotOrder
 from ...tin import Breakline, Survey, Water
 from ...tin.validation.options import is_finite_number
 from .code_table import CodeTable, make_rules, read_code_table
@@ -63,14 +64,14 @@ def lines_from_codes(
     code_table: CodeTable | str | os.PathLike[str] | Mapping[str, Any] | None = None,
     code_style: CodeStyle | None = None,
     arc_tolerance: float | None = None,
+    shot_order: ShotOrder | None = None,
 ) -> Survey:
     """Make lines of the points whose descriptions begin with a line code.
 
     Parameters
     ----------
     survey : Survey
-        With the attribute ``description``; ``number`` gives the order of the points, else the
-        rows do.
+        With the attributes ``description`` and, if the points have numbers, ``number``.
     rules : mapping of str to str, optional
         Codes and what their lines become: ``hard``, ``soft``, ``boundary``, ``hole``, ``erase`` or
         ``water``. Default ``RULES``.
@@ -82,6 +83,9 @@ def lines_from_codes(
     arc_tolerance : float, optional
         By which the chords of a curve may leave it, CRS units; default that of the table, else
         0.01 m (0.01 where the CRS has no unit).
+    shot_order : {"number", "row"}, optional
+        What gives the order of shots along lines: their numbers, or the rows of the file. Default
+        the numbers, or the rows where these are none.
 
     Returns
     -------
@@ -97,7 +101,9 @@ def lines_from_codes(
     ------
     LinesError
         If there are no descriptions or no line codes; if two styles are plausible and lead to
-        different lines; if a curve needs too many vertices, or lies in degrees.
+        different lines; if a curve needs too many vertices, or lies in degrees; without a
+        ``shot_order`` also if numbers are repeated and give other lines than rows, or if a line
+        without any mark crosses itself.
     OptionError
         If a rule gives a code another role, or an option has a value that it cannot have.
     ReadError
@@ -120,18 +126,26 @@ def lines_from_codes(
 
         def read(part: Survey) -> Survey:
             return lines_from_codes(
-                part, code_table=table, code_style=code_style, arc_tolerance=arc_tolerance
+                part,
+                code_table=table,
+                code_style=code_style,
+                arc_tolerance=arc_tolerance,
+                shot_order=shot_order,
             )
 
         return read_each_file(survey, files, read)
     tolerance = _choose_tolerance(survey, table, arc_tolerance)
     texts = _require_descriptions(survey)
-    order = _order_by_number(survey).tolist()
+    order = _order_shots(survey, shot_order).tolist()
     reading, notes = _read(order, texts, table, code_style, _make_namer(survey))
+    if shot_order is None:
+        by_row = read_in_style(range(len(survey)), texts, dict(table.rules), reading.style)
+        _require_one_order(survey, reading, by_row)
     if not reading.figures and not _excludes(table, reading):
         known = ", ".join(table.rules)
         raise NoCodesError(f"No description begins with a line code: {known} are known.")
-    return _Builder(survey, table, reading, tolerance).build(order, texts, notes)
+    builder = _Builder(survey, table, reading, tolerance)
+    return builder.build(order, texts, notes, is_ordered=shot_order is not None)
 
 
 def _choose_table(
@@ -164,11 +178,37 @@ def _require_descriptions(survey: Survey) -> list[str]:
     return [str(one or "") for one in np.asarray(survey.attributes["description"]).tolist()]
 
 
-def _order_by_number(survey: Survey) -> Int64Array:
+def _order_shots(survey: Survey, shot_order: ShotOrder | None) -> Int64Array:
+    if shot_order is not None:
+        choice("shot_order", shot_order, ShotOrder)
     numbers = survey.attributes.get("number")
     if numbers is None or numbers.dtype.kind not in "iu":
+        if shot_order == "number":
+            raise OptionError("shot_order", shot_order, "row, where points have no whole numbers")
         return np.arange(len(survey))
-    return np.argsort(numbers, kind="stable")
+    return np.arange(len(survey)) if shot_order == "row" else np.argsort(numbers, kind="stable")
+
+
+def _require_one_order(survey: Survey, by_number: Reading, by_row: Reading) -> None:
+    """Refuse repeated numbers, such as those of two crews, where they leave the lines open."""
+    numbers = survey.attributes.get("number")
+    shots = sorted({row for one in by_number.figures for row in one.rows})
+    if numbers is None or not shots:
+        return
+    _, first, count = np.unique(numbers[shots], return_index=True, return_counts=True)
+    if (count == 1).all() or _list_keys(by_number) == _list_keys(by_row):
+        return
+    number = numbers[shots][first[np.argmax(count > 1)]]
+    raise LinesError(
+        f"{counted(int((count > 1).sum()), 'number')} of shots along lines "
+        f"{'is' if (count > 1).sum() == 1 else 'are'} repeated (first: {number}), and lines in the "
+        "order of numbers are others than in that of rows: the option shot_order says which is "
+        "right, number or row; files of their own are read one by one."
+    )
+
+
+def _list_keys(reading: Reading) -> set[tuple[object, ...]]:
+    return {one.key for one in reading.figures}
 
 
 def _make_namer(survey: Survey) -> Callable[[int], str]:
@@ -225,10 +265,18 @@ class _Builder:
         self.faults += reading.faults
         self.figures = [one for one in reading.figures if one.is_long_enough]
 
-    def build(self, order: Sequence[int], texts: Sequence[str], notes: Sequence[str]) -> Survey:
-        """Return the survey with its lines."""
+    def build(
+        self,
+        order: Sequence[int],
+        texts: Sequence[str],
+        notes: Sequence[str],
+        *,
+        is_ordered: bool,
+    ) -> Survey:
+        """Return the survey with its lines; ``is_ordered`` if the caller said the order."""
         self._require_no_degrees()
         lines = self._build_lines()
+        self._find_crossings(lines["line"], is_ordered=is_ordered)
         self._find_unknown_codes(order, texts)
         self._find_marks_before(order, texts)
         survey = self.survey
@@ -293,17 +341,54 @@ class _Builder:
         if figure.rule.kind == "contour" and np.ptp(vertices[:, 2]) > 0:
             self.faults.append(Fault("contour that is not level", figure.name, rows))
 
+    def _find_crossings(
+        self, lines: Sequence[tuple[Figure, Float64Array]], *, is_ordered: bool
+    ) -> None:
+        """Tell of lines that cross themselves; refuse those without any mark to begin or end them.
+
+        Raises
+        ------
+        LinesError
+        """
+        shapely = _optional.load("shapely")
+        shapes = [shapely.linestrings(vertices[:, :2]) for _, vertices in lines]
+        crossed = [
+            one
+            for (one, _), simple in zip(lines, shapely.is_simple(shapes), strict=True)
+            if not simple
+        ]
+        for figure in crossed:
+            if not (is_ordered or figure.marks):
+                raise LinesError(
+                    f"The {len(figure.rows)} shots of the code {figure.name} have no mark to begin "
+                    "or end a line, and one line through them all crosses itself: a code table "
+                    "says that they are points, or the option shot_order that they are one line."
+                )
+        self.faults += [
+            Fault("line that crosses itself", one.name, (one.rows[0], one.rows[-1]))
+            for one in crossed
+        ]
+
     def _find_unknown_codes(self, order: Iterable[int], texts: Sequence[str]) -> None:
-        if not self.table.is_complete:
-            return
+        """Find codes that the table lacks; of the usual codes those that have marks of lines."""
         unknown: dict[str, list[int]] = {}
         split = Vocabulary(self.table.rules.keys(), self.reading.style).find_first_word
         for row in order:
             if texts[row] not in self.reading.descriptions and (first := split(texts[row])):
                 unknown.setdefault(first.rstrip("0123456789"), []).append(row)
+        kind = "unknown code" if self.table.is_complete else "unknown line code"
         self.faults += [
-            Fault("unknown code", code or "a number", tuple(rows)) for code, rows in unknown.items()
+            Fault(kind, code or "a number", tuple(rows))
+            for code, rows in unknown.items()
+            if self.table.is_complete or any(self._has_mark(texts[row]) for row in rows)
         ]
+
+    def _has_mark(self, text: str) -> bool:
+        """Whether a word behind the first one is a mark that begins, ends or closes a line."""
+        style = self.reading.style
+        words = text.split()[1:]
+        found = {style.find_meaning(one if style.is_exact else one.upper()) for one in words}
+        return bool(found & {"begin", "end", "close"})
 
     def _find_marks_before(self, order: Iterable[int], texts: Sequence[str]) -> None:
         """Find shots whose mark stands before the code of a line, where marks stand behind."""

@@ -56,12 +56,14 @@ SENTENCES = {
         "{count} [ring is|rings are] not closed by a mark, and closed from last to first shot"
     ),
     "open building": "{count} [building is|buildings are] not closed",
+    "line that crosses itself": "{count} [line crosses itself|lines cross themselves]",
     "contour that is not level": "{count} contour [line has|lines have] several elevations",
     "mark before a code": (
         "{count} [mark stands before its code and is|marks stand before their codes and are] not "
         "read"
     ),
     "unknown code": "{count} [code is|codes are] not in the code table",
+    "unknown line code": "{count} unknown [code has|codes have] marks of lines",
     "too few points": (
         "{count} [line is left out, which has|lines are left out, which have] too few points"
     ),
@@ -78,6 +80,8 @@ _HINTS = {
     "code behind others": ": a remark stands in quotes or behind a comma, / or ;",
     "mark before a code": ': place = "before" in a code table reads them',
     "unknown code": ": their points are points of the surface",
+    "unknown line code": ": their points are points of the surface; a code table defines codes",
+    "line that crosses itself": ": check codes, marks and the order of the shots",
 }
 
 

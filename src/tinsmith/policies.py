@@ -37,6 +37,7 @@ __all__ = [
     "RasterSample",
     "RasterValue",
     "SheetLayout",
+    "ShotOrder",
     "SlopeUnit",
     "SurfacePart",
     "Tint",
@@ -78,6 +79,9 @@ CodeKind: TypeAlias = Literal[
 ]
 """What a table of codes says of a code: the line that it makes, or none; "exclude" points are not
 for the surface."""
+
+ShotOrder: TypeAlias = Literal["number", "row"]
+"""What gives the order of shots along the lines of field codes."""
 
 CodeStyle: TypeAlias = Literal[
     "words",

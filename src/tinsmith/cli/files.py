@@ -151,10 +151,12 @@ def open_standard_input() -> IO[bytes]:
 def add_coded_lines(survey: Survey, how: Coding) -> Survey:
     """Add the lines of the points' codes to a survey, if they are asked for.
 
-    A tolerance of curves without codes is wrong usage.
+    A tolerance of curves or an order of shots without codes is wrong usage.
     """
-    if how.arc_tolerance is not None and not how.has_codes:
-        raise click.UsageError("--arc-tolerance needs --codes, --code-table or --code-style.")
+    for flag in ("arc_tolerance", "shot_order"):
+        if getattr(how, flag) is not None and not how.has_codes:
+            name = flag.replace("_", "-")
+            raise click.UsageError(f"--{name} needs --codes, --code-table or --code-style.")
     if not how.has_codes:
         return survey
     from ..io import lines_from_codes

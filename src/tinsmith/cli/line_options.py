@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from ..policies import CodeStyle, CrossingPolicy, TrimPolicy
+from ..policies import CodeStyle, CrossingPolicy, ShotOrder, TrimPolicy
 from .parameters import choice_option, number_option, under
 from .paths import LINES
 
@@ -60,6 +60,11 @@ CODE_OPTIONS = under(
         "--arc-tolerance",
         "LENGTH",
         "Largest distance of chords from the curves of field codes, in CRS units; default 0.01 m.",
+    ),
+    choice_option(
+        "--shot-order",
+        ShotOrder,
+        "What gives the order of shots along lines; default their numbers, if they have any.",
     ),
 )
 

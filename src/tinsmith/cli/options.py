@@ -100,6 +100,7 @@ class Coding:
     code_table: Path | None = None
     code_style: str | None = None
     arc_tolerance: float | None = None
+    shot_order: str | None = None
 
     @property
     def has_codes(self) -> bool:
@@ -109,7 +110,7 @@ class Coding:
     @property
     def coding(self) -> dict[str, Any]:
         """Options of :func:`tinsmith.lines_from_codes`."""
-        names = ("code_table", "code_style", "arc_tolerance")
+        names = ("code_table", "code_style", "arc_tolerance", "shot_order")
         return {name: getattr(self, name) for name in names}
 
 

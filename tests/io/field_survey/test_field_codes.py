@@ -218,3 +218,73 @@ def test_lines_are_made_of_a_survey_by_rules():
     survey = ts.Survey(points=np.zeros((3, 3)))
     with pytest.raises(ts.OptionError, match=r"^Invalid rules \[0, 1\]: it must be a mapping"):
         lines_from_codes(survey, [0, 1])
+
+
+# ------------------------------------------------------------------ the order of shots
+
+
+def two_crews(**given):
+    """Two crews number their shots from 1; each surveys the edge of pavement 1."""
+    codes = ["EP1 BEG", "EP1", "EP1 END"]
+    points = [[x, y, 5.0] for y in (0.0, 7.0) for x in (0.0, 8.0, 16.0)]
+    made = ts.Survey(
+        points=points,
+        attributes={
+            "description": np.array(codes * 2, object),
+            "number": np.array([1, 2, 3, 1, 2, 3]),
+        },
+    )
+    return ts.lines_from_codes(made, **given)
+
+
+def test_repeated_numbers_of_two_crews_are_refused_until_the_order_is_said():
+    with pytest.raises(ts.LinesError, match=r"3 numbers .*first: 1.*option shot_order"):
+        two_crews()
+    found = two_crews(shot_order="row").breaklines
+    assert [one.coords[:, 0].tolist() for one in found] == [[0, 8, 16], [0, 8, 16]]
+    (zigzag,) = two_crews(shot_order="number").breaklines
+    assert zigzag.coords[:, 1].tolist() == [7, 0, 7, 0]
+    with pytest.raises(ts.OptionError, match="number, row"):
+        two_crews(shot_order="file")
+
+
+def test_repeated_numbers_that_change_no_line_are_no_doubt():
+    made = ts.Survey(
+        points=[[0, 0, 5], [4, 0, 6], [9, 1, 6], [3, 3, 7]],
+        attributes={
+            "description": np.array(["EP1 BEG", "EP1", "EP1 END", "GS"], object),
+            "number": np.array([1, 2, 2, 1]),
+        },
+    )
+    assert len(ts.lines_from_codes(made).breaklines) == 1
+
+
+def test_shots_without_marks_whose_line_crosses_itself_are_refused():
+    rng = np.random.default_rng(2)
+    made = ts.Survey(
+        points=rng.random((40, 3)) * 100,
+        attributes={"description": np.array(["RDG"] * 40, object)},
+    )
+    with pytest.raises(ts.LinesError, match=r"40 shots of the code RDG .*crosses itself"):
+        ts.lines_from_codes(made)
+    (line,) = ts.lines_from_codes(made, shot_order="row").breaklines
+    assert len(line.coords) == 40
+
+
+def test_a_marked_line_that_crosses_itself_is_told():
+    made = ts.Survey(
+        points=[[0, 0, 1], [9, 9, 1], [9, 0, 1], [0, 9, 1]],
+        attributes={"description": np.array(["EP1 BEG", "EP1", "EP1", "EP1 END"], object)},
+    )
+    (finding,) = ts.lines_from_codes(made).findings
+    assert finding.kind == "line that crosses itself"
+
+
+def test_unknown_codes_with_marks_of_lines_are_told():
+    codes = ["EP1 BEG", "EP1 END", "FENCE1 BEG", "FENCE1", "FENCE1 END", "EPP5 BEG", "GS", "TREE 7"]
+    made = ts.Survey(
+        points=np.random.default_rng(1).random((len(codes), 3)),
+        attributes={"description": np.array(codes, object)},
+    )
+    found = {one.sentence.split(": ")[1]: one.rows for one in ts.lines_from_codes(made).findings}
+    assert found == {"FENCE": (2, 3, 4), "EPP": (5,)}
