@@ -79,9 +79,9 @@ class Format:
         Whether a folder is certainly of this format, by the names in it; a format without it is
         of files.
     side_files : mapping of str to tuple of str
-        Files that may stand beside one and belong to it, by its suffix, "" for any: ".prj" stands
-        in place of the suffix, "*.ovr" behind the whole name. Of a writer those that it replaces
-        or removes.
+        Files that may stand beside one and belong to it, by its suffix, "" for any: ``".prj"``
+        stands in place of the suffix, ``"*.ovr"`` behind the whole name. Of a writer those that it
+        replaces or removes.
     find_sources : callable, optional
         Other files that a file names and that are read with it, by its path.
     part_names : tuple of str

@@ -157,13 +157,13 @@ void measure_earthwork() {
   for (const int threads : {1, 3}) {
     Team team(threads, keep_going);
     const auto sums =
-        earthwork::sum_between(flat.surface(), groups.data(), 1, ramp.surface(), 1.0, team);
+        earthwork::sum_between(flat.surface(), groups.data(), 1, ramp.surface(), true, 1.0, team);
     const auto row = sums[0].values();
     expect(is_close(row[0], 10000.0), "the whole square is compared");
     expect(is_close(row[3], 2500.0) && is_close(row[4], 2500.0), "two wedges are cut and filled");
   }
   Team team(1, keep_going);
-  const earthwork::Overlay overlay(flat.surface(), ramp.surface(), team);
+  const earthwork::Overlay overlay(flat.surface(), ramp.surface(), true, team);
   double area = 0.0;
   for (std::size_t cell = 0; cell + 1 < overlay.offsets.size(); ++cell) {
     const auto first = overlay.offsets[cell], last = overlay.offsets[cell + 1] - 1;

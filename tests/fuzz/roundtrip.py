@@ -96,6 +96,10 @@ def _require_close(tin: ts.TIN, path: Path) -> str:
         if not _falls_together(tin):
             raise AssertionError(str(error)) from error
         return "stl: too fine for single precision"
+    if len(again.triangles) != len(tin.triangles):  # what rounding leaves without area
+        assert _falls_together(tin)
+        assert any("Left out" in note for note in again.report.notes)
+        return "stl: too fine for single precision"
     corners, expected = again.points[again.triangles], tin.points[tin.triangles]
     extent = np.ptp(tin.points, axis=0) + 1.0
     allowed = extent * 2.0**-24 + np.spacing(np.abs(tin.points).max(axis=0))
