@@ -89,6 +89,7 @@ def test_every_option_of_triangulate_has_its_own():
         "code_table",
         "code_style",
         "arc_tolerance",
+        "shot_order",
     }
     defaults = {
         name: inspect.signature(ts.triangulate).parameters[name].default
