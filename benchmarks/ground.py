@@ -32,7 +32,7 @@ from .measure import is_installed
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from tinsmith.arrays import BoolArray, Float64Array, Int64Array
+    from tinsmith.base.arrays import BoolArray, Float64Array, Int64Array
 
     Filter = Callable[[ts.Survey], BoolArray]
     Changed = tuple[Float64Array, Int64Array]

@@ -19,14 +19,14 @@ from typing import TYPE_CHECKING, Any, get_args
 import numpy as np
 
 import tinsmith as ts
-from tinsmith.policies import SimplificationHold
+from tinsmith.base.policies import SimplificationHold
 
 from .measure import is_installed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from tinsmith.arrays import Float32Array, Float64Array
+    from tinsmith.base.arrays import Float32Array, Float64Array
 
 TOLERANCES = (10.0, 3.0, 1.0, 0.3, 0.1)
 USUAL_TOLERANCE = 3.0

@@ -16,7 +16,7 @@ import numpy as np
 import tinsmith as ts
 
 if TYPE_CHECKING:
-    from tinsmith.arrays import AnyArray, Float64Array
+    from tinsmith.base.arrays import AnyArray, Float64Array
 
 HERE = Path(__file__).parent
 SAMPLES = HERE.parent / "sample_data"

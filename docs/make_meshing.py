@@ -21,7 +21,7 @@ import tinsmith as ts
 from tinsmith.tin import quality, refine
 
 if TYPE_CHECKING:
-    from tinsmith.arrays import AnyArray
+    from tinsmith.base.arrays import AnyArray
 
 HERE = Path(__file__).parent
 SURVEY = HERE.parent / "sample_data" / "site_survey.csv"

@@ -18,7 +18,7 @@ import tinsmith as ts
 from tinsmith.tin import paper
 
 if TYPE_CHECKING:
-    from tinsmith.arrays import Float64Array, Int32Array
+    from tinsmith.base.arrays import Float64Array, Int32Array
     from tinsmith.tin import Comparison, Outcome
 
 HERE = Path(__file__).parent

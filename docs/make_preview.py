@@ -21,7 +21,7 @@ import tinsmith as ts
 from tinsmith.terrain.drawing.linework import find_line_edges
 
 if TYPE_CHECKING:
-    from tinsmith.arrays import Float64Array
+    from tinsmith.base.arrays import Float64Array
 
 HERE = Path(__file__).parent
 SAMPLES = HERE.parent / "sample_data"

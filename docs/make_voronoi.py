@@ -18,7 +18,7 @@ from scipy.spatial import Voronoi as SciPyVoronoi
 import tinsmith as ts
 
 if TYPE_CHECKING:
-    from tinsmith.arrays import Float64Array
+    from tinsmith.base.arrays import Float64Array
 
 HERE = Path(__file__).parent
 SURVEY = HERE.parent / "sample_data" / "site_survey.csv"

@@ -1,9 +1,9 @@
 # Public names, each with the module that has it: type checkers and `_lazy` read them here.
-from ..errors import CrsError as CrsError
-from ..errors import FormatError as FormatError
-from ..errors import OptionError as OptionError
-from ..errors import ReadError as ReadError
-from ..errors import WriteError as WriteError
+from ..base.errors import CrsError as CrsError
+from ..base.errors import FormatError as FormatError
+from ..base.errors import OptionError as OptionError
+from ..base.errors import ReadError as ReadError
+from ..base.errors import WriteError as WriteError
 from .field_survey import field_codes as field_codes
 from .field_survey.field_codes import lines_from_codes as lines_from_codes
 from .mesh.libraries import from_mesh as from_mesh

@@ -8,12 +8,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import IO, TYPE_CHECKING, Any, NamedTuple, cast, overload
 
-from .._atomic import as_path
-from .._plug_ins import describe_failure, warn_of_plug_in
-from .._progress import Progress
-from .._sentences import counted, inflect, printable
-from ..crs import CRS, Unit
-from ..errors import (
+from ..base.atomic import as_path
+from ..base.crs import CRS, Unit
+from ..base.errors import (
     CrsError,
     FormatError,
     MissingExtraError,
@@ -21,6 +18,9 @@ from ..errors import (
     ReadError,
     TinsmithError,
 )
+from ..base.plug_ins import describe_failure, warn_of_plug_in
+from ..base.progress import Progress
+from ..base.sentences import counted, inflect, printable
 from ..tin import TIN, Survey
 from .isolated.archives import unpack
 from .isolated.local_files import require_local
@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-    from .._progress import Tell
-    from ..crs import CrsLike, UnitLike
+    from ..base.crs import CrsLike, UnitLike
+    from ..base.progress import Tell
 
 __all__ = [
     "detect",

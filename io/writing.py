@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .._atomic import as_path
-from .._plug_ins import describe_failure
-from .._products import product
-from .._progress import Progress
-from ..errors import FormatError, TinsmithError, WriteError
-from ..terrain.results import Features, Raster, Table
+from ..base.atomic import as_path
+from ..base.errors import FormatError, TinsmithError, WriteError
+from ..base.plug_ins import describe_failure
+from ..base.products import product
+from ..base.progress import Progress
+from ..base.results import Features, Raster, Table
 from ..tin import Surface, Survey
 from .registry.format import require_options, takes_progress
 from .registry.lookup import find_writer

@@ -1,6 +1,9 @@
 # Public names, each with the module that has it: type checkers and `_lazy` read them here.
-from ..errors import OptionError as OptionError
-from ..errors import RenderError as RenderError
+from ..base.errors import OptionError as OptionError
+from ..base.errors import RenderError as RenderError
+from ..base.results import Features as Features
+from ..base.results import Raster as Raster
+from ..base.results import Table as Table
 from .charts.blunders import blunder_map as blunder_map
 from .charts.comparison import comparison_picture as comparison_picture
 from .charts.earthwork import earthwork_map as earthwork_map
@@ -43,9 +46,6 @@ from .relief.gradients import aspect as aspect
 from .relief.gradients import slope as slope
 from .relief.shading import hillshade as hillshade
 from .relief.statistics import slope_statistics as slope_statistics
-from .results import Features as Features
-from .results import Raster as Raster
-from .results import Table as Table
 from .sections import cross_sections as cross_sections
 from .sections import drape as drape
 from .sections import profile as profile

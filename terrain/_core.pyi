@@ -1,7 +1,7 @@
 # Types of the compiled core; what it does is said in terrain/_kernel.py.
 from collections.abc import Callable
 
-from ..arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array, UInt8Array
+from ..base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array, UInt8Array
 
 TILE_SIDE: int
 

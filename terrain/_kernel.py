@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from .._interrupts import hold_interrupts
+from ..base.interrupts import hold_interrupts
 
 with hold_interrupts():
     from . import _core
 
 if TYPE_CHECKING:
-    from ..arrays import Float64Array, Int32Array, Int64Array
+    from ..base.arrays import Float64Array, Int32Array, Int64Array
 
 __all__ = [
     "SUMS",

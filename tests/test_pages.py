@@ -122,7 +122,7 @@ def folder(files, tmp_path, monkeypatch):
 # ------------------------------------------------------------------------------ commands run
 
 LOSSES = pytest.mark.filterwarnings(
-    "ignore::tinsmith.errors.LossWarning"
+    "ignore::tinsmith.base.errors.LossWarning"
 )  # told, as they should be
 
 

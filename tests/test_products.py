@@ -12,7 +12,7 @@ import pytest
 from support.product_calls import ALL, HILL, NOTE, PICTURES, RESULTS, make_hill
 
 import tinsmith as ts
-from tinsmith._products import is_product
+from tinsmith.base.products import is_product
 from tinsmith.tin.surface import Surface
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import tinsmith
-from tinsmith import arrays
+from tinsmith.base import arrays
 from tinsmith.tin.constraints.polylines import Polylines
 from tinsmith.tin.editing.operations import OPERATIONS
 

@@ -1,10 +1,12 @@
 # Public names, each with the module that has it: type checkers and `_lazy` read them here.
-from ..errors import CheckError as CheckError
-from ..errors import LinesError as LinesError
-from ..errors import MissingExtraError as MissingExtraError
-from ..errors import OptionError as OptionError
-from ..errors import PointsError as PointsError
-from ..errors import TinsmithError as TinsmithError
+from ..base.errors import CheckError as CheckError
+from ..base.errors import LinesError as LinesError
+from ..base.errors import MissingExtraError as MissingExtraError
+from ..base.errors import OptionError as OptionError
+from ..base.errors import PointsError as PointsError
+from ..base.errors import TinsmithError as TinsmithError
+from ..base.types import Bounds as Bounds
+from ..base.types import Grid as Grid
 from . import paper as paper
 from .building.survey import Survey as Survey
 from .checking.checker import CheckResult as CheckResult
@@ -24,6 +26,4 @@ from .report import Report as Report
 from .surface import TIN as TIN
 from .surface import Snapshot as Snapshot
 from .surface import Surface as Surface
-from .types import Bounds as Bounds
-from .types import Grid as Grid
 from .voronoi.diagram import Voronoi as Voronoi

@@ -1,7 +1,7 @@
 import enum
 from collections.abc import Callable
 
-from ..arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
+from ..base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
 
 SMALLEST_COORDINATE: float
 MOST_POINTS: int

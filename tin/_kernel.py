@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from .._interrupts import hold_interrupts
-from ..errors import PointsError
+from ..base.errors import PointsError
+from ..base.interrupts import hold_interrupts
 
 with hold_interrupts():
     from . import _core
 
 if TYPE_CHECKING:
-    from .._progress import Tell
-    from ..arrays import Float64Array, Int32Array
+    from ..base.arrays import Float64Array, Int32Array
+    from ..base.progress import Tell
 
 __all__ = [
     "EXACT_RANGE",

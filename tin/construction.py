@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from .._progress import Progress
+from ..base.progress import Progress
 from .building.assembly import assemble
 from .building.inputs import gather_inputs
 from .building.survey import Survey
@@ -14,10 +14,10 @@ from .surface import TIN
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ..crs import CrsLike, UnitLike
-    from ..policies import CrossingPolicy, DuplicatePolicy, TrimPolicy
+    from ..base.crs import CrsLike, UnitLike
+    from ..base.policies import CrossingPolicy, DuplicatePolicy, TrimPolicy
+    from ..base.types import GeometriesLike, PointsLike
     from .constraints.breaklines import Breakline, Water
-    from .types import GeometriesLike, PointsLike
 
 __all__ = ["triangulate"]
 

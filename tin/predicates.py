@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ..arrays import AnyArray, BoolArray, Float64Array, Int8Array, Int64Array
+    from ..base.arrays import AnyArray, BoolArray, Float64Array, Int8Array, Int64Array
 
 __all__ = [
     "EXACT_RANGE",

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from .._methods import make_card
-from .._sentences import counted, height
-from .types import Frozen, RowSources
+from ..base.methods import make_card
+from ..base.sentences import counted, height
+from ..base.types import Frozen, RowSources
 
 if TYPE_CHECKING:
-    from ..arrays import Float64Array, Int8Array, Int32Array, Int64Array
+    from ..base.arrays import Float64Array, Int8Array, Int32Array, Int64Array
 
 __all__ = [
     "LEFT_OUT",

@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, Never, Self, cast, overload
 
 import numpy as np
 
-from .._methods import call_method, make_card
-from .._sentences import counted
-from ..crs import CRS, Unit, require_lengths, require_one_unit, scale_elevations, shorten_crs
-from ..errors import choice
-from ..policies import Extrapolation, FeatureKind, InterpolationMethod
+from ..base.crs import CRS, Unit, require_lengths, require_one_unit, scale_elevations, shorten_crs
+from ..base.errors import choice
+from ..base.methods import call_method, make_card
+from ..base.policies import Extrapolation, FeatureKind, InterpolationMethod
+from ..base.ranges import describe_span, require_degrees
+from ..base.sentences import counted
+from ..base.types import seal
 from . import topology
 from .building.assembly import assemble
 from .building.attributes import Attributes, as_columns, as_row_attributes
@@ -23,9 +25,7 @@ from .editing.origin import Origin
 from .editing.version import Version
 from .report import Report
 from .triangulation import Triangulation
-from .types import seal
 from .validation.points import as_pairs, as_places, as_points, as_xy
-from .validation.ranges import describe_span, require_degrees
 from .validation.triangles import as_flags, as_triangles, turn_counter_clockwise
 from .validation.vertices import as_vertex, as_vertex_pairs
 
@@ -34,11 +34,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ..arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
-    from ..crs import CrsLike, UnitLike
+    from ..base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
+    from ..base.crs import CrsLike, UnitLike
+    from ..base.types import Bounds, PointsLike
     from .building.inputs import BuildInputs
     from .report import Edit
-    from .types import Bounds, PointsLike
     from .voronoi.diagram import Voronoi
 
 

@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..errors import PointsError
+from ..base.errors import PointsError
 from . import _kernel
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ..arrays import AnyArray, BoolArray, Int32Array, Int64Array
+    from ..base.arrays import AnyArray, BoolArray, Int32Array, Int64Array
 
 __all__ = [
     "NO_NEIGHBOR",

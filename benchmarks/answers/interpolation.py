@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 import tinsmith as ts
-from tinsmith.arrays import AnyArray, Float64Array
+from tinsmith.base.arrays import AnyArray, Float64Array
 from tinsmith.tin import TIN
 
 from ..measure import OURS, Outcome

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 import tinsmith as ts
-from tinsmith.arrays import Float64Array
+from tinsmith.base.arrays import Float64Array
 
 from ..measure import OURS, Outcome, Result, alternate, find_median
 from ..peers.programs import find_present, run_program

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 import tinsmith as ts
-from tinsmith.arrays import BoolArray, Float64Array
+from tinsmith.base.arrays import BoolArray, Float64Array
 from tinsmith.tin import TIN
 
 from ..measure import OURS, Outcome, Result, alternate, find_median

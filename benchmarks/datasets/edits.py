@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tinsmith.arrays import Float64Array, Int64Array
+from tinsmith.base.arrays import Float64Array, Int64Array
 
 from .points import SEED, make_points
 

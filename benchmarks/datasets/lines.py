@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tinsmith.arrays import BoolArray, Float64Array, Int64Array
+from tinsmith.base.arrays import BoolArray, Float64Array, Int64Array
 
 from .points import SEED, UTM_CORNER, lift_to_ground, make_points
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from tinsmith.arrays import Float64Array
+from tinsmith.base.arrays import Float64Array
 
 __all__ = ["DATASETS", "UTM_CORNER", "lift_to_ground", "make_points"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import tinsmith as ts
-from tinsmith.arrays import Float64Array
+from tinsmith.base.arrays import Float64Array
 
 from .points import SEED
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tinsmith.arrays import AnyArray, Float64Array, Int64Array
+from tinsmith.base.arrays import AnyArray, Float64Array, Int64Array
 from tinsmith.tin import TIN, PointsError, check
 from tinsmith.tin.checking.findings import Problem
 

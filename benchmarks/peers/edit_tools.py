@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tinsmith.arrays import Float64Array, UInt64Array
+from tinsmith.base.arrays import Float64Array, UInt64Array
 
 from ..datasets.edits import INSERT_ALL, WHAT, EditTask
 from ..measure import OURS

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tinsmith.arrays import Float64Array
+from tinsmith.base.arrays import Float64Array
 from tinsmith.tin import TIN
 
 __all__ = [

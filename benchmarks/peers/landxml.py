@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tinsmith.arrays import Float64Array, Int64Array
+from tinsmith.base.arrays import Float64Array, Int64Array
 from tinsmith.tin import TIN
 
 __all__ = ["read_with_etree", "write_with_etree"]

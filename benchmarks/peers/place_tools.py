@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tinsmith import triangulate
-from tinsmith.arrays import AnyArray, Float64Array
+from tinsmith.base.arrays import AnyArray, Float64Array
 from tinsmith.tin import TIN
 
 from ..measure import Outcome, Result, alternate, find_median

@@ -12,7 +12,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from tinsmith.arrays import AnyArray
+from tinsmith.base.arrays import AnyArray
 
 from ..cgal import build_harness
 from ..datasets.tasks import write_task

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tinsmith.arrays import AnyArray, Float64Array
+from tinsmith.base.arrays import AnyArray, Float64Array
 
 __all__ = [
     "ALL_CORES",

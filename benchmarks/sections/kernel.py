@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import tinsmith as ts
-from tinsmith.arrays import Float64Array
+from tinsmith.base.arrays import Float64Array
 from tinsmith.tin import _kernel
 
 from ..cgal import CgalMissingError, build_harness

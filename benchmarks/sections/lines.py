@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 import tinsmith as ts
-from tinsmith.arrays import Int64Array
+from tinsmith.base.arrays import Int64Array
 from tinsmith.tin import TIN
 
 from ..cgal import build_harness

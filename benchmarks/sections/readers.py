@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import tinsmith as ts
-from tinsmith.arrays import Float32Array, Float64Array
+from tinsmith.base.arrays import Float32Array, Float64Array
 from tinsmith.tin import TIN
 
 from ..datasets.points import make_points

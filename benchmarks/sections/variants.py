@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 import tinsmith as ts
-from tinsmith.arrays import Int32Array
+from tinsmith.base.arrays import Int32Array
 from tinsmith.tin import _kernel
 
 from ..datasets.points import DATASETS, make_points

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import tinsmith as ts
-from tinsmith.arrays import AnyArray, Float64Array
+from tinsmith.base.arrays import AnyArray, Float64Array
 from tinsmith.io import transform_points
 from tinsmith.terrain.relief.gradients import aspect, slope
 from tinsmith.tin import TIN

@@ -5,15 +5,15 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING
 
-from ...crs import Unit
-from ...errors import CrsError, LossWarning, OptionError, WriteError
+from ...base.crs import Unit
+from ...base.errors import CrsError, LossWarning, OptionError, WriteError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from ...crs import UnitLike
-    from ...terrain.results import Features
+    from ...base.crs import UnitLike
+    from ...base.results import Features
     from ...tin import TIN, Survey
 
 __all__ = ["choose_length_unit"]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...errors import ReadError
+from ...base.errors import ReadError
 from ...tin.topology import find_offsets
 from ..reprojection.placement import place
 
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ...arrays import Float64Array
-    from ...crs import CRS, Unit
+    from ...base.arrays import Float64Array
+    from ...base.crs import CRS, Unit
     from .reference import Declared, Measures
 
 __all__ = ["Placing", "place_rows"]

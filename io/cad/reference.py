@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...crs import CRS, Unit
-from ...errors import OptionError, ReadError
+from ...base.crs import CRS, Unit
+from ...base.errors import OptionError, ReadError
 from ...tin.screening.area_of_use import AreaOfUse
 from ..reprojection.placement import settle_unit
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...arrays import Float64Array
-    from ...crs import CrsLike, UnitLike
+    from ...base.arrays import Float64Array
+    from ...base.crs import CrsLike, UnitLike
 
 __all__ = ["Declared", "Measures", "Stated", "choose_measures"]
 

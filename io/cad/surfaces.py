@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted
+from ...base.sentences import counted
 from ...tin import TIN
 from ...tin.constraints.breaklines import Lines
 from ...tin.topology import directed_edges, edge_keys, find_offsets, mark_corners
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ...arrays import BoolArray, Float64Array, Int64Array
-    from ...policies import FacePolicy, LineKind
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
+    from ...base.policies import FacePolicy, LineKind
     from ..mesh.common import Reference
 
 __all__ = ["EdgeLine", "Mesh", "make_tin_with_lines", "merge_equal_points"]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...errors import ReadError
+from ...base.errors import ReadError
 from .columns import COORDINATES, shorten
 from .languages import LANGUAGES
 from .names import find_languages, parse_name
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from ...arrays import AnyArray, Float64Array
-    from ...crs import CRS
+    from ...base.arrays import AnyArray, Float64Array
+    from ...base.crs import CRS
     from ...tin.screening.area_of_use import AreaOfUse
     from .columns import Columns
     from .headings import AxesLine

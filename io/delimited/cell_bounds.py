@@ -10,7 +10,7 @@ import numpy as np
 from .cells import BLANKS
 
 if TYPE_CHECKING:
-    from ...arrays import Int64Array, UInt8Array
+    from ...base.arrays import Int64Array, UInt8Array
 
 __all__ = ["CellBounds", "find_cell_bounds"]
 

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from ..._sentences import counted
-from ...crs import Unit
-from ...errors import OptionError, ReadError
+from ...base.crs import Unit
+from ...base.errors import OptionError, ReadError
+from ...base.sentences import counted
 from .grouping import find_group
 from .names import parse_name
 

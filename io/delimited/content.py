@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._sentences import counted, inflect, shown
-from ...errors import ReadError
+from ...base.errors import ReadError
+from ...base.sentences import counted, inflect, shown
 from ...tin.screening.nodata import find_suspect_elevations
 from .columns import Columns, find_columns_by_word
 from .doubts import are_angles_in_parts, find_doubt, have_no_elevations
@@ -22,7 +22,7 @@ from .doubts import are_angles_in_parts, find_doubt, have_no_elevations
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ...tin.screening.area_of_use import AreaOfUse
 
 __all__ = [

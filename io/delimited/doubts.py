@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from .content import Column
 
 __all__ = ["are_angles_in_parts", "find_doubt", "have_no_elevations"]

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted, height
-from ...crs import METRE, Unit
-from ...errors import CrsError, OptionError, ReadError
+from ...base.crs import METRE, Unit
+from ...base.errors import CrsError, OptionError, ReadError
+from ...base.sentences import counted, height
 from ...tin.screening.nodata import describe_elevations
 from .axes import are_named_plainly
 from .cells import is_number, split_line
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from ...arrays import AnyArray, Float64Array, Int64Array
-    from ...crs import CRS
+    from ...base.arrays import AnyArray, Float64Array, Int64Array
+    from ...base.crs import CRS
     from ...tin.screening.area_of_use import AreaOfUse
     from .columns import Columns
     from .layout import Layout

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-from ..._sentences import counted
-from ...errors import ReadError
+from ...base.errors import ReadError
+from ...base.sentences import counted
 from .cells import BLANKS, is_number_like, split_line
 from .columns import (
     Columns,
@@ -25,7 +25,7 @@ from .marks import split_header
 from .names import is_label, is_phrase, parse_name, read_words
 
 if TYPE_CHECKING:
-    from ...arrays import Int64Array
+    from ...base.arrays import Int64Array
     from .headings import Heading
     from .lines import TextLines
 

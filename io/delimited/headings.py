@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...errors import ReadError
+from ...base.errors import ReadError
 from .columns import describe_doubts, find_columns_by_header, find_unit_word
 from .lines import COMMENT_PREFIXES
 from .names import is_label, parse_name, read_words
@@ -19,7 +19,7 @@ from .names import is_label, parse_name, read_words
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from ...arrays import Int64Array
+    from ...base.arrays import Int64Array
     from .lines import TextLines
 
 __all__ = ["AxesLine", "Heading", "UnitLine", "find_axes_line", "find_heading", "find_unit_line"]

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._sentences import counted
-from ...errors import ReadError
+from ...base.errors import ReadError
+from ...base.sentences import counted
 from .cells import BLANKS, is_number, is_number_like, is_padded, split_line
 from .columns import (
     Columns,
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from ...arrays import Int64Array
+    from ...base.arrays import Int64Array
     from .headings import Heading
     from .lines import TextLines
 

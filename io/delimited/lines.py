@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...errors import ReadError
+from ...base.errors import ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from ...arrays import BoolArray, Int64Array, UInt8Array
+    from ...base.arrays import BoolArray, Int64Array, UInt8Array
 
 __all__ = ["COMMENT_PREFIXES", "TextLines", "decode_head", "read_lines"]
 

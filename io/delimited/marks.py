@@ -7,7 +7,7 @@ from collections import Counter
 from statistics import median_high
 from typing import TYPE_CHECKING, NamedTuple
 
-from ...errors import OptionError, ReadError
+from ...base.errors import OptionError, ReadError
 from .cells import BLANKS, is_grouped, is_number, is_number_like, may_group_or_divide, split_line
 from .columns import find_role, names_coordinates
 from .lines import COMMENT_PREFIXES, decode_head

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted
+from ...base.sentences import counted
 from .cells import is_number, split_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...arrays import Int64Array
+    from ...base.arrays import Int64Array
     from .lines import TextLines
 
 __all__ = ["PageBreaks", "find_page_breaks"]

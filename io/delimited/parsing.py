@@ -15,7 +15,7 @@ import numpy as np
 from .cells import is_infinite, is_number, with_hyphen
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int8Array, Int64Array
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int8Array, Int64Array
     from .cell_bounds import CellBounds
 
 __all__ = ["parse_column"]

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted
-from ...errors import OptionError, ReadError
+from ...base.errors import OptionError, ReadError
+from ...base.sentences import counted
 from ...tin.screening.area_of_use import AreaOfUse
 from .axes import describe_turn, is_northing, require_one_hemisphere
 from .columns import describe_doubts
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ...arrays import Float64Array, ObjectArray
-    from ...crs import CRS
+    from ...base.arrays import Float64Array, ObjectArray
+    from ...base.crs import CRS
 
 __all__ = ["QueryPoints", "read_query_points"]
 

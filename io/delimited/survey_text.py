@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from ..._atomic import replacing
-from ..._progress import Progress
-from ..._sentences import counted
-from ...crs import CRS, Unit
-from ...errors import OptionError, ReadError, WriteError
+from ...base.atomic import replacing
+from ...base.crs import CRS, Unit
+from ...base.errors import OptionError, ReadError, WriteError
+from ...base.progress import Progress
+from ...base.sentences import counted
+from ...base.types import RowSources
 from ...tin import TIN, Survey
 from ...tin.screening.area_of_use import AreaOfUse
 from ...tin.screening.nodata import parse_nodata
-from ...tin.types import RowSources
 from ..registry.losses import keep_on_one_line
 from ..reprojection.placement import place, settle_unit
 from ..reprojection.transformation import is_geographic
@@ -53,9 +53,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from ..._progress import Tell
-    from ...arrays import AnyArray, Float64Array, Int64Array
-    from ...crs import CrsLike, UnitLike
+    from ...base.arrays import AnyArray, Float64Array, Int64Array
+    from ...base.crs import CrsLike, UnitLike
+    from ...base.progress import Tell
     from .columns import Columns
     from .layout import Layout
     from .lines import TextLines

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._progress import Progress
-from ..._sentences import counted, inflect
-from ...errors import ReadError
+from ...base.errors import ReadError
+from ...base.progress import Progress
+from ...base.sentences import counted, inflect
 from .cell_bounds import find_cell_bounds
 from .cells import (
     BLANKS,
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
-    from ..._progress import Tell
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
+    from ...base.progress import Tell
     from .cell_bounds import CellBounds
     from .columns import Columns
     from .layout import Layout

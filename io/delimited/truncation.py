@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..._sentences import counted
-from ...errors import ReadError
+from ...base.errors import ReadError
+from ...base.sentences import counted
 from .cells import is_number, split_line
 from .table import Fault, Table
 

@@ -1,5 +1,5 @@
 """What surveyors record in the field: codes of lines at their points."""
 
-from ..._lazy import lazy_names
+from ...base.lazy import lazy_names
 
 __getattr__, __dir__, __all__ = lazy_names(__name__)

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, get_args
 
-from ..._atomic import as_path
-from ..._sentences import printable, shown
-from ...errors import OptionError, ReadError
-from ...policies import CodeKind, CodeStyle
+from ...base.atomic import as_path
+from ...base.errors import OptionError, ReadError
+from ...base.policies import CodeKind, CodeStyle
+from ...base.sentences import printable, shown
 from .descriptions import LONGEST_CODE
 from .styles import MEANINGS, STYLES, Meaning, Style
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
 
 __all__ = ["MOST_VERTICES", "Arc", "densify", "fit_arcs", "fit_tangent_arc"]
 

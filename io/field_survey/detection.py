@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..._sentences import counted
-from ...errors import LinesError
+from ...base.errors import LinesError
+from ...base.sentences import counted
 from .descriptions import Coded, Description, Vocabulary
 from .figures import NO_LINES, Fault, Figure, find_curves, follow_figures
 from .styles import STYLES, Style

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ..._sentences import counted
-from ...errors import LinesError, OptionError, choice
-from ...policies import BreaklineKind, CodeStyle, LineRole, ShotOrder
+from ...base import optional
+from ...base.checks import is_finite_number
+from ...base.errors import LinesError, OptionError, choice
+from ...base.policies import BreaklineKind, CodeStyle, LineRole, ShotOrder
+from ...base.sentences import counted
 from ...tin import Breakline, Survey, Water
-from ...tin.validation.options import is_finite_number
 from .code_table import CodeTable, make_rules, read_code_table
 from .descriptions import Vocabulary
 from .detection import Reading, choose_reading, read_in_style
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Iterable, Sequence
 
-    from ...arrays import Float64Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
 
 __all__ = ["MARKS", "RULES", "LineRole", "lines_from_codes"]
 
@@ -350,7 +350,7 @@ class _Builder:
         ------
         LinesError
         """
-        shapely = _optional.load("shapely")
+        shapely = optional.load("shapely")
         shapes = [shapely.linestrings(vertices[:, :2]) for _, vertices in lines]
         crossed = [
             one

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...errors import LinesError
+from ...base.errors import LinesError
 from .curves import MOST_VERTICES, Arc, densify, fit_arcs, fit_tangent_arc
 from .figures import Curve, Fault, find_curves
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from .figures import Figure
 
 __all__ = ["build_polyline"]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..._sentences import inflect, printable
-from ...tin.types import Finding
+from ...base.sentences import inflect, printable
+from ...base.types import Finding
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

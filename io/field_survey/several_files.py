@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import LinesError
-from ...tin.types import RowSources
+from ...base.errors import LinesError
+from ...base.types import RowSources
 from ..reprojection.joining import SOURCE_FILE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...arrays import Int64Array
+    from ...base.arrays import Int64Array
     from ...tin import Survey
 
 __all__ = ["NoCodesError", "read_each_file", "split_files"]

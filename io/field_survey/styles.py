@@ -24,8 +24,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias, get_args
 
-from ...errors import choice
-from ...policies import CodeStyle
+from ...base.errors import choice
+from ...base.policies import CodeStyle
 
 __all__ = ["COMMENTS", "MARKS", "MEANINGS", "STYLES", "Meaning", "Style", "find_style"]
 

@@ -1,6 +1,6 @@
 """Native readers of untrusted files, run in a child process with limits of time and memory."""
 
-from ..._lazy import lazy_names
+from ...base.lazy import lazy_names
 
 # A program that may fork its readers asks for that at its start, without numpy.
 __getattr__, __dir__, __all__ = lazy_names(__name__)

@@ -16,9 +16,9 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from typing import IO, TYPE_CHECKING
 
-from ..._atomic import scratch_folder
-from ..._sentences import counted
-from ...errors import ReadError, TinsmithError
+from ...base.atomic import scratch_folder
+from ...base.errors import ReadError, TinsmithError
+from ...base.sentences import counted
 from .spooling import rename_in_error, translate_system_errors
 
 if TYPE_CHECKING:

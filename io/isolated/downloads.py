@@ -11,8 +11,8 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote, urlsplit
 
-from ..._atomic import scratch_folder
-from ...errors import ReadError, TinsmithError
+from ...base.atomic import scratch_folder
+from ...base.errors import ReadError, TinsmithError
 from .spooling import rename_in_error
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...errors import ReadError
+from ...base.errors import ReadError
 
 if TYPE_CHECKING:
     import os

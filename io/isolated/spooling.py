@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
-from ..._atomic import scratch_folder
-from ...errors import ReadError, TinsmithError
+from ...base.atomic import scratch_folder
+from ...base.errors import ReadError, TinsmithError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -18,7 +18,7 @@ from collections.abc import Generator, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from ...errors import ReadError
+from ...base.errors import ReadError
 from .answers import Answer, BrokenMessageError, receive, send
 from .forking import Fork, can_fork
 from .limits import START_SECONDS, Limits, choose_limits

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._atomic import scratch_folder
-from ..._sentences import coordinate
-from ...crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit
-from ...errors import CrsError, MissingExtraError, ReadError, TinsmithError
+from ...base.atomic import scratch_folder
+from ...base.crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit
+from ...base.errors import CrsError, MissingExtraError, ReadError, TinsmithError
+from ...base.sentences import coordinate
 from ..isolated import run_isolated
 from ..reprojection.transformation import transform_points
 
@@ -256,9 +256,9 @@ def _ask_gdal(header: Header) -> str:
 
 
 def _read_crs(picture: Path, path: Path) -> str | None:
-    from ... import _optional
+    from ...base import optional
 
-    _optional.require("rasterio", f"Reading the CRS of '{path}'")
+    optional.require("rasterio", f"Reading the CRS of '{path}'")
     found = run_isolated("tinsmith.io.raster.gdal_child:read_header", {"path": str(picture)},
                          path=path)  # fmt: skip
     text: str | None = found.value["crs"]

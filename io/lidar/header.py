@@ -14,8 +14,8 @@ from typing import IO, TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._sentences import coordinate, counted, inflect
-from ...errors import ReadError
+from ...base.errors import ReadError
+from ...base.sentences import coordinate, counted, inflect
 from ..isolated.spooling import translate_system_errors
 
 if TYPE_CHECKING:

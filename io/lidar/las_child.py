@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..._sentences import inflect
+from ...base.sentences import inflect
 from ..isolated import Answer, Refusal
 
 __all__ = ["ENVIRONMENT", "prepare", "read_points"]

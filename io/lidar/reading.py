@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ... import _optional
-from ..._sentences import coordinate, counted, inflect
-from ...crs import CRS, Unit
-from ...errors import CrsError, OptionError, ReadError
+from ...base import optional
+from ...base.crs import CRS, Unit
+from ...base.errors import CrsError, OptionError, ReadError
+from ...base.sentences import coordinate, counted, inflect
 from ...tin import Bounds, Survey
 from ..isolated import choose_limits, stream_isolated
 from ..isolated.free_memory import measure_free_memory
@@ -32,9 +32,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ..._progress import Tell
-    from ...arrays import AnyArray, Float64Array
-    from ...crs import CrsLike, UnitLike
+    from ...base.arrays import AnyArray, Float64Array
+    from ...base.crs import CrsLike, UnitLike
+    from ...base.progress import Tell
 
 __all__ = ["read"]
 
@@ -113,7 +113,7 @@ def read(
     decompresses. Memory holds the points once and a chunk of a million: 29 bytes a point with the
     attributes that are kept without asking, and some 100 MB.
     """
-    _optional.require("laspy", "Reading lidar")
+    optional.require("laspy", "Reading lidar")
     selection = parse_selection(classes, returns, window, resolution, every, withheld, attributes)
     headers = [parse_header(one) for one in _list_files(path)]
     _require_levels(headers, selection)

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted
-from ...errors import OptionError
+from ...base.errors import OptionError
+from ...base.sentences import counted
 from ...tin import Bounds
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...arrays import Int64Array
+    from ...base.arrays import Int64Array
 
 __all__ = [
     "CHEAP_ATTRIBUTES",

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ... import _optional
-from ..._atomic import replacing
-from ..._progress import Progress
-from ..._sentences import coordinate
-from ...errors import LossWarning, OptionError, WriteError
+from ...base import optional
+from ...base.atomic import replacing
+from ...base.errors import LossWarning, OptionError, WriteError
+from ...base.progress import Progress
+from ...base.sentences import coordinate
 from ...tin import TIN, Survey
 from ..mesh.common import require_writable
 from ..registry.losses import tell_lost_attributes
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from ..._progress import Tell
-    from ...arrays import AnyArray, Float64Array, Int32Array
-    from ...crs import CRS
+    from ...base.arrays import AnyArray, Float64Array, Int32Array
+    from ...base.crs import CRS
+    from ...base.progress import Tell
 
 __all__ = ["write"]
 
@@ -110,7 +110,7 @@ def write(
     triangles are not kept. The same points give the same bytes, and the date is 1970-01-01.
     """
     surface = require_writable(surface, path)
-    laspy = _optional.load("laspy", f"Writing '{path}'")
+    laspy = optional.load("laspy", f"Writing '{path}'")
     _require_points(surface.points, path)
     scaling = _choose_scaling(surface.points, _parse_scale(scale), path)
     attributes = surface.attributes if isinstance(surface, Survey) else {}

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
-from ..._sentences import counted, height
-from ...crs import CRS, Unit
-from ...errors import CrsError, FormatError, OptionError, PointsError, ReadError
+from ...base.checks import is_finite_number
+from ...base.crs import CRS, Unit
+from ...base.errors import CrsError, FormatError, OptionError, PointsError, ReadError
+from ...base.sentences import counted, height
 from ...tin import TIN, Surface, Survey
 from ...tin.checking.overlaps import describe_overlaps
 from ...tin.screening.nodata import find_suspect_elevations
-from ...tin.validation.options import is_finite_number
 from ..reprojection.contradictions import look_at_crs
 from ..reprojection.placement import settle_unit
 from .surface_part import make_surface
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
-    from ...crs import CrsLike, UnitLike
-    from ...policies import FacePolicy
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
+    from ...base.crs import CrsLike, UnitLike
+    from ...base.policies import FacePolicy
 
 __all__ = [
     "Fans",

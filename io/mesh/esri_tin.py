@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted
-from ...errors import ReadError
+from ...base.errors import ReadError
+from ...base.sentences import counted
 from ...tin.topology import NO_NEIGHBOR
 from .common import add_notes, choose_reference, make_tin, read_content
 from .linework import Chain, add_lines, chain_edges
@@ -27,9 +27,9 @@ from .linework import Chain, add_lines, chain_edges
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
-    from ...crs import CrsLike, UnitLike
-    from ...policies import FacePolicy, LineKind
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
+    from ...base.crs import CrsLike, UnitLike
+    from ...base.policies import FacePolicy, LineKind
     from ...tin import TIN
 
 __all__ = ["read"]

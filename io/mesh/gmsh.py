@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ... import _optional
-from ..._atomic import replacing_path
-from ...errors import ReadError
+from ...base import optional
+from ...base.atomic import replacing_path
+from ...base.errors import ReadError
 from ...tin.topology import NO_NEIGHBOR, directed_edges, edge_keys, ends
 from ..isolated import run_isolated
 from .common import (
@@ -31,10 +31,10 @@ from .common import (
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ..._progress import Tell
-    from ...arrays import BoolArray, Int32Array, Int64Array
-    from ...crs import CrsLike, UnitLike
-    from ...policies import FacePolicy
+    from ...base.arrays import BoolArray, Int32Array, Int64Array
+    from ...base.crs import CrsLike, UnitLike
+    from ...base.policies import FacePolicy
+    from ...base.progress import Tell
     from ...tin import TIN, Survey
 
 __all__ = ["read", "write"]
@@ -67,7 +67,7 @@ def read(
     tells; faces with nodes amid their edges are cut at these. Cells that are no faces are left out
     and told. A file of nodes alone gives a survey.
     """
-    _optional.require("meshio", "Reading Gmsh files")
+    optional.require("meshio", "Reading Gmsh files")
     if not path.is_file():
         read_content(path)  # says why it cannot be read
     where = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
@@ -105,7 +105,7 @@ def _flag_edges(triangles: Int32Array, lines: Int64Array, n_points: int) -> Bool
 def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN as a Gmsh file, MSH 2.2 in text."""
     tin = require_tin(surface, path, format_name="Gmsh")
-    meshio = _optional.load("meshio", "Writing Gmsh files")
+    meshio = optional.load("meshio", "Writing Gmsh files")
     edges = _gather_edges(tin)
     number_of = {name: i for i, name in enumerate(dict.fromkeys([SURFACE, *edges.names]), start=1)}
     numbers = [np.array([number_of[name] for name in edges.names], np.int32),

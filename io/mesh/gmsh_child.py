@@ -13,7 +13,7 @@ import numpy as np
 from ..isolated import Answer, Refusal
 
 if TYPE_CHECKING:
-    from ...arrays import Int64Array
+    from ...base.arrays import Int64Array
 
 __all__ = ["prepare", "read_mesh"]
 

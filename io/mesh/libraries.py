@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ... import _optional
-from ..._products import product
-from ..._sentences import counted
-from ...errors import PointsError, ReadError
+from ...base import optional
+from ...base.checks import require_tin
+from ...base.errors import PointsError, ReadError
+from ...base.products import product
+from ...base.sentences import counted
 from ...terrain.drawing.models import choose_origin
 from ...tin import TIN
 from ...tin.checking.overlaps import describe_overlaps
-from ...tin.validation.options import require_tin
 from .common import (
     add_notes,
     choose_reference,
@@ -30,9 +30,9 @@ from .vtk_child import read_dataset
 if TYPE_CHECKING:
     import pyvista
 
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
-    from ...crs import CrsLike, UnitLike
-    from ...policies import FacePolicy
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
+    from ...base.crs import CrsLike, UnitLike
+    from ...base.policies import FacePolicy
 
 __all__ = ["from_mesh", "to_meshio", "to_pyvista", "to_trimesh"]
 
@@ -101,7 +101,7 @@ def to_pyvista(tin: TIN) -> pyvista.PolyData:
     >>> ts.from_mesh(mesh) == tin
     True
     """
-    pv = _optional.load("pyvista", "Turning a TIN into a mesh of PyVista")
+    pv = optional.load("pyvista", "Turning a TIN into a mesh of PyVista")
     require_tin(tin)
     shifted = _shift(tin)
     mesh: pyvista.PolyData = pv.PolyData.from_regular_faces(
@@ -149,7 +149,7 @@ def to_trimesh(tin: TIN) -> Any:
     >>> len(mesh.faces), mesh.metadata["origin"].tolist()
     (2, [2.0, 2.0, 6.0])
     """
-    trimesh = _optional.load("trimesh", "Turning a TIN into a mesh of trimesh")
+    trimesh = optional.load("trimesh", "Turning a TIN into a mesh of trimesh")
     require_tin(tin)
     shifted = _shift(tin)
     metadata = {"origin": shifted.origin, **_describe(tin)}
@@ -187,7 +187,7 @@ def to_meshio(tin: TIN) -> Any:
     >>> ts.to_meshio(tin).info["crs"]
     'EPSG:32616'
     """
-    meshio = _optional.load("meshio", "Turning a TIN into a mesh of meshio")
+    meshio = optional.load("meshio", "Turning a TIN into a mesh of meshio")
     require_tin(tin)
     attributes = {
         str(name): values.copy()

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ...arrays import BoolArray, Int32Array, Int64Array
-    from ...policies import LineKind
+    from ...base.arrays import BoolArray, Int32Array, Int64Array
+    from ...base.policies import LineKind
 
 __all__ = ["Chain", "add_lines", "chain_edges", "list_chains"]
 

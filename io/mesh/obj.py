@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._atomic import replacing
-from ...errors import ReadError, WriteError
+from ...base.atomic import replacing
+from ...base.errors import ReadError, WriteError
 from ..registry.side_files import replacing_data_set
 from . import common
 from .text_writing import BATCH, write_batches, write_reference
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import IO
 
-    from ..._progress import Tell
-    from ...arrays import AnyArray, Float64Array, Int64Array
-    from ...crs import CrsLike, UnitLike
-    from ...policies import FacePolicy
+    from ...base.arrays import AnyArray, Float64Array, Int64Array
+    from ...base.crs import CrsLike, UnitLike
+    from ...base.policies import FacePolicy
+    from ...base.progress import Tell
     from ...tin import TIN, Survey
     from .texture import Texture
 

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._atomic import replacing
-from ..._sentences import counted
-from ...errors import ReadError
+from ...base.atomic import replacing
+from ...base.errors import ReadError
+from ...base.sentences import counted
 from . import common
 from .text_rows import TextRows, describe_row_fault, parse_integers, split_rows
 from .text_writing import BATCH, write_batches, write_reference
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from ..._progress import Tell
-    from ...arrays import Int64Array
-    from ...crs import CrsLike, UnitLike
-    from ...policies import FacePolicy
+    from ...base.arrays import Int64Array
+    from ...base.crs import CrsLike, UnitLike
+    from ...base.policies import FacePolicy
+    from ...base.progress import Tell
     from ...tin import TIN, Survey
 
 __all__ = ["read", "write"]

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._atomic import replacing
-from ..._sentences import counted
-from ...errors import ReadError
+from ...base.atomic import replacing
+from ...base.errors import ReadError
+from ...base.sentences import counted
 from . import common
 from .linework import Chain, add_lines, list_chains
 from .text_rows import TextRows, parse_integers, split_rows
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from ..._progress import Tell
-    from ...arrays import Float64Array, Int64Array
-    from ...crs import CrsLike, UnitLike
-    from ...policies import FacePolicy
+    from ...base.arrays import Float64Array, Int64Array
+    from ...base.crs import CrsLike, UnitLike
+    from ...base.policies import FacePolicy
+    from ...base.progress import Tell
     from ...tin import TIN, Survey
 
 __all__ = ["read", "write"]

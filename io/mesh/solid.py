@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted
-from ...errors import WriteError
+from ...base.errors import WriteError
+from ...base.sentences import counted
 from ...tin.topology import NO_NEIGHBOR, ends
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...arrays import Float64Array, Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int32Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["Solid", "build_solid"]

@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._atomic import replacing
-from ...crs import scale_elevations
-from ...errors import CrsError, OptionError, ReadError, WriteError
-from ...tin.validation.options import as_flag
+from ...base.atomic import replacing
+from ...base.checks import as_flag
+from ...base.crs import scale_elevations
+from ...base.errors import CrsError, OptionError, ReadError, WriteError
 from .common import (
     choose_reference,
     describe_single_precision,
@@ -38,10 +38,10 @@ from .solid import build_solid
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ..._progress import Tell
-    from ...arrays import AnyArray, Float32Array, Float64Array, Int64Array
-    from ...crs import CrsLike, UnitLike
-    from ...policies import FacePolicy
+    from ...base.arrays import AnyArray, Float32Array, Float64Array, Int64Array
+    from ...base.crs import CrsLike, UnitLike
+    from ...base.policies import FacePolicy
+    from ...base.progress import Tell
     from ...tin import TIN
 
 __all__ = ["read", "write"]

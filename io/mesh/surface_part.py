@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ... import _optional
-from ..._sentences import counted, inflect
-from ...errors import PointsError, choice
-from ...policies import FacePolicy
+from ...base import optional
+from ...base.errors import PointsError, choice
+from ...base.policies import FacePolicy
+from ...base.sentences import counted, inflect
 from ...tin.predicates import columns, orientation
 from ...tin.topology import find_offsets
 from ...tin.validation.points import as_points
@@ -19,7 +19,7 @@ from ...tin.validation.triangles import as_triangles
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
     from ...tin import TIN
     from ...tin.predicates import Columns
 
@@ -182,7 +182,7 @@ def _find_overlaps(
     points: Float64Array, xy: Columns, corners: Int64Array, wanted: Int64Array
 ) -> Int64Array:
     """Return the pairs of triangles that overlap, (k, 2), the lower number first."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     places = points[corners[wanted], :2]
     low, high = places.min(axis=1), places.max(axis=1)
     boxes = shapely.box(*low.T, *high.T)

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...errors import ReadError
+from ...base.errors import ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ...arrays import AnyArray, Float64Array, Int64Array
+    from ...base.arrays import AnyArray, Float64Array, Int64Array
 
 __all__ = ["TextRows", "describe_row_fault", "parse_integers", "split_rows"]
 

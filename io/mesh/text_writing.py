@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from typing import IO
 
-    from ..._progress import Tell
+    from ...base.progress import Tell
     from ...tin import TIN
 
 __all__ = ["BATCH", "write_batches", "write_reference"]

@@ -11,7 +11,7 @@ import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ...errors import LossWarning, OptionError, ReadError
+from ...base.errors import LossWarning, OptionError, ReadError
 from ...terrain.viewer.ortho import Ortho
 from ..raster.ortho import as_picture_path, read_ortho
 from .common import read_content
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import os
     from pathlib import Path
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["MOST_PIXELS", "Texture", "choose_picture", "load_texture"]

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ..._atomic import replacing_path
-from ..._sentences import counted
-from ...crs import CRS, METRE, Unit
-from ...errors import CrsError, OptionError, ReadError, WriteError
-from ...policies import LineKind
+from ...base import optional
+from ...base.atomic import replacing_path
+from ...base.crs import CRS, METRE, Unit
+from ...base.errors import CrsError, OptionError, ReadError, WriteError
+from ...base.policies import LineKind
+from ...base.sentences import counted
 from ..isolated import run_isolated
 from .common import (
     add_notes,
@@ -39,10 +39,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ..._progress import Tell
-    from ...arrays import AnyArray, Float64Array, Int32Array, Int64Array
-    from ...crs import CrsLike, UnitLike
-    from ...policies import FacePolicy
+    from ...base.arrays import AnyArray, Float64Array, Int32Array, Int64Array
+    from ...base.crs import CrsLike, UnitLike
+    from ...base.policies import FacePolicy
+    from ...base.progress import Tell
     from ...tin import TIN, Survey
     from .common import Reference
 
@@ -82,7 +82,7 @@ def read(
         Name of the variable that holds the nodes' elevations; needed where its attributes do not
         tell. Depths (``positive`` is "down") change their sign, which the report tells.
     """
-    _optional.require("netCDF4", "Reading UGRID files")
+    optional.require("netCDF4", "Reading UGRID files")
     if not path.is_file():
         read_content(path)  # says why it cannot be read
     where: dict[str, Any] = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100
@@ -205,7 +205,7 @@ def _find_opposite(triangles: Int32Array, edges: Int64Array) -> NDArray[np.intp]
 def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN as UGRID 1.0 in netCDF 4."""
     tin = require_tin(surface, path, format_name="UGRID")
-    netcdf = _optional.load("netCDF4", "Writing UGRID files")
+    netcdf = optional.load("netCDF4", "Writing UGRID files")
     with replacing_path(path) as beside:
         try:
             with netcdf.Dataset(str(beside), "w", format="NETCDF4") as data:

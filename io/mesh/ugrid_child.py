@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted
+from ...base.sentences import counted
 from ..isolated import Answer, Refusal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from ...arrays import Float64Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
 
 __all__ = ["prepare", "read_mesh"]
 

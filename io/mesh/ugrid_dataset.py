@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ... import _optional
-from ..._products import product
-from ...tin.validation.options import require_tin
+from ...base import optional
+from ...base.checks import require_tin
+from ...base.products import product
 from .ugrid import write_content
 
 if TYPE_CHECKING:
@@ -45,8 +45,8 @@ def to_ugrid(tin: TIN) -> Any:
     >>> ts.to_ugrid(tin)["mesh2d_node_z"].values
     array([5., 6., 7., 8.])
     """
-    xarray = _optional.load("xarray", "Turning a TIN into a data set of UGRID")
-    netcdf = _optional.load("netCDF4", "Turning a TIN into a data set of UGRID")
+    xarray = optional.load("xarray", "Turning a TIN into a data set of UGRID")
+    netcdf = optional.load("netCDF4", "Turning a TIN into a data set of UGRID")
     require_tin(tin)
     with netcdf.Dataset("tin.nc", "w", format="NETCDF4", diskless=True, persist=False) as data:
         write_content(data, tin)

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ..._atomic import replacing_path
-from ...errors import ReadError, WriteError
+from ...base import optional
+from ...base.atomic import replacing_path
+from ...base.errors import ReadError, WriteError
 from ...terrain.relief.gradients import aspect, slope
 from ..isolated import run_isolated
 from . import common
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from ..._progress import Tell
-    from ...arrays import AnyArray, Float64Array
-    from ...crs import CrsLike, UnitLike
-    from ...policies import FacePolicy
+    from ...base.arrays import AnyArray, Float64Array
+    from ...base.crs import CrsLike, UnitLike
+    from ...base.policies import FacePolicy
+    from ...base.progress import Tell
     from ...tin import TIN, Survey
     from ..isolated import Answer
 
@@ -95,7 +95,7 @@ def _restore_points(arrays: Mapping[str, AnyArray]) -> Float64Array:
 
 def _read_in_child(path: Path) -> Answer:
     """Let a child read the file, once its beginning and end are those of a whole one."""
-    _optional.require("pyvista", "Reading VTK files")
+    optional.require("pyvista", "Reading VTK files")
     content = common.read_content(path)
     if b"</VTKFile>" not in content[-200:]:
         raise ReadError(f"'{path}' is no whole VTK XML file: '</VTKFile>' is missing.", path=path)
@@ -129,7 +129,7 @@ def _require_likely_counts(content: bytes, path: Path) -> None:
 def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN as VTK XML: an UnstructuredGrid to ``.vtu``, else PolyData."""
     tin = common.require_tin(surface, path, format_name="VTK")
-    pv = _optional.load("pyvista", "Writing VTK files")
+    pv = optional.load("pyvista", "Writing VTK files")
     mesh, class_name = _make_poly_data(tin, pv), "vtkXMLPolyDataWriter"
     if path.suffix.lower() == ".vtu":
         mesh, class_name = mesh.cast_to_unstructured_grid(), "vtkXMLUnstructuredGridWriter"

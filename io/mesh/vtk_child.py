@@ -13,7 +13,7 @@ from ..isolated import Answer, Refusal
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ...arrays import AnyArray, Float64Array, Int64Array, UInt8Array
+    from ...base.arrays import AnyArray, Float64Array, Int64Array, UInt8Array
 
 __all__ = ["catch_errors", "load_vtk_class", "prepare", "read_dataset", "read_mesh"]
 

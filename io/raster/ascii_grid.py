@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import LossWarning, OptionError, WriteError
+from ...base.errors import LossWarning, OptionError, WriteError
 from ..registry.side_files import replacing_data_set
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ..._progress import Tell
-    from ...arrays import AnyArray
-    from ...terrain.results import Raster
+    from ...base.arrays import AnyArray
+    from ...base.progress import Tell
+    from ...base.results import Raster
 
 __all__ = ["write"]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ... import terrain
-from ...crs import CRS
+from ...base.crs import CRS
 from ...terrain.gridding.grids import Cells, to_grid
 from ..isolated.local_files import require_local
 from ..isolated.spooling import open_ordinary_file, require_readable

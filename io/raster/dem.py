@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ... import _optional
-from ..._progress import Progress
-from ..._sentences import coordinate, counted
-from ...crs import CRS, Unit
-from ...errors import OptionError, ReadError
+from ...base import optional
+from ...base.crs import CRS, Unit
+from ...base.errors import OptionError, ReadError
+from ...base.progress import Progress
+from ...base.sentences import coordinate, counted
 from ...terrain.gridding.voids import trace_rings
 from ...tin import Bounds, Survey
 from ...tin.screening.nodata import describe_elevations, parse_nodata
@@ -32,9 +32,9 @@ if TYPE_CHECKING:
     from contextlib import AbstractContextManager
     from typing import TypeAlias
 
-    from ..._progress import Tell
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
-    from ...crs import CrsLike, UnitLike
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
+    from ...base.crs import CrsLike, UnitLike
+    from ...base.progress import Tell
     from ..isolated import Answer
 
     OpenStrips: TypeAlias = Callable[[dict[str, Any]], AbstractContextManager[Iterator[Answer]]]
@@ -358,7 +358,7 @@ class Header:
 
 def read_header(path: Path) -> Header:
     """Let a child open a raster, and return what it says of itself."""
-    _optional.require("rasterio", "Reading a raster")
+    optional.require("rasterio", "Reading a raster")
     limits = choose_limits(_measure_files(path))
     found = run_isolated(
         f"{_choose_reader(path)}:read_header", _name_for_gdal(path), path=path, limits=limits

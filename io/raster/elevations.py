@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...crs import CRS, Unit
-from ...errors import OptionError, ReadError
+from ...base.crs import CRS, Unit
+from ...base.errors import OptionError, ReadError
+from ...base.results import Raster
 from ...terrain.gridding.grids import as_parts, to_grid
-from ...terrain.results import Raster
 from ...tin.screening.nodata import parse_nodata
 from ..isolated.local_files import require_local
 from ..isolated.spooling import is_pipe, require_readable
@@ -29,8 +29,8 @@ from .meaning import settle_axes
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...arrays import AnyArray, BoolArray, Float64Array
-    from ...crs import CrsLike, UnitLike
+    from ...base.arrays import AnyArray, BoolArray, Float64Array
+    from ...base.crs import CrsLike, UnitLike
 
 __all__ = ["read_raster"]
 

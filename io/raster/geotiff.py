@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ...errors import WriteError, choice
-from ...policies import OverviewMethod, RasterCompression
-from ...terrain.results.columns import UNKNOWN_UNIT, unit_text
+from ...base import optional
+from ...base.errors import WriteError, choice
+from ...base.policies import OverviewMethod, RasterCompression
+from ...base.results.columns import UNKNOWN_UNIT, unit_text
 from ..registry.side_files import replacing_data_set
 from ..reprojection.crs_kept import require_kept
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ..._progress import Tell
-    from ...terrain.results import Raster
+    from ...base.progress import Tell
+    from ...base.results import Raster
 
 __all__ = ["write", "write_cog"]
 
@@ -99,7 +99,7 @@ def write_cog(
     with replacing_data_set(path, "cog") as new, _translate_faults(path):
         plain = new.with_name(f"plain-{new.name}")
         _write_tiles(raster, plain, path, _choose_draft_compression(raster), progress)
-        _optional.load("rasterio.shutil", f"Writing '{path}'").copy(
+        optional.load("rasterio.shutil", f"Writing '{path}'").copy(
             os.fspath(plain),
             os.fspath(new),
             driver="COG",
@@ -162,7 +162,7 @@ def _write_tiles(
     compression: RasterCompression,
     progress: Tell | None,
 ) -> None:
-    rasterio = _optional.load("rasterio", f"Writing '{path}'")
+    rasterio = optional.load("rasterio", f"Writing '{path}'")
     with rasterio.open(new, "w", **_make_profile(raster, path, compression)) as dataset:
         for number, name in enumerate(raster.bands, 1):
             _describe(dataset, number, raster, name)
@@ -180,7 +180,7 @@ def _write_tiles(
 
 def _make_profile(raster: Raster, path: Path, compression: RasterCompression) -> dict[str, Any]:
     (rows, columns), bounds, dtype = raster.shape, raster.grid.bounds, _choose_dtype(raster)
-    affine = _optional.load("rasterio", f"Writing '{path}'").Affine
+    affine = optional.load("rasterio", f"Writing '{path}'").Affine
     spacing = raster.grid.spacing
     tiles = {"tiled": True, "blockxsize": _TILE, "blockysize": _TILE}
     packing = {"compress": "deflate", "predictor": _choose_predictor(dtype), "zlevel": _LEVEL}
@@ -207,7 +207,7 @@ def _choose_predictor(dtype: np.dtype[Any]) -> int:
 
 def _make_gdal_crs(raster: Raster, path: Path) -> Any:
     """Return the CRS for GDAL: as a code where it knows it, whose vertical part it keeps."""
-    rasterio = _optional.load("rasterio", f"Writing '{path}'")
+    rasterio = optional.load("rasterio", f"Writing '{path}'")
     if raster.crs is None:
         return None
     try:
@@ -217,7 +217,7 @@ def _make_gdal_crs(raster: Raster, path: Path) -> Any:
 
 
 def _require_crs(raster: Raster, new: Path, path: Path) -> None:
-    rasterio = _optional.load("rasterio", f"Writing '{path}'")
+    rasterio = optional.load("rasterio", f"Writing '{path}'")
     if raster.crs is None:
         return
     with rasterio.open(new) as dataset:
@@ -231,7 +231,7 @@ def _require_complete(new: Path, path: Path, factors: Sequence[int] | None = Non
     GDAL does not say when a disk is full as it closes a file, and overviews whose directory was
     not written are none.
     """
-    rasterio = _optional.load("rasterio", f"Writing '{path}'")
+    rasterio = optional.load("rasterio", f"Writing '{path}'")
     with rasterio.open(new) as dataset:
         levels = len(dataset.overviews(1))
     if factors is not None and levels != len(factors):
@@ -289,7 +289,7 @@ def _add_overviews(
     factors: Sequence[int],
     compression: RasterCompression,
 ) -> None:
-    rasterio = _optional.load("rasterio", "Writing overviews")
+    rasterio = optional.load("rasterio", "Writing overviews")
     if not factors:
         return
     packing = {
@@ -310,7 +310,7 @@ def _add_overviews(
 
 @contextmanager
 def _translate_faults(path: Path) -> Iterator[None]:
-    rasterio = _optional.load("rasterio", f"Writing '{path}'")
+    rasterio = optional.load("rasterio", f"Writing '{path}'")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)

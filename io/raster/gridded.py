@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...errors import PointsError
-from ...terrain.results import Raster
-from ...tin.types import Bounds, Grid
+from ...base.errors import PointsError
+from ...base.results import Raster
+from ...base.types import Bounds, Grid
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
     from ...tin import Survey
 
 __all__ = ["make_raster"]

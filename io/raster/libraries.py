@@ -11,18 +11,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ...errors import OptionError
-from ...terrain.results import Raster
-from ...tin.validation.options import require_type
+from ...base import optional
+from ...base.checks import require_type
+from ...base.errors import OptionError
+from ...base.results import Raster
 from .dem import Affine, Choice, Header, make_survey
 from .gdal_child import cut_strips, describe
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from ...arrays import AnyArray, Float64Array, UInt8Array
-    from ...crs import CrsLike, UnitLike
+    from ...base.arrays import AnyArray, Float64Array, UInt8Array
+    from ...base.crs import CrsLike, UnitLike
     from ...tin import Bounds, Survey
     from ..isolated import Answer
 
@@ -318,7 +318,7 @@ def to_rasterio(raster: Raster) -> Any:
     ...     dataset.shape, dataset.crs.to_epsg(), dataset.descriptions
     ((4, 4), 32616, ('elevation',))
     """
-    rasterio = _optional.load("rasterio.io", "Handing a raster over to rasterio")
+    rasterio = optional.load("rasterio.io", "Handing a raster over to rasterio")
     require_type("raster", raster, Raster)
     from .geotiff import write
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted
-from ...crs import CRS, Unit
-from ...errors import OptionError, ReadError
+from ...base.crs import CRS, Unit
+from ...base.errors import OptionError, ReadError
+from ...base.sentences import counted
 from ...tin.screening.area_of_use import AreaOfUse
 
 if TYPE_CHECKING:

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ...crs import CRS
-from ...errors import LossWarning, OptionError, ReadError
+from ...base import optional
+from ...base.crs import CRS
+from ...base.errors import LossWarning, OptionError, ReadError
 from ...terrain.viewer.ortho import Ortho
 from ..isolated import Limits, choose_limits, run_isolated
 from ..isolated.local_files import require_local
@@ -76,7 +76,7 @@ def read_ortho(
         something is taken for granted that it does not tell.
     """
     path = as_picture_path(source, "drape")
-    _optional.require("rasterio", "Reading a picture to drape")
+    optional.require("rasterio", "Reading a picture to drape")
     crs = None if tins[0].crs is None else tins[0].crs.horizontal
     value, arrays = _ask_child(path, tins, crs, most_pixels, transparent)
     opacity = arrays.get("opacity")

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...crs import CRS
+from ...base.crs import CRS
 from ..isolated import Answer, Refusal
 from ..isolated.gdal import make_environment
 from .gdal_child import prepare

@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...errors import ReadError
+from ...base.errors import ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
-from ... import _optional
-from ..._plug_ins import describe_failure
-from ...errors import FormatError
+from ...base import optional
+from ...base.errors import FormatError
+from ...base.plug_ins import describe_failure
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -159,7 +159,7 @@ class Format:
     @property
     def is_installed(self) -> bool:
         """Whether the libraries that it needs are there; they are not loaded."""
-        return self.extra is None or _optional.is_installed(self.extra)
+        return self.extra is None or optional.is_installed(self.extra)
 
     def options(self, action: str) -> tuple[str, ...]:
         """Return the names of the options of its reader or writer (``"read"``, ``"write"``).

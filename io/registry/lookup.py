@@ -12,8 +12,8 @@ from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from ..._sentences import shown
-from ...errors import FormatError, choice
+from ...base.errors import FormatError, choice
+from ...base.sentences import shown
 from .format import Format
 from .plug_in_formats import load_plug_in_formats
 

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted, shown
-from ...errors import LossWarning
-from ...terrain.results import Features
+from ...base.errors import LossWarning
+from ...base.results import Features
+from ...base.sentences import counted, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from pathlib import Path
 
-    from ...arrays import AnyArray
+    from ...base.arrays import AnyArray
     from ...tin import Survey
     from .format import Format
 

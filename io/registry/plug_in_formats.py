@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, get_args
 
-from ..._plug_ins import describe_failure, find_plug_ins, warn_of_plug_in
+from ...base.plug_ins import describe_failure, find_plug_ins, warn_of_plug_in
 from .format import KINDS, Format, Loss
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from ..._plug_ins import PlugIn
+    from ...base.plug_ins import PlugIn
 
 __all__ = ["find_fault", "load_plug_in_formats"]
 

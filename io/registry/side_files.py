@@ -6,9 +6,9 @@ import os
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from ..._atomic import replacing_files
-from ...crs import CRS
-from ...errors import CrsError, ReadError, WriteError
+from ...base.atomic import replacing_files
+from ...base.crs import CRS
+from ...base.errors import CrsError, ReadError, WriteError
 from .lookup import find_format, known_formats, list_claims
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def replacing_data_set(path: Path, name: str) -> Iterator[Path]:
     Yields
     ------
     Path
-        As :func:`tinsmith._atomic.replacing_files`.
+        As :func:`tinsmith.base.atomic.replacing_files`.
 
     Raises
     ------

@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._sentences import coordinate, counted
-from ...errors import CrsError, OptionError
+from ...base.errors import CrsError, OptionError
+from ...base.sentences import coordinate, counted
 from ...tin.screening.area_of_use import AreaOfUse
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from ...arrays import Float64Array
-    from ...crs import CRS
+    from ...base.arrays import Float64Array
+    from ...base.crs import CRS
 
 __all__ = [
     "are_small_degrees",

@@ -5,8 +5,8 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING
 
-from ...crs import CRS
-from ...errors import CrsError, LossWarning, WriteError
+from ...base.crs import CRS
+from ...base.errors import CrsError, LossWarning, WriteError
 
 if TYPE_CHECKING:
     from pathlib import Path

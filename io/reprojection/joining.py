@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import coordinate, counted
-from ...errors import CrsError, ReadError
-from ...terrain.georeference import agree
+from ...base.errors import CrsError, ReadError
+from ...base.georeference import agree
+from ...base.sentences import coordinate, counted
+from ...base.types import RowSources
 from ...tin import Survey
 from ...tin.building.attributes import join_columns
-from ...tin.types import RowSources
 from .surfaces import scale_survey
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...arrays import Float64Array
-    from ...crs import CRS
+    from ...base.arrays import Float64Array
+    from ...base.crs import CRS
 
 __all__ = ["SOURCE_FILE", "join_surveys"]
 

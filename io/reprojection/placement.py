@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 import numpy as np
 
-from ..._sentences import coordinate
-from ...crs import CRS, require_same_unit
-from ...errors import CrsError, ReadError
+from ...base.crs import CRS, require_same_unit
+from ...base.errors import CrsError, ReadError
+from ...base.sentences import coordinate
 from .contradictions import are_small_degrees, look_at_degrees, look_at_place
 from .transformation import convert_elevations, find_utm_zone, reproject, transform_points
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...arrays import Float64Array
-    from ...crs import Unit
+    from ...base.arrays import Float64Array
+    from ...base.crs import Unit
 
 __all__ = ["DegreesError", "Placed", "place", "settle_unit"]
 

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
-    from ...crs import CRS
+    from ...base.crs import CRS
 
 __all__ = ["Quality", "describe_missing_grids", "judge"]
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from ..._products import product
-from ..._sentences import height
-from ...crs import CRS, Unit
-from ...errors import CrsError, OptionError
+from ...base.crs import CRS, Unit
+from ...base.errors import CrsError, OptionError
+from ...base.products import product
+from ...base.sentences import height
 from ...tin import TIN, Breakline, Surface, Survey, Water
 from .transformation import find_conversion_factor
 from .transformation import reproject as reproject_points
@@ -18,8 +18,8 @@ from .transformation import reproject as reproject_points
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...arrays import Float64Array
-    from ...crs import CrsLike, UnitLike
+    from ...base.arrays import Float64Array
+    from ...base.crs import CrsLike, UnitLike
 
 __all__ = ["reproject", "scale_survey"]
 

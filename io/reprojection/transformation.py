@@ -1,6 +1,6 @@
 """Points move from one coordinate reference system to another, and elevations change their unit.
 
-What a CRS is, and which units there are, is told by :mod:`tinsmith.crs`.
+What a CRS is, and which units there are, is told by :mod:`tinsmith.base.crs`.
 """
 
 from __future__ import annotations
@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._sentences import coordinate, counted
-from ...crs import CRS, METRE, UNKNOWN, Unit, assume_elevation_unit
-from ...errors import CrsError
+from ...base.crs import CRS, METRE, UNKNOWN, Unit, assume_elevation_unit
+from ...base.errors import CrsError
+from ...base.sentences import coordinate, counted
 from ...tin.validation.points import as_points
 from .quality import Quality, describe_missing_grids, judge
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
-    from ...crs import CrsLike, UnitLike
+    from ...base.arrays import Float64Array
+    from ...base.crs import CrsLike, UnitLike
 
 __all__ = [
     "METRE",

@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._atomic import replacing
-from ...errors import FormatError
-from ...terrain.results import Features, Table
-from ...terrain.results.columns import unit_text
+from ...base.atomic import replacing
+from ...base.errors import FormatError
+from ...base.results import Features, Table
+from ...base.results.columns import unit_text
 from ..registry.losses import tell_formulas
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from ..._progress import Tell
-    from ...arrays import AnyArray
-    from ...terrain.results.columns import Units
+    from ...base.arrays import AnyArray
+    from ...base.progress import Tell
+    from ...base.results.columns import Units
 
 __all__ = ["header_text", "tabulate_points", "write"]
 

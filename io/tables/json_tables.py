@@ -5,15 +5,15 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from ..._atomic import replacing
-from ...terrain.results.columns import unit_text
+from ...base.atomic import replacing
+from ...base.results.columns import unit_text
 from ..vector.geojson.values import json_texts, properties_template
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ..._progress import Tell
-    from ...terrain.results import Table
+    from ...base.progress import Tell
+    from ...base.results import Table
 
 __all__ = ["write"]
 

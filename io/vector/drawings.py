@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ... import _optional
-from ..._sentences import counted
-from ...errors import OptionError, ReadError
+from ...base import optional
+from ...base.errors import OptionError, ReadError
+from ...base.sentences import counted
 from ..cad.dxf.drawing import Drawing, read_drawing
 from ..cad.dxf.names import ELEVATION_PROPERTY, UNKNOWN
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...arrays import AnyArray, Int64Array, ObjectArray
-    from ...crs import CRS
+    from ...base.arrays import AnyArray, Int64Array, ObjectArray
+    from ...base.crs import CRS
 
 __all__ = ["DrawnFeatures", "read_drawing_features"]
 
@@ -99,7 +99,7 @@ def _find_elevation_unit(drawing: Drawing) -> str:
 def _gather_shapes(
     drawing: Drawing, *, lines_only: bool
 ) -> tuple[ObjectArray, dict[str, AnyArray]]:
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     shapes = [shapely.LineString(rows) for rows in drawing.lines]
     layers = drawing.arrays["line_layers"].tolist()
     told = drawing.value["line_names"] or [[]] * len(shapes)

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted, height
-from ...crs import FOOT, US_SURVEY_FOOT, Unit
-from ...errors import OptionError, ReadError
+from ...base.crs import FOOT, US_SURVEY_FOOT, Unit
+from ...base.errors import OptionError, ReadError
+from ...base.sentences import counted, height
 from ..delimited.columns import find_role, find_unit_word
 from ..reprojection.placement import settle_unit
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from .features import Features
 
 __all__ = [

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ..._sentences import counted
-from ...crs import CRS
-from ...errors import CrsError, OptionError, ReadError
+from ...base import optional
+from ...base.crs import CRS
+from ...base.errors import CrsError, OptionError, ReadError
+from ...base.sentences import counted
 from ...tin import TIN
 from ..cad.signatures import is_dxf, is_landxml
 from ..isolated import choose_limits, run_isolated
@@ -27,7 +27,7 @@ from .well_known_binary import replace_surfaces
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...arrays import AnyArray, ObjectArray
+    from ...base.arrays import AnyArray, ObjectArray
 
 __all__ = ["Features", "read_features"]
 
@@ -73,7 +73,7 @@ def read_features(
 
 def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only: bool) -> Features:
     if path.suffix.lower() not in (*_PARQUET, _DRAWING):
-        _optional.require("pyogrio", "Reading vector files")
+        optional.require("pyogrio", "Reading vector files")
     content = _require_whole_file(path)
     if is_dxf(content) or path.suffix.lower() == _DRAWING:
         drawn = read_drawing_features(path, layer=layer, where=where, lines_only=lines_only)
@@ -81,7 +81,7 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
     if is_landxml(content):
         return _read_design(path, layer, where)
     library = "pyarrow" if is_parquet(content) else "pyogrio"
-    _optional.require(library, "Reading vector files")
+    optional.require(library, "Reading vector files")
     head = read_json_members(content, path)
     where_it_is = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
     child = "parquet_child" if is_parquet(content) else "gdal_child"
@@ -122,7 +122,7 @@ def _read_design(path: Path, layer: str | None, where: str | None) -> Features:
     if isinstance(found, TIN) or not lines:
         what = "a surface" if isinstance(found, TIN) else "points"
         raise ReadError(f"'{path}' holds {what}, and no contours or breaklines.", path=path)
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     coords = [np.asarray(getattr(line, "coords", line)) for line in lines]
     shapes = np.empty(len(coords), object)
     shapes[:] = [shapely.LineString(one) for one in coords]
@@ -139,7 +139,7 @@ def _drop_heights_above_ground(features: Features) -> Features:
     modes = features.find_column("altitudemode")
     if modes is None:
         return features
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     has_z = shapely.has_z(features.geometries)
     told = np.array([str(mode or "") for mode in modes.tolist()], object)
     is_above_ground = np.isin(told, _ABOVE_GROUND) & has_z
@@ -230,7 +230,7 @@ def _describe_part(layer: str, where: str | None) -> str:
 
 def _parse_shapes(arrays: dict[str, AnyArray], path: Path, *, has_surfaces: bool) -> ObjectArray:
     """Return geometries of shapely; TINs and the like as polygons where surfaces may be."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     wkb, lengths = arrays["wkb"].tobytes(), arrays["lengths"]
     ends = np.cumsum(np.maximum(lengths, 0))
     parts = zip((ends - np.maximum(lengths, 0)).tolist(), ends.tolist(), strict=True)
@@ -253,7 +253,7 @@ def _parse_shapes(arrays: dict[str, AnyArray], path: Path, *, has_surfaces: bool
 
 def _drop_without_geometry(features: Features) -> Features:
     """Leave out the features that have no geometry, and note them."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     is_empty = shapely.is_missing(features.geometries) | shapely.is_empty(features.geometries)
     if not is_empty.any():
         return features

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..._atomic import replacing_files
+from ...base.atomic import replacing_files
 from .ogr import describe, write_layer
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...terrain.results import Features
+    from ...base.results import Features
 
 __all__ = ["write"]
 

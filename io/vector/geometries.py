@@ -6,20 +6,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ..._atomic import as_path
-from ..._sentences import counted, inflect
-from ...crs import CRS
-from ...errors import ReadError
-from ...terrain.results import Features
+from ...base import optional
+from ...base.atomic import as_path
+from ...base.crs import CRS
+from ...base.errors import ReadError
+from ...base.results import Features
+from ...base.sentences import counted, inflect
 from .features import read_features
 from .parts import Wanted, crs_notes, move_to_crs
 
 if TYPE_CHECKING:
     import os
 
-    from ...arrays import Float64Array, ObjectArray
-    from ...crs import CrsLike
+    from ...base.arrays import Float64Array, ObjectArray
+    from ...base.crs import CrsLike
     from .features import Features as Layer
 
 __all__ = ["read_geometries"]
@@ -64,7 +64,7 @@ def read_geometries(
     CrsError
         If they cannot be brought into the CRS.
     """
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     read = read_features(as_path(path), layer=layer)
     wanted = Wanted(CRS.of(crs))
     shapes = shapely.orient_polygons(shapely.force_2d(read.geometries))
@@ -87,7 +87,7 @@ def read_geometries(
 
 
 def _find_kind(shapes: ObjectArray, read: Layer) -> Any:
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     types = shapely.get_type_id(shapes).tolist()
     kinds = [_KIND_OF.get(one, "collections") for one in types]
     other = next((row for row, kind in enumerate(kinds) if kind != kinds[0]), None)

@@ -7,14 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..._atomic import folder_beside
-from ...errors import OptionError, WriteError
-from ...tin.validation.options import as_flag
+from ...base.atomic import folder_beside
+from ...base.checks import as_flag
+from ...base.errors import OptionError, WriteError
 from ..mesh.geopackage.containers import MARK, Placing, adding_layers
 from .ogr import describe, write_layer
 
 if TYPE_CHECKING:
-    from ...terrain.results import Features
+    from ...base.results import Features
 
 __all__ = ["write"]
 

@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ..._atomic import replacing_path
-from ...errors import WriteError
+from ...base import optional
+from ...base.atomic import replacing_path
+from ...base.errors import WriteError
 from .ogr import describe, encode_geometries
 from .well_known_binary import encode_equal_shapes
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...arrays import AnyArray
-    from ...terrain.results import Features
+    from ...base.arrays import AnyArray
+    from ...base.results import Features
 
 __all__ = ["write"]
 
@@ -47,8 +47,8 @@ def write(features: Features, path: Path) -> None:
     Coordinates and numbers are the same. The CRS is PROJJSON, ``null`` if it is not known; units
     and notes are metadata of the file.
     """
-    pyarrow = _optional.load("pyarrow", f"Writing '{path}'")
-    parquet = _optional.load("pyarrow.parquet", f"Writing '{path}'")
+    pyarrow = optional.load("pyarrow", f"Writing '{path}'")
+    parquet = optional.load("pyarrow.parquet", f"Writing '{path}'")
     if _GEOMETRY in features.columns:
         raise WriteError(
             f"Cannot write '{path}': a column '{_GEOMETRY}' is GeoParquet's own: rename it.",

@@ -9,8 +9,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ...arrays import AnyArray, Int64Array, ObjectArray
-    from ...crs import CRS
+    from ...base.arrays import AnyArray, Int64Array, ObjectArray
+    from ...base.crs import CRS
 
 __all__ = ["Features", "name_apart", "name_columns"]
 

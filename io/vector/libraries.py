@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._products import product
-from ...crs import measure_angular_unit
-from ...errors import OptionError
-from ...terrain.georeference import find_plane_units
+from ...base.crs import measure_angular_unit
+from ...base.errors import OptionError
+from ...base.georeference import find_plane_units
+from ...base.products import product
+from ...base.results import Features
 from ...terrain.isolines.measures import measure_ring_areas
-from ...terrain.results import Features
 from ...tin import TIN, Surface, Survey, Voronoi
 from ...tin.topology import find_offsets
 from .surface_features import make_features
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, Float64Array, Int64Array
-    from ...policies import FeatureKind
+    from ...base.arrays import AnyArray, Float64Array, Int64Array
+    from ...base.policies import FeatureKind
 
 __all__ = ["build_collection", "build_frame", "build_stream", "to_features"]
 

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ..._sentences import counted, inflect
-from ...errors import ReadError
+from ...base import optional
+from ...base.errors import ReadError
+from ...base.sentences import counted, inflect
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
 
 __all__ = ["note_nesting"]
 
@@ -34,7 +34,7 @@ def note_nesting(polygons: Sequence[Sequence[Float64Array]], path: Path) -> list
     ReadError
         If two overlap or are equal: whether the surface lies there is anybody's guess.
     """
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     if len(polygons) < 2:
         return []
     shapes = shapely.make_valid(np.array([_shape(rings) for rings in polygons], object))
@@ -71,6 +71,6 @@ def _describe_nesting(count: int, path: Path) -> list[str]:
 
 
 def _shape(rings: Sequence[Float64Array]) -> Any:
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     outer, *islands = [ring[:, :2] for ring in rings]
     return shapely.Polygon(outer, islands)

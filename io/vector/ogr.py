@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ...errors import WriteError
-from ...terrain.results.columns import UNKNOWN_UNIT, unit_text
-from ...terrain.results.geometries import build_geometries
+from ...base import optional
+from ...base.errors import WriteError
+from ...base.results.columns import UNKNOWN_UNIT, unit_text
+from ...base.results.geometries import build_geometries
 from ..reprojection.crs_kept import require_kept
 from .well_known_binary import encode_equal_shapes
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from ...arrays import AnyArray, BoolArray, ObjectArray
-    from ...terrain.results import Features
+    from ...base.arrays import AnyArray, BoolArray, ObjectArray
+    from ...base.results import Features
 
 __all__ = ["describe", "encode_geometries", "require_int64", "write_layer"]
 
@@ -55,7 +55,7 @@ def write_layer(
     WriteError
         If it cannot be written, or GDAL had to change a value.
     """
-    pyogrio = _optional.load("pyogrio", f"Writing '{shown}'")
+    pyogrio = optional.load("pyogrio", f"Writing '{shown}'")
     if geometry_type is None:
         geometry_type = features.geometry_type + (" Z" if features.has_elevations else "")
     columns = [_as_field(name, values, shown) for name, values in features.columns.items()]
@@ -124,7 +124,7 @@ def encode_geometries(features: Features) -> ObjectArray:
     equal = encode_equal_shapes(features)
     if equal is not None:
         return equal.astype(object)
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     dimension = 3 if features.has_elevations else 2
     geometries = build_geometries(features)
     written: Any = shapely.to_wkb(geometries, output_dimension=dimension, flavor="iso")
@@ -167,7 +167,7 @@ def _translate_faults(path: Path) -> Iterator[None]:
 @contextmanager
 def _without_clock() -> Iterator[None]:
     """Let GDAL write a fixed time."""
-    pyogrio = _optional.load("pyogrio", "Writing features")
+    pyogrio = optional.load("pyogrio", "Writing features")
     before = pyogrio.get_gdal_config_option("OGR_CURRENT_DATE")
     pyogrio.set_gdal_config_options({"OGR_CURRENT_DATE": _NO_CLOCK})
     try:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ... import _optional
+from ...base import optional
 from ..isolated import Answer, Refusal
 from .gdal_child import convert_to_texts, is_numeric, pack_geometries
 
@@ -84,7 +84,7 @@ def _encode(values: Any, column: dict[str, Any], shown: str) -> list[bytes | Non
 
 
 def _encode_points(values: Any) -> list[bytes | None]:
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     names = [axis for axis in "xyz" if values.type.get_field_index(axis) >= 0]
     xyz = np.stack([np.asarray(values.field(axis), np.float64) for axis in names], axis=1)
     points = shapely.to_wkb(shapely.points(xyz), flavor="iso")

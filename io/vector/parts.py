@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 import numpy as np
 
-from ... import _optional
-from ..._sentences import counted
-from ...crs import assume_elevation_unit
-from ...errors import ReadError
+from ...base import optional
+from ...base.crs import assume_elevation_unit
+from ...base.errors import ReadError
+from ...base.sentences import counted
 from ...tin.topology import find_offsets
 from ..reprojection.placement import place
 from ..reprojection.transformation import find_conversion_factor
 from .elevations import find_elevation_unit
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array, ObjectArray
-    from ...crs import CRS, Unit
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array, ObjectArray
+    from ...base.crs import CRS, Unit
     from .features import Features
 
 __all__ = [
@@ -85,7 +85,7 @@ def split_into_parts(
     CrsError
         If the lines cannot be brought into the CRS.
     """
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     lines = _split_geometries(features)
     xyz = shapely.get_coordinates(lines.shapes, include_z=True)
     bounds = find_offsets(shapely.get_num_coordinates(lines.shapes))
@@ -113,7 +113,7 @@ def split_into_parts(
 
 def _split_geometries(features: Features) -> _Lines:
     """Take collections and polygons apart."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     shapes, rows = features.geometries, np.arange(len(features.geometries))
     while (shapely.get_type_id(shapes) > _POLYGON).any():
         shapes, index = shapely.get_parts(shapes, return_index=True)

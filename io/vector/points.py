@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ... import _optional
-from ..._sentences import counted
-from ...crs import CRS, Unit
-from ...errors import OptionError, ReadError, choice
-from ...policies import LineReading
+from ...base import optional
+from ...base.crs import CRS, Unit
+from ...base.errors import OptionError, ReadError, choice
+from ...base.policies import LineReading
+from ...base.sentences import counted
 from ...tin import TIN, Breakline, Survey
 from ...tin.screening.nodata import describe_elevations, parse_nodata
 from ...tin.topology import find_offsets
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array, ObjectArray
-    from ...crs import CrsLike, UnitLike
-    from ...policies import FacePolicy
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array, ObjectArray
+    from ...base.crs import CrsLike, UnitLike
+    from ...base.policies import FacePolicy
 
 __all__ = ["read"]
 
@@ -136,7 +136,7 @@ class _Vertices(NamedTuple):
 
 def _list_kinds(features: Features) -> set[int]:
     """Return the kinds of single geometries, with collections taken apart."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     shapes, _ = _take_apart(features)
     found = np.unique(shapely.get_type_id(shapes[~shapely.is_empty(shapes)])).tolist()
     return {_LINE if kind == _RING else int(kind) for kind in found}
@@ -144,7 +144,7 @@ def _list_kinds(features: Features) -> set[int]:
 
 def _take_apart(features: Features) -> tuple[ObjectArray, Int64Array]:
     """Return single geometries, and the row of the feature of each; collections may be nested."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     shapes, rows = features.geometries, np.arange(len(features.geometries))
     while (shapely.get_type_id(shapes) > _POLYGON).any():
         shapes, index = shapely.get_parts(shapes, return_index=True)
@@ -153,7 +153,7 @@ def _take_apart(features: Features) -> tuple[ObjectArray, Int64Array]:
 
 
 def _gather_points(features: Features) -> _Vertices:
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     xyz, rows = shapely.get_coordinates(features.geometries, include_z=True, return_index=True)
     has_z = shapely.has_z(features.geometries)[rows]
     return _Vertices(xyz, rows, np.arange(len(xyz) + 1), has_z)
@@ -161,7 +161,7 @@ def _gather_points(features: Features) -> _Vertices:
 
 def _gather_lines(features: Features) -> _Vertices:
     """Return the vertices of lines and rings; the last of a closed one is left out of no line."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     shapes, rows = _take_apart(features)
     is_polygon = shapely.get_type_id(shapes) == _POLYGON
     rings, of_polygon = shapely.get_rings(shapes[is_polygon], return_index=True)
@@ -286,7 +286,7 @@ def _take_rows(survey: Survey, keep: BoolArray) -> Survey:
 
 def _are_triangles(features: Features) -> bool:
     """Whether every polygon has three corners with elevations, and no island."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     shapes, _ = _take_apart(features)
     return bool(
         shapely.has_z(shapes).all()
@@ -297,7 +297,7 @@ def _are_triangles(features: Features) -> bool:
 
 def _make_triangles(features: Features, asked: _Asked, faces: FacePolicy) -> TIN:
     """Return the TIN of triangles; corners at one place, to the last bit, are one vertex."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     if asked.z_field not in (None, "geometry"):
         raise OptionError("z_field", asked.z_field, "geometry, where polygons are triangles")
     if len(asked.nodata):

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
-from ..._atomic import as_path
-from ..._sentences import height, inflect
-from ...crs import CRS, Unit
-from ...errors import ReadError
-from ...policies import BreaklineKind
+from ...base.atomic import as_path
+from ...base.crs import CRS, Unit
+from ...base.errors import ReadError
+from ...base.policies import BreaklineKind
+from ...base.sentences import height, inflect
 from ...tin import Breakline, Water
 from ...tin.constraints.breaklines import as_ring
 from ..reprojection.placement import settle_unit
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Sequence
 
-    from ...arrays import Float64Array
-    from ...crs import CrsLike, UnitLike
+    from ...base.arrays import Float64Array
+    from ...base.crs import CrsLike, UnitLike
 
 __all__ = ["read_lines", "read_polygons", "read_rings", "read_water"]
 

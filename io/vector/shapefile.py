@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted
-from ...errors import LossWarning, WriteError
+from ...base.errors import LossWarning, WriteError
+from ...base.sentences import counted
 from ..registry.side_files import replacing_data_set
 from .ogr import write_layer
 from .well_known_binary import encode_tin
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from ...arrays import AnyArray
-    from ...terrain.results import Features
+    from ...base.arrays import AnyArray
+    from ...base.results import Features
 
 __all__ = ["short_names", "write", "write_multipatch"]
 

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import FormatError, choice
-from ...policies import FeatureKind
+from ...base.errors import FormatError, choice
+from ...base.policies import FeatureKind
+from ...base.results import Features
 from ...terrain.drawing.linework import EDGE_KINDS
 from ...terrain.relief.gradients import aspect, measure_areas, measure_ring_area, slope
-from ...terrain.results import Features
 from ...tin import TIN, Survey
 from ..mesh.common import require_writable
 from .geojson.lines import find_edge_kinds, list_line_vertices, require_lines
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from ...arrays import AnyArray, Float64Array
+    from ...base.arrays import AnyArray, Float64Array
 
 __all__ = ["make_features", "make_whole_surface"]
 

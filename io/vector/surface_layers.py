@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...errors import FormatError
-from ...terrain.results import Features
+from ...base.errors import FormatError
+from ...base.results import Features
 from ...tin import Survey
 from ..mesh.common import require_tin
 from . import flatgeobuf, geopackage, shapefile
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import TypeAlias
 
-    from ..._progress import Tell
-    from ...policies import FeatureKind
+    from ...base.policies import FeatureKind
+    from ...base.progress import Tell
     from ...tin import TIN
 
     Writable: TypeAlias = TIN | Survey | Features

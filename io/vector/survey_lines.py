@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._atomic import as_path
-from ..._sentences import coordinate
-from ...errors import OptionError, ReadError
+from ...base.atomic import as_path
+from ...base.checks import require_type
+from ...base.errors import OptionError, ReadError
+from ...base.sentences import coordinate
 from ...tin import Bounds, Breakline, Survey, Water
-from ...tin.validation.options import require_type
 from .nesting import note_nesting
 from .reading import read_lines, read_polygons, read_water
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Iterable, Sequence
 
-    from ...arrays import Float64Array
-    from ...crs import UnitLike
+    from ...base.arrays import Float64Array
+    from ...base.crs import UnitLike
     from ...tin import Survey
 
     Source = str | os.PathLike[str]

@@ -16,8 +16,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ...arrays import Float64Array
-    from ...terrain.results import Features
+    from ...base.arrays import Float64Array
+    from ...base.results import Features
 
 __all__ = ["encode_equal_shapes", "encode_tin", "replace_surfaces"]
 

@@ -6,8 +6,8 @@
 array([6.5])
 """
 
-from ._lazy import lazy_names
-from ._methods import register_methods
+from .base.lazy import lazy_names
+from .base.methods import register_methods
 
 # What tin cannot do itself, for it knows no pictures, features and files.
 register_methods(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ...errors import OptionError
-from ..results import Features
+from ...base.errors import OptionError
+from ...base.results import Features
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

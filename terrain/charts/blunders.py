@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted
-from ...errors import OptionError, TinsmithError
+from ...base.checks import require_tin, require_type
+from ...base.errors import OptionError, TinsmithError
+from ...base.georeference.axes import turn_into_drawing
+from ...base.results import Table
+from ...base.sentences import counted
 from ...tin.screening.suspects import DROPPED
-from ...tin.validation.options import require_tin, require_type
-from ..georeference.axes import turn_into_drawing
-from ..results import Table
 from .arguments import parse_title
 from .figures import INK, picture
 from .maps import draw_shade, shade_for_map, start_map

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted
+from ...base.checks import require_type
+from ...base.sentences import counted
 from ...tin.paper.comparison import Comparison
-from ...tin.validation.options import require_type
 from .arguments import parse_title
 from .figures import INK, start_panels
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int32Array
+    from ...base.arrays import Float64Array, Int32Array
     from ...tin.paper.comparison import Outcome
 
 __all__ = ["comparison_picture"]

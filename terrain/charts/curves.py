@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...crs import CRS, Unit, assume_elevation_unit
-from ...errors import OptionError
-from ...tin.validation.options import is_finite_number, is_whole_number
+from ...base.checks import is_finite_number, is_whole_number
+from ...base.crs import CRS, Unit, assume_elevation_unit
+from ...base.errors import OptionError
 from ..drawing.rounding import format_number, round_down
 from .figures import INK, color_frame
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array
-    from ..results import Table
+    from ...base.arrays import BoolArray, Float64Array
+    from ...base.results import Table
 
 __all__ = [
     "FAINT",

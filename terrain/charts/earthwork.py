@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
+from ...base import optional
+from ...base.checks import require_tin, require_type
 from ...tin import Bounds
-from ...tin.validation.options import require_tin, require_type
 from ..drawing.north_up import draw_north_up
 from ..drawing.rounding import round_down
 from ..earthwork import Difference
@@ -20,9 +20,9 @@ from .figures import INK, picture
 from .maps import PIXELS, draw_scale, draw_shade, start_map
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
+    from ...base.results import Features, Raster
     from ...tin import TIN, Grid
-    from ..results import Features, Raster
     from .maps import Map
 
 __all__ = ["earthwork_map"]
@@ -134,7 +134,7 @@ def _choose_grid(tin: TIN, axes: Any) -> Grid:
 
 
 def _draw_difference(drawn: Map, tin: TIN) -> None:
-    colors = _optional.load("matplotlib.colors", _PURPOSE)
+    colors = optional.load("matplotlib.colors", _PURPOSE)
     axes, (x, y, height) = drawn.axes, tin.points.T
     most = float(np.abs(height).max()) or 1.0
     raster = rasterize(tin, grid=_choose_grid(tin, axes))
@@ -173,7 +173,7 @@ def _choose_levels(height: Float64Array) -> Float64Array:
 
 
 def _draw_zero_line(axes: Any, surface: TIN, lines: Features) -> None:
-    collections = _optional.load("matplotlib.collections", _PURPOSE)
+    collections = optional.load("matplotlib.collections", _PURPOSE)
     paths = np.split(lines.coordinates[:, :2], lines.offsets[0][1:-1]) if len(lines) else []
     rings = [surface.points[np.append(ring, ring[0]), :2] for ring in surface.rings]
     for drawn, width, style in ((paths, 1.4, "solid"), (rings, 0.9, (0, (4, 2)))):

@@ -6,8 +6,8 @@ import textwrap
 from functools import wraps
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
-from ... import _optional
-from ..._products import join_notes, product
+from ...base import optional
+from ...base.products import join_notes, product
 from ...tin.surface import Surface
 from ..drawing.north_up import draw_north_up
 
@@ -25,7 +25,7 @@ _TITLE = {"fontsize": 15, "color": INK, "parse_math": False}
 
 def start_figure(purpose: str, width: float, height: float, **how: Any) -> Any:
     """Return an empty figure, sides in inches; ``purpose`` is what matplotlib is needed for."""
-    return _optional.load("matplotlib.figure", purpose).Figure(figsize=(width, height), **how)
+    return optional.load("matplotlib.figure", purpose).Figure(figsize=(width, height), **how)
 
 
 def start_panels(purpose: str, width: float, height: float, *, title: str) -> Any:

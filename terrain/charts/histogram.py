@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted
+from ...base.checks import require_type
+from ...base.sentences import counted
 from ...tin import Quality
-from ...tin.validation.options import require_type
 from ..drawing.rounding import choose_ticks
 from .arguments import parse_text, parse_title
 from .figures import INK, start_panels
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array
+    from ...base.arrays import BoolArray, Float64Array
 
 __all__ = ["histogram"]
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ...tin.validation.options import require_tin
+from ...base import optional
+from ...base.checks import require_tin
 from ..isolines.labels import contour_labels
 from ..viewer.tints import interpolate_tints
 from .arguments import parse_title, require_features
@@ -15,10 +15,10 @@ from .figures import picture
 from .maps import draw_scale, draw_shade, find_paths, shade_for_map, start_map
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
+    from ...base.georeference.units import Ground
+    from ...base.results import Features
     from ...tin import TIN
-    from ..georeference.units import Ground
-    from ..results import Features
     from .maps import Map
 
 __all__ = ["contour_map"]
@@ -130,7 +130,7 @@ def _write_steps(levels: Float64Array, what: str, unit: str) -> str:
 
 
 def _draw_lines(axes: Any, lines: Features) -> None:
-    collections = _optional.load("matplotlib.collections", _PURPOSE)
+    collections = optional.load("matplotlib.collections", _PURPOSE)
     paths = np.split(lines.coordinates[:, :2], lines.offsets[0][1:-1])
     is_index = lines.columns["is_index"]
     widths = np.where(is_index, 1.3, 0.55)
@@ -141,7 +141,7 @@ def _draw_lines(axes: Any, lines: Features) -> None:
 
 
 def _draw_labels(axes: Any, labels: Features) -> None:
-    effects = _optional.load("matplotlib.patheffects", _PURPOSE)
+    effects = optional.load("matplotlib.patheffects", _PURPOSE)
     halo = [effects.withStroke(linewidth=2.6, foreground="#ffffffd9")]
     columns = labels.columns
     for (x, y), text, rotation in zip(
@@ -165,15 +165,15 @@ def _draw_labels(axes: Any, labels: Features) -> None:
 
 
 def _draw_bands(drawn: Map, bands: Features) -> None:
-    colors = _optional.load("matplotlib.colors", _PURPOSE)
-    patches = _optional.load("matplotlib.patches", _PURPOSE)
+    colors = optional.load("matplotlib.colors", _PURPOSE)
+    patches = optional.load("matplotlib.patches", _PURPOSE)
     ramp = interpolate_tints(max(len(bands), 2)) / 255.0
     for path, color in zip(find_paths(bands, _PURPOSE), ramp, strict=False):
         drawn.axes.add_patch(
             patches.PathPatch(path, facecolor=color, edgecolor="none", alpha=_BAND_VEIL, zorder=1)
         )
     bounds = _list_bounds(bands)
-    scale = _optional.load("matplotlib.cm", _PURPOSE).ScalarMappable(
+    scale = optional.load("matplotlib.cm", _PURPOSE).ScalarMappable(
         colors.BoundaryNorm(bounds, len(bounds) - 1),
         colors.ListedColormap(ramp[: len(bands)]),
     )

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
+from ...base import optional
+from ...base.georeference.axes import label_axes
+from ...base.georeference.units import find_ground
 from ..drawing.rounding import choose_ticks
-from ..georeference.axes import label_axes
-from ..georeference.units import find_ground
 from ..relief.shading import hillshade
 from .figures import INK, color_frame, start_figure, write_title
 
 if TYPE_CHECKING:
+    from ...base.georeference.units import Ground
+    from ...base.results import Features, Raster
     from ...tin import TIN
-    from ..georeference.units import Ground
-    from ..results import Features, Raster
 
 __all__ = [
     "PIXELS",
@@ -152,7 +152,7 @@ def draw_scale(drawn: Map, mapped: Any, name: str, **how: Any) -> None:
 
 def find_paths(features: Features, purpose: str) -> list[Any]:
     """Return one path of matplotlib for each feature of polygons, of all its rings."""
-    path = _optional.load("matplotlib.path", purpose).Path
+    path = optional.load("matplotlib.path", purpose).Path
     rings, polygons, *parts = features.offsets
     made = []
     for first, last in pairwise(parts[0] if parts else np.arange(len(polygons))):

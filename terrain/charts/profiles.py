@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...crs import CRS
-from ...errors import OptionError
+from ...base.crs import CRS
+from ...base.errors import OptionError
+from ...base.results import Table
 from ..drawing.rounding import choose_ticks, format_number
-from ..results import Table
 from . import curves
 from .arguments import parse_title
 from .figures import INK, color_frame, picture, start_figure, write_title
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
-    from ...crs import CrsLike
+    from ...base.arrays import Float64Array
+    from ...base.crs import CrsLike
 
 __all__ = ["profile_picture"]
 

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ... import _optional
-from ...tin.validation.options import require_tin, require_type
-from ..results import Raster
+from ...base import optional
+from ...base.checks import require_tin, require_type
+from ...base.results import Raster
 from .arguments import parse_title, require_features
 from .figures import picture
 from .maps import draw_shade, find_paths, shade_for_map, start_map
 
 if TYPE_CHECKING:
+    from ...base.results import Features
     from ...tin import TIN
-    from ..results import Features
 
 __all__ = ["relief_map"]
 
@@ -92,7 +92,7 @@ def _choose_title(classes: Features | None) -> str:
 
 def _draw_classes(axes: Any, classes: Features) -> None:
     """Draw the polygons of each class, and name them in a legend."""
-    patches = _optional.load("matplotlib.patches", _PURPOSE)
+    patches = optional.load("matplotlib.patches", _PURPOSE)
     columns = classes.columns
     for path, color in zip(find_paths(classes, _PURPOSE), columns["color"], strict=True):
         axes.add_patch(

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...crs import CRS
-from ...errors import OptionError
-from ...tin.validation.options import is_whole_number
+from ...base.checks import is_whole_number
+from ...base.crs import CRS
+from ...base.errors import OptionError
+from ...base.results import Table
 from ..drawing.rounding import choose_ticks, round_down
-from ..results import Table
 from . import curves
 from .arguments import parse_title
 from .figures import INK, picture, start_figure, write_title
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array
-    from ...crs import CrsLike
+    from ...base.arrays import BoolArray, Float64Array
+    from ...base.crs import CrsLike
 
 __all__ = ["section_picture"]
 

@@ -6,19 +6,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ..._products import product
-from ...errors import OptionError
-from ...tin.validation.options import require_tin
+from ...base import optional
+from ...base.checks import require_tin
+from ...base.errors import OptionError
+from ...base.georeference.axes import find_axes
+from ...base.georeference.units import find_ground
+from ...base.products import product
 from ..drawing.linework import EDGE_KINDS, find_line_edges
-from ..georeference.axes import find_axes
-from ..georeference.units import find_ground
 from ..relief.gradients import slope
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
+    from ...base.georeference.units import Ground
     from ...tin import TIN
-    from ..georeference.units import Ground
 
 __all__ = ["plot_tin", "to_matplotlib"]
 
@@ -64,7 +64,7 @@ def to_matplotlib(tin: TIN) -> Any:
     >>> ts.to_matplotlib(tin).triangles.shape
     (2, 3)
     """
-    tri = _optional.load("matplotlib.tri", "Handing triangles over to matplotlib")
+    tri = optional.load("matplotlib.tri", "Handing triangles over to matplotlib")
     require_tin(tin)
     x, y, _ = tin.points.T
     return tri.Triangulation(x.copy(), y.copy(), tin.triangles.copy())
@@ -86,7 +86,7 @@ def plot_tin(
     numbers, name = _find_values(tin, values)
     is_new = ax is None
     if is_new:
-        ax = _optional.load("matplotlib.pyplot", "Drawing a TIN").subplots(layout="constrained")[1]
+        ax = optional.load("matplotlib.pyplot", "Drawing a TIN").subplots(layout="constrained")[1]
     ground = find_ground(tin)
     if numbers is not None:
         is_flat = len(numbers) != len(tin.points) or name == "slope"
@@ -133,7 +133,7 @@ def _write_caption(name: str, ground: Ground) -> str:
 
 
 def _draw_lines(ax: Any, tin: TIN) -> None:
-    collection = _optional.load("matplotlib.collections", "Drawing a TIN").LineCollection
+    collection = optional.load("matplotlib.collections", "Drawing a TIN").LineCollection
     found = find_line_edges(tin)
     for rank, kind in enumerate(EDGE_KINDS):
         pairs = found.pairs[found.kinds == rank]

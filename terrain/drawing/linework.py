@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ... import _optional
+from ...base import optional
 from ...tin.topology import edge_keys, edges_at
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, Float64Array, Int8Array, Int32Array, Int64Array
+    from ...base.arrays import AnyArray, Float64Array, Int8Array, Int32Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["EDGE_KINDS", "LineEdges", "add_lines", "add_polylines", "find_line_edges"]
@@ -128,7 +128,7 @@ def cut_into_dashes(ends: Float64Array, pairs: Int32Array, length: float) -> Flo
 
 
 def _draw_edges(plotter: Any, ends: Float64Array, pen: _Pen, factor: float) -> Any:
-    pv = _optional.load("pyvista", _PURPOSE)
+    pv = optional.load("pyvista", _PURPOSE)
 
     count = len(ends)
     cells = np.column_stack([np.full(count, 2), np.arange(2 * count).reshape(count, 2)])
@@ -159,7 +159,7 @@ def add_polylines(
     ``points[offsets[k]:offsets[k + 1]]``; ``chosen`` tells which to draw, ``width`` is in window
     pixels.
     """
-    pv = _optional.load("pyvista", _PURPOSE)
+    pv = optional.load("pyvista", _PURPOSE)
 
     starts, stops = np.asarray(offsets)[chosen], np.asarray(offsets)[chosen + 1]
     cells = [part for a, b in zip(starts, stops, strict=True) for part in (b - a, *range(a, b))]

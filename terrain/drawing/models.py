@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ... import _optional
-from ..._products import product
-from ...crs import scale_elevations
-from ...errors import OptionError
-from ...tin.validation.options import is_finite_number, require_tin
+from ...base import optional
+from ...base.checks import is_finite_number, require_tin
+from ...base.crs import scale_elevations
+from ...base.errors import OptionError
+from ...base.products import product
 from ..relief.gradients import aspect, slope
 
 if TYPE_CHECKING:
     import pyvista
     from numpy.typing import ArrayLike
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["choose_origin", "lift"]
@@ -72,7 +72,7 @@ def lift(
     >>> mesh.field_data["origin"].tolist()
     [500000.0, 4000000.0, 80.0]
     """
-    pv = _optional.load("pyvista", "Lifting a TIN into 3D")
+    pv = optional.load("pyvista", "Lifting a TIN into 3D")
     require_tin(tin)
     shift = choose_origin(tin) if origin is None else _parse_origin(origin)
     factor = parse_exaggeration(exaggeration)

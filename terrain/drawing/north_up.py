@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from ...crs import CRS
+from ...base.crs import CRS
+from ...base.georeference.axes import Axes, DrawnCRS, find_axes
+from ...base.results import Features, Raster
 from ...tin import Bounds, Survey
 from ...tin.surface import Surface
-from ..georeference.axes import Axes, DrawnCRS, find_axes
-from ..results import Features, Raster
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["draw_north_up"]

@@ -12,7 +12,7 @@ from .. import _kernel
 from .reference import Surface
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import AnyArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["Pieces", "cut_pieces", "fan_out", "turns"]
 

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._products import product
-from ..._progress import Progress
-from ...errors import OptionError
+from ...base.errors import OptionError
+from ...base.products import product
+from ...base.progress import Progress
+from ...base.results import Features, Table
+from ...base.results.columns import join_notes
 from .. import _kernel
-from ..results import Features, Table
-from ..results.columns import join_notes
 from . import zones as parts
 from .planes import level_surface
 from .reference import Reference, Surface
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ...tin import TIN
     from .regional import Regional
 

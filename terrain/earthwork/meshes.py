@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import LinesError, PointsError
+from ...base.errors import LinesError, PointsError
 from ...tin import TIN, check, topology, triangulate
 from ...tin.report import Report
 from .cells import turns
@@ -14,7 +14,7 @@ from .cells import turns
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from ...arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
 
 __all__ = [
     "as_mesh",

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import OptionError
+from ...base.errors import OptionError
 from ...tin import TIN
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
 
 __all__ = ["Plane", "as_plane", "level_surface"]
 

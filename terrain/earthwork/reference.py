@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...crs import scale_elevations
-from ...errors import CrsError, PointsError
-from ...tin.validation.options import require_tin
-from ..georeference import agree, describe_unknown, find_plane_units
+from ...base.checks import require_tin
+from ...base.crs import scale_elevations
+from ...base.errors import CrsError, PointsError
+from ...base.georeference import agree, describe_unknown, find_plane_units
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int32Array
-    from ...crs import CRS, Unit
+    from ...base.arrays import Float64Array, Int32Array
+    from ...base.crs import CRS, Unit
+    from ...base.georeference import PlaneUnits
     from ...tin import TIN
-    from ..georeference import PlaneUnits
 
 __all__ = ["Reference", "Surface", "find_common_reference", "find_reference", "require_finite"]
 
@@ -69,7 +69,7 @@ def find_common_reference(tin: TIN, other: TIN, purpose: str) -> tuple[Reference
     Raises
     ------
     CrsError
-        If coordinates are angles, or as :func:`tinsmith.terrain.georeference.agree` says.
+        If coordinates are angles, or as :func:`tinsmith.base.georeference.agree` says.
     """
     for one in (tin, other):
         require_tin(one)

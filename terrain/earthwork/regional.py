@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...errors import LinesError, PointsError
+from ...base.errors import LinesError, PointsError
+from ...base.results import Features
 from ...tin import topology
 from .. import _kernel
-from ..results import Features
 from .cells import Pieces, cut_pieces
 from .meshes import as_mesh, drop_unused, unite
 from .reference import Surface
@@ -19,7 +19,7 @@ from .zones import find_zones
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from ...arrays import Int64Array
+    from ...base.arrays import Int64Array
     from ...tin import TIN
     from .reference import Reference
     from .volumes import Measured

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...crs import CRS
-from ...errors import LinesError, OptionError
+from ...base.crs import CRS
+from ...base.errors import LinesError, OptionError
+from ...base.georeference import require_same_crs
+from ...base.results import Features
 from ...tin import triangulate
 from ...tin.constraints.polygons import gather_rings_of_regions
-from ..georeference import require_same_crs
-from ..results import Features
 from .cells import Pieces
 from .reference import Surface
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
 
 __all__ = ["as_regions"]
 

@@ -10,7 +10,7 @@ from ...tin import TIN
 from ...tin.topology import NO_NEIGHBOR
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["find_slivers", "leave_out_slivers", "measure_rounding", "take_without_slivers"]
 

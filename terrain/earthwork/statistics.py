@@ -11,7 +11,7 @@ from .. import _kernel
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...arrays import Float64Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
     from .reference import Surface
 
 __all__ = ["percentiles"]

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._products import product
-from ...crs import CRS
-from ...errors import OptionError, PointsError
+from ...base.checks import is_finite_number
+from ...base.crs import CRS
+from ...base.errors import OptionError, PointsError
+from ...base.georeference import require_same_crs
+from ...base.products import product
+from ...base.results import Features, Table
 from ...tin import topology
-from ...tin.validation.options import is_finite_number
 from .. import _kernel
-from ..georeference import require_same_crs
-from ..results import Features, Table
 from .cells import cut_pieces
 from .reference import Surface, find_reference, require_finite
 from .regions import as_regions
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["stage_storage"]

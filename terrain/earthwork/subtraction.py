@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
-from ..._sentences import coordinate
-from ...errors import PointsError
+from ...base.errors import PointsError
+from ...base.sentences import coordinate
 from ...tin import topology
 from .. import _kernel
 from . import zones as parts
@@ -19,7 +19,7 @@ from .slivers import leave_out_slivers, measure_rounding
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from ...arrays import Float64Array, Int32Array
+    from ...base.arrays import Float64Array, Int32Array
     from ...tin import TIN
     from .reference import Reference
 

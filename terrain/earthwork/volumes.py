@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._products import product
-from ..._progress import Progress
-from ..._sentences import inflect
-from ...errors import OptionError
+from ...base.errors import OptionError
+from ...base.products import product
+from ...base.progress import Progress
+from ...base.results import Table
+from ...base.sentences import inflect
 from ...tin.validation.threads import thread_count
 from .. import _kernel
-from ..results import Table
 from .cells import Pieces, cut_pieces
 from .planes import as_plane
 from .reference import Surface, find_common_reference, find_reference, require_finite
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ..._progress import Tell
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
+    from ...base.progress import Tell
     from ...tin import TIN
     from .reference import Reference
 

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.results import Features
 from ...tin import topology
 from .. import _kernel
-from ..results import Features
 from .meshes import number_parts
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
     from ...tin.triangulation import Triangulation
     from .reference import Reference
 

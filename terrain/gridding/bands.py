@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.results.gridded import locate_centers
 from ...tin.validation.threads import thread_count
 from .. import _kernel
-from ..results.gridded import locate_centers
 from .grids import as_parts, locate_edges
 
 if TYPE_CHECKING:
-    from ..._progress import Progress, Tell
-    from ...arrays import Float64Array
-    from ...policies import InterpolationMethod
+    from ...base.arrays import Float64Array
+    from ...base.policies import InterpolationMethod
+    from ...base.progress import Progress, Tell
     from ...tin import TIN, Grid
 
 __all__ = ["SurfaceBand"]

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...errors import PointsError
+from ...base.errors import PointsError
 from .bands import SurfaceBand
 from .grids import describe_extent
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ...tin import TIN, Grid
 
 __all__ = ["require_covered"]

@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._sentences import coordinate, counted
-from ...crs import CRS
-from ...errors import OptionError, PointsError
-from ...tin.types import Bounds, Grid
-from ...tin.validation.options import is_finite_number
-from ..georeference import require_same_crs
-from ..results import Raster
-from ..results.raster import require_grid
+from ...base.checks import is_finite_number
+from ...base.crs import CRS
+from ...base.errors import OptionError, PointsError
+from ...base.georeference import require_same_crs
+from ...base.results import Raster
+from ...base.results.raster import require_grid
+from ...base.sentences import coordinate, counted
+from ...base.types import Bounds, Grid
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ...tin import TIN
 
 __all__ = [

@@ -6,19 +6,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._products import product
-from ..._sentences import counted
+from ...base.checks import require_tin
+from ...base.georeference import agree, describe_unknown
+from ...base.products import product
+from ...base.results import Table
+from ...base.sentences import counted
 from ...tin import Survey
-from ...tin.validation.options import require_tin
 from ...tin.validation.points import as_points
-from ..georeference import agree, describe_unknown
-from ..results import Table
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...arrays import Float64Array
-    from ...policies import Extrapolation, InterpolationMethod
+    from ...base.arrays import Float64Array
+    from ...base.policies import Extrapolation, InterpolationMethod
     from ...tin import TIN
 
 __all__ = ["height_above"]

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..._products import product
-from ..._progress import Progress
-from ...errors import OptionError, choice
-from ...policies import InterpolationMethod, RasterSample, RasterValue
-from ...tin.validation.options import as_flag, require_count, require_tin
-from ..georeference import describe_unknown
+from ...base.checks import as_flag, require_count, require_tin
+from ...base.errors import OptionError, choice
+from ...base.georeference import describe_unknown
+from ...base.policies import InterpolationMethod, RasterSample, RasterValue
+from ...base.products import product
+from ...base.progress import Progress
+from ...base.results import Raster
 from ..relief.light import as_light
 from ..relief.measures import PlaneMeasure
-from ..results import Raster
 from .bands import SurfaceBand
 from .coverage import require_covered
 from .grids import as_grid
@@ -21,7 +21,7 @@ from .relief_bands import ReliefBand, choose_smooth
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...crs import Unit
+    from ...base.crs import Unit
     from ...tin import TIN, Grid
 
 __all__ = ["rasterize"]

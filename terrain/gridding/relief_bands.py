@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import OptionError
-from ...tin.validation.options import as_flag
+from ...base.checks import as_flag
+from ...base.errors import OptionError
+from ...base.results.gridded import locate_centers
 from ...tin.validation.threads import thread_count
 from ..relief.gradients import compute_normals, sum_at_vertices
 from ..relief.light import normalise
-from ..results.gridded import locate_centers
 from .bands import SurfaceBand
 
 if TYPE_CHECKING:
-    from ..._progress import Tell
-    from ...arrays import Float64Array, Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int32Array, Int64Array
+    from ...base.progress import Tell
     from ...tin import TIN, Grid
     from ..relief.measures import PlaneMeasure
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Int64Array
+    from ...base.arrays import BoolArray, Int64Array
 
 __all__ = ["find_border", "find_surface", "trace_cycles", "trace_rings"]
 

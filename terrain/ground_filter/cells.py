@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._sentences import counted
-from ...errors import PointsError
+from ...base.errors import PointsError
+from ...base.sentences import counted
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
 
 __all__ = ["Cells", "lay_cells"]
 

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._progress import Progress
-from ..._sentences import counted
-from ...crs import assume_elevation_unit
-from ...errors import CrsError, PointsError
+from ...base.crs import assume_elevation_unit
+from ...base.errors import CrsError, PointsError
+from ...base.georeference import describe_unknown
+from ...base.progress import Progress
+from ...base.sentences import counted
 from ...tin import TIN, Survey, triangulate
 from ...tin.validation.points import as_points
 from .. import _kernel
-from ..georeference import describe_unknown
 from .cells import lay_cells
 from .parameters import Parameters
 from .returns import are_noise, may_be_ground
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ..._progress import Tell
-    from ...arrays import BoolArray, Float64Array, UInt8Array
-    from ...policies import GroundReturns
+    from ...base.arrays import BoolArray, Float64Array, UInt8Array
+    from ...base.policies import GroundReturns
+    from ...base.progress import Tell
     from .cells import Cells
 
 __all__ = ["GroundPoints", "ground"]

@@ -18,7 +18,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ...arrays import BoolArray, Float64Array
+    from ...base.arrays import BoolArray, Float64Array
 
     Grid = Float64Array
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
-from ...errors import OptionError, choice
-from ...policies import GroundReturns
-from ...tin.validation.options import is_finite_number
+from ...base.checks import is_finite_number
+from ...base.errors import OptionError, choice
+from ...base.policies import GroundReturns
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._sentences import counted
+from ...base.sentences import counted
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, BoolArray
-    from ...policies import GroundReturns
+    from ...base.arrays import AnyArray, BoolArray
+    from ...base.policies import GroundReturns
     from ...tin import Survey
 
 __all__ = ["are_noise", "may_be_ground"]

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._progress import Progress
+from ...base.progress import Progress
 from .morphology import find_covered, least_around, list_windows, open_grid, split_columns
 
 if TYPE_CHECKING:
-    from ..._progress import Tell
-    from ...arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
+    from ...base.progress import Tell
     from .cells import Cells
     from .parameters import Parameters
 

@@ -32,7 +32,7 @@ from ...tin import triangulate
 from ..relief.dissolving import join_components
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
     from .parameters import Parameters
 
 __all__ = ["Links", "link", "list_continuing"]

@@ -13,7 +13,7 @@ from .falls import FINEST, measure_fall, round_share
 from .vertices import NOWHERE, find_exits, sort_edges_at
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int8Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int8Array, Int64Array
     from .falls import Falls
     from .filling import Filling
     from .vertices import Exits

@@ -14,7 +14,7 @@ from .descent import interpolate_edges
 from .strips import SAME, Bases, follow
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int32Array, Int64Array
     from .networks import Network
 
 __all__ = ["cut_at_divides"]

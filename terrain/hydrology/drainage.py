@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._products import product
-from ..._progress import Progress
-from ...errors import OptionError, PointsError
-from ...tin.validation.options import as_flag, is_finite_number
+from ...base.checks import as_flag, is_finite_number
+from ...base.errors import OptionError, PointsError
+from ...base.products import product
+from ...base.progress import Progress
+from ...base.results import Features
 from .. import _kernel
 from ..earthwork.reference import find_reference
-from ..results import Features
 from .descent import MOVING
 from .divides import cut_at_divides
 from .filling import fill
@@ -29,7 +29,7 @@ from .water_bodies import BOUNDARY_NOTE
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...arrays import Float64Array, Int32Array, Int64Array, ObjectArray
+    from ...base.arrays import Float64Array, Int32Array, Int64Array, ObjectArray
     from ...tin import TIN
     from .filling import Filling
     from .networks import Network

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._products import product
-from ...errors import OptionError
-from ...tin.validation.options import is_finite_number
+from ...base.checks import is_finite_number
+from ...base.errors import OptionError
+from ...base.products import product
+from ...base.results import Features
 from ..earthwork.reference import find_reference
-from ..results import Features
 from .falls import find_falls
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, Float64Array, Int64Array
+    from ...base.arrays import AnyArray, Float64Array, Int64Array
     from ...tin import TIN
     from .falls import Falls
 

@@ -12,7 +12,7 @@ from ...tin.topology import NO_NEIGHBOR
 from ...tin.validation.points import require_exact_range
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["FINEST", "Falls", "find_corners", "find_falls", "measure_fall", "round_share"]

@@ -11,7 +11,7 @@ from .hierarchy import build_hierarchy, rank_vertices
 from .vertices import NOWHERE
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...tin import TIN
     from .hierarchy import Hierarchy
 

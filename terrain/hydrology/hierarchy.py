@@ -10,7 +10,7 @@ from ...tin.topology import find_boundary_vertices
 from .vertices import NOWHERE
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["Hierarchy", "build_hierarchy", "rank_vertices"]

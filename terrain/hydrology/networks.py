@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._progress import Progress
+from ...base.progress import Progress
 from .. import _kernel
 from ..relief.dissolving import join_components
 from .descent import BOUNDARY, MOVING, Walker, make_drops
@@ -15,8 +15,8 @@ from .strips import Strips, cut_strips, leave_strips, settle
 from .vertices import NOWHERE
 
 if TYPE_CHECKING:
-    from ..._progress import Tell
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.progress import Tell
     from ...tin import TIN
     from .descent import Drops
     from .falls import Falls

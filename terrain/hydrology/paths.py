@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._products import product
-from ..._sentences import counted
-from ...errors import PointsError
+from ...base.checks import as_flag
+from ...base.errors import PointsError
+from ...base.georeference import require_same_crs
+from ...base.products import product
+from ...base.results import Features
+from ...base.sentences import counted
 from ...tin.topology import find_offsets
-from ...tin.validation.options import as_flag
 from ...tin.validation.points import as_xy
 from ..earthwork.reference import find_reference
-from ..georeference import require_same_crs
-from ..results import Features
 from .descent import BOUNDARY, FLAT, PIT, Walker
 from .falls import find_falls
 from .filling import fill
@@ -23,7 +23,7 @@ from .starts import place_drops
 from .vertices import NOWHERE
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
     from ...tin import TIN
     from .filling import Filling
     from .routes import Trace

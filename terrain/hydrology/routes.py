@@ -11,7 +11,7 @@ from .descent import MOVING
 from .vertices import NOWHERE
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int8Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int8Array, Int64Array
     from .descent import Drops, Walker
     from .filling import Filling
 

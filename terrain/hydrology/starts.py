@@ -11,7 +11,7 @@ from .descent import FLAT, MOVING, Drops, Walker, make_drops
 from .falls import measure_fall, round_share
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["place_drops"]

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...errors import PointsError
+from ...base.errors import PointsError
 from .. import _kernel
 from .descent import MOVING, Drops, make_drops
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
     from .descent import Walker
 
 __all__ = [

@@ -12,7 +12,7 @@ from ...tin.topology import NO_NEIGHBOR, find_triangles, gather, sort_half_edges
 from .falls import find_corners
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...tin.topology import HalfEdges
     from .falls import Falls
 

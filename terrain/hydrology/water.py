@@ -14,7 +14,7 @@ from ..isolines.mending import PolygonParts, mend_polygons
 from ..relief.dissolving import DividedMesh, dissolve
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["Polygons", "Waters", "cut_below", "gather_polygons", "measure_waters"]
 

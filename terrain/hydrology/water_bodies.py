@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._products import product
-from ...errors import OptionError
+from ...base.checks import as_flag, is_finite_number
+from ...base.errors import OptionError
+from ...base.products import product
+from ...base.results import Features
 from ...tin.topology import NO_NEIGHBOR, find_boundary_vertices, gather
-from ...tin.validation.options import as_flag, is_finite_number
 from ..earthwork.reference import find_reference
 from ..earthwork.slivers import find_slivers
 from ..relief.dissolving import number_components
-from ..results import Features
 from .descent import Walker
 from .falls import find_falls
 from .filling import fill
@@ -22,7 +22,7 @@ from .vertices import NOWHERE, sort_edges_at
 from .water import Waters, cut_below, gather_polygons, measure_waters
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ...tin import TIN
     from ..earthwork.reference import Reference
     from .filling import Filling

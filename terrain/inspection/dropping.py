@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...errors import LinesError, PointsError
+from ...base.errors import LinesError, PointsError
 from ...tin.screening.suspects import DROPPED
 
 if TYPE_CHECKING:
-    from ...arrays import Int32Array, Int64Array
+    from ...base.arrays import Int32Array, Int64Array
+    from ...base.results import Table
     from ...tin import TIN
-    from ..results import Table
 
 __all__ = ["drop_blunders", "list_wrong_rows"]
 

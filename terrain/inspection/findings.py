@@ -6,20 +6,20 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from ..._products import product
-from ..._progress import Progress
-from ...errors import OptionError
+from ...base.errors import OptionError
+from ...base.products import product
+from ...base.progress import Progress
+from ...base.results import Table
 from ...tin import TIN, Surface, Survey, triangulate
 from ...tin.screening.gaps import describe_gaps
 from ...tin.screening.naming import find_number
 from ...tin.screening.searching import inspect_points, screen_points
-from ..results import Table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from ..._progress import Tell
-    from ...arrays import Int64Array
+    from ...base.arrays import Int64Array
+    from ...base.progress import Tell
     from ...tin.screening.suspects import Suspect
 
 __all__ = ["blunders", "screen"]

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._products import product
-from ...tin.types import seal
-from ...tin.validation.options import require_tin
+from ...base.checks import require_tin
+from ...base.georeference import describe_unknown, find_plane_units
+from ...base.products import product
+from ...base.results import Features
+from ...base.types import seal
 from .. import _kernel
 from ..earthwork.slivers import leave_out_slivers
-from ..georeference import describe_unknown, find_plane_units
-from ..results import Features
 from .levels import LevelOptions
 from .measures import measure_ring_areas, sum_parts
 from .mending import PolygonParts, is_whole, mend_polygons, require_whole
@@ -21,7 +21,7 @@ from .rebuilding import rebuild_wrong_bands
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["contour_bands"]

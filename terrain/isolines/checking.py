@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ... import _optional
-from ..._products import product
-from ...errors import OptionError
+from ...base import optional
+from ...base.checks import require_tin
+from ...base.errors import OptionError
+from ...base.products import product
+from ...base.results import Features
 from ...tin.predicates import orientation
-from ...tin.validation.options import require_tin
 from ..earthwork.slivers import take_without_slivers
-from ..results import Features
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int64Array, ObjectArray
+    from ...base.arrays import BoolArray, Float64Array, Int64Array, ObjectArray
     from ...tin import TIN
 
 __all__ = ["ContourCheck", "check_contours"]
@@ -121,7 +121,7 @@ def _list_segments(lines: Features) -> _Segments:
 
 
 def _find_contacts(tin: TIN, segments: _Segments) -> tuple[int, int, tuple[tuple[int, int], ...]]:
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     shapes = _build_shapes(segments.start, segments.end)
     tree = shapely.STRtree(shapes)
     contacts, shared = 0, 0
@@ -143,7 +143,7 @@ def _find_contacts(tin: TIN, segments: _Segments) -> tuple[int, int, tuple[tuple
 
 
 def _build_shapes(start: Float64Array, end: Float64Array) -> ObjectArray:
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     shapes: ObjectArray = shapely.linestrings(np.stack([start[:, :2], end[:, :2]], axis=1))
     return shapes
 
@@ -172,7 +172,7 @@ def _meet_in_vertex(segments: _Segments, a: int, b: int, vertices: set[tuple[flo
 
 
 def _find_largest_deviation(tin: TIN, segments: _Segments) -> float:
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     places = np.concatenate([segments.start, segments.end])
     off = np.abs(tin.interpolate(places[:, :2]) - places[:, 2])
     largest = float(np.nanmax(off)) if np.isfinite(off).any() else 0.0

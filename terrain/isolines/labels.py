@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...errors import OptionError
-from ...tin.types import seal
-from ...tin.validation.options import is_finite_number
-from ..results import Features
+from ...base.checks import is_finite_number
+from ...base.errors import OptionError
+from ...base.results import Features
+from ...base.types import seal
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, Float64Array, Int64Array
+    from ...base.arrays import AnyArray, Float64Array, Int64Array
 
 __all__ = ["contour_labels"]
 

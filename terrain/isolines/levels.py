@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted, height, shown
-from ...errors import OptionError
-from ...tin.types import seal
-from ...tin.validation.options import is_finite_number, is_whole_number
+from ...base.checks import is_finite_number, is_whole_number
+from ...base.errors import OptionError
+from ...base.sentences import counted, height, shown
+from ...base.types import seal
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, BoolArray, Float64Array
+    from ...base.arrays import AnyArray, BoolArray, Float64Array
     from ...tin import TIN
 
 __all__ = ["MOST_CROSSINGS", "MOST_LEVELS", "LevelOptions", "Levels"]

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..._products import product
-from ..._progress import Progress
-from ...tin.types import seal
-from ...tin.validation.options import require_tin
+from ...base.checks import require_tin
+from ...base.georeference import describe_unknown, find_plane_units
+from ...base.products import product
+from ...base.progress import Progress
+from ...base.results import Features
+from ...base.types import seal
 from .. import _kernel
 from ..earthwork.slivers import take_without_slivers
-from ..georeference import describe_unknown, find_plane_units
-from ..results import Features
 from .levels import LevelOptions, Levels
 from .measures import measure_lengths
 from .smoothing import TracedLines, require_tolerance, smooth_lines

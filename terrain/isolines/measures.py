@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..georeference.units import find_scales
+from ...base.georeference.units import find_scales
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int64Array
-    from ...crs import CRS
+    from ...base.arrays import Float64Array, Int64Array
+    from ...base.crs import CRS
 
 __all__ = ["measure_lengths", "measure_ring_areas", "sum_parts"]
 

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ... import _optional
-from ..._sentences import counted
-from ...errors import PointsError
+from ...base import optional
+from ...base.errors import PointsError
+from ...base.sentences import counted
 from .measures import measure_lengths, measure_ring_areas
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int32Array, Int64Array, ObjectArray
+    from ...base.arrays import Float64Array, Int32Array, Int64Array, ObjectArray
     from ...tin import TIN
 
 __all__ = ["PolygonParts", "as_parts", "is_whole", "mend_polygons", "require_whole", "turn"]
@@ -38,7 +38,7 @@ def mend_polygons(
     parts: PolygonParts, *, together: bool = False
 ) -> tuple[PolygonParts, tuple[str, ...]]:
     """Make polygons valid that meet themselves, or with ``together`` others of theirs; say so."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     offsets = parts.ring_offsets, parts.polygon_offsets
     shapes = shapely.from_ragged_array(shapely.GeometryType.POLYGON, parts.points, offsets)
     is_bad = ~shapely.is_valid(shapes)
@@ -65,7 +65,7 @@ def mend_polygons(
 
 
 def _make_valid(shapes: ObjectArray) -> ObjectArray:
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     whole = shapely.union_all(shapely.make_valid(shapes))
     found = shapely.get_parts(whole)
     polygons = found[shapely.get_type_id(found) == shapely.GeometryType.POLYGON]
@@ -75,13 +75,13 @@ def _make_valid(shapes: ObjectArray) -> ObjectArray:
 
 def turn(polygon: Any) -> Any:
     """Return a polygon whose exterior runs counter-clockwise, and its holes clockwise."""
-    orient = _optional.load("shapely.geometry.polygon").orient
+    orient = optional.load("shapely.geometry.polygon").orient
     return orient(polygon)
 
 
 def as_parts(shapes: ObjectArray, band: Int32Array) -> PolygonParts:
     """Return polygons of shapely as the kernel returns its own."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     if len(shapes) == 0:  # nothing is left of what is thinner than rounding
         none = np.zeros(1, np.int64)
         return PolygonParts(np.zeros((0, 2)), none, none, band)

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ..._sentences import counted
+from ...base import optional
+from ...base.sentences import counted
 from .. import _kernel
 from .measures import measure_lengths, measure_ring_areas, sum_parts
 from .mending import PolygonParts, as_parts, turn
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array, ObjectArray
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, ObjectArray
     from ...tin import TIN
 
 __all__ = ["rebuild_wrong_bands"]
@@ -72,7 +72,7 @@ def _find_wrong(tin: TIN, levels: Float64Array, parts: PolygonParts) -> BoolArra
 
 
 def _list_shapes(parts: PolygonParts) -> tuple[ObjectArray, Int32Array]:
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     offsets = parts.ring_offsets, parts.polygon_offsets
     shapes: Any = shapely.from_ragged_array(shapely.GeometryType.POLYGON, parts.points, offsets)
     return shapes, np.asarray(parts.band, np.int32)
@@ -80,7 +80,7 @@ def _list_shapes(parts: PolygonParts) -> tuple[ObjectArray, Int32Array]:
 
 def _join_parts(tin: TIN, levels: Float64Array, band: int) -> ObjectArray:
     """Return the polygons of a band: the parts of all triangles in it, joined."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     bounds = np.concatenate([[-np.inf], levels, [np.inf]])
     low, high = float(bounds[band]), float(bounds[band + 1])
     corners = tin.points[tin.triangles]

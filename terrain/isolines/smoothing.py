@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...errors import OptionError
-from ...tin.validation.options import is_finite_number
+from ...base.checks import is_finite_number
+from ...base.errors import OptionError
 from .. import _kernel
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["TracedLines", "require_tolerance", "smooth_lines"]

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._products import product
-from ...errors import OptionError, choice
-from ...policies import SlopeUnit
-from ..georeference import describe_unknown, find_plane_units
-from ..results import Features
+from ...base.errors import OptionError, choice
+from ...base.georeference import describe_unknown, find_plane_units
+from ...base.policies import SlopeUnit
+from ...base.products import product
+from ...base.results import Features
 from .colors import compass_colors, ramp_colors
 from .dissolving import dissolve, make_polygons
 from .gradients import aspect, measure_plane_areas, slope
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ...arrays import AnyArray, Float64Array
+    from ...base.arrays import AnyArray, Float64Array
     from ...tin import TIN
 
 __all__ = ["aspect_classes", "slope_classes"]

@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._products import product
-from ...errors import PointsError, choice
-from ...policies import CurvatureKind, SurfacePart
-from ...tin.validation.options import require_tin
+from ...base.checks import require_tin
+from ...base.errors import PointsError, choice
+from ...base.georeference.units import find_scales
+from ...base.policies import CurvatureKind, SurfacePart
+from ...base.products import product
 from ...tin.validation.threads import thread_count
 from .. import _kernel
-from ..georeference.units import find_scales
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["curvature"]

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
+from ...base.results import Features
 from ...tin.topology import NO_NEIGHBOR, boundary_walks, gather, neighbors_of
-from ..results import Features
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ...arrays import Float64Array, Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int32Array, Int64Array
+    from ...base.results.columns import Units
     from ...tin import TIN
-    from ..results.columns import Units
 
 __all__ = [
     "Dissolved",

@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._products import product
-from ...errors import choice
-from ...policies import SlopeUnit, SurfacePart
-from ...tin.validation.options import require_tin
+from ...base.checks import require_tin
+from ...base.errors import choice
+from ...base.georeference.axes import find_axes
+from ...base.georeference.units import find_scales
+from ...base.policies import SlopeUnit, SurfacePart
+from ...base.products import product
 from ...tin.validation.threads import thread_count
 from .. import _kernel
-from ..georeference.axes import find_axes
-from ..georeference.units import find_scales
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...arrays import Float64Array
-    from ...crs import CRS
+    from ...base.arrays import Float64Array
+    from ...base.crs import CRS
     from ...tin import TIN, Surface
 
 __all__ = [

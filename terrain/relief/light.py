@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...errors import OptionError
-from ...tin.validation.options import is_finite_number
+from ...base.checks import is_finite_number
+from ...base.errors import OptionError
 from .. import _kernel
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, UInt8Array
+    from ...base.arrays import Float64Array, UInt8Array
 
 __all__ = ["BRIGHTEST", "DARKEST", "Light", "as_light", "normalise", "shade"]
 

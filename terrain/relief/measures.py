@@ -10,8 +10,8 @@ from .gradients import measure_aspects, measure_slopes
 from .light import shade
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
-    from ...policies import RasterValue
+    from ...base.arrays import Float64Array
+    from ...base.policies import RasterValue
     from .light import Light
 
 __all__ = ["PlaneMeasure"]

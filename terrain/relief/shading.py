@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._products import product
-from ...errors import OptionError
-from ...tin.validation.options import is_finite_number, require_tin
+from ...base.checks import is_finite_number, require_tin
+from ...base.errors import OptionError
+from ...base.georeference import describe_unknown
+from ...base.products import product
+from ...base.results import Raster
 from ..drawing.rounding import round_down
-from ..georeference import describe_unknown
 from ..gridding.coverage import require_covered
 from ..gridding.grids import as_grid
 from ..gridding.relief_bands import ReliefBand, choose_smooth
-from ..results import Raster
 from .light import as_light
 from .measures import PlaneMeasure
 

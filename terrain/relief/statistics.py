@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._products import product
-from ...errors import OptionError, choice
-from ...policies import SlopeUnit
-from ..georeference import describe_unknown, find_plane_units
-from ..results import Table
+from ...base.errors import OptionError, choice
+from ...base.georeference import describe_unknown, find_plane_units
+from ...base.policies import SlopeUnit
+from ...base.products import product
+from ...base.results import Table
 from .gradients import measure_plane_areas, slope
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["SYMBOLS", "find_weighted_percentiles", "slope_statistics"]

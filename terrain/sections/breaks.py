@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...errors import LinesError
+from ...base.errors import LinesError
 from ...tin.topology import NO_NEIGHBOR, find_owners
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int8Array, Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int8Array, Int32Array, Int64Array
     from ...tin import TIN
     from .segments import Segments
 

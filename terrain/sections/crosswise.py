@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._products import product
-from ..._sentences import coordinate
-from ...crs import scale_elevations
-from ...errors import OptionError, PointsError
+from ...base.crs import scale_elevations
+from ...base.errors import OptionError, PointsError
+from ...base.georeference import require_same_crs
+from ...base.georeference.axes import find_axes
+from ...base.products import product
+from ...base.results import Features, Table
+from ...base.sentences import coordinate
 from ...tin.validation.points import as_elevations
-from ..georeference import require_same_crs
-from ..georeference.axes import find_axes
-from ..results import Features, Table
 from .geometries import as_features
 from .profiles import (
     as_positive,
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ...arrays import Float64Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
     from ...tin import TIN
     from .rows import Rows
     from .surfaces import Surfaces

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._products import product
-from ..._sentences import counted
-from ...errors import LinesError, OptionError, choice
-from ...policies import OutsidePolicy
+from ...base.errors import LinesError, OptionError, choice
+from ...base.georeference import require_same_crs
+from ...base.policies import OutsidePolicy
+from ...base.products import product
+from ...base.results import Features
+from ...base.sentences import counted
 from ...tin.topology import find_offsets, find_owners
-from ..georeference import require_same_crs
-from ..results import Features
 from .geometries import as_features
 from .rows import cut_rows
 from .runs import find_runs
@@ -21,7 +21,7 @@ from .segments import as_segments
 from .surfaces import as_surfaces
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ...tin import TIN
     from .rows import Rows
 

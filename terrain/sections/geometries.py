@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._sentences import shown
-from ...crs import CRS
-from ...errors import LinesError, PointsError
+from ...base.crs import CRS
+from ...base.errors import LinesError, PointsError
+from ...base.results import Features
+from ...base.sentences import shown
 from ...tin import Breakline
 from ...tin.constraints.breaklines import as_coords
 from ...tin.topology import find_offsets
 from ...tin.validation.geometries import find_geometries
 from ...tin.validation.points import require_exact_range
-from ..results import Features
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray
+    from ...base.arrays import AnyArray
     from ...tin.validation.geometries import Geometries
 
 __all__ = ["as_features"]

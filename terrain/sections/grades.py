@@ -9,7 +9,7 @@ import numpy as np
 from ...tin.topology import NO_NEIGHBOR
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int32Array, Int64Array
     from ...tin import TIN
     from .rows import Rows
     from .segments import Segments

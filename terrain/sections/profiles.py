@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._products import product
-from ..._sentences import counted
-from ...crs import scale_elevations
-from ...errors import LinesError, OptionError
-from ...tin.validation.options import is_finite_number
-from ..georeference import require_same_crs
-from ..results import Table
+from ...base.checks import is_finite_number
+from ...base.crs import scale_elevations
+from ...base.errors import LinesError, OptionError
+from ...base.georeference import require_same_crs
+from ...base.products import product
+from ...base.results import Table
+from ...base.sentences import counted
 from .geometries import as_features
 from .grades import measure_grades
 from .rows import Places, cut_rows
@@ -22,9 +22,9 @@ from .surfaces import as_surfaces
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ...arrays import AnyArray, Float64Array, Int64Array, StrArray
+    from ...base.arrays import AnyArray, Float64Array, Int64Array, StrArray
+    from ...base.results import Features
     from ...tin import TIN
-    from ..results import Features
     from .rows import Rows
     from .segments import Segments
     from .surfaces import Surfaces

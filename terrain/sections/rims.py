@@ -12,7 +12,7 @@ from .roundings import find_rounding, find_written_rounding
 from .segments import Segments
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["trace_to_rim"]

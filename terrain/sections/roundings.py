@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
 
 __all__ = ["find_rounding", "find_written_rounding"]
 

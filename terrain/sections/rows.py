@@ -13,7 +13,7 @@ from .rims import trace_to_rim
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array, StrArray
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array, StrArray
     from .breaks import Breaks
     from .segments import Segments
     from .surfaces import Surfaces

@@ -9,7 +9,7 @@ import numpy as np
 from ...tin.topology import find_offsets
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
     from .rows import Rows
 
 __all__ = ["Runs", "find_runs"]

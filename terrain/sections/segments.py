@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...errors import LinesError
+from ...base.errors import LinesError
 from ...tin.topology import find_owners
 from .roundings import find_rounding
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
 
 __all__ = ["Segments", "as_segments"]
 

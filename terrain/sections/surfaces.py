@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ...crs import CRS, Unit
-from ...errors import OptionError
-from ...tin.validation.options import require_tin
-from ..georeference import agree
+from ...base.checks import require_tin
+from ...base.crs import CRS, Unit
+from ...base.errors import OptionError
+from ...base.georeference import agree
 
 if TYPE_CHECKING:
     from ...tin import TIN
@@ -41,7 +41,7 @@ def as_surfaces(given: Any) -> Surfaces:
 
     Without names, in a sequence, they are called 1, 2, ... Raises OptionError if there is none, or
     a name is no printable text; PointsError if one is no TIN; CrsError as
-    :func:`tinsmith.terrain.georeference.agree` does.
+    :func:`tinsmith.base.georeference.agree` does.
     """
     names, tins = _name_tins(given)
     for tin in tins:

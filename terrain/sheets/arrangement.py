@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ... import _optional
-from ..._sentences import counted
-from ...errors import OptionError
+from ...base import optional
+from ...base.errors import OptionError
+from ...base.sentences import counted
 from ...tin import Bounds
 from .scales import Scale
 from .strips import cut_strips
@@ -18,8 +18,8 @@ from .windows import MatchLine, Window
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...arrays import AnyArray, BoolArray, Float64Array
-    from ...crs import Unit
+    from ...base.arrays import AnyArray, BoolArray, Float64Array
+    from ...base.crs import Unit
     from .footprint import Footprint
     from .layout import Layout
 
@@ -110,7 +110,7 @@ def cut_rows(ground: Ground, layout: Layout, scale: Scale) -> list[Window]:
     OptionError
         If there would be too many.
     """
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     length = scale.measure_unit(ground.unit)
     width, height = _find_step(layout, length)
     bounds = ground.bounds
@@ -149,7 +149,7 @@ def _find_room(layout: Layout, length: float) -> tuple[float, float]:
 
 def _find_ground(footprint: Footprint, boxes: AnyArray) -> BoolArray:
     """Tell which rectangles hold some of a footprint."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     shapely.prepare(footprint.faces)
     is_kept = np.zeros(len(boxes), np.bool_)
     for face in footprint.faces:
@@ -200,7 +200,7 @@ def cut_strip_windows(
     OptionError
         If a strip is too narrow for the ground, or there would be too many.
     """
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     length = scale.measure_unit(ground.unit)
     width, height = _find_step(layout, length)
     area = float(shapely.area(ground.footprint.faces).sum())

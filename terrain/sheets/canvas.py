@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ... import _optional
+from ...base import optional
 from .lettering import FONT, PURPOSE
 from .papers import MM_PER_INCH
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from typing import IO
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from .papers import Paper
 
 __all__ = ["INK", "METADATA", "POINTS_PER_MM", "Canvas", "Pen", "drawing_rules"]
@@ -55,7 +55,7 @@ def drawing_rules() -> Iterator[None]:
 
     Letters that the font lacks are drawn as boxes, which the notes of a plan tell.
     """
-    matplotlib = _optional.load("matplotlib", PURPOSE)
+    matplotlib = optional.load("matplotlib", PURPOSE)
     with matplotlib.rc_context(), warnings.catch_warnings():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(_RULES)
@@ -68,7 +68,7 @@ class Canvas:
 
     def __init__(self, paper: Paper) -> None:
         size = paper.width / MM_PER_INCH, paper.height / MM_PER_INCH
-        figure = _optional.load("matplotlib.figure", PURPOSE).Figure(figsize=size)
+        figure = optional.load("matplotlib.figure", PURPOSE).Figure(figsize=size)
         self.figure: Any = figure
         self._axes: Any = figure.add_axes((0.0, 0.0, 1.0, 1.0))
         self._axes.set_xlim(0.0, paper.width)
@@ -81,7 +81,7 @@ class Canvas:
         """Draw polylines; ``name`` is that of their group in an SVG."""
         if len(parts) == 0:
             return
-        collections = _optional.load("matplotlib.collections", PURPOSE)
+        collections = optional.load("matplotlib.collections", PURPOSE)
         style: Any = "solid"
         if pen.dashes:
             style = (0.0, [POINTS_PER_MM * dash for dash in pen.dashes])
@@ -98,8 +98,8 @@ class Canvas:
 
     def fill(self, rings: Sequence[Float64Array], color: str, name: str) -> None:
         """Fill the area within rings, each closed; what lies in two of them is left out."""
-        path = _optional.load("matplotlib.path", PURPOSE).Path
-        patch = _optional.load("matplotlib.patches", PURPOSE).PathPatch
+        path = optional.load("matplotlib.path", PURPOSE).Path
+        patch = optional.load("matplotlib.patches", PURPOSE).PathPatch
         codes = [
             np.array([path.MOVETO, *[path.LINETO] * (len(ring) - 2), path.CLOSEPOLY])
             for ring in rings

@@ -12,7 +12,7 @@ from ...tin.topology import find_owners
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from ...arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...tin import Bounds
 
 __all__ = ["Paths", "clip_paths", "join_paths"]

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted
-from ...errors import OptionError
+from ...base.errors import OptionError
+from ...base.georeference import require_same_crs
+from ...base.georeference.axes import label_axes
+from ...base.sentences import counted
 from ...tin.topology import find_offsets
 from ..drawing.linework import EDGE_KINDS, LineEdges, find_line_edges
 from ..drawing.rounding import round_down
-from ..georeference import require_same_crs
-from ..georeference.axes import label_axes
 from ..isolines import contours
 from ..isolines.levels import elevation_range
 from .clipping import Paths, join_paths
@@ -23,10 +23,10 @@ from .lettering import clean_text
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ...arrays import AnyArray, Float64Array
+    from ...base.arrays import AnyArray, Float64Array
+    from ...base.georeference.axes import Label as AxisLabel
+    from ...base.results import Features
     from ...tin import TIN, Survey
-    from ..georeference.axes import Label as AxisLabel
-    from ..results import Features
     from .footprint import Footprint
 
 __all__ = [

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ... import _optional
-from ..._atomic import as_path, replacing, replacing_files, require_writable
-from ...errors import OptionError, RenderError
-from ...tin.validation.options import is_whole_number
+from ...base import optional
+from ...base.atomic import as_path, replacing, replacing_files, require_writable
+from ...base.checks import is_whole_number
+from ...base.errors import OptionError, RenderError
 from .canvas import METADATA, drawing_rules
 from .lettering import PURPOSE
 from .papers import MM_PER_INCH
@@ -73,7 +73,7 @@ def write_sheets(
     _require_pixels(dpi, size, kind)
     for file in files:
         require_writable(file)
-    _optional.load("matplotlib", PURPOSE)
+    optional.load("matplotlib", PURPOSE)
     with drawing_rules():
         if kind == "pdf":
             _write_pages(files[0], canvases, title)
@@ -83,7 +83,7 @@ def write_sheets(
 
 
 def _write_pages(file: Path, canvases: Iterator[Canvas], title: str) -> None:
-    pages = _optional.load("matplotlib.backends.backend_pdf", PURPOSE).PdfPages
+    pages = optional.load("matplotlib.backends.backend_pdf", PURPOSE).PdfPages
     with (
         replacing(file) as stream,
         pages(stream, metadata={**METADATA["pdf"], "Title": title}) as document,

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ... import _optional
+from ...base import optional
 from ..drawing.linework import EDGE_KINDS, find_line_edges
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["Footprint", "Pieces", "cut_into_pieces", "find_footprint"]
@@ -45,7 +45,7 @@ def find_footprint(tin: TIN) -> Footprint:
     Water is flat and has water's edges around it; which polygons are water is told by their own
     triangles, since rings may be cut by the boundary.
     """
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     found = find_line_edges(tin)
     edges = found.pairs[found.kinds == EDGE_KINDS.index("water")]
     rings = [np.append(ring, ring[0]) for ring in tin.boundary]
@@ -60,7 +60,7 @@ def find_footprint(tin: TIN) -> Footprint:
 
 def _find_water(tin: TIN, faces: AnyArray, triangles: Int32Array, edges: Int32Array) -> BoolArray:
     """Tell which faces are water: flat, along a shore, and in a ring of it if all are closed."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     shores = {tuple(place) for place in tin.points[np.unique(edges)][:, :2].tolist()}
     heights = tin.points[tin.triangles[triangles], 2]
     is_flat = np.ptp(heights, axis=1) == 0
@@ -82,7 +82,7 @@ def _touches(outer: list[list[float]], shores: set[tuple[float, ...]]) -> bool:
 
 def _list_water_rings(tin: TIN) -> AnyArray:
     """Return the closed rings of water as polygons; none if one of them is cut."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     kinds = zip(tin.lines.chains(), tin.lines.kinds, strict=True)
     chains = [chain for chain, kind in kinds if kind == "water"]
     if not all(len(chain) > 3 and chain[0] == chain[-1] for chain in chains):
@@ -99,7 +99,7 @@ def cut_into_pieces(faces: AnyArray, side: float) -> Pieces:
     Halved again and again, so that the time is in proportion to the corners and the logarithm of
     the number of cells.
     """
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     west, south, east, north = shapely.total_bounds(faces)
     columns = max(1, int(np.ceil((east - west) / side)))
     rows = max(1, int(np.ceil((north - south) / side)))
@@ -129,7 +129,7 @@ def _halve(left: int, low: int, right: int, top: int) -> list[tuple[int, int, in
 
 
 def _gather(shapes: list[Any], cells: list[tuple[int, int]]) -> Pieces:
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     corners, owners = shapely.get_coordinates(shapes, return_index=True)
     counts = np.bincount(owners, minlength=len(shapes))
     sums = np.column_stack([np.bincount(owners, corners[:, axis], len(shapes)) for axis in (0, 1)])

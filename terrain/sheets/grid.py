@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ...base.georeference.axes import label_axes
 from ..drawing.rounding import round_down
-from ..georeference.axes import label_axes
 from .canvas import Pen
 from .clipping import clip_paths, join_paths
 from .lettering import measure_text
 from .windows import turn
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array
+    from ...base.arrays import BoolArray, Float64Array
+    from ...base.georeference.axes import Label as AxisLabel
     from ...tin import Bounds
-    from ..georeference.axes import Label as AxisLabel
     from .canvas import Canvas
     from .windows import Window
 

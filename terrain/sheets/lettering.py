@@ -6,7 +6,7 @@ import unicodedata
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from ... import _optional
+from ...base import optional
 
 __all__ = [
     "FONT",
@@ -68,9 +68,9 @@ class _Font(NamedTuple):
 
 @lru_cache(maxsize=1)
 def _load_font() -> _Font:
-    manager = _optional.load("matplotlib.font_manager", PURPOSE)
+    manager = optional.load("matplotlib.font_manager", PURPOSE)
     path = manager.findfont(manager.FontProperties(family=[FONT]))
-    font = _optional.load("fontTools.ttLib", PURPOSE).TTFont(path)
+    font = optional.load("fontTools.ttLib", PURPOSE).TTFont(path)
     return _Font(font.getBestCmap(), font["hmtx"], float(font["head"].unitsPerEm))
 
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ... import _optional
+from ...base import optional
+from ...base.results import Features
 from ..isolines import contour_labels
-from ..results import Features
 from .canvas import Canvas, Pen
 from .clipping import Paths, clip_paths, join_paths
 from .grid import draw_grid
@@ -20,7 +20,7 @@ from .placing import Room, outline_text
 from .windows import list_corners, turn
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, Float64Array
+    from ...base.arrays import AnyArray, Float64Array
     from .contents import Contents, Marks
     from .windows import MatchLine, Window
 
@@ -151,7 +151,7 @@ def _draw_paths(
 
 
 def _fill_water(canvas: Canvas, window: Window, contents: Contents, drawn: Drawn) -> None:
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     box = shapely.box(*_list_sides(window))
     for face in contents.footprint.faces[contents.footprint.is_water]:
         moved = shapely.make_valid(shapely.transform(face, window.to_paper))
@@ -198,7 +198,7 @@ def _draw_contours(
 
 def _list_barriers(window: Window, contents: Contents) -> Any:
     """Return the lines that labels should not lie on, in a tree."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     parts = [
         part
         for paths in contents.linework.values()
@@ -209,7 +209,7 @@ def _list_barriers(window: Window, contents: Contents) -> Any:
 
 def _choose_labels(texts: list[_Text], barriers: Any, room: Room) -> list[_Text]:
     """Keep the labels that have room; one on a line only where its contour has no other."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     boxes = shapely.polygons(np.array([text.corners for text in texts]).reshape(-1, 4, 2))
     hit = np.zeros(len(texts), np.bool_)
     hit[barriers.query(boxes, predicate="intersects")[0]] = True
@@ -276,7 +276,7 @@ def _count_decimals(value: float) -> int:
 
 def _cut_out(paths: Paths, texts: list[_Text]) -> Paths:
     """Leave the lines out that run through a text."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     if not texts or len(paths.sources) == 0:
         return paths
     parts = paths.parts()
@@ -296,7 +296,7 @@ def _cut_out(paths: Paths, texts: list[_Text]) -> Paths:
 
 
 def _subtract(line: Any, boxes: AnyArray) -> list[Float64Array]:
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     rest = shapely.difference(line, shapely.union_all(boxes))
     pieces = [shapely.get_coordinates(part) for part in shapely.get_parts(rest)]
     return [piece for piece in pieces if len(piece) > 1]

@@ -6,9 +6,9 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, get_args
 
-from ...errors import OptionError, choice
-from ...policies import PaperOrientation
-from ...tin.validation.options import is_finite_number
+from ...base.checks import is_finite_number
+from ...base.errors import OptionError, choice
+from ...base.policies import PaperOrientation
 
 if TYPE_CHECKING:
     from typing import TypeAlias

@@ -9,7 +9,7 @@ import numpy as np
 from .windows import turn
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ...tin import Bounds
 
 __all__ = ["Room", "outline_text"]

@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ... import _optional
-from ..._products import product
-from ..._sentences import counted
-from ...crs import assume_elevation_unit
-from ...errors import LinesError, OptionError, PointsError, choice
-from ...policies import ContourLabeling, GridStyle, PointMarking, SheetLayout
+from ...base import optional
+from ...base.checks import require_tin, require_type
+from ...base.crs import assume_elevation_unit
+from ...base.errors import LinesError, OptionError, PointsError, choice
+from ...base.georeference import require_same_crs
+from ...base.georeference.axes import find_axes, undo_north_up
+from ...base.policies import ContourLabeling, GridStyle, PointMarking, SheetLayout
+from ...base.products import product
+from ...base.results.columns import join_notes
+from ...base.sentences import counted
 from ...tin import Bounds, Survey
-from ...tin.validation.options import require_tin, require_type
 from ..charts.arguments import parse_text
 from ..drawing.north_up import draw_north_up
-from ..georeference import require_same_crs
-from ..georeference.axes import find_axes, undo_north_up
-from ..results.columns import join_notes
 from ..sections.geometries import as_features
 from ..sections.segments import as_segments
 from .arrangement import Ground, choose_single, cut_rows, cut_strip_windows
@@ -41,8 +41,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from ...arrays import Float64Array
-    from ...crs import Unit, UnitLike
+    from ...base.arrays import Float64Array
+    from ...base.crs import Unit, UnitLike
     from ...tin import TIN
     from .contents import Contents
     from .layout import Layout
@@ -348,7 +348,7 @@ def plan(
     """
     require_tin(tin)
     require_type("survey", survey, Survey, or_none=True)
-    _optional.load("matplotlib", PURPOSE)
+    optional.load("matplotlib", PURPOSE)
     choice("layout", layout, SheetLayout)
     style = _Style(labels, points, grid)
     wording = _Wording.of(title, date)
@@ -391,7 +391,7 @@ class _Wording(NamedTuple):
 
 
 def _find_ground(tin: TIN, unit: Unit) -> Ground:
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     if len(tin.triangles) == 0:
         raise PointsError("The TIN has no triangle: there is nothing to draw.")
     footprint = find_footprint(tin)

@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
-from ...crs import FOOT, US_SURVEY_FOOT, Unit
-from ...errors import CrsError, OptionError
-from ...tin.validation.options import is_finite_number
+from ...base.checks import is_finite_number
+from ...base.crs import FOOT, US_SURVEY_FOOT, Unit
+from ...base.errors import CrsError, OptionError
 from .papers import MM_PER_INCH
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ...crs import CRS, UnitLike
+    from ...base.crs import CRS, UnitLike
 
 __all__ = ["Scale", "find_ground_unit", "measure_scale_factor"]
 
@@ -40,7 +40,7 @@ class Scale:
 
     Examples
     --------
-    >>> from tinsmith.crs import FOOT, METRE
+    >>> from tinsmith.base.crs import FOOT, METRE
     >>> Scale.of("1:500", METRE)
     Scale(denominator=500.0, text='1:500')
     >>> Scale.of('1" = 20 ft', FOOT).text
@@ -92,7 +92,7 @@ class Scale:
 
         Examples
         --------
-        >>> from tinsmith.crs import METRE
+        >>> from tinsmith.base.crs import METRE
         >>> scales = Scale.usual(METRE)
         >>> [next(scales).text for _ in range(9)][5:]
         ['1:25', '1:50', '1:100', '1:200']

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ... import _optional
+from ...base import optional
 from ...tin import Bounds
 from .footprint import cut_into_pieces
 from .windows import turn
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from .footprint import Footprint, Pieces
 
 __all__ = ["Joint", "Strip", "cut_strips", "find_axis"]
@@ -64,7 +64,7 @@ def cut_strips(
     middle on the axis, and a strip is as long as all of its pieces, whole, lie in the rectangle. So
     no place of the surface is left out, whatever the axis is.
     """
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     if _measure_widest(footprint) > math.hypot(*room):
         return None
     pieces = cut_into_pieces(footprint.faces, room[1] / _CELLS_ACROSS)
@@ -74,7 +74,7 @@ def cut_strips(
 
 def _measure_widest(footprint: Footprint) -> float:
     """Return the diameter of the largest circle in a footprint, or a little less."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     largest = footprint.faces[int(np.argmax(shapely.area(footprint.faces)))]
     tolerance = 0.01 * math.sqrt(float(shapely.area(largest)))
     return 2 * float(shapely.length(shapely.maximum_inscribed_circle(largest, tolerance)))
@@ -84,7 +84,7 @@ class _Walk:
     """The way along an axis, rectangle after rectangle."""
 
     def __init__(self, pieces: Pieces, axis: Any, step: float, room: tuple[float, float]) -> None:
-        shapely = _optional.load("shapely")
+        shapely = optional.load("shapely")
         self._axis = axis
         self._step = step
         self._room = room
@@ -150,7 +150,7 @@ class _Walk:
         return math.degrees(math.atan2(north, east))
 
     def _at(self, *stations: float) -> Float64Array:
-        shapely = _optional.load("shapely")
+        shapely = optional.load("shapely")
         found = shapely.line_interpolate_point(self._axis, list(stations))
         places: Float64Array = shapely.get_coordinates(found)
         return places
@@ -177,7 +177,7 @@ def find_axis(footprint: Footprint, pieces: Pieces, height: float) -> Float64Arr
 
 
 def _find_straight_axis(footprint: Footprint, height: float) -> tuple[Float64Array, bool]:
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     around = shapely.oriented_envelope(shapely.MultiPoint(shapely.get_coordinates(footprint.faces)))
     corners = shapely.get_coordinates(around)[:4]
     sides = np.hypot(*np.diff(corners[:3], axis=0).T)

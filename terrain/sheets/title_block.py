@@ -17,7 +17,7 @@ from .windows import list_corners, turn
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...crs import Unit
+    from ...base.crs import Unit
     from .canvas import Canvas
     from .layout import Layout
     from .windows import Window

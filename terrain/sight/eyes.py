@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...errors import OptionError, PointsError
-from ...tin.validation.options import is_finite_number
+from ...base.checks import is_finite_number
+from ...base.errors import OptionError, PointsError
 from ..hydrology.paths import as_places
 from .lines import as_height, raise_places
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ...tin import TIN
 
 __all__ = ["View", "as_view", "measure_distances"]

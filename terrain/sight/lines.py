@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._products import product
-from ..._sentences import counted
-from ...errors import OptionError, PointsError
-from ...tin.validation.options import is_finite_number
+from ...base.checks import is_finite_number
+from ...base.errors import OptionError, PointsError
+from ...base.products import product
+from ...base.results import Features
+from ...base.sentences import counted
 from ..earthwork.reference import find_reference
 from ..hydrology.paths import as_places
-from ..results import Features
 from .rays import Rays, find_blocks, find_curvature
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
     from ...tin import TIN
 
 __all__ = ["as_height", "line_of_sight", "raise_places"]

@@ -11,7 +11,7 @@ from .. import _kernel
 from ..relief.dissolving import DividedMesh
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array, UInt8Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array, UInt8Array
     from ...tin import TIN
     from .eyes import View
 

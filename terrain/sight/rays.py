@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...errors import CrsError, OptionError
-from ...tin.validation.options import as_flag, is_finite_number
+from ...base.checks import as_flag, is_finite_number
+from ...base.errors import CrsError, OptionError
 from ..sections.breaks import trace_breaks
 from ..sections.segments import Segments
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array
+    from ...base.arrays import BoolArray, Float64Array
     from ...tin import TIN
     from ..earthwork.reference import Reference
     from ..sections.breaks import Breaks

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._products import product
+from ...base.products import product
+from ...base.types import seal
 from ...tin.predicates import EXACT_RANGE
-from ...tin.types import seal
 from ...tin.validation.threads import thread_count
 from .. import _kernel
 from ..earthwork.reference import find_reference
@@ -16,7 +16,7 @@ from .eyes import as_view, measure_distances
 from .rays import Rays, find_blocks, find_curvature
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int64Array, UInt8Array
+    from ...base.arrays import BoolArray, Float64Array, Int64Array, UInt8Array
     from ...tin import TIN
     from .eyes import View
 

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._products import product
-from ..._progress import Progress
-from ...tin.validation.options import as_flag
+from ...base.checks import as_flag
+from ...base.georeference import find_plane_units
+from ...base.products import product
+from ...base.progress import Progress
 from ..earthwork.reference import find_reference
-from ..georeference import find_plane_units
 from ..relief.dissolving import dissolve, make_polygons
 from .eyes import as_view, measure_distances
 from .parts import divide
@@ -20,10 +20,10 @@ from .vertices import are_heights_exact, see_vertices
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
+    from ...base.results import Features
     from ...tin import TIN
     from ..relief.dissolving import Mesh
-    from ..results import Features
     from .eyes import View
 
     _Numbers = Int64Array

@@ -15,7 +15,7 @@ from ...tin.meshing.surface_difference import Crossings
 from ...tin.topology import find_offsets, find_owners
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
 
 __all__ = ["cross_cells"]
 

@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...errors import OptionError, PointsError
-from ...tin.types import seal
-from ..results.gridded import locate_centers
+from ...base.errors import OptionError, PointsError
+from ...base.results.gridded import locate_centers
+from ...base.types import seal
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from ...arrays import Float64Array, Int64Array
-    from ...crs import Unit
-    from ..results import Raster
+    from ...base.arrays import Float64Array, Int64Array
+    from ...base.crs import Unit
+    from ...base.results import Raster
 
 __all__ = ["Block", "Elevations", "Heights", "cut_blocks"]
 

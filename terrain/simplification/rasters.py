@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._progress import Progress
-from ..._sentences import counted
-from ...errors import OptionError, PointsError
+from ...base.errors import OptionError, PointsError
+from ...base.progress import Progress
+from ...base.sentences import counted
 from ...tin import Survey, topology, triangulate
 from ...tin.meshing.simplification import Errors, Goal, insert_until_near
 from ...tin.meshing.surface_difference import choose_rows
@@ -33,10 +33,10 @@ from .seams import Frame, find_frame, trace_block
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ..._progress import Tell
-    from ...arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
+    from ...base.progress import Tell
+    from ...base.results import Raster
     from ...tin import TIN
-    from ..results import Raster
 
 __all__ = ["simplify_raster"]
 

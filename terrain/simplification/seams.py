@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...errors import PointsError
+from ...base.errors import PointsError
 from ...tin.meshing.simplification import are_straight, find_rounding
 from ..gridding.voids import find_border, trace_cycles
 from .elevations import Heights
@@ -18,7 +18,7 @@ from .elevations import Heights
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from ...arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...tin.meshing.simplification import Goal
     from .elevations import Block, Elevations
 

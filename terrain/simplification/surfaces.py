@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..._products import product
-from ..._progress import Progress
+from ...base.products import product
+from ...base.progress import Progress
+from ...base.results import Raster
 from ...tin.meshing.simplification import Goal, simplify_tin
-from ..results import Raster
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import ArrayLike
 
-    from ...policies import SimplificationHold
+    from ...base.policies import SimplificationHold
     from ...tin import TIN
 
 __all__ = ["simplify"]

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
-from ...errors import OptionError
+from ...base.checks import require_tin
+from ...base.errors import OptionError
+from ...base.georeference import agree
+from ...base.georeference.axes import find_axes
 from ...tin import TIN
-from ...tin.validation.options import require_tin
 from ..drawing.north_up import draw_north_up
-from ..georeference import agree
-from ..georeference.axes import find_axes
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
-    from ...crs import CRS, Unit
+    from ...base.arrays import Float64Array
+    from ...base.crs import CRS, Unit
     from ...tin import Survey
 
 __all__ = ["Aligned", "align"]
@@ -60,7 +60,7 @@ def align(given: TIN | Mapping[str, TIN], survey: Survey | None) -> Aligned:
     PointsError
         If one is no TIN.
     CrsError
-        As :func:`tinsmith.terrain.georeference.agree` says.
+        As :func:`tinsmith.base.georeference.agree` says.
     """
     named = given if isinstance(given, Mapping) else {_ALONE: given}
     if not named:

@@ -16,7 +16,7 @@ from .scene import NORTHWEST
 from .titles import fit_title, shorten
 
 if TYPE_CHECKING:
-    from ...crs import Unit
+    from ...base.crs import Unit
     from ..relief.light import Light
     from .overlay import Overlay
     from .palette import Color

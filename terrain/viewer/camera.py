@@ -11,7 +11,7 @@ import numpy as np
 from ...tin import Bounds
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
 
 __all__ = [
     "VIEWS",

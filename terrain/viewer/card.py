@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._products import product
-from ..._sentences import counted
+from ...base.georeference.units import find_ground
+from ...base.products import product
+from ...base.sentences import counted
 from ..drawing.cards.frame import SIZE, describe_bounds, name_crs, name_units, write_card
 from ..drawing.north_up import draw_north_up
-from ..georeference.units import find_ground
 from .scene import NORTHWEST, choose_exaggeration, measure_relief
 from .tints import interpolate_tints
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ...arrays import Float64Array, UInt8Array
+    from ...base.arrays import Float64Array, UInt8Array
+    from ...base.georeference.units import Ground
     from ...tin import TIN
-    from ..georeference.units import Ground
 
 __all__ = ["draw_map", "make_card"]
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int32Array
+    from ...base.arrays import Float64Array, Int32Array
+    from ...base.georeference.units import Ground
     from ...tin import TIN, Bounds
-    from ..georeference.units import Ground
     from .camera import View
 
 __all__ = [

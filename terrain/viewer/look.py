@@ -6,9 +6,9 @@ import re
 from dataclasses import dataclass
 from typing import Any, TypedDict
 
-from ...errors import OptionError, choice
-from ...policies import Tint
-from ...tin.validation.options import as_flag, is_finite_number, is_whole_number
+from ...base.checks import as_flag, is_finite_number, is_whole_number
+from ...base.errors import OptionError, choice
+from ...base.policies import Tint
 from ..drawing.models import parse_exaggeration
 from ..relief.light import Light
 from .camera import VIEWS, View

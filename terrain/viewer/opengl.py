@@ -7,8 +7,8 @@ import subprocess
 import sys
 from functools import cache
 
-from ... import _optional
-from ...errors import RenderError
+from ...base import optional
+from ...base.errors import RenderError
 
 __all__ = ["require_on_screen", "require_opengl", "require_window"]
 
@@ -42,7 +42,7 @@ def require_opengl() -> None:
     RenderError
         If this machine cannot; the sentence says what to install.
     """
-    _optional.require("pyvista", "A preview")
+    optional.require("pyvista", "A preview")
     if not _find_window_class():
         raise RenderError(
             "This machine cannot draw: OpenGL is missing or does not work. "

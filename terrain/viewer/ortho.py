@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...errors import ReadError
-from ..georeference.axes import find_axes
+from ...base.errors import ReadError
+from ...base.georeference.axes import find_axes
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ...arrays import BoolArray, Float64Array, UInt8Array
-    from ...crs import CRS
+    from ...base.arrays import BoolArray, Float64Array, UInt8Array
+    from ...base.crs import CRS
     from ...tin import TIN
 
 __all__ = ["MOST_PIXELS", "Ortho", "read_ortho"]

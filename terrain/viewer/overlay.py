@@ -12,7 +12,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...arrays import UInt8Array
+    from ...base.arrays import UInt8Array
     from .palette import Color
 
 __all__ = ["Overlay"]

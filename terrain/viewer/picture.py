@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import RenderError
+from ...base.errors import RenderError
 from . import opengl
 from .stage import Show, make_stage
 from .strips import label_strips, paste_strips

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Unpack, overload
 
 import numpy as np
 
-from ..._atomic import as_path, replacing
-from ..._products import product
-from ...errors import RenderError
+from ...base.atomic import as_path, replacing
+from ...base.checks import require_type
+from ...base.errors import RenderError
+from ...base.georeference.units import find_ground
+from ...base.products import product
+from ...base.results.columns import join_notes
 from ...tin import TIN, Survey
-from ...tin.validation.options import require_type
 from ..earthwork import difference
-from ..georeference.units import find_ground
-from ..results.columns import join_notes
 from .alignment import Aligned, align
 from .look import Look, LookOptions, make_look
 from .ortho import Ortho, read_ortho
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Sequence
 
-    from ...arrays import Float64Array
-    from ..georeference.units import Ground
+    from ...base.arrays import Float64Array
+    from ...base.georeference.units import Ground
     from .elevations import ElevationRange
 
 __all__ = ["PREVIEW_SUFFIXES", "Preview", "preview"]
@@ -163,7 +163,7 @@ class Preview:
         >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs="EPSG:32616")
         >>> ts.preview({"before": tin, "after": tin}).show()  # of one surface a window opens
         Traceback (most recent call last):
-        tinsmith.errors.RenderError: A window shows one surface, and there are 2: ...
+        tinsmith.base.errors.RenderError: A window shows one surface, and there are 2: ...
         """
         open_window(self._require_one("A window"), self._look, self._ortho)
 

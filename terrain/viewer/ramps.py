@@ -8,8 +8,8 @@ from ..relief.gradients import aspect, slope
 from .tints import interpolate_tints, mix_tints
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, UInt8Array
-    from ...policies import Tint
+    from ...base.arrays import Float64Array, UInt8Array
+    from ...base.policies import Tint
     from ...tin import TIN
 
 __all__ = ["PLAIN", "STEEPEST", "Legend", "choose_ramp", "measure_tint"]

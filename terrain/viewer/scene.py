@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
+from ...base import optional
 from ...tin.topology import edges_at
 from ..drawing.models import choose_origin
 from ..relief.light import Light
@@ -15,10 +15,10 @@ from .elevations import ElevationRange, find_elevation_range
 from .ramps import PLAIN, choose_ramp, measure_tint
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float32Array, Float64Array, Int32Array
-    from ...policies import Tint
+    from ...base.arrays import BoolArray, Float32Array, Float64Array, Int32Array
+    from ...base.georeference.units import Ground
+    from ...base.policies import Tint
     from ...tin import TIN
-    from ..georeference.units import Ground
     from .ortho import Ortho
 
 __all__ = [
@@ -123,7 +123,7 @@ def add_terrain(
     tint, by default of the TIN; the vertices ``is_far_off``, (n,), need not be in the picture,
     however high or low they are. What must be seen is (k, 3).
     """
-    pv = _optional.load("pyvista", _PURPOSE)
+    pv = optional.load("pyvista", _PURPOSE)
 
     ends = (tin.points[:, 2].min(), tin.points[:, 2].max()) if elevations is None else elevations
     surface = pv.PolyData.from_regular_faces(points, np.array(tin.triangles))
@@ -156,7 +156,7 @@ def add_ortho(plotter: Any, tin: TIN, points: Float64Array, ortho: Ortho, surfac
 
     ``points`` are the vertices as drawn, (n, 3); the surface is moved back a little.
     """
-    pv = _optional.load("pyvista", _PURPOSE)
+    pv = optional.load("pyvista", _PURPOSE)
 
     rows, columns = ortho.shape
     sides = np.array([columns, rows])
@@ -192,7 +192,7 @@ def fade_edges(actor: Any, tin: TIN, ground: Ground, pixels: float) -> None:
 
 def add_lights(plotter: Any, sun: Light = NORTHWEST) -> None:
     """Light the scene, wherever the camera stands: by a sun, and a weak sky around it."""
-    pv = _optional.load("pyvista", _PURPOSE)
+    pv = optional.load("pyvista", _PURPOSE)
 
     plotter.remove_all_lights()
     for azimuth, height, strength in _balance_lights(sun):

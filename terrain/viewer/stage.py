@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ..._sentences import counted
+from ...base import optional
+from ...base.georeference.units import find_ground
+from ...base.sentences import counted
 from ...tin import Bounds
 from ..drawing.linework import add_lines, add_polylines
 from ..drawing.models import choose_origin
 from ..drawing.rounding import format_number
-from ..georeference.units import find_ground
 from ..isolines import contours
 from .annotations import Caption, Sheet, annotate
 from .camera import aim, measure_pixels_per_unit, place_camera, project_ground_axes
@@ -36,9 +36,9 @@ from .scene import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
+    from ...base.georeference.units import Ground
     from ...tin import TIN
-    from ..georeference.units import Ground
     from .camera import View
     from .corridor import Corridor, Strips
     from .elevations import ElevationRange
@@ -107,7 +107,7 @@ def make_stage(
 
     With ``has_strips`` a corridor is cut into strips, if nobody chose where to look from.
     """
-    _optional.load("pyvista", _PURPOSE)
+    optional.load("pyvista", _PURPOSE)
     ground = find_ground(tin)
     shown = measure_relief(tin, ground)
     view = look.seen_from
@@ -218,7 +218,7 @@ class Show:
 
 def open_plotter(stage: Stage, window: tuple[int, int], *, off_screen: bool) -> Any:
     """Return a plotter with background and light, and nothing in it."""
-    pv = _optional.load("pyvista", _PURPOSE)
+    pv = optional.load("pyvista", _PURPOSE)
     plotter = pv.Plotter(off_screen=off_screen, window_size=list(window), lighting="none")
     plotter.set_background([part / 255 for part in stage.caption.palette.paper])
     add_lights(plotter, stage.look.sun)

@@ -16,7 +16,7 @@ from .stage import add_stage, fit_sheet, open_plotter
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ...arrays import Float64Array, UInt8Array
+    from ...base.arrays import Float64Array, UInt8Array
     from .annotations import Sheet
     from .corridor import Strips
     from .stage import Show, Stage

@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...arrays import Float64Array, UInt8Array
+    from ...base.arrays import Float64Array, UInt8Array
 
 __all__ = ["compute_lightness", "interpolate_tints", "mix_tints"]
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
-from ... import _optional
-from ...errors import TinsmithError
-from ...policies import Tint
+from ...base import optional
+from ...base.errors import TinsmithError
+from ...base.georeference.axes import label_axes
+from ...base.policies import Tint
 from ..drawing.linework import add_polylines
 from ..drawing.models import choose_origin
 from ..drawing.rounding import round_down
-from ..georeference.axes import label_axes
 from ..relief.gradients import slope
 from ..sections import profile
 from . import opengl
@@ -22,8 +22,8 @@ from .picture import keep_vtk_plain
 from .stage import Show, fit_sheet, make_stage, place_on_stage
 
 if TYPE_CHECKING:
+    from ...base.results import Table
     from ...tin import TIN
-    from ..results import Table
     from .look import Look
     from .ortho import Ortho
 
@@ -182,7 +182,7 @@ class Window:
         return table
 
     def _draw_chart(self, table: Table) -> None:
-        pv = _optional.load("pyvista", _PURPOSE)
+        pv = optional.load("pyvista", _PURPOSE)
         if self._chart is not None:
             self.show.plotter.remove_chart(self._chart)
         unit, up = self.stage.ground.unit.symbol, self.stage.ground.elevation_caption
@@ -297,7 +297,7 @@ class Window:
 
 def open_window(tin: TIN, look: Look, ortho: Ortho | None = None) -> None:
     """Show a surface in a window, and wait until it is closed."""
-    _optional.load("pyvista", _PURPOSE)
+    optional.load("pyvista", _PURPOSE)
     opengl.require_window()
     with keep_vtk_plain():
         window = Window(tin, look, ortho)

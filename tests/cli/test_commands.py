@@ -13,9 +13,9 @@ from click.testing import CliRunner
 from support.commands import run_command as run
 
 import tinsmith as ts
+from tinsmith.base.policies import CrossingPolicy, DuplicatePolicy, FeatureKind, TrimPolicy
 from tinsmith.cli import group, main
 from tinsmith.cli.output.summaries import describe_file_size
-from tinsmith.policies import CrossingPolicy, DuplicatePolicy, FeatureKind, TrimPolicy
 from tinsmith.terrain.viewer import picture as drawing
 
 SAMPLES = Path(__file__).parents[2] / "sample_data"
@@ -474,7 +474,7 @@ def test_formats_lists_every_known_format():
 @pytest.mark.parametrize("is_there", [True, False])
 def test_formats_tells_what_is_installed(monkeypatch, is_there):
     if not is_there:
-        monkeypatch.setattr("tinsmith._optional.find_spec", lambda name: None)
+        monkeypatch.setattr("tinsmith.base.optional.find_spec", lambda name: None)
     rows = run("formats").stdout.splitlines()
     row = next(number for number, row in enumerate(rows) if row.split()[:1] == ["gmsh"])
     assert rows[row].split()[:4] == ["gmsh", "TIN", "TIN", "tinsmith[mesh]"]

@@ -11,8 +11,8 @@ import shapely
 from support.commands import run_command as run
 
 import tinsmith as ts
+from tinsmith.base.policies import TrimPolicy
 from tinsmith.cli.options import Triangulating
-from tinsmith.policies import TrimPolicy
 
 pyogrio = pytest.importorskip("pyogrio")
 

@@ -120,7 +120,7 @@ def test_a_missing_folder_is_found_before_anything_is_read(folder, arguments):
 
 
 def test_a_folder_that_may_not_be_written_to_is_found_before_anything_is_read(folder, monkeypatch):
-    from tinsmith import _atomic as atomic
+    from tinsmith.base import atomic
 
     monkeypatch.setattr(atomic.os, "access", lambda path, mode: mode != os.W_OK | os.X_OK)
     result = invoke("build", "none.csv", "-o", "a.ply")

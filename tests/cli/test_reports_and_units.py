@@ -6,7 +6,7 @@ import pytest
 from support.commands import refuse, run_command
 
 import tinsmith as ts
-from tinsmith._sentences import coordinate, height
+from tinsmith.base.sentences import coordinate, height
 
 LOCAL = "1,1000,5000,100,CP\n2,1000,5050,101,GS\n3,1050,5000,100.5,GS\n4,1050,5050,102,GS\n"
 
@@ -36,7 +36,7 @@ def test_a_unit_that_the_crs_has_not_is_refused(local):
         "build", local, "--columns", "PNEZD", "--unit", "ft", "--crs", "EPSG:32616", "-o", "x.xml"
     )
     assert "the unit of EPSG:32616" in said
-    with pytest.raises(ts.errors.OptionError, match="metre, the unit of EPSG:32616"):
+    with pytest.raises(ts.base.errors.OptionError, match="metre, the unit of EPSG:32616"):
         ts.read(local, columns="PNEZD", unit="ft", crs="EPSG:32616")
 
 
@@ -79,5 +79,5 @@ def test_a_crossing_is_told_with_its_full_place():
         [752_710, 4_024_310, 2],
     ]
     tin = ts.triangulate(points)
-    with pytest.raises(ts.errors.PointsError, match="x 752700, y 4024225 already"):
+    with pytest.raises(ts.base.errors.PointsError, match="x 752700, y 4024225 already"):
         tin.move(0, [752_700, 4_024_225, 1])

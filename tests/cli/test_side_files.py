@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 import tinsmith as ts
-from tinsmith._atomic import replacing_path, scratch_folder
+from tinsmith.base.atomic import replacing_path, scratch_folder
 from tinsmith.cli import main
 from tinsmith.io.registry.lookup import known_formats
 from tinsmith.io.registry.side_files import list_sources, list_written_beside
@@ -171,7 +171,7 @@ def test_what_stands_beside_a_file_after_writing_is_known(folder, name):
 def kill_while_writing(name):
     """Kill a program while it writes a file, and return what it has left."""
     program = (
-        "import sys, time; from pathlib import Path; from tinsmith._atomic import *\n"
+        "import sys, time; from pathlib import Path; from tinsmith.base.atomic import *\n"
         f"with replacing_path(Path({name!r})) as beside, scratch_folder() as folder:\n"
         "    beside.write_text('half'); print(folder, flush=True); time.sleep(60)\n"
     )

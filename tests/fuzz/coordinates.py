@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tinsmith.arrays import Float64Array
+from tinsmith.base.arrays import Float64Array
 
 UTM = np.array([512_345.0, 5_403_210.0])
 

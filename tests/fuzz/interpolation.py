@@ -10,7 +10,7 @@ from support import oracles
 from support.natural_oracle import laplace_weights, sibson_weights
 
 import tinsmith as ts
-from tinsmith.arrays import Float64Array
+from tinsmith.base.arrays import Float64Array
 
 from .campaign import Campaign, Case
 from .coordinates import points

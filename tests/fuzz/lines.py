@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 import tinsmith as ts
-from tinsmith.arrays import Float64Array
+from tinsmith.base.arrays import Float64Array
 
 from .campaign import Campaign, Case
 from .coordinates import KINDS, coordinates

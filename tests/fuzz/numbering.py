@@ -14,7 +14,7 @@ from support.clipping import covered_area
 from support.relief_oracle import GradientAt
 
 import tinsmith as ts
-from tinsmith.arrays import Float64Array, Int32Array
+from tinsmith.base.arrays import Float64Array, Int32Array
 
 from .campaign import Campaign, Case
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import tinsmith as ts
-from tinsmith.crs import METRE
+from tinsmith.base.crs import METRE
 from tinsmith.terrain.viewer.annotations import Caption, annotate
 from tinsmith.terrain.viewer.camera import View, aim
 from tinsmith.terrain.viewer.corridor import STRIP_GAP

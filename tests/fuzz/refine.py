@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import tinsmith as ts
-from tinsmith.arrays import Float64Array
+from tinsmith.base.arrays import Float64Array
 
 from .campaign import Campaign, Case
 from .linework import surface, triangulate

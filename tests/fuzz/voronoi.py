@@ -11,7 +11,7 @@ import numpy as np
 from shapely.geometry import Point, Polygon
 
 import tinsmith as ts
-from tinsmith.arrays import Float64Array
+from tinsmith.base.arrays import Float64Array
 
 from .campaign import Campaign, Case
 from .coordinates import points

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from support import oracles
 
 import tinsmith as ts
-from tinsmith.errors import WriteError
+from tinsmith.base.errors import WriteError
 from tinsmith.io.mesh import obj, stl, vtk
 from tinsmith.io.mesh.ply import file as ply
 

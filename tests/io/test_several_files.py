@@ -176,7 +176,7 @@ def test_attributes_that_some_lack_and_of_several_types():
         notes=["said by both"],
         skipped={"void": 1},
         skipped_lines={"void": (9,)},
-        findings=[ts.tin.types.Finding("odd", (0,), "Odd.")],
+        findings=[ts.base.types.Finding("odd", (0,), "Odd.")],
     )
     joined = join_surveys([one, other], ["a", "b"])
     found = {name: column.tolist() for name, column in joined.attributes.items()}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-from tinsmith import _plug_ins
+from tinsmith.base import plug_ins
 from tinsmith.cli import plug_in_commands as commands
 from tinsmith.io.registry import lookup
 
@@ -25,7 +25,7 @@ class Entry:
 def install(monkeypatch, *entries, group):
     """Let these be all the entry points of a group."""
     monkeypatch.setattr(
-        _plug_ins, "entry_points", lambda **asked: entries if asked["group"] == group else ()
+        plug_ins, "entry_points", lambda **asked: entries if asked["group"] == group else ()
     )
     forget()
 

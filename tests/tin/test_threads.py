@@ -16,8 +16,8 @@ import pytest
 from support.kernel_datasets import DATASETS, make_points, require_same_growth, with_heights
 
 import tinsmith as ts
-from tinsmith._interrupts import hold_interrupts
-from tinsmith._sentences import shown
+from tinsmith.base.interrupts import hold_interrupts
+from tinsmith.base.sentences import shown
 from tinsmith.tin import _kernel
 from tinsmith.tin.validation import threads as threads_module
 from tinsmith.tin.validation.threads import LEAST_POINTS_PER_THREAD, thread_count

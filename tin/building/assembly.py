@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._progress import Progress
-from ..._sentences import counted
+from ...base.progress import Progress
+from ...base.sentences import counted
 from .. import _kernel
 from ..constraints.breaklines import Lines
 from ..constraints.clipping import BOUNDARY, EXTENT, HOLES, Surface, in_rings
@@ -21,8 +21,8 @@ from .constrained import ConstrainedTriangulation, triangulate_constrained
 from .duplicates import merge_rows
 
 if TYPE_CHECKING:
-    from ..._progress import Tell
-    from ...arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
+    from ...base.progress import Tell
     from .inputs import BuildInputs
 
 __all__ = ["Built", "assemble"]

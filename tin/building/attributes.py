@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import OptionError
-from ..types import seal
+from ...base.errors import OptionError
+from ...base.types import seal
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...arrays import AnyArray, Int32Array, Int64Array
+    from ...base.arrays import AnyArray, Int32Array, Int64Array
 
 __all__ = [
     "Attributes",

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...policies import CrossingPolicy, DuplicatePolicy
+from ...base.policies import CrossingPolicy, DuplicatePolicy
 from .. import _kernel
 from ..constraints.clipping import Surface
 from ..constraints.conforming import conform
@@ -24,8 +24,8 @@ from .duplicates import merge_rows
 from .water import leave_out_water
 
 if TYPE_CHECKING:
-    from ..._progress import Tell
-    from ...arrays import Float64Array, Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int32Array, Int64Array
+    from ...base.progress import Tell
 
 __all__ = ["ConstrainedTriangulation", "CrossingPolicy", "LineOptions", "triangulate_constrained"]
 

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._sentences import height, inflect
-from ...errors import PointsError
-from ...policies import DuplicatePolicy
+from ...base.errors import PointsError
+from ...base.policies import DuplicatePolicy
+from ...base.sentences import height, inflect
 from ..validation.points import SHOWN
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["DuplicatePolicy", "Merged", "merge_rows"]
 

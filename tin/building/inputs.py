@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import coordinate, counted, height
-from ...crs import CRS, Unit, require_one_unit, require_same_unit
-from ...errors import CrsError, LinesError, choice
-from ...policies import CrossingPolicy, DuplicatePolicy, TrimPolicy
+from ...base.checks import as_flag, require_distance, require_positive
+from ...base.crs import CRS, Unit, require_one_unit, require_same_unit
+from ...base.errors import CrsError, LinesError, choice
+from ...base.policies import CrossingPolicy, DuplicatePolicy, TrimPolicy
+from ...base.ranges import describe_span, require_degrees
+from ...base.sentences import coordinate, counted, height
 from .. import _kernel
 from ..constraints.constraint_set import (
     LineSet,
@@ -24,9 +26,7 @@ from ..constraints.constraint_set import (
     require_length,
 )
 from ..constraints.polygons import starts_with_elevations
-from ..validation.options import as_flag, require_distance, require_positive
 from ..validation.points import as_masked_points, require_three
-from ..validation.ranges import describe_span, require_degrees
 from ..validation.threads import thread_count
 from .constrained import LineOptions
 from .reference import adds_to, settle_crs
@@ -35,10 +35,10 @@ from .survey import Survey
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...arrays import BoolArray, Float64Array, Int64Array
-    from ...crs import CrsLike, UnitLike
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
+    from ...base.crs import CrsLike, UnitLike
+    from ...base.types import GeometriesLike, PointsLike, RowSources
     from ..constraints.breaklines import Breakline, Water
-    from ..types import GeometriesLike, PointsLike, RowSources
 
 __all__ = ["BuildInputs", "TrimPolicy", "gather_inputs"]
 

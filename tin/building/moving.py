@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import OptionError, PointsError
-from ..validation.options import is_finite_number
+from ...base.checks import is_finite_number
+from ...base.errors import OptionError, PointsError
 from ..validation.points import as_points
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...arrays import Float64Array, Int64Array
-    from ...crs import CRS, Unit
+    from ...base.arrays import Float64Array, Int64Array
+    from ...base.crs import CRS, Unit
     from .inputs import BuildInputs
 
     Move = Callable[[Float64Array], Float64Array]

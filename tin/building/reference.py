@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from ...crs import CRS
-from ...errors import CrsError
+from ...base.crs import CRS
+from ...base.errors import CrsError
 from ..validation.geometries import is_plain
 
 if TYPE_CHECKING:

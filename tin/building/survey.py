@@ -8,21 +8,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._methods import make_card
-from ..._sentences import counted
-from ...crs import CRS, Unit, require_one_unit, shorten_crs
-from ...errors import OptionError
+from ...base.crs import CRS, Unit, require_one_unit, shorten_crs
+from ...base.errors import OptionError
+from ...base.methods import make_card
+from ...base.ranges import require_degrees
+from ...base.sentences import counted
+from ...base.types import Bounds, Finding, RowSources
 from ..constraints.breaklines import Breakline, Water
 from ..constraints.constraint_set import as_sequence
-from ..types import Bounds, Finding, RowSources
 from ..validation.geometries import is_plain
-from ..validation.ranges import require_degrees
 from ..validation.tables import Table, as_table
 from .attributes import as_columns, as_mapping
 from .reference import settle_crs
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, BoolArray, Float64Array
+    from ...base.arrays import AnyArray, BoolArray, Float64Array
 
 __all__ = ["Survey"]
 

@@ -20,7 +20,7 @@ from ..topology import edge_keys
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..constraints.ring_cover import Crossing
 
 __all__ = ["leave_out_water"]

@@ -32,7 +32,7 @@ import numpy as np
 from ..predicates import ORIENTATION_BOUND
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int8Array, Int64Array
+    from ...base.arrays import Float64Array, Int8Array, Int64Array
 
 __all__ = ["Boundary", "BoundaryFault", "find_fault", "find_sides"]
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
-from ...policies import LineKind
+from ...base.policies import LineKind
 from ..topology import edge_keys, edges_at
 
 if TYPE_CHECKING:

@@ -29,11 +29,11 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from ..._products import product
-from ...errors import CheckError, OptionError
+from ...base.checks import as_flag, is_whole_number, require_tin
+from ...base.errors import CheckError, OptionError
+from ...base.products import product
 from ..building.survey import Survey
 from ..constraints.constraint_set import as_sequence, gather_lines
-from ..validation.options import as_flag, is_whole_number, require_tin
 from ..validation.points import as_masked_points
 from .chains import check_chains, check_segments, has_sound_chains
 from .connections import check_arrays, check_connections
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ..constraints.breaklines import Breakline
     from ..constraints.constraint_set import LineSet
     from ..surface import TIN

@@ -11,7 +11,7 @@ from ..predicates import EXACT_RANGE, LARGEST_ELEVATION, blocks
 from ..report import LEFT_OUT
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array
     from ..surface import TIN
     from .findings import Findings
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._sentences import inflect
+from ...base.sentences import inflect
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -19,14 +19,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._sentences import counted, inflect
+from ...base.sentences import counted, inflect
 from ..report import LEFT_OUT
 from .boundary_sweep import find_sides
 from .chain_matching import UNSEEN_CUTS, Walk, distance, walk_along
 from .shape import find_boundary, has_sound_boundary
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array
+    from ...base.arrays import BoolArray, Float64Array
     from ..constraints.constraint_set import LineSet
     from ..surface import TIN
     from .findings import Findings

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._sentences import inflect
+from ...base.sentences import inflect
 from ..predicates import Columns, columns, is_last, orientation
 from ..topology import NO_NEIGHBOR
 from .boundary_sweep import Boundary, find_fault

@@ -11,7 +11,7 @@ from ..predicates import Columns, columns, is_last, orientation
 from .boundary_sweep import Boundary, find_fault
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array
     from ..surface import TIN
     from .findings import Findings
 

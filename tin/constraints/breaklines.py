@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
-from ..._sentences import counted, height, inflect, shown
-from ...errors import LinesError, OptionError, PointsError, choice
-from ...policies import BreaklineKind, LineKind
-from ..types import Frozen
+from ...base.checks import is_finite_number, is_whole_number
+from ...base.errors import LinesError, OptionError, PointsError, choice
+from ...base.policies import BreaklineKind, LineKind
+from ...base.sentences import counted, height, inflect, shown
+from ...base.types import Frozen
 from ..validation.geometries import find_geometries
-from ..validation.options import is_finite_number, is_whole_number
 from ..validation.tables import as_table
 from .polylines import Polylines
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["Breakline", "BreaklineKind", "LineKind", "Lines", "Water"]
 

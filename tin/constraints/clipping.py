@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...errors import LinesError
+from ...base.errors import LinesError
 from .. import _kernel, topology
 from ..topology import edge_keys, find_offsets
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
 
 __all__ = [
     "BOUNDARY",

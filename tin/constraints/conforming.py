@@ -24,8 +24,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._sentences import counted, inflect
-from ...errors import LinesError
+from ...base.errors import LinesError
+from ...base.sentences import counted, inflect
 from .. import _kernel
 from ..topology import edge_keys
 from .noding import node_again
@@ -33,7 +33,7 @@ from .pslg import build_mesh
 from .splitting import interpolate_linearly, is_before
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, Float64Array, Int32Array
+    from ...base.arrays import AnyArray, Float64Array, Int32Array
     from .polylines import Polylines
 
 __all__ = ["conform"]

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._sentences import coordinate, shown
-from ...errors import LinesError
+from ...base.errors import LinesError
+from ...base.sentences import coordinate, shown
 from .. import _kernel
 from ..topology import find_offsets, find_owners
 from ..validation.geometries import find_geometries, is_plain
@@ -21,8 +21,8 @@ from .polygons import gather_rings_of_regions
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
-    from ...policies import LineKind
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.policies import LineKind
 
 __all__ = [
     "ABOVE_ALL",

@@ -9,8 +9,8 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int32Array
-    from ...policies import LineKind
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array
+    from ...base.policies import LineKind
 
 __all__ = ["ConstraintTable"]
 

@@ -15,7 +15,7 @@ from .noding import node
 from .polylines import Polylines
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["Draped", "drape"]
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
-from ..._sentences import shown
-from ...errors import LinesError
-from ...policies import BreaklineKind
+from ...base.errors import LinesError
+from ...base.policies import BreaklineKind
+from ...base.sentences import shown
 from .breaklines import Breakline, Water, as_ring
 
 if TYPE_CHECKING:

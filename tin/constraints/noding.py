@@ -26,15 +26,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._sentences import coordinate, height
-from ...errors import LinesError, choice
-from ...policies import CrossingPolicy
+from ...base.errors import LinesError, choice
+from ...base.policies import CrossingPolicy
+from ...base.sentences import coordinate, height
 from ..report import Crossings
 from .polylines import Polylines
 from .splitting import Splitting, drop_repeats
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["Noded", "Touches", "accept_noded", "node", "node_again"]
 

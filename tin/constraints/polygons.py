@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import LinesError
+from ...base.errors import LinesError
 from ..validation.geometries import find_geometries
 from .breaklines import as_ring, find_elevations_at_start
 from .given_geometries import list_regions
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
 
 __all__ = ["gather_rings_of_regions", "starts_with_elevations"]
 

@@ -13,7 +13,7 @@ from ..topology import find_offsets, find_owners
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from ...arrays import AnyArray, BoolArray, Int32Array, Int64Array
+    from ...base.arrays import AnyArray, BoolArray, Int32Array, Int64Array
 
 __all__ = ["Polylines", "offsets_of", "owners_of"]
 

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import LinesError
+from ...base.errors import LinesError
 from .. import _kernel
 from ..topology import edge_keys, edges_at
 from .breaklines import Lines
 from .clipping import BOUNDARY, OWN_BOUNDARY, RingSegments, Surface, clip, is_inside, trim
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from .constraint_table import ConstraintTable
     from .polylines import Polylines
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from ...arrays import Int64Array
+    from ...base.arrays import Int64Array
 
 __all__ = ["Crossing", "find_crossings", "gather_odd", "walk_regions"]
 

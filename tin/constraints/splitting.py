@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...errors import LinesError
+from ...base.errors import LinesError
 from .. import _kernel
 from .polylines import Polylines
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["Segments", "Splitting", "drop_repeats", "interpolate_linearly", "is_before"]
 

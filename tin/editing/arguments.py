@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted, shown
-from ...errors import PointsError
+from ...base.errors import PointsError
+from ...base.sentences import counted, shown
 from .._kernel import LARGEST_ELEVATION
 from ..constraints.breaklines import as_coords
 from ..validation.geometries import find_geometries
@@ -18,7 +18,7 @@ from ..validation.vertices import as_vertex_array
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...arrays import Float64Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
 
 __all__ = [
     "as_array",

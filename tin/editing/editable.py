@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 
-from ...crs import measure_angular_unit
+from ...base.crs import measure_angular_unit
+from ...base.ranges import require_degrees
 from ..building.reference import require_crs
 from ..validation.geometries import is_plain
-from ..validation.ranges import require_degrees
 from ..validation.tables import as_table
 from .arguments import as_array
 from .origin import Origin
@@ -29,8 +29,8 @@ from .single_edits import make_vertices
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...arrays import Int32Array, Int64Array
-    from ...policies import BreaklineKind, CrossingPolicy, DuplicatePolicy
+    from ...base.arrays import Int32Array, Int64Array
+    from ...base.policies import BreaklineKind, CrossingPolicy, DuplicatePolicy
     from .._kernel import EditedMesh
     from ..building.inputs import BuildInputs
     from ..report import Edit

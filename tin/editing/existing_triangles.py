@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...errors import PointsError, TinsmithError
+from ...base.errors import PointsError, TinsmithError
 from .. import topology
 from ..building.assembly import assemble
 from ..building.constrained import LineOptions
@@ -25,8 +25,8 @@ from ..validation.threads import thread_count
 from .state import State
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int32Array
-    from ...policies import LineKind
+    from ...base.arrays import Float64Array, Int32Array
+    from ...base.policies import LineKind
     from .changes import NumberedInputs
     from .version import Version
 

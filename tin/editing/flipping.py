@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...errors import PointsError
+from ...base.errors import PointsError
 from .. import _kernel
 from ..constraints.breaklines import Breakline
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ..building.inputs import BuildInputs
     from .state import State
 

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 from copy import copy
 from typing import TYPE_CHECKING, Any
 
-from ..._sentences import shown
-from ...errors import PointsError, TinsmithError
+from ...base.errors import PointsError, TinsmithError
+from ...base.sentences import shown
 from ..report import Edit
 from .operations import FORMER_NAMES, OPERATIONS
 

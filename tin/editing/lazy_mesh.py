@@ -9,7 +9,7 @@ import numpy as np
 from .. import _kernel
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array
 
 __all__ = ["LiveMesh"]
 

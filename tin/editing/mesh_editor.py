@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._sentences import coordinate, height
-from ...errors import PointsError
+from ...base.errors import PointsError
+from ...base.sentences import coordinate, height
 from .. import _kernel
 from ..building.duplicates import merge_rows
 from ..report import Edit, Report
@@ -26,8 +26,8 @@ from .state import State
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
-    from ...policies import DuplicatePolicy
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.policies import DuplicatePolicy
     from ..building.inputs import BuildInputs
     from .changes import NumberedInputs
 

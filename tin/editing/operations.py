@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
-from ..._sentences import coordinate, height, shown
-from ...errors import LinesError, choice
-from ...policies import CrossingPolicy, DuplicatePolicy
+from ...base.checks import is_whole_number
+from ...base.errors import LinesError, choice
+from ...base.policies import CrossingPolicy, DuplicatePolicy
+from ...base.sentences import coordinate, height, shown
 from ..constraints.breaklines import Breakline
 from ..report import Edit
-from ..validation.options import is_whole_number
 from .arguments import (
     as_ends,
     as_new_points,
@@ -41,8 +41,8 @@ from .state import State
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
-    from ...policies import BreaklineKind
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.policies import BreaklineKind
     from ..constraints.breaklines import Lines
 
 __all__ = [

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from ..._interrupts import hold_interrupts
-from ..._sentences import counted, inflect
-from ...errors import PointsError, TinsmithError
+from ...base.checks import require_count
+from ...base.errors import PointsError, TinsmithError
+from ...base.interrupts import hold_interrupts
+from ...base.sentences import counted, inflect
 from ..report import Edit
-from ..validation.options import require_count
 from .changes import Change, NumberedInputs
 from .existing_triangles import build_state_of_triangles, gather_inputs_of_triangles
 from .mesh_editor import Editor, NotLocal, is_local
@@ -21,7 +21,7 @@ from .state import State, build_state
 from .version import Version
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, Int32Array
+    from ...base.arrays import AnyArray, Int32Array
     from .._kernel import EditedMesh
     from ..building.inputs import BuildInputs
 

@@ -11,7 +11,7 @@ from ..report import Edit
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ...arrays import Float64Array, Int32Array
+    from ...base.arrays import Float64Array, Int32Array
     from .. import _kernel
 
 __all__ = ["INSERT", "MOVE", "REMOVE", "SET_ELEVATION", "SingleEdit", "make_vertices", "take_log"]

@@ -11,7 +11,7 @@ from ..building.assembly import Built, assemble
 from ..triangulation import Triangulation
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int32Array
+    from ...base.arrays import Float64Array, Int32Array
     from ..constraints.breaklines import Lines
     from ..report import Report
     from .changes import NumberedInputs

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from ...base.types import Frozen
 from ..building.attributes import find_first_rows
-from ..types import Frozen
 from .interpolation.interpolator import Interpolator
 
 if TYPE_CHECKING:
-    from ...arrays import Int32Array, Int64Array
+    from ...base.arrays import Int32Array, Int64Array
     from ..constraints.breaklines import Lines
     from ..report import Report
     from ..triangulation import Triangulation

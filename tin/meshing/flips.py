@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..._sentences import counted
+from ...base.sentences import counted
 from ..triangulation.illegal_edges import mark_illegal_edges
 
 if TYPE_CHECKING:

@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._products import product
-from ..._progress import Progress
-from ..._sentences import counted
-from ...errors import OptionError, PointsError
+from ...base.checks import is_finite_number, is_whole_number, require_positive, require_tin
+from ...base.errors import OptionError, PointsError
+from ...base.products import product
+from ...base.progress import Progress
+from ...base.sentences import counted
 from .. import _kernel, topology
 from ..constraints.clipping import Surface
 from ..constraints.pslg import build_mesh_of_growth, find_lines_in
 from ..surface import TIN
-from ..validation.options import is_finite_number, is_whole_number, require_positive, require_tin
 from ..validation.threads import thread_count
 from .flips import describe_flips
 from .surface_pslg import gather_pslg, list_rings
@@ -29,8 +29,8 @@ from .unmended import find_unmended
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ..._progress import Tell
-    from ...arrays import Float64Array, Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int32Array, Int64Array
+    from ...base.progress import Tell
     from ..constraints.pslg import Pslg
     from ..report import Report
 

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._products import product
-from ...crs import scale_elevations
-from ..validation.options import as_flag, require_tin
+from ...base.checks import as_flag, require_tin
+from ...base.crs import scale_elevations
+from ...base.products import product
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
     from ..surface import TIN
 
 __all__ = ["Quality", "measure_smallest_angles", "quality"]

@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._progress import Progress
-from ...errors import LinesError, OptionError, PointsError, choice
-from ...policies import SimplificationHold
+from ...base.checks import is_finite_number, is_whole_number, require_tin
+from ...base.errors import LinesError, OptionError, PointsError, choice
+from ...base.policies import SimplificationHold
+from ...base.progress import Progress
 from .. import _kernel, topology
 from ..constraints.clipping import Surface
 from ..constraints.pslg import build_mesh_of_growth, find_lines_in
 from ..report import Simplification
 from ..surface import TIN
-from ..validation.options import is_finite_number, is_whole_number, require_tin
 from ..validation.threads import thread_count
 from ..validation.vertices import as_vertex_array
 from .flips import count_flips, describe_flips
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ..._progress import Tell
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.progress import Tell
     from ..constraints.breaklines import Lines
 
 __all__ = [

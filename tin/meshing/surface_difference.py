@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...errors import PointsError
+from ...base.errors import PointsError
 from .. import topology
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..surface import TIN
 
 __all__ = ["Beyond", "Crossings", "SurfaceMeter", "choose_rows"]

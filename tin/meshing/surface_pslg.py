@@ -15,8 +15,8 @@ from ..constraints.pslg import Clip, Pslg
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...arrays import Float64Array, Int64Array
-    from ...policies import LineKind
+    from ...base.arrays import Float64Array, Int64Array
+    from ...base.policies import LineKind
     from ..surface import TIN
 
 __all__ = ["gather_pslg", "list_rings"]

@@ -10,7 +10,7 @@ from ..report import Unmended
 from .shape_quality import measure_smallest_angles
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int32Array
+    from ...base.arrays import Float64Array, Int32Array
 
 __all__ = ["find_unmended"]
 

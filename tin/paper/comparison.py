@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from ..._sentences import counted
-from ...errors import PointsError
+from ...base.checks import require_count
+from ...base.errors import PointsError
+from ...base.sentences import counted
 from .. import _kernel
 from ..building.survey import Survey
 from ..construction import triangulate
-from ..validation.options import require_count
 from ..validation.points import as_points
 from .cover import cover
 from .faults import find_overlapping, find_violating, measure_minimum_angles
@@ -25,7 +25,7 @@ from .growth import Network, improved, original
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..surface import TIN
 
 __all__ = ["ANGLE_BINS", "MOST_POINTS", "Comparison", "Outcome", "compare"]

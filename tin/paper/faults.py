@@ -9,7 +9,7 @@ import numpy as np
 from ..predicates import columns, in_circle, orientation
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..predicates import Columns
 
 __all__ = ["find_overlapping", "find_violating", "measure_minimum_angles"]

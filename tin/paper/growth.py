@@ -39,11 +39,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._sentences import counted
-from ...errors import PointsError, choice
-from ...policies import DistanceRule, EmptyCircleRule
+from ...base.checks import as_flag, require_count
+from ...base.errors import PointsError, choice
+from ...base.policies import DistanceRule, EmptyCircleRule
+from ...base.sentences import counted
 from ..predicates import columns
-from ..validation.options import as_flag, require_count
 from ..validation.points import as_points
 from .lists import Edge, Lists, Triangle, sides
 from .rules import (
@@ -59,7 +59,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ...arrays import Float64Array, Int32Array
+    from ...base.arrays import Float64Array, Int32Array
     from ..predicates import Columns
 
 __all__ = ["Distance", "EmptyCircle", "Network", "improved", "original"]

@@ -9,7 +9,7 @@ import numpy as np
 from ..predicates import orientation
 
 if TYPE_CHECKING:
-    from ...arrays import Int8Array, Int64Array
+    from ...base.arrays import Int8Array, Int64Array
     from ..predicates import Columns
 
 __all__ = ["Edge", "Lists", "Triangle", "sides"]

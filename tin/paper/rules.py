@@ -11,7 +11,7 @@ import numpy as np
 from ..predicates import Columns, in_circle
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int8Array, Int64Array
+    from ...base.arrays import Float64Array, Int8Array, Int64Array
 
 __all__ = [
     "Choice",

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...crs import CRS
+from ...base.crs import CRS
 
 if TYPE_CHECKING:
     import pyproj
 
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
 
 __all__ = ["AreaOfUse"]
 

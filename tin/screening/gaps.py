@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted
-from ...crs import assume_elevation_unit, scale_elevations
+from ...base.crs import assume_elevation_unit, scale_elevations
+from ...base.sentences import counted
 from .. import _kernel
 from ..constraints.clipping import Surface, trim
 from ..topology import NO_NEIGHBOR
 from .parts import find_parts
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ..surface import TIN
 
 __all__ = ["describe_gaps"]

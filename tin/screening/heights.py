@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._progress import Progress
+from ...base.progress import Progress
 from ..topology import find_boundary_vertices, find_owners
 from .residuals import Residuals, fit_planes, measure_offsets
 from .scales import find_rounding, measure_scales
@@ -15,8 +15,8 @@ from .scales import find_rounding, measure_scales
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ..._progress import Tell
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.progress import Tell
     from ..triangulation import Triangulation
 
 __all__ = ["STRICT", "Heights", "Judgement", "find_heights"]

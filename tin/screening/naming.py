@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from ..types import RowSources
+from ...base.types import RowSources
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ...arrays import AnyArray
+    from ...base.arrays import AnyArray
     from ..surface import TIN
 
 __all__ = ["NameRows", "find_number", "make_namer", "write_number"]

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._sentences import counted, height, inflect
-from ...errors import OptionError
+from ...base.errors import OptionError
+from ...base.sentences import counted, height, inflect
 from .slips import BEYOND, find_multiplied
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
 
 __all__ = [
     "CUSTOMARY",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from ..._sentences import counted, height, inflect
+from ...base.sentences import counted, height, inflect
 from .gaps import describe_gaps
 from .naming import make_namer
 from .searching import screen_points

@@ -13,7 +13,7 @@ from ..triangulation import Triangulation
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...arrays import BoolArray, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Int32Array, Int64Array
     from ..constraints.clipping import Surface
 
 __all__ = ["find_clustered", "find_parts", "keep_triangles", "leave_out"]

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted
+from ...base.sentences import counted
 from .area_of_use import AreaOfUse
 from .slips import FACTORS
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int64Array
-    from ...crs import CRS
+    from ...base.arrays import Float64Array, Int64Array
+    from ...base.crs import CRS
     from .suspects import Rows, Suspect
 
 __all__ = ["find_places"]

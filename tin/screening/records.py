@@ -10,7 +10,7 @@ from .naming import make_namer, write_number
 from .suspects import Suspect
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, Int64Array
+    from ...base.arrays import AnyArray, Int64Array
     from ..surface import TIN
     from .suspects import Rows
 

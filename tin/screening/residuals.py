@@ -12,7 +12,7 @@ from ..topology import NO_NEIGHBOR, edge_keys, edges_at, find_offsets, find_owne
 from ..validation.threads import thread_count
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..triangulation import Triangulation
 
 __all__ = ["Residuals", "fit_planes", "measure_offsets"]

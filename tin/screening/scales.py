@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
 
 __all__ = ["NORMAL", "find_rounding", "measure_scales"]
 

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._progress import Progress
-from ..._sentences import counted, height, inflect
-from ...crs import assume_elevation_unit
-from ...errors import LinesError, PointsError
+from ...base.crs import assume_elevation_unit
+from ...base.errors import LinesError, PointsError
+from ...base.progress import Progress
+from ...base.sentences import counted, height, inflect
 from .. import _kernel
 from ..topology import find_boundary_vertices
 from .heights import STRICT, Heights, find_heights
@@ -25,8 +25,8 @@ from .wrong_lines import find_wrong_lines, fit_ground, mark_rings, name_lines_at
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from ..._progress import Tell
-    from ...arrays import BoolArray, Float64Array, Int32Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array
+    from ...base.progress import Tell
     from ..surface import TIN
     from ..triangulation import Triangulation
     from .voids import Void

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array
+    from ...base.arrays import BoolArray, Float64Array
 
 __all__ = ["BEYOND", "FACTORS", "Multiplied", "find_multiplied", "name_factor"]
 

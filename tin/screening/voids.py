@@ -12,7 +12,7 @@ from .parts import find_parts
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..triangulation import Triangulation
 
 __all__ = ["Void", "find_voids"]

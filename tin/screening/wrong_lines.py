@@ -15,8 +15,8 @@ from .slips import name_factor
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
-    from ...policies import LineKind
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.policies import LineKind
     from ..constraints.breaklines import Lines
     from ..triangulation import Triangulation
 

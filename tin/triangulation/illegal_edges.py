@@ -10,7 +10,7 @@ from .. import topology
 from ..predicates import Columns, blocks, columns, in_circle, is_last
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Int64Array
+    from ...base.arrays import BoolArray, Int64Array
     from .triangulation import Triangulation
 
 __all__ = ["gather_quadrilaterals", "is_against_rule", "mark_illegal_edges"]

@@ -19,7 +19,7 @@ from .. import _kernel, topology
 from ..validation.threads import thread_count
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array, Int8Array, Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int8Array, Int32Array, Int64Array
 
 __all__ = ["NearestVertex"]
 

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...base.types import Bounds, Frozen, seal
 from .. import _kernel, topology
-from ..types import Bounds, Frozen, seal
 from .nearest import NearestVertex
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["Triangulation"]
 

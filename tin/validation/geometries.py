@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..._optional import find_loaded
+from ...base.optional import find_loaded
 
 __all__ = ["MISSING", "Geometries", "Geometry", "find_geometries", "find_shapely", "is_plain"]
 

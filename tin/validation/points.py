@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted, inflect
-from ...errors import PointsError
+from ...base.errors import PointsError
+from ...base.sentences import counted, inflect
 from .. import _kernel
 from .tables import Table, as_table
 from .threads import thread_count
@@ -15,7 +15,7 @@ from .threads import thread_count
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...arrays import Float64Array
+    from ...base.arrays import Float64Array
 
 __all__ = [
     "as_elevations",

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._optional import find_loaded
-from ...errors import PointsError
+from ...base.errors import PointsError
+from ...base.optional import find_loaded
 from .geometries import find_geometries, find_shapely
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, BoolArray, Float64Array, Int64Array
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
 
 __all__ = ["Table", "as_table", "is_masked_array"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-from .options import require_count
+from ...base.checks import require_count
 
 __all__ = ["thread_count"]
 

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...errors import PointsError
+from ...base.errors import PointsError
 from .. import _kernel
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...arrays import BoolArray, Float64Array, Int32Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array
 
 __all__ = ["as_flags", "as_triangles", "turn_counter_clockwise"]
 

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import shown
-from ...errors import PointsError
-from .options import is_whole_number
+from ...base.checks import is_whole_number
+from ...base.errors import PointsError
+from ...base.sentences import shown
 from .tables import is_masked_array
 
 if TYPE_CHECKING:
-    from ...arrays import Int64Array
+    from ...base.arrays import Int64Array
 
 __all__ = ["as_vertex", "as_vertex_array", "as_vertex_pairs"]
 

@@ -21,9 +21,9 @@ from ..topology import NO_NEIGHBOR, find_offsets
 from .exact_corners import ExactPlane
 
 if TYPE_CHECKING:
-    from ...arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
+    from ...base.types import Bounds
     from .._kernel import Growth
-    from ..types import Bounds
 
 __all__ = ["Rings", "cells_in_box", "measure_signed_areas"]
 

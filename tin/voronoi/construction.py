@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ..._products import product
-from ..validation.options import require_tin
+from ...base.checks import require_tin
+from ...base.products import product
 from .diagram import Voronoi, divide_plane
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from ...base.types import Bounds
     from ..surface import TIN
-    from ..types import Bounds
 
 __all__ = ["voronoi"]
 

@@ -8,23 +8,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ..._sentences import counted
-from ...crs import require_lengths
-from ...errors import LinesError, OptionError
+from ...base import optional
+from ...base.checks import require_distance
+from ...base.crs import require_lengths
+from ...base.errors import LinesError, OptionError
+from ...base.sentences import counted
+from ...base.types import Bounds
 from .. import _kernel
 from ..constraints.breaklines import as_ring
 from ..topology import find_offsets
-from ..types import Bounds
-from ..validation.options import require_distance
 from ..validation.threads import thread_count
 from .cells import Rings, cells_in_box, measure_signed_areas
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...arrays import AnyArray, Float64Array, Int64Array, ObjectArray
-    from ...crs import CRS
+    from ...base.arrays import AnyArray, Float64Array, Int64Array, ObjectArray
+    from ...base.crs import CRS
 
 __all__ = ["Voronoi", "divide_plane"]
 
@@ -110,7 +110,7 @@ class Voronoi:
         >>> ts.voronoi(tin, pad=0).to_shapely()[0].area
         4.0
         """
-        shapely = _optional.load("shapely")
+        shapely = optional.load("shapely")
         parts = _make_polygons(Rings(self.coords, self.part_offsets))
         whole = np.bincount(self.cell_of_part, minlength=len(self))
         cells = np.full(len(self), shapely.Polygon(), object)
@@ -212,7 +212,7 @@ def _list_corners(box: Bounds) -> Float64Array:
 
 def _as_boundary(boundary: Bounds | ArrayLike) -> Float64Array:
     """Return the ring of a boundary, counter-clockwise."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     given = _list_corners(boundary) if isinstance(boundary, Bounds) else boundary
     ring = as_ring(given, "the boundary")[:, :2].copy()
     region = shapely.Polygon(ring)
@@ -226,7 +226,7 @@ def _as_boundary(boundary: Bounds | ArrayLike) -> Float64Array:
 
 def _clip(cells: Rings, ring: Float64Array) -> Voronoi:
     """Return the parts of cells inside a ring; cells that it does not cut stay as they are."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     region = shapely.Polygon(ring)
     shapely.prepare(region)
     near = _find_near(cells, Bounds.of(ring))
@@ -266,7 +266,7 @@ def _keep_only(rings: Rings, which: Int64Array) -> Rings:
 
 def _find_parts_inside(region: Any, shapes: AnyArray) -> tuple[AnyArray, Int64Array]:
     """Return the polygons in which shapes meet a region, and the shape that each is a part of."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     # Corners rounded to coordinates can make a cell of rounding width cross itself.
     broken = ~shapely.is_valid(shapes)
     shapes[broken] = shapely.make_valid(shapes[broken])
@@ -278,7 +278,7 @@ def _find_parts_inside(region: Any, shapes: AnyArray) -> tuple[AnyArray, Int64Ar
 
 def _make_polygons(rings: Rings) -> AnyArray:
     """Return the rings that are not empty as shapely polygons."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     counts = np.diff(rings.offsets)
     ring = np.repeat(np.arange(np.count_nonzero(counts)), counts[counts > 0])
     polygons: AnyArray = shapely.polygons(shapely.linearrings(rings.coords, indices=ring))
@@ -287,7 +287,7 @@ def _make_polygons(rings: Rings) -> AnyArray:
 
 def _get_rings(polygons: AnyArray) -> Rings:
     """Return the outer rings of polygons, counter-clockwise, the first corner not repeated."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     coords, ring = shapely.get_coordinates(polygons, return_index=True)
     is_last = np.append(ring[1:] != ring[:-1], True)[: len(ring)]
     coords, ring = coords[~is_last], ring[~is_last]

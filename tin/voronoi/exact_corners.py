@@ -15,8 +15,8 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ...arrays import Float64Array, Int32Array
-    from ..types import Bounds
+    from ...base.arrays import Float64Array, Int32Array
+    from ...base.types import Bounds
 
 __all__ = ["ExactPlane", "HalfPlane"]
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ....terrain.results import Features
+from ....base.results import Features
 from ....tin import TIN, Breakline, Surface, Survey
 from ....tin.constraints.constraint_set import as_sequence
 from ....tin.constraints.polygons import gather_rings_of_regions
@@ -17,7 +17,7 @@ from .names import CONSTRAINED
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....arrays import AnyArray, Float64Array, Int64Array
+    from ....base.arrays import AnyArray, Float64Array, Int64Array
     from .entities import EntityWriter
 
 __all__ = ["add_features", "add_survey", "add_tin", "select_texts"]

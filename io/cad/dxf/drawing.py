@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from .... import _optional
-from ...._sentences import counted
-from ....crs import CRS
-from ....errors import CrsError, OptionError, ReadError
+from ....base import optional
+from ....base.crs import CRS
+from ....base.errors import CrsError, OptionError, ReadError
+from ....base.sentences import counted
 from ...isolated import Limits, choose_limits, run_isolated
 from ...isolated.spooling import translate_system_errors
 from ..reference import Stated
@@ -20,7 +20,7 @@ from .units import UNIT_OF_CODE
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....arrays import AnyArray, Float64Array
+    from ....base.arrays import AnyArray, Float64Array
 
 __all__ = ["Drawing", "read_drawing"]
 
@@ -110,7 +110,7 @@ def read_drawing(
     OptionError
         If there is no such layer, or the tolerance is no length above 0.
     """
-    _optional.require("ezdxf", "Reading DXF drawings")
+    optional.require("ezdxf", "Reading DXF drawings")
     _require_options(layer, tolerance)
     with translate_system_errors(path):
         size = path.stat().st_size

@@ -14,7 +14,7 @@ from .names import APPLICATION
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ....arrays import Float64Array
+    from ....base.arrays import Float64Array
 
 __all__ = ["EntityWriter"]
 

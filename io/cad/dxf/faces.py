@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...._sentences import counted
-from ....errors import ReadError
+from ....base.errors import ReadError
+from ....base.sentences import counted
 from ....tin.topology import find_offsets
 from ...mesh.common import cut_into_fans
 from ..surfaces import Mesh
@@ -15,7 +15,7 @@ from ..surfaces import Mesh
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....arrays import BoolArray, Float64Array, Int64Array
+    from ....base.arrays import BoolArray, Float64Array, Int64Array
 
 __all__ = ["make_mesh"]
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
-from ...._sentences import counted
-from ....errors import LinesError, ReadError, choice
-from ....policies import BreaklineKind, DrawingContent, FacePolicy, LineKind
+from ....base.errors import LinesError, ReadError, choice
+from ....base.policies import BreaklineKind, DrawingContent, FacePolicy, LineKind
+from ....base.sentences import counted
 from ....tin import Breakline, Survey, Water
 from ....tin.constraints.breaklines import as_ring
 from ....tin.screening.nodata import describe_elevations
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ....arrays import AnyArray, Float64Array
-    from ....crs import CrsLike, UnitLike
+    from ....base.arrays import AnyArray, Float64Array
+    from ....base.crs import CrsLike, UnitLike
     from ....tin import TIN
 
 __all__ = ["read"]

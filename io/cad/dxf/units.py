@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ....crs import FOOT, METRE, US_SURVEY_FOOT, Unit
+from ....base.crs import FOOT, METRE, US_SURVEY_FOOT, Unit
 
 __all__ = ["UNIT_OF_CODE", "find_code"]
 

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .... import _optional
-from ...._atomic import replacing
-from ....errors import FormatError, LossWarning, OptionError, choice
-from ....policies import DrawingVersion
-from ....terrain.results import Features
+from ....base import optional
+from ....base.atomic import replacing
+from ....base.errors import FormatError, LossWarning, OptionError, choice
+from ....base.policies import DrawingVersion
+from ....base.results import Features
 from ....tin import TIN, Surface, Survey
 from ...registry.losses import tell_unknown_elevations
 from ..lengths import choose_length_unit
@@ -32,9 +32,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from ...._progress import Tell
-    from ....arrays import AnyArray
-    from ....crs import Unit, UnitLike
+    from ....base.arrays import AnyArray
+    from ....base.crs import Unit, UnitLike
+    from ....base.progress import Tell
 
 __all__ = ["write"]
 
@@ -87,7 +87,7 @@ def write(
     choice("version", version, DrawingVersion)
     if not isinstance(labels, bool):
         raise OptionError("labels", labels, "True or False")
-    ezdxf = _optional.load("ezdxf", "Writing DXF drawings")
+    ezdxf = optional.load("ezdxf", "Writing DXF drawings")
     along, factor = choose_length_unit(
         obj, unit, path, is_known=lambda one: find_code(one) > 0, format_name="DXF"
     )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from ....arrays import Float64Array, Int64Array
+    from ....base.arrays import Float64Array, Int64Array
 
 __all__ = ["Content", "Line", "Points", "Surface"]
 

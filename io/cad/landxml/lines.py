@@ -15,8 +15,8 @@ from .properties import FEATURE, KIND, LINE, PRIORITY, SOURCE
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ....arrays import Float64Array
-    from ....terrain.results import Features
+    from ....base.arrays import Float64Array
+    from ....base.results import Features
     from ....tin import TIN, Survey
 
 __all__ = ["quote", "write_features", "write_source_of_survey", "write_source_of_tin"]

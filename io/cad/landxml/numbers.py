@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...._sentences import counted
-from ....errors import ReadError
+from ....base.errors import ReadError
+from ....base.sentences import counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ....arrays import AnyArray, Float64Array
+    from ....base.arrays import AnyArray, Float64Array
 
 __all__ = ["LARGEST_ID", "fault", "parse_list", "parse_rows", "parse_words"]
 

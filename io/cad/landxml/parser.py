@@ -13,8 +13,8 @@ from xml.parsers import expat
 
 import numpy as np
 
-from ...._sentences import counted
-from ....errors import ReadError
+from ....base.errors import ReadError
+from ....base.sentences import counted
 from ...isolated.spooling import translate_system_errors
 from .content import Content, Line, Surface
 from .numbers import fault, parse_list, parse_rows, parse_words

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...._sentences import counted, shown
-from ....errors import OptionError, ReadError, choice
-from ....policies import DrawingContent, FacePolicy
+from ....base.errors import OptionError, ReadError, choice
+from ....base.policies import DrawingContent, FacePolicy
+from ....base.sentences import counted, shown
 from ...mesh.common import Reference, require_own_crs
 from ..reference import Declared, Measures, choose_measures
 from ..surfaces import make_tin_with_lines, merge_equal_points
@@ -21,8 +21,8 @@ from .units import find_stated
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....arrays import Float64Array
-    from ....crs import CrsLike, UnitLike
+    from ....base.arrays import Float64Array
+    from ....base.crs import CrsLike, UnitLike
     from ....tin import TIN, Survey
 
 __all__ = ["read"]

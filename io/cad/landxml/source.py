@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .... import _optional
-from ...._sentences import counted
-from ....errors import LinesError, ReadError
-from ....policies import BreaklineKind
+from ....base import optional
+from ....base.errors import LinesError, ReadError
+from ....base.policies import BreaklineKind
+from ....base.sentences import counted
 from ....tin import Breakline, Survey, Water
 from ....tin.constraints.breaklines import as_ring
 from ....tin.screening.nodata import describe_elevations
@@ -29,7 +29,7 @@ from .surface import (
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....arrays import AnyArray, Float64Array, Int64Array
+    from ....base.arrays import AnyArray, Float64Array, Int64Array
     from ..reference import Declared, Measures
     from .content import Content, Line, Points, Surface
 
@@ -246,7 +246,7 @@ def _join_islands(voids: list[Float64Array], islands: list[Float64Array]) -> tup
     """Return each void with the islands in it, and the number of islands in none."""
     if not islands:
         return list(voids), 0
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     areas = [shapely.Polygon(ring[:, :2]) for ring in voids]
     polygons: list[list[Any]] = [[ring] for ring in voids]
     left = 0

@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
-from ...._sentences import counted
-from ....errors import ReadError
-from ....policies import LineKind
+from ....base.errors import ReadError
+from ....base.policies import LineKind
+from ....base.sentences import counted
 from ..surfaces import EdgeLine, Mesh
 from .properties import KIND, LINE, SOURCE
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....arrays import BoolArray, Float64Array, Int64Array
+    from ....base.arrays import BoolArray, Float64Array, Int64Array
     from ..reference import Measures
     from .content import Content, Line, Surface
 

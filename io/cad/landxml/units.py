@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...._sentences import shown
-from ....crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit
-from ....errors import CrsError, ReadError
+from ....base.crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit
+from ....base.errors import CrsError, ReadError
+from ....base.sentences import shown
 from ..reference import Stated
 from .properties import ELEVATION_UNIT, UNKNOWN
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from ....arrays import Float64Array
+    from ....base.arrays import Float64Array
     from .content import Content
 
 __all__ = ["find_stated", "name_unit"]

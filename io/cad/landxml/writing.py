@@ -12,10 +12,10 @@ from typing import IO, TYPE_CHECKING
 
 import numpy as np
 
-from ...._atomic import replacing
-from ....crs import CRS
-from ....errors import FormatError, LossWarning, OptionError
-from ....terrain.results import Features
+from ....base.atomic import replacing
+from ....base.crs import CRS
+from ....base.errors import FormatError, LossWarning, OptionError
+from ....base.results import Features
 from ....tin import TIN, Surface, Survey
 from ...registry.losses import select_attributes, tell_unknown_elevations
 from ..lengths import choose_length_unit
@@ -26,9 +26,9 @@ from .units import name_unit
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...._progress import Tell
-    from ....arrays import Float64Array
-    from ....crs import Unit, UnitLike
+    from ....base.arrays import Float64Array
+    from ....base.crs import Unit, UnitLike
+    from ....base.progress import Tell
 
 __all__ = ["write"]
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ....crs import METRE
+from ....base.crs import METRE
 from ...delimited.lines import read_lines
 from .record_lines import describe_head_fault, find_head, parse_coordinate, read_records
 from .records import Book

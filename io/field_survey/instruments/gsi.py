@@ -18,9 +18,9 @@ import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
-from ...._sentences import counted, inflect
-from ....crs import METRE
-from ....errors import OptionError, ReadError
+from ....base.crs import METRE
+from ....base.errors import OptionError, ReadError
+from ....base.sentences import counted, inflect
 from ...delimited.lines import read_lines
 from .records import Book, require_refraction
 from .reduction import Shot, Station, reduce_shot, to_radians

@@ -13,8 +13,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 from xml.parsers import expat
 
-from ...._sentences import counted, inflect
-from ....errors import ReadError
+from ....base.errors import ReadError
+from ....base.sentences import counted, inflect
 from .record_lines import parse_coordinate
 from .records import Book
 

@@ -9,7 +9,7 @@ from . import dc, gsi, jobxml, sdr
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....crs import CrsLike, UnitLike
+    from ....base.crs import CrsLike, UnitLike
     from ....tin import Survey
 
 __all__ = ["read_dc", "read_gsi", "read_jobxml", "read_sdr"]

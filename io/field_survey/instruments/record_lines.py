@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from ....errors import ReadError
+from ....base.errors import ReadError
 from ...delimited.cells import is_number
 
 if TYPE_CHECKING:

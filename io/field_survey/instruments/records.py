@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...._sentences import counted, inflect
-from ....crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit, require_same_unit
-from ....errors import CrsError, OptionError, ReadError
+from ....base.checks import is_finite_number
+from ....base.crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit, require_same_unit
+from ....base.errors import CrsError, OptionError, ReadError
+from ....base.sentences import counted, inflect
+from ....base.types import RowSources
 from ....tin import Survey
-from ....tin.types import RowSources
-from ....tin.validation.options import is_finite_number
 from ...delimited.findings import find_odd_elevations, find_repeated_numbers
 from ...reprojection.placement import place, settle_unit
 from .reduction import NOT_APPLIED
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ....crs import CrsLike, UnitLike
+    from ....base.crs import CrsLike, UnitLike
 
 __all__ = ["Book", "parse_names", "require_refraction"]
 

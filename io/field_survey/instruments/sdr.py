@@ -16,8 +16,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ....crs import METRE
-from ....errors import ReadError
+from ....base.crs import METRE
+from ....base.errors import ReadError
 from ...delimited.cells import is_number
 from ...delimited.lines import read_lines
 from .record_lines import describe_head_fault, find_head, read_records

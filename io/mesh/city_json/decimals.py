@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ....arrays import Float64Array, Int64Array
+    from ....base.arrays import Float64Array, Int64Array
 
 __all__ = ["DecimalGrid", "choose_digits"]
 

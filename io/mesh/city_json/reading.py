@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ....errors import ReadError
+from ....base.errors import ReadError
 from ..common import choose_reference, cut_into_fans, make_tin, read_content
 from .decimals import DecimalGrid
 from .sequence import City, SequenceError, parse_city
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ....arrays import Float64Array, Int64Array
-    from ....crs import CrsLike, UnitLike
-    from ....policies import FacePolicy
+    from ....base.arrays import Float64Array, Int64Array
+    from ....base.crs import CrsLike, UnitLike
+    from ....base.policies import FacePolicy
     from ....tin import TIN
 
 __all__ = ["read"]

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...._atomic import replacing
-from ...._sentences import counted
-from ....errors import LossWarning, OptionError, WriteError
+from ....base.atomic import replacing
+from ....base.errors import LossWarning, OptionError, WriteError
+from ....base.sentences import counted
 from ....tin.topology import mark_corners
 from ..common import format_crs, format_unit, require_tin
 from .decimals import DecimalGrid, choose_digits
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from ...._progress import Tell
-    from ....arrays import Float64Array, Int64Array
+    from ....base.arrays import Float64Array, Int64Array
+    from ....base.progress import Tell
     from ....tin import TIN
 
 __all__ = ["write"]

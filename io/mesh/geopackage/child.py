@@ -17,7 +17,7 @@ from .geometries import POINT
 from .schema import RECORD
 
 if TYPE_CHECKING:
-    from ....arrays import AnyArray, Float64Array
+    from ....base.arrays import AnyArray, Float64Array
 
 __all__ = ["read_tables"]
 

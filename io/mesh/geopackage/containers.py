@@ -10,8 +10,8 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ...._atomic import folder_beside, replacing_path
-from ....errors import WriteError
+from ....base.atomic import folder_beside, replacing_path
+from ....base.errors import WriteError
 from .digests import digest_lines
 from .journals import require_closed
 from .schema import LAYERS, NO_CLOCK, RECORD

@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ....arrays import AnyArray
+    from ....base.arrays import AnyArray
 
 __all__ = ["digest_arrays", "digest_lines"]
 

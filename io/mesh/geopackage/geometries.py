@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ....arrays import AnyArray, Float64Array
+    from ....base.arrays import AnyArray, Float64Array
 
 __all__ = ["POINT", "make_chain_blobs", "make_point_blobs", "make_triangle_blobs"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ....errors import WriteError
+from ....base.errors import WriteError
 
 if TYPE_CHECKING:
     from pathlib import Path

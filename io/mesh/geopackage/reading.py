@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ....errors import PointsError, ReadError
+from ....base.errors import PointsError, ReadError
 from ....tin import TIN
 from ...isolated import run_isolated
 from ...reprojection.contradictions import look_at_crs
@@ -20,8 +20,8 @@ from .records import Record, unpack_tin
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....arrays import AnyArray, BoolArray, Float64Array, Int32Array
-    from ....crs import CrsLike, UnitLike
+    from ....base.arrays import AnyArray, BoolArray, Float64Array, Int32Array
+    from ....base.crs import CrsLike, UnitLike
     from ...isolated import Answer
     from ..common import Reference
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ....crs import CRS
+    from ....base.crs import CRS
 
 __all__ = [
     "APPLICATION_ID",

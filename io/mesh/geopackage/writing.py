@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ....errors import CrsError, WriteError
+from ....base.checks import as_flag
+from ....base.errors import CrsError, WriteError
 from ....terrain.relief.gradients import aspect, slope
-from ....tin.validation.options import as_flag
 from ..common import format_unit, require_tin
 from .containers import Placing, adding_layers
 from .digests import digest_arrays, digest_lines
@@ -32,8 +32,8 @@ from .schema import (
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...._progress import Tell
-    from ....arrays import Float64Array
+    from ....base.arrays import Float64Array
+    from ....base.progress import Tell
     from ....tin import TIN
 
 __all__ = ["write"]

@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...._atomic import replacing
-from ...._sentences import counted
-from ....crs import assume_elevation_unit
-from ....errors import CrsError, LossWarning, WriteError
+from ....base.atomic import replacing
+from ....base.crs import assume_elevation_unit
+from ....base.errors import CrsError, LossWarning, WriteError
+from ....base.sentences import counted
 from ....terrain.viewer.tints import interpolate_tints
 from ..common import format_crs, format_unit, require_factor, require_tin
 from ..texture import choose_picture, load_texture
@@ -27,8 +27,7 @@ from ..texture import choose_picture, load_texture
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...._progress import Tell
-    from ....arrays import (
+    from ....base.arrays import (
         AnyArray,
         BoolArray,
         Float32Array,
@@ -37,6 +36,7 @@ if TYPE_CHECKING:
         Int64Array,
         UInt16Array,
     )
+    from ....base.progress import Tell
     from ....tin import TIN
     from ..texture import Texture
 

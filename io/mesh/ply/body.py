@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ....errors import ReadError
+from ....base.errors import ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Collection
     from pathlib import Path
 
-    from ....arrays import AnyArray, Float64Array, Int64Array
+    from ....base.arrays import AnyArray, Float64Array, Int64Array
     from .header import Element, Header
 
 _LINE_END = 3

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ....errors import ReadError
+from ....base.errors import ReadError
 from .body import Ragged
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from ....arrays import AnyArray, Int64Array
+    from ....base.arrays import AnyArray, Int64Array
     from .body import Table
 
 __all__ = ["STRIPS", "find_faces"]

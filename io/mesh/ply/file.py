@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...._atomic import replacing
-from ...._sentences import counted
-from ....errors import ReadError
+from ....base.atomic import replacing
+from ....base.errors import ReadError
+from ....base.sentences import counted
 from ....tin import TIN, Surface, Survey
 from ...registry.losses import tell_lost_attributes
 from .. import common
@@ -36,10 +36,10 @@ from .lines import (
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...._progress import Tell
-    from ....arrays import AnyArray, BoolArray, Float64Array
-    from ....crs import CrsLike, UnitLike
-    from ....policies import FacePolicy
+    from ....base.arrays import AnyArray, BoolArray, Float64Array
+    from ....base.crs import CrsLike, UnitLike
+    from ....base.policies import FacePolicy
+    from ....base.progress import Tell
     from ....tin.constraints.breaklines import Lines
     from .header import Header
 

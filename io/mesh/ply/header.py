@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from ....errors import ReadError
+from ....base.errors import ReadError
 from ...registry.signatures import is_ply
 from .lines import parse_line_comment
 

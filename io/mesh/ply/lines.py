@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, NamedTuple, get_args
 
 import numpy as np
 
-from ....errors import ReadError
-from ....policies import LineKind
+from ....base.errors import ReadError
+from ....base.policies import LineKind
 from ....tin import topology
 from ....tin.constraints.breaklines import Lines
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import Any
 
-    from ....arrays import AnyArray, BoolArray, Int32Array, Int64Array
+    from ....base.arrays import AnyArray, BoolArray, Int32Array, Int64Array
     from ....tin import TIN
     from .body import Table
 

@@ -14,7 +14,7 @@ import numpy as np
 from ....tin.topology import edge_keys
 
 if TYPE_CHECKING:
-    from ....arrays import Float64Array, Int64Array
+    from ....base.arrays import Float64Array, Int64Array
 
 __all__ = ["GridMesh", "cut_along_grid"]
 

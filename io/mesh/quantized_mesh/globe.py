@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from ....arrays import Float64Array
+    from ....base.arrays import Float64Array
 
 __all__ = ["Sphere", "bound_by_sphere", "find_horizon_point", "to_cartesian"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
-from ....errors import ReadError
+from ....base.errors import ReadError
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ....errors import OptionError, ReadError
+from ....base.errors import OptionError, ReadError
 from ..common import add_notes, choose_reference, make_tin, read_content
 from .placing import find_placing
 from .tile import STEPS, BrokenTileError, TileName, decode_tile
@@ -17,9 +17,9 @@ from .tile import STEPS, BrokenTileError, TileName, decode_tile
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....arrays import Int64Array
-    from ....crs import CrsLike, UnitLike
-    from ....policies import FacePolicy
+    from ....base.arrays import Int64Array
+    from ....base.crs import CrsLike, UnitLike
+    from ....base.policies import FacePolicy
     from ....tin import TIN
 
 __all__ = ["read"]

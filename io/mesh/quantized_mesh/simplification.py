@@ -17,7 +17,7 @@ from ....tin.topology import mark_corners
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from ....arrays import BoolArray, Int64Array
+    from ....base.arrays import BoolArray, Int64Array
 
 __all__ = ["simplify"]
 

@@ -20,7 +20,7 @@ import numpy as np
 from .globe import bound_by_sphere, find_horizon_point, to_cartesian
 
 if TYPE_CHECKING:
-    from ....arrays import Float64Array, Int64Array
+    from ....base.arrays import Float64Array, Int64Array
 
 __all__ = ["STEPS", "BrokenTileError", "Tile", "TileName", "decode_tile", "encode_tile"]
 

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...._atomic import replacing_folder
-from ....crs import CRS
-from ....errors import CrsError, LossWarning, OptionError, WriteError
+from ....base.atomic import replacing_folder
+from ....base.checks import as_flag, is_whole_number
+from ....base.crs import CRS
+from ....base.errors import CrsError, LossWarning, OptionError, WriteError
 from ....tin import TIN
-from ....tin.validation.options import as_flag, is_whole_number
 from ...reprojection.transformation import reproject
 from ..common import require_tin
 from .cutting import GridMesh, cut_along_grid
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    from ...._progress import Tell
-    from ....arrays import Float64Array, Int64Array
+    from ....base.arrays import Float64Array, Int64Array
+    from ....base.progress import Tell
 
 __all__ = ["write"]
 

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from ...._sentences import coordinate, counted
-from ....crs import CRS, METRE
-from ....errors import CrsError, WriteError
+from ....base.crs import CRS, METRE
+from ....base.errors import CrsError, WriteError
+from ....base.sentences import coordinate, counted
 from ...reprojection.transformation import reproject
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....arrays import Float64Array, ObjectArray
-    from ....crs import Unit
+    from ....base.arrays import Float64Array, ObjectArray
+    from ....base.crs import Unit
 
 __all__ = [
     "Located",

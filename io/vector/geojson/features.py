@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...._atomic import replacing
-from ....errors import WriteError
-from ....terrain.results.columns import unit_text
+from ....base.atomic import replacing
+from ....base.errors import WriteError
+from ....base.results.columns import unit_text
 from .coordinates import format_positions, keep_in_crs, project_to_wgs84
 from .values import json_texts, properties_template
 
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from ...._progress import Tell
-    from ....arrays import Float64Array, Int64Array, ObjectArray
-    from ....crs import CRS, Unit
-    from ....terrain.results import Features
+    from ....base.arrays import Float64Array, Int64Array, ObjectArray
+    from ....base.crs import CRS, Unit
+    from ....base.progress import Tell
+    from ....base.results import Features
     from .coordinates import Places
 
 __all__ = ["write_feature_lines", "write_features"]

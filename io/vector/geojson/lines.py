@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ....errors import FormatError
+from ....base.errors import FormatError
 from ....terrain.drawing.linework import EDGE_KINDS, find_line_edges
 from ....tin.topology import edge_keys, edges_at
 
 if TYPE_CHECKING:
-    from ....arrays import BoolArray, Int8Array, Int32Array, ObjectArray
+    from ....base.arrays import BoolArray, Int8Array, Int32Array, ObjectArray
     from ....tin import TIN
 
 __all__ = [

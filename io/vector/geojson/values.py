@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ....arrays import AnyArray
+    from ....base.arrays import AnyArray
 
 __all__ = ["json_texts", "properties_template"]
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from .... import _optional
-from ...._atomic import replacing
-from ...._sentences import counted
-from ....errors import FormatError, WriteError, choice
-from ....policies import FeatureKind
+from ....base import optional
+from ....base.atomic import replacing
+from ....base.errors import FormatError, WriteError, choice
+from ....base.policies import FeatureKind
+from ....base.results import Features
+from ....base.sentences import counted
 from ....terrain.relief.gradients import aspect, measure_areas, measure_ring_area, slope
-from ....terrain.results import Features
 from ....tin import Survey
 from ...mesh.common import require_writable
 from .coordinates import Places, format_positions, keep_in_crs, project_to_wgs84, require_one_piece
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from ...._progress import Tell
-    from ....arrays import BoolArray, Float64Array, Int32Array
+    from ....base.arrays import BoolArray, Float64Array, Int32Array
+    from ....base.progress import Tell
     from ....tin import TIN
 
 __all__ = ["Kind", "gather_edge_flags", "group_rings", "write"]
@@ -281,7 +281,7 @@ def _format_hull(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
 
 def group_rings(tin: TIN) -> list[list[Int32Array]]:
     """Group the boundary rings: an outer ring followed by its holes."""
-    Polygon = _optional.load("shapely").Polygon
+    Polygon = optional.load("shapely").Polygon
     outer = [ring for ring in tin.rings if _measure_signed_area(tin.points[ring]) > 0]
     holes = [ring for ring in tin.rings if _measure_signed_area(tin.points[ring]) <= 0]
     outer.sort(key=lambda ring: _measure_signed_area(tin.points[ring]))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .._sentences import counted
+from ..base.sentences import counted
 from .output.failures import Failure
 
 if TYPE_CHECKING:

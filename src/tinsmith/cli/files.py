@@ -11,8 +11,8 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from .._atomic import scratch_folder
-from .._sentences import counted, suggest
+from ..base.atomic import scratch_folder
+from ..base.sentences import counted, suggest
 from .flags import name_flags
 from .output.console import emit_file
 from .output.failures import Failure, note_written
@@ -182,7 +182,7 @@ def add_lines(survey: Survey, how: Triangulating, console: Console) -> Survey:
 
 def build_tin(survey: Survey, how: Triangulating, console: Console) -> TIN:
     """Build the TIN of a survey, showing progress; rows at fault are named by point number too."""
-    from ..errors import PointsError
+    from ..base.errors import PointsError
     from ..tin import triangulate
 
     try:
@@ -243,7 +243,7 @@ def note_found(found: Survey | TIN, console: Console) -> None:
 
 def note_surfaces(surfaces: Sequence[TIN], console: Console) -> None:
     """Take note of what is known of surfaces, showing progress, for summary and record."""
-    from .._products import join_notes
+    from ..base.products import join_notes
 
     with console.step("Looking for blunders and gaps"):
         console.note(join_notes(surface.snapshot() for surface in surfaces))
@@ -363,7 +363,7 @@ def require_picture(
 
 def write_figure(figure: Any, path: Path, *, dpi: int) -> None:
     """Write a figure of matplotlib, whole or not at all, with no version in its bytes."""
-    from .._atomic import replacing
+    from ..base.atomic import replacing
 
     with replacing(path) as picture:
         figure.savefig(picture, format="png", dpi=dpi, metadata={"Software": None})
@@ -404,7 +404,7 @@ def _describe_option_not_taken(name: str) -> click.UsageError:
 
 def _require_format(flag: str, name: str | None) -> None:
     """Refuse a name that no format has: that is wrong usage, whatever the data."""
-    from ..errors import FormatError
+    from ..base.errors import FormatError
     from ..io.registry.lookup import find_format
 
     try:
@@ -415,7 +415,7 @@ def _require_format(flag: str, name: str | None) -> None:
 
 
 def _choose_output_formats(path: Path, name: str | None, kinds: Sequence[str]) -> dict[str, Format]:
-    from ..errors import FormatError
+    from ..base.errors import FormatError
     from ..io.registry.lookup import find_writers, known_formats, list_claims
 
     _require_format("--output-format", name)
@@ -495,7 +495,7 @@ def describe_written(outputs: Sequence[Output]) -> str:
 
 def write_text(path: Path, text: str) -> None:
     """Write a whole text file or none."""
-    from .._atomic import replacing
+    from ..base.atomic import replacing
 
     with replacing(path, binary=False) as file:
         file.write(text)

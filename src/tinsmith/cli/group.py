@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import __version__
-from .._sentences import suggest
+from ..base.sentences import suggest
 from ..io.isolated.forking import permit_forks
 from .command_list import SECTIONS, SUMMARIES
 from .output.events import note_events

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from ..policies import CodeStyle, CrossingPolicy, ShotOrder, TrimPolicy
+from ..base.policies import CodeStyle, CrossingPolicy, ShotOrder, TrimPolicy
 from .parameters import choice_option, number_option, under
 from .paths import LINES
 

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 import click
 
-from ..policies import DrawingContent, DuplicatePolicy, FacePolicy, FeatureKind, LineReading
+from ..base.policies import DrawingContent, DuplicatePolicy, FacePolicy, FeatureKind, LineReading
 from .flags import note_given
 from .line_options import CODE_OPTIONS, LINE_OPTIONS
 from .mesh_options import MESH_READING, MESH_WRITING

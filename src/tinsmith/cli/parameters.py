@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
-from .._sentences import suggest
+from ..base.sentences import suggest
 from .paths import INPUT, LINES, OUTPUT, STANDARD
 
 __all__ = [
@@ -208,8 +208,8 @@ def _require_crs(
     param: click.Parameter,
     value: str | None,
 ) -> str | None:
-    from ..crs import CRS
-    from ..errors import CrsError
+    from ..base.crs import CRS
+    from ..base.errors import CrsError
 
     try:
         CRS.of(value)

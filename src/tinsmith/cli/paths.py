@@ -132,7 +132,7 @@ def require_separate(inputs: Iterable[Named], outputs: Sequence[Named]) -> None:
     WriteError
         If an output cannot be written where it should be.
     """
-    from .._atomic import require_writable
+    from ..base.atomic import require_writable
     from ..io.registry.side_files import list_sources
 
     taken: dict[object, Named] = {}
@@ -155,7 +155,7 @@ def require_separate(inputs: Iterable[Named], outputs: Sequence[Named]) -> None:
 
 def describe_leftovers(outputs: Iterable[Path]) -> list[str]:
     """Name what earlier runs left, which were killed before they could clear up."""
-    from .._atomic import find_dead_scratch, find_leftovers
+    from ..base.atomic import find_dead_scratch, find_leftovers
 
     beside = [
         f"'{name_file(one)}' was left by a run that did not end, unless one is writing "

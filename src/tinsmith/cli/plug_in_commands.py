@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .._plug_ins import describe_failure, find_plug_ins
+from ..base.plug_ins import describe_failure, find_plug_ins
 from .output.failures import Failure
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from .._plug_ins import PlugIn
+    from ..base.plug_ins import PlugIn
 
 __all__ = ["describe_faults", "find_commands", "find_owner", "load_command"]
 

@@ -101,8 +101,8 @@ def plan_products(
 
 def _tabulate(features: Features) -> tuple[Table, list[str]]:
     """Return features as a table: of points their coordinates too; and what it lacks, if any."""
+    from ..base.results.table import tabulate_columns
     from ..io.tables.csv_tables import tabulate_points
-    from ..terrain.results.table import tabulate_columns
 
     if features.kind == "points":
         return tabulate_points(features), []

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ..arrays import AnyArray
+    from ..base.arrays import AnyArray
     from ..terrain import Raster
     from .request import Request
 
@@ -20,7 +20,7 @@ _OF_CELLS = ("crs", "z_unit", "band", "nodata")
 
 def read_cells(path: Path, request: Request) -> Raster | None:
     """Return the raster of a file; None where its cells are to be points, or it is no raster."""
-    from ..errors import OptionError, ReadError
+    from ..base.errors import OptionError, ReadError
     from ..io.raster.elevations import read_raster
     from ..io.raster.formats import FORMATS
 
@@ -42,7 +42,7 @@ def count_cells(raster: Raster) -> str:
 
 def find_cells(raster: Raster, places: AnyArray) -> list[int]:
     """Return the cells whose centres are at places, row by row, -1 where there is none."""
-    from ..terrain.results.gridded import locate_centers
+    from ..base.results.gridded import locate_centers
 
     columns, rows = (
         {centre: number for number, centre in enumerate(centres.tolist())}

@@ -12,8 +12,8 @@ from ...viewer.tints import interpolate_tints
 from .frame import SIZE
 
 if TYPE_CHECKING:
-    from ....arrays import Float64Array, UInt8Array
-    from ....crs import CRS
+    from ....base.arrays import Float64Array, UInt8Array
+    from ....base.crs import CRS
 
 __all__ = ["Canvas", "draw_cells"]
 

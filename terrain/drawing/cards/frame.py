@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...georeference.axes import find_axes
+from ....base.georeference.axes import find_axes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from ....arrays import Float64Array, UInt8Array
-    from ....crs import CRS, Unit
+    from ....base.arrays import Float64Array, UInt8Array
+    from ....base.crs import CRS, Unit
 
 __all__ = [
     "SIZE",

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...._sentences import counted
-from ...georeference.axes import find_axes
-from ...results.columns import unit_text
+from ....base.georeference.axes import find_axes
+from ....base.results.columns import unit_text
+from ....base.sentences import counted
 from ..north_up import draw_north_up
 from .drawings import Canvas, draw_cells
 from .frame import (
@@ -28,9 +28,9 @@ from .survey import list_notes
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ....arrays import AnyArray, Float64Array, UInt8Array
-    from ...results import Features, Raster, Table
-    from ...results.columns import Units
+    from ....base.arrays import AnyArray, Float64Array, UInt8Array
+    from ....base.results import Features, Raster, Table
+    from ....base.results.columns import Units
 
 __all__ = ["make_features_card", "make_raster_card", "make_table_card"]
 

@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...._sentences import counted
+from ....base.georeference.axes import find_axes
+from ....base.sentences import counted
 from ....tin.report import word_reason
-from ...georeference.axes import find_axes
 from .drawings import Canvas
 from .frame import describe_bounds, name_crs, name_units, write_card
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from ....arrays import Float64Array, UInt8Array
+    from ....base.arrays import Float64Array, UInt8Array
     from ....tin import Report, Survey
 
 __all__ = ["list_notes", "make_report_card", "make_survey_card"]

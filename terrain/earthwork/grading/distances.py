@@ -10,7 +10,7 @@ from ....tin import TIN, triangulate
 from .edge_cells import find_rays
 
 if TYPE_CHECKING:
-    from ....arrays import Float64Array, Int64Array
+    from ....base.arrays import Float64Array, Int64Array
 
 __all__ = ["measure_distances"]
 

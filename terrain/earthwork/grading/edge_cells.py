@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from ....arrays import BoolArray, Float64Array, Int64Array
+    from ....base.arrays import BoolArray, Float64Array, Int64Array
 
 __all__ = ["Rays", "find_rays"]
 

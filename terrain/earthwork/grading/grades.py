@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from ...._products import product
-from ...._progress import Progress
-from ...._sentences import coordinate, height
-from ....crs import scale_elevations
-from ....errors import LinesError, OptionError, PointsError
+from ....base.checks import is_finite_number
+from ....base.crs import scale_elevations
+from ....base.errors import LinesError, OptionError, PointsError
+from ....base.georeference import Agreement
+from ....base.products import product
+from ....base.progress import Progress
+from ....base.sentences import coordinate, height
 from ....tin.constraints.polygons import gather_rings_of_regions
-from ....tin.validation.options import is_finite_number
-from ...georeference import Agreement
 from ..reference import find_reference
 from .outlines import find_area
 from .pads import build_patch
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ....arrays import Float64Array
+    from ....base.arrays import Float64Array
     from ....tin import TIN
 
 __all__ = ["grade"]

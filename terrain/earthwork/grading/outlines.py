@@ -11,7 +11,7 @@ from ....tin.constraints.clipping import in_rings
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ....arrays import AnyArray, Float64Array
+    from ....base.arrays import AnyArray, Float64Array
     from ....tin import TIN
 
 __all__ = ["arrange_rings", "build_area", "fills_hull", "find_area"]

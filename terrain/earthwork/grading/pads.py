@@ -10,7 +10,7 @@ from ....tin import Breakline, triangulate
 from .seams import measure_tolerance
 
 if TYPE_CHECKING:
-    from ....arrays import Float64Array
+    from ....base.arrays import Float64Array
     from ....tin import TIN
     from .slopes import Slope
 

@@ -8,27 +8,27 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...._products import product
-from ...._progress import Progress
-from ...._sentences import coordinate
-from ....errors import PointsError
+from ....base.checks import require_tin
+from ....base.errors import PointsError
+from ....base.georeference import agree, find_plane_units
+from ....base.products import product
+from ....base.progress import Progress
+from ....base.sentences import coordinate
 from ....tin import Breakline, Survey, triangulate
 from ....tin.building.attributes import join_columns
 from ....tin.constraints.clipping import in_rings
 from ....tin.topology import edge_keys, mark_corners
 from ....tin.triangulation.illegal_edges import mark_illegal_edges
-from ....tin.validation.options import require_tin
-from ...georeference import agree, find_plane_units
 from .outlines import arrange_rings, fills_hull, find_area
 from .seams import Seam, find_sides, measure_tolerance
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from ...._progress import Tell
-    from ....arrays import AnyArray, BoolArray, Float64Array
+    from ....base.arrays import AnyArray, BoolArray, Float64Array
+    from ....base.georeference import Agreement
+    from ....base.progress import Tell
     from ....tin import TIN
-    from ...georeference import Agreement
 
 __all__ = ["join_surfaces", "paste"]
 

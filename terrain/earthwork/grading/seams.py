@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...._progress import Progress
+from ....base.progress import Progress
 from ....tin import Breakline
 from ....tin.topology import edge_keys
 from ....tin.triangulation.illegal_edges import mark_illegal_edges
@@ -15,8 +15,8 @@ from .outlines import build_area
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ...._progress import Tell
-    from ....arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ....base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ....base.progress import Tell
     from ....tin import TIN
 
 __all__ = ["Seam", "find_sides", "measure_tolerance"]

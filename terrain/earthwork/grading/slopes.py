@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...._sentences import coordinate
-from ....errors import PointsError
+from ....base.errors import PointsError
+from ....base.sentences import coordinate
 from ....tin import TIN, topology
 from ..differences import difference
 from ..zones import classify, join_segments, number_zones
@@ -15,7 +15,7 @@ from .distances import measure_distances
 from .seams import measure_tolerance
 
 if TYPE_CHECKING:
-    from ....arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ....base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = ["Slope", "find_slope"]
 

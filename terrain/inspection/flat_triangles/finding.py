@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...._products import product
-from ...._sentences import counted
-from ....tin.validation.options import require_tin
-from ...georeference import describe_unknown, find_plane_units
+from ....base.checks import require_tin
+from ....base.georeference import describe_unknown, find_plane_units
+from ....base.products import product
+from ....base.results import Features
+from ....base.sentences import counted
 from ...relief.dissolving import dissolve, make_polygons
 from ...relief.gradients import measure_plane_areas
-from ...results import Features
 from .regions import KINDS, find_regions
 
 if TYPE_CHECKING:

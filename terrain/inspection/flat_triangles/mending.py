@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...._products import product
-from ...._progress import Progress
-from ...._sentences import counted
-from ....tin.validation.options import require_tin
+from ....base.checks import require_tin
+from ....base.products import product
+from ....base.progress import Progress
+from ....base.sentences import counted
 from .regions import CAPS, NARROWEST, find_regions
 from .skeleton import find_shares, trace_skeleton
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from ....arrays import AnyArray, Float64Array
+    from ....base.arrays import AnyArray, Float64Array
     from ....tin import TIN
     from .regions import Regions
     from .skeleton import Skeleton

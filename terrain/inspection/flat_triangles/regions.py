@@ -10,7 +10,7 @@ from ....tin.topology import NO_NEIGHBOR, edges_at
 from ...relief.dissolving import number_components
 
 if TYPE_CHECKING:
-    from ....arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ....base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ....tin import TIN
 
 __all__ = ["CAPS", "KINDS", "NARROWEST", "Border", "Regions", "find_regions"]

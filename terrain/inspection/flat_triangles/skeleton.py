@@ -10,7 +10,7 @@ import numpy as np
 from .regions import CAPS
 
 if TYPE_CHECKING:
-    from ....arrays import BoolArray, Float64Array, Int64Array
+    from ....base.arrays import BoolArray, Float64Array, Int64Array
     from ....tin import TIN
     from .regions import Regions
 

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...._sentences import counted
-from ....errors import OptionError
+from ....base.errors import OptionError
+from ....base.georeference.axes import label_axes
+from ....base.georeference.units import find_ellipsoid
+from ....base.sentences import counted
 from ...drawing.linework import EDGE_KINDS, find_line_edges
-from ...georeference.axes import label_axes
-from ...georeference.units import find_ellipsoid
 from ..ramps import choose_ramp
 from ..tints import mix_tints
 from .packing import pack_counts, pack_rows, pack_triangles, sort_in_morton_order
@@ -20,10 +20,10 @@ from .packing import pack_counts, pack_rows, pack_triangles, sort_in_morton_orde
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ....arrays import Float64Array, Int32Array, Int64Array, UInt8Array
-    from ....policies import Tint
+    from ....base.arrays import Float64Array, Int32Array, Int64Array, UInt8Array
+    from ....base.georeference.units import Ground
+    from ....base.policies import Tint
     from ....tin import TIN, Survey
-    from ...georeference.units import Ground
     from ..ortho import Ortho
 
 __all__ = ["Labels", "Start", "describe_page", "find_labels"]

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from ....arrays import Int64Array, UInt64Array
+    from ....base.arrays import Int64Array, UInt64Array
 
 __all__ = ["pack_counts", "pack_rows", "pack_triangles", "sort_in_morton_order"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tinsmith.errors import OptionError
+from tinsmith.base.errors import OptionError
 from tinsmith.io import ReadError
 from tinsmith.io.delimited import columns
 

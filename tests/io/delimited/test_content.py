@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.crs import CRS
+from tinsmith.base.crs import CRS
 from tinsmith.io import ReadError
 from tinsmith.io.delimited.content import (
     Column,

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tinsmith.crs import CRS
+from tinsmith.base.crs import CRS
 from tinsmith.io import CrsError
 from tinsmith.io.delimited.columns import Columns
 from tinsmith.io.delimited.findings import (

@@ -169,7 +169,7 @@ def test_a_number_beside_the_code_is_a_whole_number():
 
 def test_an_unknown_style_is_refused():
     refused("Invalid code_style 'civil': it must be one of words, dash", "EP1", code_style="civil")
-    assert set(STYLES) == set(ts.policies.CodeStyle.__args__)
+    assert set(STYLES) == set(ts.base.policies.CodeStyle.__args__)
 
 
 # ------------------------------------------------------------------ findings

@@ -122,7 +122,7 @@ def list_faults(city):
     return {name for name, is_wrong in faults.items() if is_wrong}
 
 
-@pytest.mark.filterwarnings("ignore::tinsmith.errors.LossWarning")
+@pytest.mark.filterwarnings("ignore::tinsmith.base.errors.LossWarning")
 @pytest.mark.parametrize(
     ("crs", "options"),
     [

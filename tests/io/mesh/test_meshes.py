@@ -10,8 +10,8 @@ import pytest
 from click.testing import CliRunner
 
 import tinsmith as ts
+from tinsmith.base.errors import CrsError, FormatError, ReadError
 from tinsmith.cli import main
-from tinsmith.errors import CrsError, FormatError, ReadError
 from tinsmith.io.mesh import obj, stl, vtk
 from tinsmith.io.mesh.ply import file as ply
 from tinsmith.tin.checking.overlaps import describe_overlaps

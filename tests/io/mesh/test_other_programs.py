@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.errors import ReadError
+from tinsmith.base.errors import ReadError
 
 VERTICES = np.array([[500_000.12, 4e6, 10], [500_010.2, 4e6, 11],
                      [500_010.3, 4_000_010.4, 13], [500_000.3, 4_000_010.1, 12]])  # fmt: skip

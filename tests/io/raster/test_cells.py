@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tinsmith import OptionError, ReadError
-from tinsmith.crs import CRS, FOOT, METRE, US_SURVEY_FOOT
+from tinsmith.base.crs import CRS, FOOT, METRE, US_SURVEY_FOOT
 from tinsmith.io.isolated import Limits, free_memory
 from tinsmith.io.raster import dem
 from tinsmith.tin import Bounds

@@ -10,9 +10,9 @@ import pytest
 import rasterio
 
 import tinsmith as ts
-from tinsmith.errors import FormatError, OptionError, WriteError
+from tinsmith.base.errors import FormatError, OptionError, WriteError
+from tinsmith.base.types import Bounds, Grid
 from tinsmith.io.raster import geotiff
-from tinsmith.tin.types import Bounds, Grid
 
 FORMATS = ["geotiff", "cog"]
 

@@ -12,7 +12,7 @@ import pytest
 from support.faults import fault
 
 import tinsmith as ts
-from tinsmith._atomic import replacing, replacing_path
+from tinsmith.base.atomic import replacing, replacing_path
 from tinsmith.io import (
     FormatError,
     ReadError,

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.crs import CRS
+from tinsmith.base.crs import CRS
 from tinsmith.io.reprojection.contradictions import checking_crs
 from tinsmith.io.reprojection.placement import place
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tinsmith import CRS, PointsError
-from tinsmith.crs import METRE
+from tinsmith.base.crs import METRE
 from tinsmith.io import CrsError, LengthUnit, length_unit, transform_points
 from tinsmith.io.reprojection import transformation as crs
 from tinsmith.io.reprojection.transformation import reproject

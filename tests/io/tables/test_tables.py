@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 import tinsmith as ts
-from tinsmith.errors import FormatError
+from tinsmith.base.errors import FormatError
 
 TABLE = ts.Table(
     {

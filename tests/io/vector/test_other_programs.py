@@ -210,9 +210,9 @@ def test_measures_are_no_elevations(tmp_path):
 
 @pytest.mark.parametrize("seed", range(20))
 def test_records_made_by_arrays_are_those_of_geos(seed):
+    from tinsmith.base.results.geometries import build_geometries
     from tinsmith.io.vector.ogr import encode_geometries
     from tinsmith.io.vector.well_known_binary import encode_equal_shapes
-    from tinsmith.terrain.results.geometries import build_geometries
 
     rng = np.random.default_rng(seed)
     width, count, length = int(rng.integers(2, 4)), int(rng.integers(1, 9)), int(rng.integers(4, 7))

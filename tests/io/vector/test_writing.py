@@ -13,7 +13,7 @@ import pytest
 import shapely
 
 import tinsmith as ts
-from tinsmith.errors import CrsError, FormatError, LossWarning, WriteError
+from tinsmith.base.errors import CrsError, FormatError, LossWarning, WriteError
 from tinsmith.io.vector.shapefile import short_names
 
 UTM = np.array([500_000.1, 4_000_000.7])
@@ -256,7 +256,7 @@ def test_a_failed_write_leaves_the_old_file(tmp_path, suffix, monkeypatch):
     def fail(*_args, **_given):
         raise RuntimeError("no space; left")
 
-    monkeypatch.setattr("tinsmith.terrain.results.geometries.build_geometries", fail)
+    monkeypatch.setattr("tinsmith.base.results.geometries.build_geometries", fail)
     monkeypatch.setattr("tinsmith.io.vector.ogr.build_geometries", fail)
     monkeypatch.setattr("tinsmith.io.vector.ogr.encode_equal_shapes", fail)
     monkeypatch.setattr("tinsmith.io.vector.geojson.features._format_geometries", fail)

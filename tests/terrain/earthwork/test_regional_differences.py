@@ -85,11 +85,11 @@ def test_the_words_of_the_map_are_the_sums_of_the_table(regions):
 
 
 def test_regions_beside_both_surfaces_are_refused():
-    with pytest.raises(ts.errors.PointsError, match="hold nothing"):
+    with pytest.raises(ts.base.errors.PointsError, match="hold nothing"):
         ts.difference(rough(50, 1), base=5.0, regions={"far": OVERLAPPING["far"]})
 
 
 @pytest.mark.parametrize("given", [{}, {"other": rough(20, 3), "base": 1.0}])
 def test_one_base_is_needed(given):
-    with pytest.raises(ts.errors.OptionError, match="base"):
+    with pytest.raises(ts.base.errors.OptionError, match="base"):
         ts.difference(rough(20, 1), **given)

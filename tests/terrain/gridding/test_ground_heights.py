@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.errors import CrsError, OptionError, PointsError
+from tinsmith.base.errors import CrsError, OptionError, PointsError
 
 GROUND = [[0, 0, 10], [10, 0, 20], [0, 10, 30]]
 

@@ -14,7 +14,7 @@ from support.clipping import covered_area
 from support.relief_oracle import GradientAt
 
 import tinsmith as ts
-from tinsmith.errors import CrsError, OptionError, PointsError, ReadError
+from tinsmith.base.errors import CrsError, OptionError, PointsError, ReadError
 from tinsmith.terrain.gridding import bands, grids
 
 UTM = (500_000.0, 4_000_000.0)

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
+from tinsmith.base.results.gridded import locate_centers
+from tinsmith.base.types import Bounds, Grid
 from tinsmith.terrain.relief.gradients import sum_normals
 from tinsmith.terrain.relief.light import as_light, shade
-from tinsmith.terrain.results.gridded import locate_centers
-from tinsmith.tin.types import Bounds, Grid
 
 
 def plane(east, north, **about):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tinsmith import triangulate
-from tinsmith.terrain.georeference.units import METRE, find_ground
+from tinsmith.base.georeference.units import METRE, find_ground
 from tinsmith.terrain.viewer.annotations import (
     Caption,
     Sheet,

@@ -10,8 +10,8 @@ import pytest
 from PIL import Image
 
 from tinsmith import triangulate
+from tinsmith.base.georeference.units import find_ground
 from tinsmith.terrain import preview
-from tinsmith.terrain.georeference.units import find_ground
 from tinsmith.terrain.viewer.annotations import Sheet
 from tinsmith.terrain.viewer.camera import View
 from tinsmith.terrain.viewer.corridor import (

@@ -10,8 +10,8 @@ from PIL import Image
 from support.pictures import make_dipping_plane, read_pixels
 
 from tinsmith import triangulate
+from tinsmith.base.georeference.units import METRE
 from tinsmith.terrain import OptionError, preview
-from tinsmith.terrain.georeference.units import METRE
 from tinsmith.terrain.viewer.annotations import Caption, Sheet, annotate
 from tinsmith.terrain.viewer.camera import View, aim, measure_pixels_per_unit, project_ground_axes
 from tinsmith.terrain.viewer.look import make_look

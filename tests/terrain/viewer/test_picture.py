@@ -12,10 +12,10 @@ from PIL import Image
 from support.pictures import make_dipping_plane, read_pixels
 
 from tinsmith import TIN, MissingExtraError, triangulate
-from tinsmith.crs import FOOT, METRE
+from tinsmith.base.crs import FOOT, METRE
+from tinsmith.base.georeference.units import NOT_KNOWN, find_ground
 from tinsmith.terrain import OptionError, RenderError, preview, slope
 from tinsmith.terrain.drawing.rounding import choose_ticks, format_number, round_down
-from tinsmith.terrain.georeference.units import NOT_KNOWN, find_ground
 from tinsmith.terrain.viewer import opengl
 from tinsmith.terrain.viewer.annotations import Sheet, scale_bar_length
 from tinsmith.terrain.viewer.picture import PICTURE_SUFFIXES

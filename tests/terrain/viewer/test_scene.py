@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from tinsmith import TIN, Breakline, Water, triangulate
+from tinsmith.base.georeference.units import find_ground
 from tinsmith.terrain.drawing.linework import add_lines
-from tinsmith.terrain.georeference.units import find_ground
 from tinsmith.terrain.viewer.scene import (
     _average_normals,
     add_terrain,

@@ -10,7 +10,7 @@ from support import line_oracle
 from support.line_oracle import places_of, steps_of
 
 import tinsmith as ts
-from tinsmith.errors import LinesError, OptionError
+from tinsmith.base.errors import LinesError, OptionError
 from tinsmith.tin import _kernel
 from tinsmith.tin.constraints import splitting
 from tinsmith.tin.constraints.noding import node

@@ -15,7 +15,7 @@ from support import oracles
 from support.natural_oracle import laplace_weights, sibson_weights
 
 import tinsmith as ts
-from tinsmith.errors import OptionError, PointsError
+from tinsmith.base.errors import OptionError, PointsError
 from tinsmith.tin import TIN
 
 UTM = (500_000.0, 4_000_000.0)

@@ -8,7 +8,7 @@ import numpy as np
 import pyproj
 import pytest
 
-from tinsmith.crs import CRS
+from tinsmith.base.crs import CRS
 from tinsmith.tin.screening.area_of_use import AreaOfUse, _convert_to_degrees, _measure_width
 
 UTM_16 = "EPSG:32616"

@@ -9,7 +9,7 @@ import numpy as np
 from ... import topology
 
 if TYPE_CHECKING:
-    from ....arrays import BoolArray
+    from ....base.arrays import BoolArray
     from ...constraints.breaklines import Lines
     from ...triangulation import Triangulation
 

@@ -12,8 +12,8 @@ from ...validation.threads import thread_count
 from .barriers import find_barriers
 
 if TYPE_CHECKING:
-    from ....arrays import BoolArray, Float64Array
-    from ....policies import InterpolationMethod
+    from ....base.arrays import BoolArray, Float64Array
+    from ....base.policies import InterpolationMethod
     from ...constraints.breaklines import Lines
     from ...triangulation import Triangulation
 

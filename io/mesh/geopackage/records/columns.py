@@ -12,7 +12,7 @@ from .requirements import require
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping
 
-    from .....arrays import AnyArray
+    from .....base.arrays import AnyArray
 
 __all__ = ["describe_layer_columns", "pack_columns", "unpack_columns"]
 

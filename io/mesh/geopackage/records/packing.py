@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from .....crs import CRS, Unit
+from .....base.crs import CRS, Unit
 from .....tin.building.constrained import LineOptions
 from .....tin.building.inputs import BuildInputs
 from .....tin.constraints.breaklines import Lines
@@ -18,7 +18,7 @@ from .....tin.report import Crossings, Edit, Overruled, Report, Simplification, 
 from .columns import pack_columns
 
 if TYPE_CHECKING:
-    from .....arrays import AnyArray, Float64Array
+    from .....base.arrays import AnyArray, Float64Array
     from .....tin.editing.version import Version
     from .....tin.surface import TIN
 

@@ -6,8 +6,14 @@ from typing import Any, get_args
 
 import numpy as np
 
-from .....errors import PointsError
-from .....policies import CrossingPolicy, DuplicatePolicy, LineKind, SimplificationHold, TrimPolicy
+from .....base.errors import PointsError
+from .....base.policies import (
+    CrossingPolicy,
+    DuplicatePolicy,
+    LineKind,
+    SimplificationHold,
+    TrimPolicy,
+)
 from .....tin.building.constrained import LineOptions
 from .....tin.building.inputs import BuildInputs
 from .....tin.constraints.breaklines import Lines

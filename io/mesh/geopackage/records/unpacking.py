@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .....crs import CRS, Unit
-from .....errors import PointsError, TinsmithError
+from .....base.crs import CRS, Unit
+from .....base.errors import PointsError, TinsmithError
 from .....tin import topology
 from .....tin.editing.origin import Origin
 from .....tin.editing.version import Version
@@ -30,7 +30,7 @@ from .requirements import (
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from .....arrays import AnyArray, BoolArray, Float64Array, Int32Array
+    from .....base.arrays import AnyArray, BoolArray, Float64Array, Int32Array
     from .....tin.building.inputs import BuildInputs
     from .packing import Record
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..._sentences import counted
+from ...base.sentences import counted
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import Failure
 from ..parameters import command, input_file

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..._sentences import counted
+from ...base.sentences import counted
 from ..options import console_options, reading_options
 from ..output.failures import Failure
 from ..parameters import command, input_file, number_option, picture_option
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from ...arrays import AnyArray
+    from ...base.arrays import AnyArray
     from ...tin import Comparison, Outcome
     from ..options import Reading
     from ..output.console import Console, Row

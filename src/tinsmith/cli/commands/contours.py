@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..._sentences import counted, height
+from ...base.sentences import counted, height
 from ..options import vector_options
 from ..parameters import file_command, number_option, numbers_option
 from ..paths import make_title
@@ -15,7 +15,7 @@ from ..request import surface_options
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ..._progress import Tell
+    from ...base.progress import Tell
     from ...terrain import Features
     from ...tin import TIN
     from ..output.console import Row
@@ -142,7 +142,7 @@ def _summarise_contours(made: Features) -> list[Row]:
 
 
 def _summarise_levels(made: Features) -> list[Row]:
-    from ...terrain.results.columns import unit_text
+    from ...base.results.columns import unit_text
 
     levels = sorted(set(made.columns["elevation"].tolist()))
     if not levels:
@@ -158,7 +158,7 @@ def _summarise_levels(made: Features) -> list[Row]:
 
 
 def _describe_contours(file: Path, made: Features) -> dict[str, Any]:
-    from ...terrain.results.columns import unit_text
+    from ...base.results.columns import unit_text
 
     record: dict[str, Any] = {
         "input": str(file),

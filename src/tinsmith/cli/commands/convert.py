@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..._sentences import counted
+from ...base.sentences import counted
 from ..options import console_options, reading_options, writing_options
 from ..parameters import file_command
 from ..paths import name_file
@@ -75,7 +75,7 @@ def _write(found: TIN | Survey, planned: list[Output], console: Console) -> None
 
 
 def _make_raster(survey: Survey, path: Path) -> Raster:
-    from ...errors import PointsError
+    from ...base.errors import PointsError
     from ...io.raster.gridded import make_raster
     from ..output.failures import Failure
 

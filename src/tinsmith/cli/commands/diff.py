@@ -104,7 +104,7 @@ def _format(table: Table, name: str) -> str:
 
 
 def _describe_difference(files: Sequence[Path], found: Difference) -> dict[str, Any]:
-    from ...terrain.results.columns import unit_text
+    from ...base.results.columns import unit_text
 
     table = found.statistics
     return {

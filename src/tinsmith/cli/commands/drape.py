@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...policies import OutsidePolicy
+from ...base.policies import OutsidePolicy
 from ..parameters import choice_option, command, input_file, output_files
 from ..paths import LINES, Named
 from ..request import surface_options
@@ -75,7 +75,7 @@ def drape(
 
 
 def _count_draped(given: Features, draped: Features) -> str:
-    from ..._sentences import counted
+    from ...base.sentences import counted
 
     vertices = (
         f"{len(given.coordinates):,} to {counted(len(draped.coordinates), 'vertex', 'vertices')}"

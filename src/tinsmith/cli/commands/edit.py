@@ -6,7 +6,7 @@ import json
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from ..._sentences import counted
+from ...base.sentences import counted
 from ..options import writing_options
 from ..parameters import command, input_file, output_files, report_option
 from ..paths import STANDARD, Named, name_file

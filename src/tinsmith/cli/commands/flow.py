@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ...policies import FlowProduct
+from ...base.policies import FlowProduct
 from ..parameters import choice_option, file_command, file_option, number_option, position_option
 from ..places import name_places, read_places
 from ..request import surface_options
@@ -14,7 +14,7 @@ from ..request import surface_options
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ..._progress import Tell
+    from ...base.progress import Tell
     from ...terrain import Features
     from ...tin import TIN
     from ..output.console import Row
@@ -74,7 +74,7 @@ def flow(file: Path, find: FlowProduct, request: Request, **asked: Any) -> None:
       tinsmith flow site.ply --find paths --from 752700 4024300 -o path.geojson
       tinsmith flow site.ply --find catchments --fill-depressions -o basins.gpkg
     """  # noqa: D301 - click reads the control character
-    from ...terrain.results.table import tabulate_columns
+    from ...base.results.table import tabulate_columns
     from ..output.line_summaries import describe_features
 
     _require_fitting(find, asked)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..._sentences import counted
+from ...base.sentences import counted
 from ..options import writing_options
 from ..output.failures import Failure
 from ..parameters import file_command, file_option, number_option

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..._sentences import counted
+from ...base.sentences import counted
 from ..options import writing_options
 from ..parameters import command, input_files, number_option, output_files
 from ..request import surface_options
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ...policies import GroundReturns
+    from ...base.policies import GroundReturns
     from ...terrain import GroundPoints
     from ...tin import Survey
     from ..files import Output

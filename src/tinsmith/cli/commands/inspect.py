@@ -91,7 +91,7 @@ def _summarise_blunders(points: Sequence[Path], tin: TIN, table: Table) -> list[
 
 
 def _describe_inspection(points: Sequence[Path], table: Table) -> dict[str, Any]:
-    from ...terrain.results.columns import unit_text
+    from ...base.results.columns import unit_text
     from ..output.blunder_summaries import list_records
 
     return {

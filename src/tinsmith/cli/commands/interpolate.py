@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..._sentences import counted
-from ...policies import Extrapolation, InterpolationMethod
+from ...base.policies import Extrapolation, InterpolationMethod
+from ...base.sentences import counted
 from ..output.failures import Failure
 from ..parameters import choice_option, command, crs_option, file_option, input_file, output_files
 from ..paths import Named
@@ -71,9 +71,9 @@ def interpolate(
       tinsmith interpolate sample_data/site_survey.csv --crs EPSG:32616
         --at places.csv --method natural -o elevations.csv
     """  # noqa: D301 - click reads the control character
-    from ...crs import CRS
+    from ...base.crs import CRS
+    from ...base.georeference import describe_unknown
     from ...io.delimited.query_points import read_query_points
-    from ...terrain.georeference import describe_unknown
 
     inputs = request.list_inputs(file, more=[Named(points_file, "the file of --at")])
     planned = request.plan(inputs, "Table")
@@ -121,7 +121,7 @@ def _reproject(tin: TIN, points: QueryPoints, given: str | None, notes: list[str
     """Return the points in the TIN's CRS; degrees and lengths are never mixed."""
     import numpy as np
 
-    from ...crs import CRS
+    from ...base.crs import CRS
     from ...io import transform_points
 
     if given is None:

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..._sentences import counted
-from ...policies import (
+from ...base.policies import (
     ContourLabeling,
     GridStyle,
     PaperOrientation,
     PointMarking,
     SheetLayout,
 )
+from ...base.sentences import counted
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import Failure, note_written
 from ..parameters import (

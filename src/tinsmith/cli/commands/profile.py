@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..._sentences import counted
+from ...base.sentences import counted
 from ..output.failures import Failure
 from ..parameters import command, file_option, number_option, output_files, position_option
 from ..paths import INPUT, Named, make_title

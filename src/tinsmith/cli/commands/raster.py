@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..._sentences import coordinate
-from ...policies import InterpolationMethod, RasterSample, RasterValue
+from ...base.policies import InterpolationMethod, RasterSample, RasterValue
+from ...base.sentences import coordinate
 from ..options import format_options
 from ..parameters import choice_option, file_command, file_option, number_option, smooth_option
 from ..paths import Named

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..._sentences import counted
+from ...base.sentences import counted
 from ..flags import name_flags
 from ..options import writing_options
 from ..output.failures import Failure, refuse_option
@@ -49,7 +49,7 @@ def refine(
     Example:
       tinsmith refine sample_data/site_survey.csv --codes --max-area 20 -o site.msh -o site.vtu
     """  # noqa: D301 - click reads the control character
-    from ...errors import OptionError, TinsmithError
+    from ...base.errors import OptionError, TinsmithError
     from ...tin import quality
     from ...tin import refine as refine_tin
     from ...tin.meshing.flips import describe_flips

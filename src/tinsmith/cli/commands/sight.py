@@ -65,7 +65,7 @@ def sight(file: Path, request: Request, **asked: Any) -> None:
       tinsmith sight site.ply --from 752700 4024300 --eye-height 1.7 -o viewshed.gpkg
       tinsmith sight site.ply --from 752700 4024300 --to 752800 4024300 -o line.csv
     """  # noqa: D301 - click reads the control character
-    from ...terrain.results.table import tabulate_columns
+    from ...base.results.table import tabulate_columns
     from ..output.line_summaries import describe_features
 
     _require_fitting(asked)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..._sentences import coordinate, counted
-from ...policies import SimplificationHold
+from ...base.policies import SimplificationHold
+from ...base.sentences import coordinate, counted
 from ..options import writing_options
 from ..output.failures import Failure
 from ..parameters import choice_option, file_command, file_option, number_option
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from ...arrays import AnyArray
+    from ...base.arrays import AnyArray
     from ...terrain import Raster
     from ...tin import TIN
     from ..output.console import Row

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ...policies import SlopeUnit
+from ...base.policies import SlopeUnit
 from ..options import make_reading_options
 from ..parameters import choice_option, file_command, numbers_option
 from ..request import surface_options
@@ -52,8 +52,8 @@ def slope(
       tinsmith slope sample_data/site_survey.csv --crs EPSG:32616 -o slope.gpkg -o slope.csv
       tinsmith slope sample_data/jacksboro.tif --unit percent --breaks 5,15,30 -o slope.geojson
     """  # noqa: D301 - click reads the control character
+    from ...base.results.table import tabulate_columns
     from ...terrain import aspect_classes, slope_classes, slope_statistics
-    from ...terrain.results.table import tabulate_columns
 
     if aspect and breaks is not None:
         raise click.UsageError("--breaks is for slopes: aspects have the eight directions.")
@@ -92,7 +92,7 @@ def _summarise_classes(tin: TIN, made: Features, statistics: Table) -> list[Row]
 
 
 def _describe_classes(file: Path, made: Features, statistics: Table) -> dict[str, Any]:
-    from ...terrain.results.columns import unit_text
+    from ...base.results.columns import unit_text
 
     names = list(made.columns)
     rows = zip(*(column.tolist() for column in made.columns.values()), strict=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ...policies import Tint
+from ...base.policies import Tint
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import note_written, tell_warning
 from ..parameters import (

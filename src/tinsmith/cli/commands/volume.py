@@ -14,7 +14,7 @@ from ..request import surface_options
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..._progress import Tell
+    from ...base.progress import Tell
     from ...terrain import Difference, Features, Table
     from ...tin import TIN
     from ..output.console import Row
@@ -214,7 +214,7 @@ def _format_quantity(table: Table, name: str, row: int) -> str:
 
 
 def _describe_volumes(files: Sequence[Path], table: Table) -> dict[str, Any]:
-    from ...terrain.results.columns import unit_text
+    from ...base.results.columns import unit_text
 
     columns = {name: values.tolist() for name, values in table.columns.items()}
     return {

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..._sentences import counted, height
+from ...base.sentences import counted, height
 
 if TYPE_CHECKING:
-    from ...arrays import Int64Array
+    from ...base.arrays import Int64Array
     from ...terrain import Table
     from .console import Row
 

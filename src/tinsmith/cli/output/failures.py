@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-    from ...errors import OptionError
+    from ...base.errors import OptionError
 
 __all__ = [
     "Failure",
@@ -157,8 +157,8 @@ def _make_interruption(ctx: click.Context, number: int) -> Interruption:
 
 
 def _make_failure(error: Exception, owner: str) -> click.ClickException:
-    from ..._optional import describe_missing
-    from ...errors import OptionError, TinsmithError
+    from ...base.errors import OptionError, TinsmithError
+    from ...base.optional import describe_missing
 
     if isinstance(error, ImportError):
         error = describe_missing(error) or error

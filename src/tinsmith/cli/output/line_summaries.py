@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted
+from ...base.sentences import counted
 from ...tin.report import LEFT_OUT, word_reason
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
+    from ...base.results.columns import Units
     from ...terrain import Features
-    from ...terrain.results.columns import Units
     from ...tin import TIN, Report, Survey
     from .console import Row
 
@@ -54,7 +54,7 @@ def find_elevation_symbol(found: Survey | TIN) -> str:
 
 def name_unit(units: Units, column: str) -> str:
     """Return the symbol of a column's unit for a sentence; "" for none, and if it is not known."""
-    from ...terrain.results.columns import unit_text
+    from ...base.results.columns import unit_text
 
     return "" if units.get(column, "") is None else unit_text(units, column)
 
@@ -158,7 +158,7 @@ def _describe_overruled(report: Report, survey: Survey) -> str:
 
 def describe_features(file: Path, found: Features, **more: Any) -> dict[str, Any]:
     """Return what ``--json`` tells of features: a record for each, without its geometry."""
-    from ...terrain.results.columns import unit_text
+    from ...base.results.columns import unit_text
 
     names = list(found.columns)
     rows = zip(*(column.tolist() for column in found.columns.values()), strict=True)

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._sentences import counted
-from ...crs import assume_elevation_unit
+from ...base.crs import assume_elevation_unit
+from ...base.georeference.axes import find_axes
+from ...base.sentences import counted
 from ...io.reprojection.transformation import is_geographic, length_unit
 from ...terrain import slope
-from ...terrain.georeference.axes import find_axes
 from ...terrain.relief.gradients import measure_areas
 from ...tin import TIN, Bounds, Survey, quality
 from ...tin.report import describe_skipped
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ...crs import CRS
+    from ...base.crs import CRS
     from ...terrain import Raster
     from ...tin import Merge, Quality, Report
     from .console import Row

@@ -14,7 +14,7 @@ import pytest
 import shapely
 
 import tinsmith as ts
-from tinsmith.errors import CrsError, FormatError, OptionError, WriteError
+from tinsmith.base.errors import CrsError, FormatError, OptionError, WriteError
 from tinsmith.io.vector.geojson import writing as geojson
 
 UTM16 = "EPSG:32616"

@@ -10,7 +10,7 @@ import ifcopenshell.guid
 import numpy as np
 
 from tinsmith import FormatError
-from tinsmith.crs import scale_elevations
+from tinsmith.base.crs import scale_elevations
 
 if TYPE_CHECKING:
     from pathlib import Path

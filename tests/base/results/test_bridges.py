@@ -13,7 +13,7 @@ import shapely
 import xarray
 
 import tinsmith as ts
-from tinsmith.errors import MissingExtraError, OptionError
+from tinsmith.base.errors import MissingExtraError, OptionError
 
 XYZ = np.array([[0, 0, 1], [4, 0, 2], [4, 3, math.nan], [0, 3, 4], [0, 0, 1]], float)
 RINGS = np.concatenate([XYZ, XYZ * (0.1, 0.1, 1) + (1, 1, 0), XYZ + np.array([9, 0, 0])])
@@ -187,6 +187,6 @@ def test_without_the_library_its_extra_is_named(monkeypatch, library, action):
     def missing(name):
         raise ImportError(name)
 
-    monkeypatch.setattr("tinsmith._optional.import_module", missing)
+    monkeypatch.setattr("tinsmith.base.optional.import_module", missing)
     with pytest.raises(MissingExtraError, match=rf"{library}.*tinsmith\[interop\]"):
         action()

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
-from ..._methods import make_card
-from ..._sentences import counted
-from ...crs import CRS, Unit, require_one_unit, shorten_crs
-from ...errors import OptionError
-from ...tin.types import Bounds, Frozen
-from ...tin.validation.ranges import require_degrees
+from ..crs import CRS, Unit, require_one_unit, shorten_crs
+from ..errors import OptionError
+from ..methods import make_card
+from ..ranges import require_degrees
+from ..sentences import counted
+from ..types import Bounds, Frozen
 from .columns import as_columns, as_name, as_notes, as_units, frozen_copy, join_notes
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ...arrays import AnyArray, Float64Array, Int64Array, ObjectArray
-    from ...crs import CrsLike, UnitLike
+    from ..arrays import AnyArray, Float64Array, Int64Array, ObjectArray
+    from ..crs import CrsLike, UnitLike
     from .columns import Units
 
 __all__ = ["Features", "Kind"]

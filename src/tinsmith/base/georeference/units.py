@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from ...crs import METRE, Unit, assume_elevation_unit, scale_elevations
+from ..crs import METRE, Unit, assume_elevation_unit, scale_elevations
+from .agreement import Referenced
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...arrays import Float64Array
-    from ...crs import CRS
-    from ...tin import TIN
+    from ..arrays import Float64Array
+    from ..crs import CRS
+    from ..types import Bounds
 
 __all__ = ["Ellipsoid", "Ground", "Scales", "find_ellipsoid", "find_ground", "find_scales"]
 
@@ -41,6 +42,14 @@ class Ellipsoid(NamedTuple):
     """Radians of a unit of the CRS."""
 
 
+class Located(Referenced, Protocol):
+    """What has a CRS, a unit of elevations and an extent, as every TIN."""
+
+    @property
+    def bounds(self) -> Bounds:
+        """In CRS units."""
+
+
 @dataclass(frozen=True, slots=True)
 class Ground:
     """How a TIN's coordinates are drawn true to scale."""
@@ -63,7 +72,7 @@ class Ground:
         return f"{symbol} assumed" if symbol and self.is_assumed else symbol
 
 
-def find_ground(tin: TIN) -> Ground:
+def find_ground(tin: Located) -> Ground:
     """Read the units of a TIN from its CRS and its unit of elevations.
 
     Degrees are drawn as metres along the ellipsoid at the middle of the TIN, which holds for small

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-from ...crs import CRS, METRE, Unit, assume_elevation_unit
-from ...errors import CrsError
+from ..crs import CRS, METRE, Unit, assume_elevation_unit
+from ..errors import CrsError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

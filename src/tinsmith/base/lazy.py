@@ -8,7 +8,7 @@ from importlib import import_module
 from importlib.util import find_spec, resolve_name
 from typing import TYPE_CHECKING, Any
 
-from ._optional import describe_missing
+from .optional import describe_missing
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

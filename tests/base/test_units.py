@@ -14,9 +14,9 @@ from click.testing import CliRunner
 
 import tinsmith as ts
 from tinsmith import TIN, OptionError, Survey, Unit
+from tinsmith.base.crs import FOOT, METRE, US_SURVEY_FOOT
+from tinsmith.base.georeference.units import find_ground
 from tinsmith.cli import main
-from tinsmith.crs import FOOT, METRE, US_SURVEY_FOOT
-from tinsmith.terrain.georeference.units import find_ground
 
 CORNER = np.array([742_000.0, 4_030_000.0, 300.0])
 TRIANGLES = [[0, 1, 2]]
@@ -552,7 +552,7 @@ def test_the_legend_says_what_is_known_of_the_unit():
 
 def test_the_examples_of_the_page_run(capsys):
     """Each line that prints says in a comment what it prints."""
-    page = (Path(__file__).parents[1] / "docs" / "units.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "units.md").read_text(encoding="utf-8")
     (block,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     exec(block, {})
     expected = re.findall(r"^print\(.*\)  # (.*)$", block, re.MULTILINE)

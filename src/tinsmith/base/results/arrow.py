@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ...errors import OptionError
+from .. import optional
+from ..errors import OptionError
 from .columns import UNKNOWN_UNIT, unit_text
 
 if TYPE_CHECKING:
-    from ...arrays import Int64Array
+    from ..arrays import Int64Array
     from .parts import FeatureParts
 
 __all__ = ["build_table"]
@@ -41,7 +41,7 @@ def build_table(features: FeatureParts) -> Any:
     Raises MissingExtraError if pyarrow is not installed, OptionError if a column is called
     ``geometry``.
     """
-    pa = _optional.load("pyarrow", "Handing features over as Arrow")
+    pa = optional.load("pyarrow", "Handing features over as Arrow")
     if _GEOMETRY in features.columns:
         raise OptionError(
             "column", _GEOMETRY, allowed="called otherwise: geometries have this name"

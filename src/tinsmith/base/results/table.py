@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from ... import _optional
-from ..._methods import make_card
-from ..._sentences import counted
-from ...errors import OptionError
-from ...tin.types import Frozen
+from .. import optional
+from ..errors import OptionError
+from ..methods import make_card
+from ..sentences import counted
+from ..types import Frozen
 from .columns import as_columns, as_name, as_notes, as_units, join_notes, unit_text
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-    from ...arrays import AnyArray
+    from ..arrays import AnyArray
     from .columns import Units
     from .parts import FeatureParts
 
@@ -91,7 +91,7 @@ class Table(Frozen):
         >>> frame.attrs["units"]
         {'level': 'm'}
         """
-        pandas = _optional.load("pandas", "Turning a table into a DataFrame")
+        pandas = optional.load("pandas", "Turning a table into a DataFrame")
         frame: pd.DataFrame = pandas.DataFrame(
             {name: values.copy() for name, values in self.columns.items()}
         )

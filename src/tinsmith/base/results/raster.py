@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._methods import make_card
-from ..._sentences import counted
-from ...crs import CRS, shorten_crs
-from ...errors import OptionError
-from ...tin.types import Frozen, Grid
-from ...tin.validation.ranges import require_degrees
+from ..crs import CRS, shorten_crs
+from ..errors import OptionError
+from ..methods import make_card
+from ..ranges import require_degrees
+from ..sentences import counted
+from ..types import Frozen, Grid
 from .columns import (
     FrozenMapping,
     as_name,
@@ -27,7 +27,7 @@ from .columns import (
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ...arrays import AnyArray, Float64Array
+    from ..arrays import AnyArray, Float64Array
     from .columns import Units
 
 __all__ = ["Raster", "require_grid"]

@@ -14,9 +14,9 @@ from functools import lru_cache
 from numbers import Integral
 from typing import TYPE_CHECKING, Any, overload
 
-from . import _optional
-from ._sentences import shown
+from . import optional
 from .errors import CrsError, OptionError
+from .sentences import shown
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -150,7 +150,7 @@ def _simplify_unit(text: str) -> str:
 @lru_cache(maxsize=1)
 def _load_epsg_units() -> dict[str, Unit]:
     """Return EPSG's units of length; PROJ's own are left out, its decimetre is a centimetre."""
-    library = _optional.load("pyproj", "Units by their EPSG names")
+    library = optional.load("pyproj", "Units by their EPSG names")
     return {
         _simplify_unit(name): _make_unit(name, unit.conv_factor)
         for name, unit in library.get_units_map(auth_name="EPSG", category="linear").items()
@@ -422,7 +422,7 @@ def _parsed(text: str) -> pyproj.CRS:
 
 
 def _parse(value: object) -> pyproj.CRS:
-    library = _optional.load("pyproj", "A CRS")
+    library = optional.load("pyproj", "A CRS")
     try:
         parsed: pyproj.CRS = library.CRS.from_user_input(value)
     except (library.exceptions.CRSError, TypeError, ValueError, AttributeError) as error:

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...crs import CRS
+from ..crs import CRS
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
+    from ..arrays import Float64Array
 
 __all__ = [
     "Axes",

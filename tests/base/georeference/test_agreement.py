@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.crs import CRS, Unit
-from tinsmith.terrain.georeference import agree
+from tinsmith.base.crs import CRS, Unit
+from tinsmith.base.georeference import agree
 
 SITE = ts.triangulate([[0, 0, 0], [10, 0, 1], [10, 10, 5], [0, 10, 3], [4, 6, 2]])
 LINE = [[1, 1], [9, 8]]

@@ -8,8 +8,8 @@ from importlib.machinery import PathFinder
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ._sentences import printable
 from .errors import PlugInWarning
+from .sentences import printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

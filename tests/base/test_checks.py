@@ -12,17 +12,17 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith._sentences import shown
-from tinsmith.errors import TinsmithError, choice
-from tinsmith.tin.editing.history import apply_edits
-from tinsmith.tin.paper.comparison import compare
-from tinsmith.tin.paper.growth import improved
-from tinsmith.tin.validation.options import (
+from tinsmith.base.checks import (
     as_flag,
     is_finite_number,
     is_whole_number,
     require_tin,
 )
+from tinsmith.base.errors import TinsmithError, choice
+from tinsmith.base.sentences import shown
+from tinsmith.tin.editing.history import apply_edits
+from tinsmith.tin.paper.comparison import compare
+from tinsmith.tin.paper.growth import improved
 from tinsmith.tin.validation.points import as_elevations
 
 CORNERS = [[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8], [2, 1, 9]]

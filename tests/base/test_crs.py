@@ -12,7 +12,7 @@ import pytest
 
 import tinsmith as ts
 from tinsmith import CRS, CrsError, Unit
-from tinsmith.crs import FOOT, METRE, US_SURVEY_FOOT
+from tinsmith.base.crs import FOOT, METRE, US_SURVEY_FOOT
 
 pyproj = pytest.importorskip("pyproj")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
-from ._sentences import printable, shown
+from .sentences import printable, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..._sentences import counted, inflect
-from ...crs import measure_angular_unit
-from ...errors import PointsError
+from .crs import measure_angular_unit
+from .errors import PointsError
+from .sentences import counted, inflect
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray
-    from ...crs import CRS
+    from .arrays import AnyArray
+    from .crs import CRS
 
 __all__ = ["describe_span", "require_degrees"]
 

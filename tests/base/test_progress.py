@@ -7,7 +7,7 @@ import pytest
 from support.product_arrays import list_arrays
 
 import tinsmith as ts
-from tinsmith._progress import Progress
+from tinsmith.base.progress import Progress
 
 N_POINTS = 40_000
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.errors import OptionError
+from tinsmith.base.errors import OptionError
 
 RING = [[0, 0], [4, 0], [4, 3], [0, 3], [0, 0]]
 HOLE = [[1, 1], [1, 2], [2, 2], [2, 1], [1, 1]]

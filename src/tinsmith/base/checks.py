@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..._sentences import shown
-from ...errors import OptionError, PointsError
+from .errors import OptionError, PointsError
+from .sentences import shown
 
 __all__ = [
     "as_flag",

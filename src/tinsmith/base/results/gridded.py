@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
+from .. import optional
 from .columns import unit_text
 
 if TYPE_CHECKING:
-    from ...arrays import Float64Array
-    from ...tin.types import Grid
+    from ..arrays import Float64Array
+    from ..types import Grid
     from .parts import RasterParts
 
 __all__ = ["build_dataset", "locate_centers"]
@@ -43,7 +43,7 @@ def _list_numbers(part: slice | None, count: int) -> Float64Array:
 
 def build_dataset(raster: RasterParts) -> Any:
     """Return a data set of xarray, as :meth:`Raster.to_xarray` describes it."""
-    xarray = _optional.load("xarray", "Turning a raster into a data set")
+    xarray = optional.load("xarray", "Turning a raster into a data set")
     east, north = locate_centers(raster.grid)
     variables = {
         name: (("y", "x"), np.array(band[:, :]), _list_attributes(raster, name))

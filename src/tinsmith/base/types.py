@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 
-from ..errors import OptionError
+from .errors import OptionError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
-    from ..arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from .arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
 __all__ = [
     "Bounds",

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 import numpy as np
 
-from ...crs import Unit
-from ...errors import OptionError
-from ...tin.types import seal
+from ..crs import Unit
+from ..errors import OptionError
+from ..types import seal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ...arrays import AnyArray
+    from ..arrays import AnyArray
 
 __all__ = [
     "FrozenMapping",

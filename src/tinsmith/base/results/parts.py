@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Protocol
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ...arrays import AnyArray
-    from ...crs import CRS, Unit
-    from ...tin.types import Grid
+    from ..arrays import AnyArray
+    from ..crs import CRS, Unit
+    from ..types import Grid
 
     Units = Mapping[str, Unit | str | None]
 

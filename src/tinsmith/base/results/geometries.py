@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ... import _optional
-from ...errors import OptionError
+from .. import optional
+from ..errors import OptionError
 from .columns import unit_text
 
 if TYPE_CHECKING:
-    from ...arrays import AnyArray, ObjectArray
+    from ..arrays import AnyArray, ObjectArray
     from .parts import FeatureParts
 
 __all__ = ["build_collection", "build_frame", "build_geometries"]
@@ -19,7 +19,7 @@ __all__ = ["build_collection", "build_frame", "build_geometries"]
 
 def build_geometries(features: FeatureParts) -> ObjectArray:
     """Return the geometries of shapely, one a feature."""
-    shapely = _optional.load("shapely")
+    shapely = optional.load("shapely")
     kind = shapely.GeometryType[features.geometry_type.upper()]
     levels: Any = features.offsets or None
     made: ObjectArray = shapely.from_ragged_array(kind, features.coordinates, levels)
@@ -28,7 +28,7 @@ def build_geometries(features: FeatureParts) -> ObjectArray:
 
 def build_frame(features: FeatureParts) -> Any:
     """Return a GeoDataFrame of features, as :meth:`Features.to_geodataframe` describes it."""
-    geopandas = _optional.load("geopandas", "Turning features into a GeoDataFrame")
+    geopandas = optional.load("geopandas", "Turning features into a GeoDataFrame")
     if "geometry" in features.columns:
         raise OptionError(
             "column", "geometry", allowed="called otherwise, as a GeoDataFrame has one of that name"
@@ -49,7 +49,7 @@ def build_frame(features: FeatureParts) -> Any:
 
 def build_collection(features: FeatureParts) -> dict[str, Any]:
     """Return features as the ``__geo_interface__`` has them."""
-    mapping = _optional.load("shapely.geometry").mapping
+    mapping = optional.load("shapely.geometry").mapping
     names = list(features.columns)
     columns = [_as_plain_values(values) for values in features.columns.values()]
     rows = zip(*columns, strict=True) if columns else [()] * len(features)

@@ -12,7 +12,7 @@ import pytest
 from pyproj import Transformer
 
 import tinsmith as ts
-from tinsmith.terrain.georeference.axes import find_axes
+from tinsmith.base.georeference.axes import find_axes
 from tinsmith.terrain.viewer.card import draw_map
 
 LO19 = "+proj=tmerc +lat_0=0 +lon_0=19 +k=1 +x_0=0 +y_0=0 +ellps=WGS84 +units=m +type=crs"

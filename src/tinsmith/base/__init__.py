@@ -1,0 +1,1 @@
+"""What every package stands on: errors, checks, CRS and units, notes, results, types."""
