@@ -221,7 +221,8 @@ def test_columns_by_the_callers_word(word, header, count, letters, names):
 def test_the_caller_may_contradict_the_header_which_is_told():
     found = columns.find_columns_by_word("NEZ", ["E", "N", "Z"], 3)
     assert found.notes == (
-        "The option `columns` takes 'E' as the northing and 'N' as the easting, against the header.",
+        "The option `columns` takes 'E' as the northing and 'N' as the easting, "
+        "against the header.",
     )
     assert columns.find_columns_by_word("ENZ", ["E", "N", "Z"], 3).notes == ()
     assert columns.find_columns_by_word("ENZ", ["a", "b", "c"], 3).notes == ()
