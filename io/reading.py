@@ -17,11 +17,11 @@ from ..base.errors import (
     ReadError,
     TinsmithError,
 )
-from ..base.notes import naming_file
 from ..base.plug_ins import describe_failure, warn_of_plug_in
 from ..base.progress import Progress
 from ..base.sentences import counted, inflect, printable
 from ..tin import TIN, Survey
+from .door import naming_file
 from .isolated.archives import unpack
 from .isolated.local_files import require_local
 from .isolated.spooling import (

@@ -64,7 +64,6 @@ def place_rows(
         measures.apply(together),
         source=measures.source,
         target=declared.crs,
-        path=path,
         unit=measures.elevation_unit,
         looks_at_area=False,
     )

@@ -137,7 +137,7 @@ def _choose_elevation_unit(
         known = None if declared.unit is not None else stated.elevation_unit or stated.unit
         if stated.elevation_unit is not None and stated.elevation_unit != stated.unit:
             known = None  # the file contradicts itself, and the caller knows better
-        return settle_unit(declared.elevation_unit, known, path)
+        return settle_unit(declared.elevation_unit, known)
     if stated.is_elevation_unknown and declared.unit is None:
         return None
     different = stated.elevation_unit not in (None, stated.unit)

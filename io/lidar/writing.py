@@ -215,7 +215,7 @@ def _choose_columns(attributes: Mapping[str, AnyArray], path: Path) -> dict[str,
             columns[name] = _require_range(name, values, path)
         else:
             texts.append(name)
-    tell_lost_attributes(texts, path, "LAS has numbers, with names of 32 bytes")
+    tell_lost_attributes(texts, "LAS has numbers, with names of 32 bytes")
     return columns
 
 
@@ -306,4 +306,4 @@ def _require_crs(crs: CRS | None, path: Path) -> None:
     from .header import parse_header
 
     content = parse_header(path).find("LASF_Projection", 2112) or b""
-    require_kept(crs, content.split(b"\0")[0].decode(), path)
+    require_kept(crs, content.split(b"\0")[0].decode())

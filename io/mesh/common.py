@@ -142,7 +142,7 @@ def choose_reference(
     system = declared if own is None else own
     known = _find_unit(found_unit, path)
     vertical = None if system is None else system.vertical_unit
-    return Reference(system, settle_unit(Unit.of(z_unit), known or vertical, path))
+    return Reference(system, settle_unit(Unit.of(z_unit), known or vertical))
 
 
 def require_own_crs(own: CRS | None, declared: CRS | None, path: Path) -> None:
@@ -232,7 +232,7 @@ def make_tin(
         tin, told = make_surface(make, points, triangles, faces=faces, rounding=rounding)
     except PointsError as error:
         raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
-    placed = look_at_crs(tin.points, reference.crs, path) if looks_at_crs else ()
+    placed = look_at_crs(tin.points, reference.crs) if looks_at_crs else ()
     told = [*notes, *told, *placed, *_describe_oddities(tin, faces)]
     told += _describe_suspects(tin.points[:, 2])
     return add_notes(tin, told) if told else tin
@@ -327,7 +327,7 @@ def make_survey(
         crs=reference.crs,
         elevation_unit=reference.elevation_unit,
         source=path.name,
-        notes=[*notes, *look_at_crs(points, reference.crs, path)],
+        notes=[*notes, *look_at_crs(points, reference.crs)],
     )
 
 

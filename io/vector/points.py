@@ -203,8 +203,8 @@ def _make_survey(vertices: _Vertices, features: Features, asked: _Asked) -> Surv
             path=features.path,
         )
     points = np.column_stack([vertices.xyz[keep, :2], found.z[keep]])
-    unit = settle_unit(asked.declared, found.unit, features.path) if found.unit else asked.unit
-    placed = place(points, source=features.crs, target=asked.crs, path=features.path, unit=unit)
+    unit = settle_unit(asked.declared, found.unit) if found.unit else asked.unit
+    placed = place(points, source=features.crs, target=asked.crs, unit=unit)
     rows = vertices.rows[keep]
     skipped = {
         "features without an elevation": len(np.unique(vertices.rows[np.isnan(found.z)])),
@@ -308,9 +308,7 @@ def _make_triangles(features: Features, asked: _Asked, faces: FacePolicy) -> TIN
         raise ReadError(f"'{features.path}': a corner of a triangle is not finite.",
                         path=features.path)  # fmt: skip
     points, triangles = _join_corners(corners)
-    placed = place(
-        points, source=features.crs, target=asked.crs, path=features.path, unit=asked.unit
-    )
+    placed = place(points, source=features.crs, target=asked.crs, unit=asked.unit)
     tin = make_tin(
         placed.points,
         triangles,

@@ -107,7 +107,7 @@ def write(
         file.write("</LandXML>\n")
     if progress is not None:
         progress(1.0)
-    tell_unknown_elevations(obj, path)
+    tell_unknown_elevations(obj)
 
 
 def _write_content(
@@ -270,7 +270,6 @@ def _select_texts(obj: TIN | Survey | Features, path: Path) -> dict[str, list[st
     held = select_attributes(
         attributes,
         ("number", *_TEXTS.values()),
-        path,
         "LandXML has the number, the description and the code of a point",
     )
     texts = {name: [_as_text(one) for one in values.tolist()] for name, values in held.items()}

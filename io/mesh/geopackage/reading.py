@@ -87,7 +87,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
         tin = make_tin(points, triangles, path, constrained=constrained, reference=reference)
         return _add_note(tin)
     declared = _declare(record, reference)
-    told = () if record.document.get("crs") else look_at_crs(points, reference.crs, path)
+    told = () if record.document.get("crs") else look_at_crs(points, reference.crs)
     try:
         tin = unpack_tin(declared, points, triangles, constrained)
         return add_notes(tin, told) if told else tin
