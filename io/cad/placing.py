@@ -32,7 +32,12 @@ class Placing(NamedTuple):
 
 
 def place_rows(
-    parts: Sequence[Float64Array], measures: Measures, declared: Declared, path: Path
+    parts: Sequence[Float64Array],
+    measures: Measures,
+    declared: Declared,
+    path: Path,
+    *,
+    names_axes: bool = False,
 ) -> Placing:
     """Bring easting, northing and elevation of a file into the CRS wanted, all at once.
 
@@ -43,6 +48,8 @@ def place_rows(
     measures : Measures
     declared : Declared
     path : Path
+    names_axes : bool
+        Whether the format says which coordinate is the northing.
 
     Raises
     ------
@@ -67,6 +74,7 @@ def place_rows(
         path=path,
         unit=measures.elevation_unit,
         looks_at_area=False,
+        looks_at_order=not names_axes,
     )
     rows = [
         placed.points[start : start + len(one), : one.shape[1]]

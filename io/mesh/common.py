@@ -116,6 +116,8 @@ class Reference(NamedTuple):
 
     crs: CRS | None
     elevation_unit: Unit | None
+    is_declared: bool = False
+    """Whether the caller names the CRS, and the file does not."""
 
 
 def choose_reference(
@@ -142,7 +144,8 @@ def choose_reference(
     system = declared if own is None else own
     known = _find_unit(found_unit, path)
     vertical = None if system is None else system.vertical_unit
-    return Reference(system, settle_unit(Unit.of(z_unit), known or vertical, path))
+    unit = settle_unit(Unit.of(z_unit), known or vertical, path)
+    return Reference(system, unit, is_declared=own is None and system is not None)
 
 
 def require_own_crs(own: CRS | None, declared: CRS | None, path: Path) -> None:
@@ -232,10 +235,14 @@ def make_tin(
         tin, told = make_surface(make, points, triangles, faces=faces, rounding=rounding)
     except PointsError as error:
         raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
-    placed = look_at_crs(tin.points, reference.crs, path) if looks_at_crs else ()
+    placed = _look_at_crs(tin.points, reference, path) if looks_at_crs else ()
     told = [*notes, *told, *placed, *_describe_oddities(tin, faces)]
     told += _describe_suspects(tin.points[:, 2])
     return add_notes(tin, told) if told else tin
+
+
+def _look_at_crs(points: Float64Array, reference: Reference, path: Path) -> tuple[str, ...]:
+    return look_at_crs(points, reference.crs, path, is_declared=reference.is_declared)
 
 
 def _describe_oddities(tin: TIN, faces: FacePolicy) -> list[str]:
@@ -327,7 +334,7 @@ def make_survey(
         crs=reference.crs,
         elevation_unit=reference.elevation_unit,
         source=path.name,
-        notes=[*notes, *look_at_crs(points, reference.crs, path)],
+        notes=[*notes, *_look_at_crs(points, reference, path)],
     )
 
 

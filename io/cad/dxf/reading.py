@@ -147,7 +147,9 @@ def _read_tin(drawing: Drawing, measures: Measures, declared: Declared, policy: 
         mesh._replace(notes=notes),
         _select_edge_lines(drawing, measures),
         drawing.path,
-        reference=Reference(measures.source, measures.elevation_unit),
+        reference=Reference(
+            measures.source, measures.elevation_unit, is_declared=drawing.stated.crs is None
+        ),
         faces=policy,
     )
 
