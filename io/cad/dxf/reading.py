@@ -49,7 +49,7 @@ def read(
     content: DrawingContent | None = None,
     texts: bool = False,
     tolerance: float | None = None,
-    faces: FacePolicy = "all",
+    faces: FacePolicy = "most",
 ) -> TIN | Survey:
     """Read a DXF drawing, text or binary.
 
