@@ -26,7 +26,7 @@ def generate(rng: np.random.Generator) -> Case:
     """Make crews with figures far apart, each in its own numbers."""
     crews = []
     for k in range(int(rng.integers(1, 4))):
-        sites = np.array([700_000.0 + 3000 * k, 4_000_000.0]) + [[0, 0], [500, 0], [0, 500]]
+        sites = np.add([[0, 0], [500, 0], [0, 500]], [700_000 + 3000 * k, 4_000_000])
         crews.append([make_figure(rng, site) for site in sites[: int(rng.integers(1, 4))]])
     return {
         "crews": crews,
