@@ -494,8 +494,23 @@ def _choose_format(file: Path, name: str | None, options: Iterable[str] = ()) ->
         return _choose_format_of_folder(file, named)
     head = _read_head(file)
     if named is not None:
-        return named
+        return named if named.name == name else _tell_apart(named, file, head)
     return _find_format_of_part(file) or detect(file, head, options)
+
+
+def _tell_apart(named: Format, file: Path, head: bytes) -> Format:
+    """Return the format of a suffix that several have: the one that the content shows."""
+    alike = [
+        one
+        for one in lookup.known_formats()
+        if one.read is not None and {*one.suffixes} & {*named.suffixes}
+    ]
+    shown = (
+        one
+        for one in alike
+        if _recognises(one, one.sniff, head) or _recognises(one, one.sniff_file, file)
+    )
+    return next(shown, named)
 
 
 def _find_format_of_part(file: Path) -> Format | None:

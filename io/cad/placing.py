@@ -32,7 +32,12 @@ class Placing(NamedTuple):
 
 
 def place_rows(
-    parts: Sequence[Float64Array], measures: Measures, declared: Declared, path: Path
+    parts: Sequence[Float64Array],
+    measures: Measures,
+    declared: Declared,
+    path: Path,
+    *,
+    names_axes: bool = False,
 ) -> Placing:
     """Bring easting, northing and elevation of a file into the CRS wanted, all at once.
 
@@ -43,6 +48,8 @@ def place_rows(
     measures : Measures
     declared : Declared
     path : Path
+    names_axes : bool
+        Whether the format says which coordinate is the northing.
 
     Raises
     ------
@@ -66,6 +73,7 @@ def place_rows(
         target=declared.crs,
         unit=measures.elevation_unit,
         looks_at_area=False,
+        looks_at_order=not names_axes,
     )
     rows = [
         placed.points[start : start + len(one), : one.shape[1]]

@@ -12,7 +12,7 @@ from ...base.crs import CRS, Unit
 from ...base.errors import CrsError, FormatError, OptionError, PointsError, ReadError
 from ...base.sentences import counted, height
 from ...tin import TIN, Surface, Survey
-from ...tin.checking.overlaps import describe_overlaps
+from ...tin.checking.overlaps import describe_oddities
 from ...tin.screening.nodata import find_suspect_elevations
 from ..reprojection.contradictions import look_at_crs
 from ..reprojection.placement import settle_unit
@@ -116,6 +116,8 @@ class Reference(NamedTuple):
 
     crs: CRS | None
     elevation_unit: Unit | None
+    is_declared: bool = False
+    """Whether the caller names the CRS, and the file does not."""
 
 
 def choose_reference(
@@ -142,7 +144,8 @@ def choose_reference(
     system = declared if own is None else own
     known = _find_unit(found_unit, path)
     vertical = None if system is None else system.vertical_unit
-    return Reference(system, settle_unit(Unit.of(z_unit), known or vertical))
+    unit = settle_unit(Unit.of(z_unit), known or vertical)
+    return Reference(system, unit, is_declared=own is None and system is not None)
 
 
 def require_own_crs(own: CRS | None, declared: CRS | None, path: Path) -> None:
@@ -193,19 +196,18 @@ def make_tin(
     reference: Reference,
     attributes: Mapping[str, AnyArray] | None = None,
     notes: Sequence[str] = (),
-    faces: FacePolicy = "all",
+    faces: FacePolicy = "most",
     rounding: float = 0.0,
     looks_at_crs: bool = True,
 ) -> TIN:
     """Make a TIN of what a file holds; what makes none is a fault of the file.
 
-    Triangles that overlap without a common edge, and the like, are told in the notes of its report,
-    behind the ``notes`` given. Whether the coordinates contradict their CRS is looked at, unless
-    the reader has done so.
+    What is odd about it is told in the notes of its report, behind the ``notes`` given. Whether
+    the coordinates contradict their CRS is looked at, unless the reader has done so.
 
     Parameters
     ----------
-    faces : {"all", "surface"}
+    faces : {"most", "all", "surface"}
         As :func:`make_surface` takes it.
     rounding : float
         Likewise.
@@ -232,16 +234,14 @@ def make_tin(
         tin, told = make_surface(make, points, triangles, faces=faces, rounding=rounding)
     except PointsError as error:
         raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
-    placed = look_at_crs(tin.points, reference.crs) if looks_at_crs else ()
-    told = [*notes, *told, *placed, *_describe_oddities(tin, faces)]
+    placed = _look_at_crs(tin.points, reference) if looks_at_crs else ()
+    told = [*notes, *told, *placed, *describe_oddities(tin)]
     told += _describe_suspects(tin.points[:, 2])
     return add_notes(tin, told) if told else tin
 
 
-def _describe_oddities(tin: TIN, faces: FacePolicy) -> list[str]:
-    told = describe_overlaps(tin, may_overlap=faces != "surface")
-    offer = " `faces='surface'` leaves them out."
-    return [note + offer * note.startswith("Triangles overlap") for note in told]
+def _look_at_crs(points: Float64Array, reference: Reference) -> tuple[str, ...]:
+    return look_at_crs(points, reference.crs, is_declared=reference.is_declared)
 
 
 def measure_rounding(points: Float64Array, dtype: Any) -> float:
@@ -327,7 +327,7 @@ def make_survey(
         crs=reference.crs,
         elevation_unit=reference.elevation_unit,
         source=path.name,
-        notes=[*notes, *look_at_crs(points, reference.crs)],
+        notes=[*notes, *_look_at_crs(points, reference)],
     )
 
 

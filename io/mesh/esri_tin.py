@@ -62,7 +62,7 @@ def read(
     *,
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
-    faces: FacePolicy = "all",
+    faces: FacePolicy = "most",
 ) -> TIN:
     """Read an Esri TIN by its folder, or any of the files in it.
 

@@ -59,7 +59,7 @@ def read(
     *,
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
-    faces: FacePolicy = "all",
+    faces: FacePolicy = "most",
 ) -> TIN | Survey:
     """Read the faces of a Gmsh file; line elements along their edges become constrained.
 

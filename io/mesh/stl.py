@@ -61,7 +61,7 @@ def read(
     *,
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
-    faces: FacePolicy = "all",
+    faces: FacePolicy = "most",
 ) -> TIN:
     """Read a binary STL file; corners at the same place become one vertex.
 

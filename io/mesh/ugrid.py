@@ -66,7 +66,7 @@ def read(
     z_unit: UnitLike | None = None,
     surface: str | None = None,
     variable: str | None = None,
-    faces: FacePolicy = "all",
+    faces: FacePolicy = "most",
 ) -> TIN | Survey:
     """Read a mesh of a UGRID file.
 

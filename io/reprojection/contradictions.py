@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.errors import CrsError, OptionError
+from ...base.georeference.axes import gives_northing_first
 from ...base.sentences import coordinate, counted
 from ...tin.screening.area_of_use import AreaOfUse
 
@@ -27,6 +28,7 @@ __all__ = [
     "checking_crs",
     "look_at_crs",
     "look_at_degrees",
+    "look_at_order",
     "look_at_place",
     "refuse",
 ]
@@ -68,15 +70,38 @@ def refuse(sentence: str, crs: CRS | None = None) -> str:
     raise CrsError(f"{sentence}; `check_crs=False` takes them as they are.", crs=crs)
 
 
-def look_at_crs(points: Float64Array, crs: CRS | None) -> tuple[str, ...]:
+def look_at_crs(
+    points: Float64Array, crs: CRS | None, *, is_declared: bool = False
+) -> tuple[str, ...]:
     """Compare points, (n, 3), that stay where they are with their CRS.
+
+    ``is_declared`` tells that the caller names it and the file does not.
 
     Raises
     ------
     CrsError
         As :func:`look_at_degrees` and :func:`look_at_place`.
     """
-    return (*look_at_degrees(points, crs), *look_at_place(points, crs, None))
+    order = look_at_order(points, crs) if is_declared else ()
+    return (*look_at_degrees(points, crs), *look_at_place(points, crs, None), *order)
+
+
+def look_at_order(points: Float64Array, crs: CRS | None) -> tuple[str, ...]:
+    """Tell where a CRS that the file does not name leaves open which coordinate comes first.
+
+    It names the northing first, and the points, (n, 3), lie in its area of use in either order.
+    """
+    area = AreaOfUse.of(crs, crs)
+    if crs is None or area is None or not gives_northing_first(crs):
+        return ()
+    if not all(area.covers_whole(points[:, order]) for order in ([0, 1], [1, 0])):
+        return ()
+    names = ("latitude", "longitude") if crs.is_geographic else ("northing", "easting")
+    return (
+        f"The file names no CRS, and {crs.label} gives the {names[0]} before the {names[1]}: the "
+        f"first coordinate was taken as the {names[1]}, and in the other order the points would "
+        "lie in its area of use, too.",
+    )
 
 
 def look_at_place(points: Float64Array, source: CRS | None, target: CRS | None) -> tuple[str, ...]:

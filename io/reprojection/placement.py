@@ -9,7 +9,7 @@ import numpy as np
 from ...base.crs import CRS, require_same_unit
 from ...base.errors import CrsError, ReadError
 from ...base.sentences import FILE, coordinate
-from .contradictions import are_small_degrees, look_at_degrees, look_at_place
+from .contradictions import are_small_degrees, look_at_degrees, look_at_order, look_at_place
 from .transformation import convert_elevations, find_utm_zone, reproject, transform_points
 
 if TYPE_CHECKING:
@@ -48,12 +48,14 @@ def place(
     target: CRS | None,
     unit: Unit | None = None,
     looks_at_area: bool = True,
+    looks_at_order: bool | None = None,
 ) -> Placed:
     """Bring points, (n, 3), into a projected CRS: the target, else their source.
 
     Points without a source are declared to be in the target. ``unit`` is that of the elevations, if
     it is known otherwise than by the source. Which points lie outside the area of use of either CRS
-    is not looked at where the reader has done so.
+    is not looked at where the reader has done so; nor, unless ``looks_at_order`` tells otherwise,
+    which coordinate comes first.
 
     Raises
     ------
@@ -74,7 +76,9 @@ def place(
     if wanted is not None and wanted.is_geographic:
         _refuse_degrees(points, wanted, source or wanted)
     outside = look_at_place(points, source, target) if looks_at_area else ()
-    told = (*notes, *(outside or look_at_degrees(points, source or target)))
+    is_open = source is None and (looks_at_area if looks_at_order is None else looks_at_order)
+    order = look_at_order(points, target) if is_open else ()
+    told = (*notes, *(outside or look_at_degrees(points, source or target)), *order)
     if source is None or wanted is None or source.is_same(wanted):
         placed = _keep_in_place(points, wanted, unit)
         return placed._replace(notes=(*told, *placed.notes), told=told)

@@ -47,7 +47,7 @@ def read(
     where: str | None = None,
     lines_as: LineReading | None = None,
     nodata: float | Sequence[float] | None = None,
-    faces: FacePolicy = "all",
+    faces: FacePolicy = "most",
 ) -> Survey | TIN:
     """Read the points of a vector layer, or the triangles that another program wrote as polygons.
 

@@ -49,7 +49,7 @@ def read(
     content: DrawingContent | None = None,
     texts: bool = False,
     tolerance: float | None = None,
-    faces: FacePolicy = "all",
+    faces: FacePolicy = "most",
 ) -> TIN | Survey:
     """Read a DXF drawing, text or binary.
 
@@ -147,7 +147,9 @@ def _read_tin(drawing: Drawing, measures: Measures, declared: Declared, policy: 
         mesh._replace(notes=notes),
         _select_edge_lines(drawing, measures),
         drawing.path,
-        reference=Reference(measures.source, measures.elevation_unit),
+        reference=Reference(
+            measures.source, measures.elevation_unit, is_declared=drawing.stated.crs is None
+        ),
         faces=policy,
     )
 

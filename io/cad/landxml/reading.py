@@ -38,7 +38,7 @@ def read(
     unit: UnitLike | None = None,
     surface: str | int | None = None,
     content: DrawingContent | None = None,
-    faces: FacePolicy = "all",
+    faces: FacePolicy = "most",
 ) -> TIN | Survey:
     """Read a LandXML file, version 1.0 to 2.0.
 

@@ -56,7 +56,9 @@ def make_survey_of_points(
             f"'{path}' has no survey point with an elevation{f' ({why})' if why else ''}.",
             path=path,
         )
-    placing = place_rows([points.rows[kept][:, [1, 0, 2]]], measures, declared, path)
+    placing = place_rows(
+        [points.rows[kept][:, [1, 0, 2]]], measures, declared, path, names_axes=True
+    )
     return Survey(
         points=placing.rows[0],
         attributes=_gather_attributes(points, kept),
@@ -133,7 +135,9 @@ def make_survey_of_source(
         if len(kept):
             notes.append(f"Its points are the {counted(len(kept), 'survey point')} of the file.")
     lines = [*_iterate_lines(surface, path), *_resolve_chains(found, surface, path)]
-    placing = place_rows([*points, *(rows for _, rows in lines)], measures, declared, path)
+    placing = place_rows(
+        [*points, *(rows for _, rows in lines)], measures, declared, path, names_axes=True
+    )
     rows = placing.rows[: len(points)]
     survey = Survey(
         points=np.concatenate([np.empty((0, 3)), *rows]),

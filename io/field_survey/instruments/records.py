@@ -93,7 +93,7 @@ class Book:
         points = np.array(self.points, np.float64)
         unit = self._settle(source or target, Unit.of(z_unit))
         points[:, :2] = self._scale(points[:, :2], source or target, unit)
-        placed = place(points, source=source, target=target, unit=unit)
+        placed = place(points, source=source, target=target, unit=unit, looks_at_order=False)
         numbers = parse_names(self.names)
         rows = np.array(self.lines, np.int64) - 1
         return Survey(

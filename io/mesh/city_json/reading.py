@@ -49,7 +49,7 @@ def read(
     z_unit: UnitLike | None = None,
     surface: str | None = None,
     join: bool = False,
-    faces: FacePolicy = "all",
+    faces: FacePolicy = "most",
 ) -> TIN:
     """Read the terrain of a CityJSON file, or of a sequence of features (CityJSONSeq).
 

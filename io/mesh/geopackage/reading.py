@@ -87,7 +87,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
         tin = make_tin(points, triangles, path, constrained=constrained, reference=reference)
         return _add_note(tin)
     declared = _declare(record, reference)
-    told = () if record.document.get("crs") else look_at_crs(points, reference.crs)
+    told = look_at_crs(points, reference.crs, is_declared=True) if reference.is_declared else ()
     try:
         tin = unpack_tin(declared, points, triangles, constrained)
         return add_notes(tin, told) if told else tin
@@ -136,7 +136,7 @@ def _choose_reference(
 
 def _declare(record: Record, reference: Reference) -> Record:
     """Return the record with the reference that the file or else a caller names."""
-    crs, unit = reference
+    crs, unit = reference.crs, reference.elevation_unit
     named = {
         "crs": None if crs is None else {"crs": str(crs)},
         "elevation_unit": None if unit is None else {"unit": unit.text},

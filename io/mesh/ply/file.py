@@ -66,7 +66,7 @@ def read(
     *,
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
-    faces: FacePolicy = "all",
+    faces: FacePolicy = "most",
 ) -> TIN | Survey:
     """Read a PLY file, text or binary of either byte order.
 

@@ -37,7 +37,7 @@ def read(
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
     tile: str | None = None,
-    faces: FacePolicy = "all",
+    faces: FacePolicy = "most",
 ) -> TIN:
     """Read a tile, gzipped or not, in longitude, latitude and metres above the ellipsoid.
 
