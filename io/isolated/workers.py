@@ -20,14 +20,13 @@ from typing import Any
 
 from ...base.errors import ReadError
 from .answers import Answer, BrokenMessageError, receive, send
-from .forking import Fork, can_fork
 from .limits import START_SECONDS, Limits, choose_limits
 
-__all__ = ["run_isolated", "stream_isolated"]
+__all__ = ["run_isolated", "start_early", "stream_isolated"]
 
 _START = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]);"
-    "from tinsmith.io.isolated.child import serve_requests; serve_requests()"
+    "from tinsmith.io.isolated.child import serve_requests; serve_requests(sys.argv[2])"
 )
 _SOUND_ENDS = frozenset({"end", "refusal", "fault"})
 """Answers after which a child may read a further file."""
@@ -87,6 +86,11 @@ def stream_isolated(
         _POOL.give_back(worker)
 
 
+def start_early(module: str) -> None:
+    """Start the child that will read with a module, while the caller prepares its request."""
+    _POOL.give_back(_POOL.take(module))
+
+
 class _Worker:
     """A child process that reads with one module."""
 
@@ -94,7 +98,7 @@ class _Worker:
         self.module = module
         self.is_sound = True
         self._timed_out = False
-        self._process = _fork_worker(module) if can_fork() else _start_worker(module)
+        self._process = _start_child(module)
 
     def ask(
         self, request: dict[str, Any], path: Path, limits: Limits
@@ -205,15 +209,9 @@ if hasattr(os, "register_at_fork"):
 # ---------------------------------------------------------------------- starting a child
 
 
-def _fork_worker(module: str) -> Fork:
-    from .child import serve_requests
-
-    return Fork(serve_requests, _choose_environment(module))
-
-
-def _start_worker(module: str) -> subprocess.Popen[bytes]:
+def _start_child(module: str) -> subprocess.Popen[bytes]:
     return subprocess.Popen(
-        [_find_interpreter(), "-P", "-c", _START, _search_path()],
+        [_find_interpreter(), "-P", "-c", _START, _search_path(), module],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import io
-import json
 import os
 import signal
 import socket
-import subprocess
 import sys
 import threading
 from pathlib import Path
@@ -239,71 +237,6 @@ def test_a_child_that_is_let_go_of_is_closed_and_not_waited_for():
     worker._process = SimpleNamespace(stdin=stream, stdout=stream, returncode=None)
     worker.forget()
     assert (len(closed), worker._process.returncode) == (2, 0)
-
-
-# ---------------------------------------------------------------------------- forks
-
-FORKS = """
-import json, os, signal, subprocess, sys, time
-from tinsmith.io.isolated.forking import Fork
-keep = os.open(os.devnull, os.O_RDONLY)
-sys.path.insert(0, "")
-signal.signal(signal.SIGTERM, lambda *_: None)
-
-def tell():
-    found = {
-        "leads": os.getsid(0) == os.getpid(),
-        "SIGTERM": signal.getsignal(signal.SIGTERM) == signal.SIG_DFL,
-        "SIGPIPE": signal.getsignal(signal.SIGPIPE) == signal.SIG_IGN,
-        "mask": len(signal.pthread_sigmask(signal.SIG_BLOCK, ())),
-        "files": sorted(int(name) for name in os.listdir("/proc/self/fd"))[:3],
-        "kept": os.path.exists(f"/proc/self/fd/{keep}"),
-        "path": "" in sys.path,
-        "variable": os.environ.get("OF_A_FORK"),
-        "heard": os.read(0, 100).decode(),
-    }
-    os.write(1, json.dumps(found).encode())
-
-def fail():
-    raise ValueError("not to be printed")
-
-fork = Fork(tell, {"OF_A_FORK": "yes"})
-fork.stdin.write(b"a request")
-print(fork.stdout.read().decode())
-print(json.dumps([
-    fork.wait(), "OF_A_FORK" in os.environ, len(signal.pthread_sigmask(signal.SIG_BLOCK, ())),
-    Fork(fail, {}).wait(), Fork(lambda: None, {}).wait(20.0),
-]))
-fork = Fork(lambda: time.sleep(600), {})
-begin = time.monotonic()
-try:
-    fork.wait(0.3)
-except subprocess.TimeoutExpired as error:
-    print(json.dumps([0.29 < time.monotonic() - begin < 500, error.timeout, fork.returncode]))
-fork.kill()
-print(fork.wait(20.0), fork.returncode, fork.wait())
-fork.kill()
-"""
-
-
-@on_linux
-def test_a_fork_begins_clean_and_its_end_is_told():
-    done = subprocess.run(
-        [sys.executable, "-c", FORKS], capture_output=True, text=True, check=False, timeout=600
-    )
-    assert (done.returncode, done.stderr) == (0, "")
-    told, ends, late, last = done.stdout.splitlines()
-    assert json.loads(told) == {
-        **dict.fromkeys(("leads", "SIGTERM", "SIGPIPE"), True),
-        **dict.fromkeys(("kept", "path"), False),
-        "mask": 0,
-        "files": [0, 1, 2],
-        "variable": "yes",
-        "heard": "a request",
-    }
-    assert json.loads(ends) == [0, False, 0, 1, 0]
-    assert json.loads(late) == [True, 0.3, None]
-    assert last == "-9 -9 -9"
 
 
 # ---------------------------------------------------------------------------- pipes
