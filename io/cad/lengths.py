@@ -78,7 +78,7 @@ def _find_factor(known: Unit | None, unit: Unit | None, path: Path, format_name:
     if unit is None:
         warnings.warn(
             f"'{path}' has no units, since none are known: programs that read it will guess; the "
-            "option unit names one.",
+            "option `unit` names one.",
             LossWarning,
             stacklevel=5,
         )

@@ -145,7 +145,8 @@ def _choose_elevation_unit(
         raise ReadError(
             f"'{path}' gives {stated.unit.name} for lengths and {stated.elevation_unit.name} for "
             "elevations, which may stand for those of attributes only: declare the unit of the "
-            f"elevations, z_unit='{stated.unit.name}' or z_unit='{stated.elevation_unit.name}'.",
+            f"elevations, `z_unit='{stated.unit.name}'` or "
+            f"`z_unit='{stated.elevation_unit.name}'`.",
             path=path,
         )
     return unit
@@ -164,8 +165,8 @@ def _require_agreement(
     if told is not None and told != along:
         raise ReadError(
             f"'{path}': {stated.what} says that coordinates are in {told.name}, and {label} "
-            f"measures in {along.name}: tell which is right, unit='{told.name}' or "
-            f"unit='{along.name}'.",
+            f"measures in {along.name}: tell which is right, `unit='{told.name}'` or "
+            f"`unit='{along.name}'`.",
             path=path,
         )
 

@@ -92,7 +92,7 @@ def settle_axes(
     else:
         is_odd = line is None and columns.roles["northing"] < columns.roles["easting"]
         return points, columns, [_describe_order(east, north)] if is_odd else []
-    note = f"{why}; columns='{columns.word}' takes them the other way round."
+    note = f"{why}; `columns='{columns.word}'` takes them the other way round."
     return points[:, [1, 0, 2]], columns.permute((1, 0, 2)), [note]
 
 
@@ -121,8 +121,8 @@ def _lies_turned(
     turned = columns.permute((1, 0, 2)).word
     raise ReadError(
         f"'{path}': its header is in {language}, where X is the northing on maps, and the area of "
-        f"use of the CRS does not tell: columns='{turned}' takes X for it, "
-        f"columns='{columns.word}' takes Y.",
+        f"use of the CRS does not tell: `columns='{turned}'` takes X for it, "
+        f"`columns='{columns.word}'` takes Y.",
         path=path,
     )
 
@@ -205,6 +205,6 @@ def require_no_geocentric(points: Float64Array, columns: Columns, path: Path) ->
         raise ReadError(
             f"'{path}': its X, Y and Z lie {radius:,.0f} from their origin, as geocentric "
             "coordinates do, which are no easting, northing and elevation: transform them first, "
-            f"or columns='{columns.word}' takes them nonetheless.",
+            f"or `columns='{columns.word}'` takes them nonetheless.",
             path=path,
         )

@@ -142,7 +142,7 @@ def require_one_header(
             raise ReadError(
                 f"'{path}', line {fault.line + 1}: a header ({list_names(cells)}) names other "
                 f"columns or units than easting, northing and elevation are taken from ({taken}): "
-                "say with the option columns what they are, or read the parts of the file by "
+                "say with the option `columns` what they are, or read the parts of the file by "
                 "themselves.",
                 path=path,
                 lines=[fault.line + 1],
@@ -262,7 +262,7 @@ def find_unit_words(attributes: Mapping[str, AnyArray]) -> list[str]:
         shown = " or ".join(f"'{word}'" for word in units[:_SHOWN])
         place = "every row" if n_rows == len(texts) else f"{n_rows:,} of {len(texts):,} rows"
         told = (
-            "if this is the unit of the elevations, the option z_unit says so"
+            "if this is the unit of the elevations, the option `z_unit` says so"
             if len(units) == 1
             else "if these are the units of the elevations, make them one"
         )
@@ -289,7 +289,7 @@ def _require_no_exchange(
                     f"'{path}': the points lie outside the area of use of {area.label}, and would "
                     f"lie inside it if {columns.word} were {right.word}; the header says that they "
                     f"are not: check that {area.source.label} is the CRS of the points, or say "
-                    "with the option columns what they are."
+                    "with the option `columns` what they are."
                 )
             places = (
                 f"{role} in {right.label(right.roles[role])}"
@@ -297,7 +297,7 @@ def _require_no_exchange(
             )
             raise CrsError(
                 f"'{path}': read as {columns.word} the points lie outside the area of use of "
-                f"{area.label}, and read as {right.word} inside it: columns='{right.word}' takes "
+                f"{area.label}, and read as {right.word} inside it: `columns='{right.word}'` takes "
                 f"the {', the '.join(places)}."
             )
 
@@ -337,8 +337,8 @@ def require_unit_of_crs(
         )
         if is_far and not is_told:
             raise CrsError(
-                f"'{path}': {sentence}: the options source_crs and crs name the CRS that the "
-                "points are in, and the one that they go to; columns tells the columns whatever "
+                f"'{path}': {sentence}: the options `source_crs` and `crs` name the CRS that the "
+                "points are in, and the one that they go to; `columns` tells the columns whatever "
                 "the header says.",
                 crs=crs,
             )
@@ -354,8 +354,8 @@ def _require_units_of_a_kind(columns: Columns, path: Path, *, is_told: bool) -> 
     if up is not None and not is_told:
         raise CrsError(
             f"'{path}': the header gives the easting in {across.name} and the elevation in "
-            f"{up.name}: the option crs names the CRS that the points are in, columns tells the "
-            "columns whatever the header says."
+            f"{up.name}: the option `crs` names the CRS that the points are in, `columns` tells "
+            "the columns whatever the header says."
         )
     return [
         f"The header gives the easting in {across.name}, which is not kept where no CRS is named."

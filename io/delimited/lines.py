@@ -203,7 +203,7 @@ def _convert_to_utf8(data: bytes, encoding: str | None, path: Path) -> bytes:
     except UnicodeError as error:
         raise ReadError(
             f"'{path}' is not {encoding or found} text: {getattr(error, 'reason', error)}; "
-            "the option encoding names another.",
+            "the option `encoding` names another.",
             path=path,
         ) from error
 

@@ -244,7 +244,7 @@ def _find_unit(
     if named not in (None, told) or declared not in (None, told):
         raise ReadError(
             f"'{path}': {line.label} tells {line.unit} as the unit of the elevations, and the "
-            f"{'header' if named else 'option z_unit'} another: make them agree.",
+            f"{'header' if named else 'option `z_unit`'} another: make them agree.",
             path=path,
         )
     return told, [line.note]

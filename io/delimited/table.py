@@ -171,7 +171,7 @@ def describe_faults_of_rows(
     hint = "; the last line has no end, so the file may be truncated" if is_cut else ""
     return ReadError(
         f"'{path}': {len(wrong)} of {counted(n_rows, 'row')} {inflect(fails, len(wrong))} "
-        f"({shown}{', ...' if len(wrong) > _SHOWN else ''}){hint}; the option skip_bad leaves "
+        f"({shown}{', ...' if len(wrong) > _SHOWN else ''}){hint}; the option `skip_bad` leaves "
         "such rows out.",
         path=path,
         lines=numbers,
@@ -386,7 +386,7 @@ def require_one_mark(cells: Cells, columns: Columns, layout: Layout, path: Path)
             raise ReadError(
                 f"'{path}', line {line}: '{grouped[i][0]}' beside '{divided}' in "
                 f"{columns.label(i)} may have a decimal mark or separate thousands: write all "
-                f"numbers in one way, or decimal='{mark}' takes the other mark as that of "
+                f"numbers in one way, or `decimal='{mark}'` takes the other mark as that of "
                 "thousands.",
                 path=path,
                 lines=[line],

@@ -75,7 +75,7 @@ def leave_out_cut_row(
     if not skip_bad:
         raise ReadError(
             f"'{path}', line {last + 1}: {what}, those above have {fewest}, and the line has no "
-            "end: the file may be truncated; the option skip_bad leaves the row out.",
+            "end: the file may be truncated; the option `skip_bad` leaves the row out.",
             path=path,
             lines=[last + 1],
         )

@@ -154,7 +154,7 @@ def _choose_table(
     if code_table is None:
         return CodeTable(make_rules(RULES if rules is None else rules), is_complete=False)
     if rules is not None:
-        raise OptionError("rules", rules, "left out where there is a code_table")
+        raise OptionError("rules", rules, "left out where there is a `code_table`")
     return code_table if isinstance(code_table, CodeTable) else read_code_table(code_table)
 
 
@@ -202,7 +202,7 @@ def _require_one_order(survey: Survey, by_number: Reading, by_row: Reading) -> N
     raise LinesError(
         f"{counted(int((count > 1).sum()), 'number')} of shots along lines "
         f"{'is' if (count > 1).sum() == 1 else 'are'} repeated (first: {number}), and lines in the "
-        "order of numbers are others than in that of rows: the option shot_order says which is "
+        "order of numbers are others than in that of rows: the option `shot_order` says which is "
         "right, number or row; files of their own are read one by one."
     )
 
@@ -362,7 +362,7 @@ class _Builder:
                 raise LinesError(
                     f"The {len(figure.rows)} shots of the code {figure.name} have no mark to begin "
                     "or end a line, and one line through them all crosses itself: a code table "
-                    "says that they are points, or the option shot_order that they are one line."
+                    "says that they are points, or the option `shot_order` that they are one line."
                 )
         self.faults += [
             Fault("line that crosses itself", one.name, (one.rows[0], one.rows[-1]))

@@ -157,7 +157,7 @@ def _require_levels(headers: list[Header], selection: Selection) -> None:
             raise OptionError(
                 "resolution",
                 selection.resolution,
-                f"none for '{header.path}', as only COPC files have levels; the option every "
+                f"none for '{header.path}', as only COPC files have levels; the option `every` "
                 "thins others",
             )
 
@@ -217,7 +217,7 @@ def _require_comparable_units(
             raise ReadError(
                 f"'{first}' and '{tile.header.path.name}' in '{path}' have elevations in different "
                 f"units: {units[0] or 'unknown'} and {unit or 'unknown'}; read them one by one, or "
-                "declare the unit (z_unit) if it is that of all.",
+                "declare the unit (`z_unit`) if it is that of all.",
                 path=path,
             )
     return units

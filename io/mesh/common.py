@@ -240,7 +240,7 @@ def make_tin(
 
 def _describe_oddities(tin: TIN, faces: FacePolicy) -> list[str]:
     told = describe_overlaps(tin, may_overlap=faces != "surface")
-    offer = " faces='surface' leaves them out."
+    offer = " `faces='surface'` leaves them out."
     return [note + offer * note.startswith("Triangles overlap") for note in told]
 
 

@@ -291,7 +291,7 @@ def from_mesh(
     told = describe_overlaps(tin, may_overlap=faces != "surface")
     overlaps = next((sentence for sentence in told if "overlap" in sentence), None)
     if overlaps is not None:
-        raise PointsError(f"'{name}' holds no TIN. {overlaps} faces='surface' leaves them out.")
+        raise PointsError(f"'{name}' holds no TIN. {overlaps} `faces='surface'` leaves them out.")
     notes += [*describe_single_precision(points, found.dtype), *fans.notes, *told]
     return add_notes(tin, notes)
 

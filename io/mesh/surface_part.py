@@ -121,7 +121,7 @@ def make_surface(
                 return make(thin.kept), [note]
         if not part.n_left_out or not part.kept.any():
             raise
-        offer = f"To read the others, faces='surface' leaves out {part.describe()}."
+        offer = f"To read the others, `faces='surface'` leaves out {part.describe()}."
         raise PointsError(f"{error} {offer}", rows=error.rows) from error
 
 

@@ -73,7 +73,7 @@ _READ = 0.8
 _COLOURS = ("red", "green", "blue", "palette", "cyan", "magenta", "yellow", "black")
 
 _COORDINATES = "Bounds, or four finite numbers: west, south, east and north limit"
-_CELLS_ARE = "; a part in cells (column, row, width, height) is the option cells"
+_CELLS_ARE = "; a part in cells (column, row, width, height) is the option `cells`"
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,10 +264,10 @@ def _add_void_rings(survey: Survey, valid: BoolArray) -> Survey:
     if not rings:
         raise ReadError(
             f"'{survey.source}': no three cells side by side have an elevation, so there is no "
-            "surface between voids: the option fill spans them."
+            "surface between voids: the option `fill` spans them."
         )
     note = (
-        "Voids of the raster stay: the surface ends at the cells around them; the option fill "
+        "Voids of the raster stay: the surface ends at the cells around them; the option `fill` "
         "spans them."
     )
     extent = [survey.points[ring] for ring in rings]
@@ -576,7 +576,7 @@ def _describe_window(dataset: Header, choice: Choice) -> list[str]:
     shown = ", ".join(map(str, numbers))
     return [
         f"The window {shown} is in coordinates (west, south, east, north); cells by column, row, "
-        "width and height are the option cells."
+        "width and height are the option `cells`."
     ]
 
 

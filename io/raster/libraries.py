@@ -121,7 +121,7 @@ def _open(raster: Any, band: int | str | None) -> tuple[Any, int | None]:
         names = [str(name) for name, one in raster.data_vars.items() if one.ndim >= 2]
         raster, band = raster[_choose_name(names, band)], None
     if isinstance(band, str):
-        raise OptionError("band", band, "a number from 1, or None")
+        raise OptionError("band", band, "a number from 1", or_none=True)
     if hasattr(raster, "dims") and hasattr(raster, "coords"):
         return _describe_array(raster, band), None
     if all(hasattr(raster, name) for name in ("read_masks", "transform", "nodatavals")):

@@ -79,14 +79,14 @@ def _choose_by_words(header: Header, first: int) -> tuple[int, list[str]]:
     if first in levels or (not levels and not _words(header, first) & _ERROR):
         if count == 1:
             return first, []
-        others = f"Band {first} of {count} is read; the option band chooses another one."
+        others = f"Band {first} of {count} is read; the option `band` chooses another one."
         return first, [others]
     if len(levels) == 1:
         label = _label(header, levels[0])
         return levels[0], [f"Band {levels[0]} of {count} is read, by its description '{label}'."]
     raise ReadError(
         f"'{path}': band {first} of {counted(count, 'band')} is described as "
-        f"'{_label(header, first)}', which is no elevation: the option band chooses the one to "
+        f"'{_label(header, first)}', which is no elevation: the option `band` chooses the one to "
         "read.",
         path=path,
     )

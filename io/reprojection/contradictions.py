@@ -66,7 +66,7 @@ def refuse(sentence: str, path: Path, crs: CRS | None = None) -> str:
     """
     if not _IS_CHECKED.get():
         return f"{sentence}."
-    raise CrsError(f"'{path}': {sentence}; check_crs=False takes them as they are.", crs=crs)
+    raise CrsError(f"'{path}': {sentence}; `check_crs=False` takes them as they are.", crs=crs)
 
 
 def look_at_crs(points: Float64Array, crs: CRS | None, path: Path) -> tuple[str, ...]:

@@ -113,7 +113,7 @@ def settle_unit(declared: Unit | None, found: Unit | None, path: Path) -> Unit |
 def _refuse_degrees(points: Float64Array, wanted: CRS, source: CRS, path: Path) -> NoReturn:
     _require_degrees(points, source, path)
     suggestion = _suggest_zone(points, source)
-    fitting = f"crs='{suggestion}'" if suggestion else "the option crs"
+    fitting = f"`crs='{suggestion}'`" if suggestion else "the option `crs`"
     raise DegreesError(
         f"'{path}': {wanted.label} measures in degrees, and a TIN needs a projected CRS: "
         f"give {fitting} to reproject from longitude and latitude.",

@@ -182,8 +182,8 @@ def _require_all(
         raise ReadError(
             f"'{features.path}': {counted(int(missing.sum()), 'vertex', 'vertices')} of "
             f"{len(z):,} without an elevation (first: feature {features.numbers[row]}), while "
-            "others have one in the geometry: the option where leaves features out, z_field names "
-            "a column.",
+            "others have one in the geometry: the option `where` leaves features out, `z_field` "
+            "names a column.",
             path=features.path,
         )
     return z
@@ -225,7 +225,7 @@ def _take_column(
         raise ReadError(
             f"'{features.path}' has no elevations: none in the geometry, and "
             + (f"no column of numbers with such a name ({known}): " if known else "no column: ")
-            + " ".join(("the option z_field names the column that holds them.", *features.notes)),
+            + " ".join(("the option `z_field` names the column that holds them.", *features.notes)),
             path=features.path,
         )
     name, values = next(iter(columns.items()))
@@ -233,7 +233,7 @@ def _take_column(
         if not np.array_equal(values, others, equal_nan=True):
             raise ReadError(
                 f"'{features.path}' has several columns that may hold elevations, and they "
-                f"differ: {', '.join(columns)}; the option z_field chooses ({name} or {other}).",
+                f"differ: {', '.join(columns)}; the option `z_field` chooses ({name} or {other}).",
                 path=features.path,
             )
     unit = find_named_unit(name, features)
@@ -258,7 +258,7 @@ def _require_same(
             f"'{features.path}' has two elevations for each point that differ: "
             f"{height(z[first])} in "
             f"the geometry and {height(values[first])} in the column '{name}' (feature "
-            f"{features.numbers[rows[first]]}): the option z_field chooses, '{GEOMETRY}' or "
+            f"{features.numbers[rows[first]]}): the option `z_field` chooses, '{GEOMETRY}' or "
             f"'{name}'.",
             path=features.path,
         )

@@ -172,7 +172,7 @@ def _choose_layer(path: str, shown: str, layer: str | None) -> str:
     if layer is None and len(layers) > 1:
         raise Refusal(
             f"'{shown}' has {len(layers)} layers: name one of {', '.join(layers)} "
-            f"(layer={layers[0]!r}, or of a file of lines '{shown}:{layers[0]}')."
+            f"(`layer={layers[0]!r}`, or of a file of lines '{shown}:{layers[0]}')."
         )
     if layer is not None and layer not in layers:
         raise Refusal(

@@ -32,7 +32,7 @@ def read_features(path: str, shown: str, *, layer: str | None, where: str | None
     from pyarrow import parquet
 
     if where is not None:
-        raise Refusal(f"'{shown}' is GeoParquet, which the option where does not choose from.")
+        raise Refusal(f"'{shown}' is GeoParquet, which the option `where` does not choose from.")
     file = parquet.ParquetFile(path, memory_map=False, pre_buffer=False)
     metadata = file.schema_arrow.metadata or {}
     name, column = _find_geometry(metadata, shown)

@@ -105,7 +105,7 @@ def read(
     if role is None:
         what = "lines" if kinds == {_LINE} else "polygons"
         raise ReadError(
-            f"'{path}' holds {what}, no points: the option lines_as takes their vertices as "
+            f"'{path}' holds {what}, no points: the option `lines_as` takes their vertices as "
             "points, or them as breaklines.",
             path=path,
         )
@@ -247,7 +247,7 @@ def _make_line_survey(
     if survey.skipped:
         raise ReadError(
             f"'{features.path}': {counted(sum(survey.skipped.values()), 'feature')} without an "
-            "elevation cannot be breaklines: the option where leaves them out.",
+            "elevation cannot be breaklines: the option `where` leaves them out.",
             path=features.path,
         )
     breaklines = _make_breaklines(survey.points, vertices, features)

@@ -385,7 +385,7 @@ def _find_levels(features: Features, wanted: Wanted, z: float | str | None) -> l
     if any(others != found for others in levels.values()):
         raise ReadError(
             f"'{features.path}' has several columns that may hold the height of the water, and "
-            f"they differ: {', '.join(levels)}; the option z names one.",
+            f"they differ: {', '.join(levels)}; the option `z` names one.",
             path=features.path,
         )
     unit = find_named_unit(name, features)
@@ -413,6 +413,6 @@ def _require_level(
     raise ReadError(
         f"{features.label(row)} needs one height and has {found}: water gets it from a column "
         f"({', '.join(_WATER_COLUMNS)}), from corners of one height, or for all from the option "
-        "water_z.",
+        "`water_z`.",
         path=features.path,
     )

@@ -109,8 +109,8 @@ def _choose_content(drawing: Drawing) -> str:
     if n_other:
         raise ReadError(
             f"'{drawing.path}' has {counted(len(faces), 'face')} and {counted(n_other, 'point')} "
-            "that are no corners of them: choose content='surface' or content='source', or name "
-            "layers by the option layer.",
+            "that are no corners of them: choose `content='surface'` or `content='source'`, or "
+            "name layers by the option `layer`.",
             path=drawing.path,
         )
     return "surface"

@@ -140,7 +140,7 @@ def _choose_surface(
     if len(fitting) > 1:
         raise ReadError(
             f"'{path}' has {len(fitting)} surfaces ({_list_surfaces(fitting)}): name the one to "
-            "read by the option surface.",
+            "read by the option `surface`.",
             path=path,
         )
     return fitting[0] if fitting else None
@@ -174,8 +174,8 @@ def _choose_content(found: Content, chosen: Surface | None, path: Path) -> str:
     if chosen is not None and has_points and _has_own_points(chosen):
         raise ReadError(
             f"'{path}' has no faces, but the source data of a surface and "
-            f"{counted(len(found.points), 'survey point')}: choose content='source' or "
-            "content='points'.",
+            f"{counted(len(found.points), 'survey point')}: choose `content='source'` or "
+            "`content='points'`.",
             path=path,
         )
     if chosen is not None:
@@ -202,7 +202,8 @@ def _describe_rest(found: Content, chosen: Surface | None, kind: str) -> list[st
         notes.append(f"Not read: {counted(len(found.surfaces), 'surface')}.")
     if kind == "surface" and len(found.points):
         notes.append(
-            f"Not read: {counted(len(found.points), 'survey point')}, which content='points' gives."
+            f"Not read: {counted(len(found.points), 'survey point')}, which "
+            "`content='points'` gives."
         )
     if found.others:
         told = ", ".join(counted(n, what) for what, n in found.others.items())
@@ -227,7 +228,7 @@ def _choose_measures(
     if all(one is None for one in told) and (system is None or system.vertical_unit is None):
         raise ReadError(
             f"'{path}' does not say its units: declare that of the elevations, such as "
-            "z_unit='m' or z_unit='US survey foot', or that of all lengths, unit='ft'.",
+            "`z_unit='m'` or `z_unit='US survey foot'`, or that of all lengths, `unit='ft'`.",
             path=path,
         )
     return choose_measures(stated, declared, path, sample=sample).tell(*notes, first=True)

@@ -167,7 +167,7 @@ def _assign_codes(blocks: list[_Block], where: str | None, book: Book) -> dict[i
         book.notes.append(
             inflect(
                 f"{counted(len(coded), 'block')} of codes [is|are] not read: nothing shows whether "
-                "codes stand before or after their points, and the option code_blocks says it.",
+                "codes stand before or after their points, and the option `code_blocks` says it.",
                 len(coded),
             )
         )
@@ -268,8 +268,8 @@ class _Reader:
         """Say what is missing for shots that were left out."""
         if self._without_orientation:
             self.book.notes.append(
-                "The file does not say whether its circle reads azimuths: the option oriented says "
-                "that it does."
+                "The file does not say whether its circle reads azimuths: the option `oriented` "
+                "says that it does."
             )
 
     def _set_up(self, block: _Block) -> None:

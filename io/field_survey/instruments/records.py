@@ -153,8 +153,8 @@ class Book:
             )
             return known
         raise ReadError(
-            f"'{self.path}' is in feet and does not say which: give z_unit='ft' (0.3048 m) or "
-            "z_unit='US survey foot' (1200/3937 m).",
+            f"'{self.path}' is in feet and does not say which: give `z_unit='ft'` (0.3048 m) or "
+            "`z_unit='US survey foot'` (1200/3937 m).",
             path=self.path,
         )
 

@@ -130,7 +130,7 @@ def write(
 def _require_level(level: object) -> None:
     if level is None or (is_whole_number(level) and 0 <= level <= _MOST_LEVEL):  # type: ignore[operator]
         return
-    raise OptionError("max_level", level, f"a whole number from 0 to {_MOST_LEVEL}, or None")
+    raise OptionError("max_level", level, f"a whole number from 0 to {_MOST_LEVEL}", or_none=True)
 
 
 # ----------------------------------------------------------------------- where it lies

@@ -78,7 +78,7 @@ def project_to_wgs84(surface: Located) -> Places:
     if crs is None:
         raise CrsError(
             "The CRS of these points is not known, and GeoJSON is in WGS 84: declare it, for "
-            'example crs="EPSG:32616", or keep the coordinates as they are with projected=True.'
+            'example `crs="EPSG:32616"`, or keep the coordinates as they are with `projected=True`.'
         )
     has_datum = crs.vertical_unit is not None
     target = CRS.of("EPSG:4979" if has_datum else "OGC:CRS84")
@@ -155,7 +155,7 @@ def require_one_piece(longitudes: Float64Array, path: Path) -> None:
         raise WriteError(
             f"Cannot write '{path}': {_describe_crossing(int(wide.sum()))} a pole, "
             "which longitude and latitude cannot show in one piece; keep the coordinates "
-            "of the CRS with projected=True.",
+            "of the CRS with `projected=True`.",
             path=path,
         )
 

@@ -190,6 +190,6 @@ def _require_one_side(xyz: Float64Array, features: Features, path: Path) -> None
         raise WriteError(
             f"Cannot write '{path}': {what if what == 'line' else 'ring'} {number} crosses the "
             "antimeridian or holds a pole, which longitude and latitude cannot show in one piece; "
-            "keep the coordinates of the CRS with projected=True.",
+            "keep the coordinates of the CRS with `projected=True`.",
             path=path,
         )

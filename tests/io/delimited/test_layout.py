@@ -304,7 +304,7 @@ def test_what_is_no_table_is_told(text, options, sentence):
     with pytest.raises(ReadError) as caught:
         found_in(text, **options)
     assert str(caught.value) == sentence
-    assert caught.value.path == Path("a.csv")
+    assert caught.value.file == Path("a.csv")
 
 
 def test_a_thousand_columns_are_read():
@@ -441,7 +441,7 @@ def test_text_that_cannot_be_read_is_told(tmp_path, data, encoding, words):
         read_lines(path, encoding=encoding)
     assert words in str(caught.value)
     assert str(path) in str(caught.value)
-    assert caught.value.path == path
+    assert caught.value.file == path
 
 
 def test_a_line_of_a_million_bytes_is_read(tmp_path):

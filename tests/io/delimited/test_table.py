@@ -220,31 +220,31 @@ def test_the_share_of_words_among_numbers_is_told():
         (
             "1,2,3\n4,5\n6,7\n1,2,3\n1,2,3\n",
             "'a.csv': 2 of 5 rows do not have 3 columns (line 2 has 2, line 3 has 2); the option "
-            "skip_bad leaves such rows out.",
+            "`skip_bad` leaves such rows out.",
             [2, 3],
         ),
         (
             "1,2,3\n4,5",
             "'a.csv': 1 of 2 rows does not have 3 columns (line 2 has 2); the last line has no "
-            "end, so the file may be truncated; the option skip_bad leaves such rows out.",
+            "end, so the file may be truncated; the option `skip_bad` leaves such rows out.",
             [2],
         ),
         (
             "1,2,3\n4,5\n4,5,6",
-            "'a.csv': 1 of 3 rows does not have 3 columns (line 2 has 2); the option skip_bad "
+            "'a.csv': 1 of 3 rows does not have 3 columns (line 2 has 2); the option `skip_bad` "
             "leaves such rows out.",
             [2],
         ),
         (
             "1,2,3\n" + "4,5\n" * 6 + "1,2,3\n" * 7,
             "'a.csv': 6 of 14 rows do not have 3 columns (line 2 has 2, line 3 has 2, line 4 has "
-            "2, line 5 has 2, line 6 has 2, ...); the option skip_bad leaves such rows out.",
+            "2, line 5 has 2, line 6 has 2, ...); the option `skip_bad` leaves such rows out.",
             [2, 3, 4, 5, 6],
         ),
         (
             "1,2,3\nx,5,6\n7,8,9\n",
             "'a.csv': 1 of 3 rows has a coordinate that is not a finite number with decimal point "
-            "(line 2: easting in column 1 ('easting') is 'x'); the option skip_bad leaves such "
+            "(line 2: easting in column 1 ('easting') is 'x'); the option `skip_bad` leaves such "
             "rows out.",
             [2],
         ),
@@ -263,7 +263,7 @@ def test_faults_are_one_sentence(text, sentence, lines):
     assert isinstance(error, ReadError)
     assert str(error) == sentence
     assert list(error.lines) == lines
-    assert error.path == PATH
+    assert error.file == PATH
 
 
 def test_a_decimal_comma_is_named():

@@ -113,7 +113,7 @@ CRASHED = "'some file' cannot be read, it is damaged: the library that reads thi
 def test_each_end_of_a_child_has_its_sentence(code, timed_out, sentence):
     error = workers._describe_death(code, timed_out, FILE, LIMITS)
     assert str(error) == sentence
-    assert error.path == FILE
+    assert error.file == FILE
 
 
 @pytest.mark.parametrize(
@@ -147,7 +147,7 @@ def test_seconds_are_counted_in_words(seconds, words):
 def test_each_answer_that_is_none_has_its_sentence(answer, sentence):
     error = workers._describe_answer(answer, FILE, LIMITS)
     assert str(error) == sentence
-    assert error.path == FILE
+    assert error.file == FILE
 
 
 # ------------------------------------------------------------------- the interpreter
@@ -254,7 +254,7 @@ def test_a_child_that_is_let_go_of_is_closed_and_not_waited_for():
 def test_faults_of_the_system_are_sentences(error, sentence):
     found = spooling.describe_system_error(FILE, error)
     assert isinstance(found, ReadError)
-    assert (str(found), found.path) == (sentence, FILE)
+    assert (str(found), found.file) == (sentence, FILE)
 
 
 def test_a_file_is_read_where_it_is(tmp_path):
@@ -284,11 +284,11 @@ def test_errors_of_a_copy_speak_of_the_pipe():
     with pytest.raises(ReadError) as caught, spooling.spool(io.BytesIO(b"1"), path) as copy:
         raise ReadError(f"'{copy}' is not good, nor is {copy.name}.", path=copy)
     assert str(caught.value) == "'/dev/stdin' is not good, nor is stdin."
-    assert caught.value.path == path
+    assert caught.value.file == path
     other = Path("elsewhere")
     with pytest.raises(ReadError) as caught, spooling.spool(io.BytesIO(b"1"), path):
         raise ReadError("Not here.", path=other)
-    assert caught.value.path == other
+    assert caught.value.file == other
 
 
 @on_linux

@@ -32,7 +32,7 @@ def refused(name, limits=QUICK, **arguments):
     text = str(caught.value)
     assert text.isprintable()
     assert text.endswith(".")
-    assert caught.value.path == FILE
+    assert caught.value.file == FILE
     return text
 
 

@@ -39,7 +39,7 @@ def require_refusal(read, path, words):
     """Require that a file is refused in one line that has such words; return the error."""
     with pytest.raises(ReadError, match=words) as caught:
         read(path)
-    assert caught.value.path == path
+    assert caught.value.file == path
     assert "\n" not in str(caught.value)
     return caught.value
 
@@ -596,7 +596,7 @@ def notes_of(tmp_path, text, name="a.obj"):
 def test_triangles_of_a_file_that_overlap_are_told(tmp_path):
     assert notes_of(tmp_path, TWO_OVER_EACH_OTHER) == [
         "Triangles overlap (westernmost place: near vertex 3); a check tells more. "
-        "faces='surface' leaves them out."
+        "`faces='surface'` leaves them out."
     ]
 
 

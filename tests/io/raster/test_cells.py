@@ -120,7 +120,7 @@ def test_bounds_choose_the_cells_that_they_touch(bounds, part):
     assert cells.bounds == Bounds(*bounds)
 
 
-NAMING = "; a part in cells (column, row, width, height) is the option cells."
+NAMING = "; a part in cells (column, row, width, height) is the option `cells`."
 
 
 def refuse(**part):
@@ -177,7 +177,7 @@ def test_a_window_that_may_be_meant_as_cells_is_told():
     notes = dem._describe_window(raster, dem.Choice(window=(1, 1, 3, 4), **choice))
     assert notes == [
         "The window 1, 1, 3, 4 is in coordinates (west, south, east, north); cells by column, row, "
-        "width and height are the option cells."
+        "width and height are the option `cells`."
     ]
 
 

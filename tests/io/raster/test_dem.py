@@ -320,7 +320,7 @@ def test_degrees_are_projected_or_refused_with_a_fitting_zone(raster):
     path = raster(heights(), transform=transform, crs="EPSG:4269")
     for crs in (None, "EPSG:4326"):
         sentence = fault(path, crs=crs)
-        assert "give crs='EPSG:32616' to reproject" in sentence
+        assert "give `crs='EPSG:32616'` to reproject" in sentence
         assert "--" not in sentence  # the command line alone speaks of flags
     survey = read(path, crs="EPSG:32616")
     source = points_by_loop(heights(), transform)

@@ -39,7 +39,7 @@ def test_points_outside_the_area_of_either_crs_are_told():
 
 def test_points_that_would_lie_inside_exchanged_are_refused_or_told():
     told = f"3 of 3 points lie outside the area of use of {ZONE} and, with easting and northing ex"
-    with pytest.raises(ts.CrsError, match="in the other order; check_crs=False takes them"):
+    with pytest.raises(ts.CrsError, match="in the other order; `check_crs=False` takes them"):
         _place(SITE[:, [1, 0, 2]], UTM, None)
     with checking_crs(False):
         assert _place(SITE[:, [1, 0, 2]], UTM, None)[0].startswith(told)

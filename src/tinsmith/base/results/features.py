@@ -410,7 +410,8 @@ def _as_levels(kind: Any, levels: Any, count: int) -> tuple[Int64Array, ...]:
         count, least = len(offsets) - 1, 1
     if len(checked) - _LEVELS[kind] not in ((0,) if kind == "points" else (0, 1)):
         allowed = f"{_LEVELS[kind]}, and one more for features of several parts"
-        raise OptionError(f"number of offset arrays of {kind}", len(checked), allowed=allowed)
+        what = f"number of offset arrays of {kind}"
+        raise OptionError("offsets", len(checked), allowed=allowed, what=what)
     return tuple(checked)
 
 

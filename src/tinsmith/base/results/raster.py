@@ -85,7 +85,7 @@ class Raster(Frozen):
         require_grid(self.grid)
         items = dict(named_items("bands", self.bands))
         if not items:
-            raise OptionError("number of bands", 0, allowed="1 or more")
+            raise OptionError("bands", 0, allowed="1 or more", what="number of bands")
         shape = tuple(self.grid.shape)
         bands = {name: _as_band(name, values, shape) for name, values in items.items()}
         keep(self, "bands", FrozenMapping(bands))

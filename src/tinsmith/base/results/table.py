@@ -61,7 +61,7 @@ class Table(Frozen):
         keep = object.__setattr__
         keep(self, "columns", as_columns(self.columns, None, "row"))
         if not self.columns:
-            raise OptionError("number of columns", 0, allowed="1 or more")
+            raise OptionError("columns", 0, allowed="1 or more", what="number of columns")
         keep(self, "units", as_units(self.units, self.columns))
         keep(self, "name", as_name(self.name))
         keep(self, "notes", as_notes(self.notes))
