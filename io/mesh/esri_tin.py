@@ -21,15 +21,14 @@ import numpy as np
 from ...base.errors import ReadError
 from ...base.sentences import counted
 from ...tin.topology import NO_NEIGHBOR
-from .common import add_notes, choose_reference, make_tin, read_content
+from .common import Mesh, mesh_reader, read_content
 from .linework import Chain, add_lines, chain_edges
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
-    from ...base.crs import CrsLike, UnitLike
-    from ...base.policies import FacePolicy, LineKind
+    from ...base.policies import LineKind
     from ...tin import TIN
 
 __all__ = ["read"]
@@ -57,13 +56,8 @@ class _Tables(NamedTuple):
     enforced: Int64Array
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    faces: FacePolicy = "all",
-) -> TIN:
+@mesh_reader
+def read(path: Path) -> Mesh:
     """Read an Esri TIN by its folder, or any of the files in it.
 
     The CRS defaults to that of ``prj.adf``; the unit of the elevations the files do not tell.
@@ -87,14 +81,19 @@ def read(
     points = np.column_stack([tables.places, tables.elevations])[used]
     if not wanted.any():
         raise ReadError(f"'{folder}' is an Esri TIN whose triangles are all masked.", path=folder)
-    reference = choose_reference(crs, z_unit, folder, found_crs=_read_crs(folder))
-    tin = make_tin(points, number[triangles[wanted]], folder, reference=reference, faces=faces)
-    chains = _gather_chains(tables, triangles, np.where(used, number, -1), tin)
-    tin, lost = add_lines(tin, chains)
-    if not lost:
-        return tin
-    note = f"{counted(lost, 'enforced edge')} of the file lie along no edge and are left out."
-    return add_notes(tin, [note])
+    corners = number[triangles[wanted]].ravel()
+
+    def add(tin: TIN) -> TIN:
+        chains = _gather_chains(tables, triangles, np.where(used, number, -1), tin)
+        return add_lines(tin, chains, "enforced edge")
+
+    return Mesh(
+        points,
+        corners,
+        np.arange(0, len(corners) + 1, 3),
+        crs=_read_crs(folder),
+        add_lines=add,
+    )
 
 
 def _read_tables(folder: Path) -> _Tables:

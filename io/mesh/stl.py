@@ -24,11 +24,11 @@ from ...base.checks import as_flag
 from ...base.crs import scale_elevations
 from ...base.errors import CrsError, OptionError, ReadError, WriteError
 from .common import (
-    choose_reference,
+    Mesh,
     describe_single_precision,
     format_unit,
-    make_tin,
     measure_rounding,
+    mesh_reader,
     read_content,
     require_factor,
     require_tin,
@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...base.arrays import AnyArray, Float32Array, Float64Array, Int64Array
-    from ...base.crs import CrsLike, UnitLike
-    from ...base.policies import FacePolicy
     from ...base.progress import Tell
     from ...tin import TIN
 
@@ -56,13 +54,8 @@ _BASE_SHARE = 20.0
 _RECORD = re.compile(r"origin (\S+) (\S+) (\S+)(?: crs (\S+))?(?: z (\S+))?")
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    faces: FacePolicy = "all",
-) -> TIN:
+@mesh_reader
+def read(path: Path) -> Mesh:
     """Read a binary STL file; corners at the same place become one vertex.
 
     CRS and unit default to those recorded in the header, whose origin is added back, if there is
@@ -76,15 +69,14 @@ def read(
             f"'{path}' records the origin {origin.tolist()}: three finite numbers are needed.",
             path=path,
         )
-    reference = choose_reference(crs, z_unit, path, found_crs=found_crs, found_unit=found_unit)
     with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
         points, triangles = _merge_corners(facets["corners"].reshape(-1, 3))
         places = points + origin
     notes = describe_single_precision(points, np.float32)
     own = measure_rounding(points, np.float32) if content.startswith(b"origin ") else 0.0
-    return make_tin(
-        places, triangles, path, reference=reference, notes=notes, faces=faces, rounding=own
-    )
+    offsets = np.arange(0, triangles.size + 1, 3)
+    about = {"crs": found_crs, "elevation_unit": found_unit, "notes": notes, "rounding": own}
+    return Mesh(places, triangles.ravel(), offsets, **about)
 
 
 def _find_facets(content: bytes, path: Path) -> AnyArray:

@@ -21,13 +21,12 @@ from ...base.policies import LineKind
 from ...base.sentences import counted
 from ..isolated import run_isolated
 from .common import (
-    add_notes,
+    Mesh,
+    build_mesh,
     choose_reference,
-    cut_into_fans,
     describe_single_precision,
+    flag_edges,
     format_unit,
-    make_survey,
-    make_tin,
     read_content,
     require_tin,
 )
@@ -37,9 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
-    from ...base.arrays import AnyArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
     from ...base.crs import CrsLike, UnitLike
     from ...base.policies import FacePolicy
     from ...base.progress import Tell
@@ -96,12 +93,10 @@ def read(
     reference = _choose_reference(crs, z_unit, value, path)
     notes += describe_single_precision(points, value["dtype"])
     notes += _require_units(value["xy_units"], reference.crs, path)
-    if len(arrays["offsets"]) == 1:
-        return make_survey(points, path, reference=reference, notes=notes)
-    made = cut_into_fans(arrays["corners"], arrays["offsets"], points, path)
-    notes += made.notes
-    tin = make_tin(points, made.triangles, path, reference=reference, notes=notes, faces=faces)
-    return _add_edge_types(tin, arrays)
+    mesh = Mesh(points, arrays["corners"], arrays["offsets"], notes=notes)
+    if "edges" in arrays:
+        mesh.add_lines = lambda tin: _add_edge_types(tin, arrays["edges"], arrays["types"])
+    return build_mesh(mesh, path, reference=reference, faces=faces)
 
 
 def _require_elevations(points: Float64Array, variable: str, path: Path) -> None:
@@ -172,34 +167,17 @@ def _is_unit(text: str) -> bool:
         return False
 
 
-def _add_edge_types(tin: TIN, arrays: Mapping[str, AnyArray]) -> TIN:
+def _add_edge_types(tin: TIN, edges: Int64Array, types: Int64Array) -> TIN:
     """Return the TIN with the lines and constrained edges of the file."""
-    if "edges" not in arrays:
-        return tin
-    edges, types = arrays["edges"], arrays["types"]
     chains = [
         Chain(chain, kind)
         for number, kind in _LINE_TYPES.items()
         for chain in chain_edges(edges[types == number], len(tin.points))
     ]
-    tin, lost = add_lines(tin, chains)
+    tin = add_lines(tin, chains, "typed edge")
     flagged = edges[(types > 0) & (types < len(_TYPES))]
-    known = tin.edge_triangles(flagged[:, 0], flagged[:, 1])
-    flags = tin.constrained.copy()
-    for side in known.T:
-        held = side >= 0
-        corner = _find_opposite(tin.triangles[side[held]], flagged[held])
-        flags[side[held], corner] = True
-    tin = tin.replace(constrained=flags)
-    if not lost:
-        return tin
-    return add_notes(tin, [f"{counted(lost, 'typed edge')} of the file lie along no edge."])
-
-
-def _find_opposite(triangles: Int32Array, edges: Int64Array) -> NDArray[np.intp]:
-    """Return the corner of each triangle that is no end of its edge."""
-    is_end = (triangles[:, :, None] == edges[:, None, :]).any(axis=2)
-    return np.asarray(np.argmin(is_end, axis=1))
+    flags = flag_edges(tin.triangles, flagged, len(tin.points))
+    return tin.replace(constrained=tin.constrained | flags)
 
 
 def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:

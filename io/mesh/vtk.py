@@ -20,6 +20,7 @@ from ...base.errors import ReadError, WriteError
 from ...terrain.relief.gradients import aspect, slope
 from ..isolated import run_isolated
 from . import common
+from .common import Mesh, mesh_reader
 from .vtk_child import catch_errors, load_vtk_class
 
 if TYPE_CHECKING:
@@ -27,10 +28,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...base.arrays import AnyArray, Float64Array
-    from ...base.crs import CrsLike, UnitLike
-    from ...base.policies import FacePolicy
     from ...base.progress import Tell
-    from ...tin import TIN, Survey
+    from ...tin import TIN
     from ..isolated import Answer
 
 __all__ = ["read", "write"]
@@ -41,13 +40,8 @@ _CLOSEST_PACKING = 1100  # zlib packs no tighter than 1032 to 1
 _COUNTS = re.compile(rb'NumberOf\w+="(\d+)"')
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    faces: FacePolicy = "all",
-) -> TIN | Survey:
+@mesh_reader
+def read(path: Path) -> Mesh:
     """Read a VTK XML file of faces.
 
     CRS and unit default to the field data ``crs`` and ``elevation_unit``. Polygons are cut into
@@ -58,27 +52,14 @@ def read(
     value, arrays = _read_in_child(path)
     notes = common.describe_single_precision(arrays["points"], value["dtype"])
     points = _restore_points(arrays)
-    reference = common.choose_reference(
-        crs, z_unit, path, found_crs=value["crs"], found_unit=value["elevation_unit"]
-    )
-    cells = arrays["cells"]
-    if len(cells) == 0:
-        attributes = {name: arrays[f"attribute {k}"] for k, name in enumerate(value["attributes"])}
-        return common.make_survey(
-            points, path, attributes=attributes, reference=reference, notes=notes
+    about = {"crs": value["crs"], "elevation_unit": value["elevation_unit"], "notes": notes}
+    if len(arrays["cells"]) == 0:
+        names = enumerate(value["attributes"])
+        return Mesh(
+            points, attributes={name: arrays[f"attribute {k}"] for k, name in names}, **about
         )
-    made = common.cut_into_fans(arrays["corners"], arrays["offsets"], points, path)
-    flags = arrays.get("flags") if len(cells) == len(made.triangles) else None
-    is_flagged = None if flags is None else flags != 0
-    return common.make_tin(
-        points,
-        made.triangles,
-        path,
-        constrained=is_flagged,
-        reference=reference,
-        notes=(*notes, *made.notes),
-        faces=faces,
-    )
+    flags = arrays["flags"] != 0 if "flags" in arrays else None
+    return Mesh(points, arrays["corners"], arrays["offsets"], flags, **about)
 
 
 def _restore_points(arrays: Mapping[str, AnyArray]) -> Float64Array:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ....base.errors import ReadError
-from ..common import choose_reference, cut_into_fans, make_tin, read_content
+from ..common import Mesh, mesh_reader, read_content, require_vertices
 from .decimals import DecimalGrid
 from .sequence import City, SequenceError, parse_city
 
@@ -17,9 +17,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ....base.arrays import Float64Array, Int64Array
-    from ....base.crs import CrsLike, UnitLike
-    from ....base.policies import FacePolicy
-    from ....tin import TIN
 
 __all__ = ["read"]
 
@@ -42,15 +39,8 @@ class _Relief(NamedTuple):
     attributes: dict[str, Any]
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    surface: str | None = None,
-    join: bool = False,
-    faces: FacePolicy = "all",
-) -> TIN:
+@mesh_reader
+def read(path: Path, *, surface: str | None = None, join: bool = False) -> Mesh:
     """Read the terrain of a CityJSON file, or of a sequence of features (CityJSONSeq).
 
     The CRS defaults to that of the metadata; the unit of elevations is known where tinsmith wrote
@@ -74,12 +64,10 @@ def read(
     offsets = np.concatenate([[0], np.cumsum(lengths)])
     if len(lengths) == 0:
         raise ReadError(f"'{path}' holds a TINRelief without any triangle.", path=path)
-    made = cut_into_fans(corners, offsets, points, path)
-    notes += made.notes
-    points, triangles = _merge_vertices(points, made.triangles)
+    require_vertices(corners, offsets, len(points), path)
+    points, corners = _merge_vertices(points, corners)
     found_crs, found_unit = _find_reference(city, reliefs)
-    reference = choose_reference(crs, z_unit, path, found_crs=found_crs, found_unit=found_unit)
-    return make_tin(points, triangles, path, reference=reference, notes=notes, faces=faces)
+    return Mesh(points, corners, offsets, crs=found_crs, elevation_unit=found_unit, notes=notes)
 
 
 def _describe_damage(path: Path, what: str) -> ReadError:
@@ -219,15 +207,15 @@ def _scale(values: Float64Array, scale: float, translate: float) -> Float64Array
     return DecimalGrid(digits, int(translate)).restore(values.astype(np.int64))
 
 
-def _merge_vertices(points: Float64Array, triangles: Int64Array) -> tuple[Float64Array, Int64Array]:
-    """Return the vertices that triangles have, each place once, in the order of the file."""
-    used = np.unique(triangles)
+def _merge_vertices(points: Float64Array, corners: Int64Array) -> tuple[Float64Array, Int64Array]:
+    """Return the vertices that polygons have, each place once, in the order of the file."""
+    used = np.unique(corners)
     _, first, number = np.unique(points[used], axis=0, return_index=True, return_inverse=True)
     rank = np.empty(len(first), np.int64)
     rank[np.argsort(first)] = np.arange(len(first))
     place = np.zeros(len(points), np.int64)
     place[used] = rank[number.ravel()]
-    return points[used][np.sort(first)], place[triangles]
+    return points[used][np.sort(first)], place[corners]
 
 
 def _find_reference(

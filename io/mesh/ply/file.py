@@ -21,12 +21,12 @@ from ....base.sentences import counted
 from ....tin import TIN, Surface, Survey
 from ...registry.losses import tell_lost_attributes
 from .. import common
+from ..common import Mesh, flag_edges, mesh_reader
 from .body import Table, read_tables
 from .faces import STRIPS, find_faces
 from .header import parse_header
 from .lines import (
     ENDS,
-    flag_edges,
     format_line_comments,
     read_lines,
     require_edges,
@@ -37,8 +37,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ....base.arrays import AnyArray, BoolArray, Float64Array
-    from ....base.crs import CrsLike, UnitLike
-    from ....base.policies import FacePolicy
     from ....base.progress import Tell
     from ....tin.constraints.breaklines import Lines
     from .header import Header
@@ -61,13 +59,8 @@ _TYPE_NAMES = {
 }
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    faces: FacePolicy = "all",
-) -> TIN | Survey:
+@mesh_reader
+def read(path: Path) -> Mesh:
     """Read a PLY file, text or binary of either byte order.
 
     CRS and unit default to those named in the header. Polygons and strips are cut into triangles,
@@ -81,41 +74,27 @@ def read(
     vertices = _require_vertices(tables, path)
     points = _stack_coordinates(vertices)
     notes = common.describe_single_precision(points, vertices.columns["x"].dtype)
-    reference = common.choose_reference(
-        crs, z_unit, path, found_crs=header.crs, found_unit=header.elevation_unit
+    mesh = Mesh(
+        points,
+        attributes=_find_vertex_attributes(vertices),
+        crs=header.crs,
+        elevation_unit=header.elevation_unit,
+        notes=notes,
     )
     found = find_faces(tables, path)
-    attributes = _find_vertex_attributes(vertices)
     if found is None:
-        notes += _describe_skipped(header)
-        return common.make_survey(
-            points, path, attributes=attributes, reference=reference, notes=notes
-        )
-    made = common.cut_into_fans(found.items, found.offsets, points, path)
-    notes += made.notes
-    flags = _find_edge_flags(tables.get("face"), len(made.triangles))
-    has_lines = header.lines is not None and "edge" in tables
-    edges = require_edges(tables["edge"], path, len(points)) if has_lines else None
-    if flags is None and edges is not None:
-        flags = flag_edges(made.triangles, edges, len(points))
-    tin = common.make_tin(
-        points,
-        made.triangles,
-        path,
-        constrained=flags,
-        reference=reference,
-        attributes=attributes,
-        notes=notes,
-        faces=faces,
-    )
-    if edges is None or header.lines is None:
-        return tin
-    lines = read_lines(header.lines, edges, path)
-    _require_edges_of_tin(tin, lines, path)
-    return tin.replace(lines=lines)
+        mesh.notes = [*notes, *_describe_skipped(header)]
+        return mesh
+    mesh.corners, mesh.offsets = found
+    mesh.constrained = _find_edge_flags(tables.get("face"))
+    if header.lines is not None and "edge" in tables:
+        edges = mesh.constrained_edges = require_edges(tables["edge"], path, len(points))
+        lines = read_lines(header.lines, edges, path)
+        mesh.add_lines = lambda tin: _add_lines(tin, lines, path)
+    return mesh
 
 
-def _require_edges_of_tin(tin: TIN, lines: Lines, path: Path) -> None:
+def _add_lines(tin: TIN, lines: Lines, path: Path) -> TIN:
     segments = lines.segments()
     is_edge = tin.is_edge(segments[:, 0], segments[:, 1])
     if not is_edge.all():
@@ -125,6 +104,7 @@ def _require_edges_of_tin(tin: TIN, lines: Lines, path: Path) -> None:
             "no edge of a triangle.",
             path=path,
         )
+    return tin.replace(lines=lines)
 
 
 def _stack_coordinates(vertices: Table) -> Float64Array:
@@ -149,14 +129,11 @@ def _describe_skipped(header: Header) -> list[str]:
     ]
 
 
-def _find_edge_flags(faces: Table | None, n_triangles: int) -> BoolArray | None:
-    """Return the edge flags if the file has them and every face is a triangle."""
+def _find_edge_flags(faces: Table | None) -> BoolArray | None:
+    """Return the edge flags if the file has them."""
     found = {} if faces is None else faces.columns
     columns = [found[name] for name in _FLAGS if name in found]
-    if len(columns) < len(_FLAGS) or len(columns[0]) != n_triangles:
-        return None
-    flags: BoolArray = np.stack(columns, axis=1) != 0
-    return flags
+    return np.stack(columns, axis=1) != 0 if len(columns) == len(_FLAGS) else None
 
 
 def _find_vertex_attributes(vertices: Table) -> dict[str, AnyArray]:

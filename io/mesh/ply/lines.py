@@ -25,14 +25,13 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import Any
 
-    from ....base.arrays import AnyArray, BoolArray, Int32Array, Int64Array
+    from ....base.arrays import Int32Array, Int64Array
     from ....tin import TIN
     from .body import Table
 
 __all__ = [
     "ENDS",
     "LineComment",
-    "flag_edges",
     "format_line_comments",
     "parse_line_comment",
     "read_lines",
@@ -65,16 +64,6 @@ def take_edges(tin: TIN) -> Int32Array:
     keys = topology.edge_keys(edges, n)
     others = edges[~np.isin(keys, topology.edge_keys(segments, n))]
     return np.concatenate([segments, others]).astype(np.int32)
-
-
-def flag_edges(triangles: AnyArray, edges: AnyArray, n_vertices: int) -> BoolArray:
-    """Return which edges of triangles, each opposite a corner, are among some, (m, 3) flags."""
-    if len(edges) == 0:
-        return np.zeros((len(triangles), 3), np.bool_)
-    sides = np.stack([np.roll(triangles, -1, axis=1), np.roll(triangles, -2, axis=1)], axis=2)
-    keys = topology.edge_keys(sides.reshape(-1, 2), n_vertices)
-    found = np.isin(keys, topology.edge_keys(edges, n_vertices))
-    return found.reshape(len(triangles), 3)
 
 
 def format_line_comments(tin: TIN) -> list[str]:

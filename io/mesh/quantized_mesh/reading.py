@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ....base.errors import OptionError, ReadError
-from ..common import add_notes, choose_reference, make_tin, read_content
+from ..common import Mesh, mesh_reader, read_content
 from .placing import find_placing
 from .tile import STEPS, BrokenTileError, TileName, decode_tile
 
@@ -18,9 +18,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ....base.arrays import Int64Array
-    from ....base.crs import CrsLike, UnitLike
-    from ....base.policies import FacePolicy
-    from ....tin import TIN
 
 __all__ = ["read"]
 
@@ -31,14 +28,8 @@ _LARGEST = 1 << 28
 _HEIGHTMAP_BYTES = 65 * 65 * 2
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    tile: str | None = None,
-    faces: FacePolicy = "all",
-) -> TIN:
+@mesh_reader
+def read(path: Path, *, tile: str | None = None) -> Mesh:
     """Read a tile, gzipped or not, in longitude, latitude and metres above the ellipsoid.
 
     A tile of a pyramid of web Mercator, by the centre that its header tells, is in EPSG:3857; the
@@ -58,20 +49,19 @@ def read(
     except BrokenTileError as error:
         raise ReadError(_describe_fault(path, content, str(error)), path=path) from None
     placing = find_placing(found.center, name, path, is_declared=tile is not None)
-    reference = choose_reference(crs, z_unit, path, found_crs=placing.crs, found_unit=placing.unit)
     steps, triangles = _merge(found.steps, found.triangles)
     places = replace(found, steps=steps).place(placing.west, placing.south, placing.width)
     if len(triangles) == 0:
         raise ReadError(f"'{path}' is a tile without any triangle.", path=path)
-    tin = make_tin(
+    return Mesh(
         places,
-        triangles,
-        path,
-        reference=reference,
-        faces=faces,
+        triangles.ravel(),
+        np.arange(0, triangles.size + 1, 3),
+        crs=placing.crs,
+        elevation_unit=placing.unit,
+        notes=placing.notes,
         rounding=placing.width / STEPS,
     )
-    return add_notes(tin, placing.notes)
 
 
 def _find_name(path: Path, tile: str | None) -> TileName:
