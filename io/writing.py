@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..base.atomic import as_path
 from ..base.errors import FormatError, TinsmithError, WriteError
+from ..base.notes import naming_file
 from ..base.plug_ins import describe_failure
 from ..base.products import product
 from ..base.progress import Progress
@@ -88,10 +89,10 @@ def write(
     done = Progress(progress)
     if progress is not None and takes_progress(writer):
         options["progress"] = done.stage(0.0, 1.0)
-    with done.passing_on():
+    with done.passing_on(), naming_file(file):
         _call_writer(chosen, writer, obj, file, options)
-    if isinstance(obj, Survey) and options.get("kind") != "points":
-        tell_lost_lines(obj, chosen, file)
+        if isinstance(obj, Survey) and options.get("kind") != "points":
+            tell_lost_lines(obj, chosen, file)
     done.end()
     return file
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import TYPE_CHECKING
 
 from ...base.crs import Unit
-from ...base.errors import CrsError, LossWarning, OptionError, WriteError
+from ...base.errors import CrsError, OptionError, WriteError
+from ...base.notes import warn
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -76,19 +76,15 @@ def choose_length_unit(
 
 def _find_factor(known: Unit | None, unit: Unit | None, path: Path, format_name: str) -> float:
     if unit is None:
-        warnings.warn(
+        warn(
             f"'{path}' has no units, since none are known: programs that read it will guess; the "
-            "option `unit` names one.",
-            LossWarning,
-            stacklevel=5,
+            "option `unit` names one."
         )
         return 1.0
     if known is None or known == unit or known.metres is None or unit.metres is None:
         return 1.0
-    warnings.warn(
+    warn(
         f"'{path}': elevations were converted from {known.name} to {unit.name}, as {format_name} "
-        "has one unit for all lengths.",
-        LossWarning,
-        stacklevel=5,
+        "has one unit for all lengths."
     )
     return known.metres / unit.metres

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import datetime as dt
-import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ...base import optional
 from ...base.atomic import replacing
-from ...base.errors import LossWarning, OptionError, WriteError
+from ...base.errors import OptionError, WriteError
+from ...base.notes import warn
 from ...base.progress import Progress
 from ...base.sentences import coordinate
 from ...tin import TIN, Survey
@@ -241,11 +241,9 @@ def _warn_of_unit(surface: TIN | Survey, path: Path) -> None:
     unit, crs = surface.elevation_unit, surface.crs
     told = None if crs is None else crs.vertical_unit
     if unit is not None and told is None:
-        warnings.warn(
+        warn(
             f"'{path}' does not tell the unit of the elevations, the {unit}: its CRS has no "
-            "vertical axis.",
-            LossWarning,
-            stacklevel=3,
+            "vertical axis."
         )
 
 

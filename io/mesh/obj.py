@@ -130,7 +130,7 @@ def write(
         with replacing(path, binary=False) as file:
             _write_body(file, tin, None, progress)
         return
-    draped = load_texture(source, tin, stacklevel=4)
+    draped = load_texture(source, tin)
     picture = path.with_name(f"{path.stem}{_PICTURE}{draped.suffix}")
     _require_other_file(source, (picture, path, path.with_suffix(".mtl")))
     with replacing_data_set(path, "obj") as beside:

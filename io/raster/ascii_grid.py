@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.errors import LossWarning, OptionError, WriteError
+from ...base.errors import OptionError, WriteError
+from ...base.notes import warn
 from ..registry.side_files import replacing_data_set
 
 if TYPE_CHECKING:
@@ -78,11 +78,7 @@ def _choose_band(raster: Raster, band: str | None) -> str:
 def _warn_of_losses(raster: Raster, path: Path) -> None:
     lost = [what for what, there in (("units", raster.units), ("notes", raster.notes)) if there]
     if lost:
-        warnings.warn(
-            f"'{path}' is a text grid, which has no place for {' and '.join(lost)}.",
-            LossWarning,
-            stacklevel=3,
-        )
+        warn(f"'{path}' is a text grid, which has no place for {' and '.join(lost)}.")
 
 
 def _format_head(raster: Raster, nodata: float) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,8 @@ import numpy as np
 
 from ...base import optional
 from ...base.crs import CRS
-from ...base.errors import LossWarning, OptionError, ReadError
+from ...base.errors import OptionError, ReadError
+from ...base.notes import warn
 from ...terrain.viewer.ortho import Ortho
 from ..isolated import Limits, choose_limits, run_isolated
 from ..isolated.local_files import require_local
@@ -38,7 +38,6 @@ def read_ortho(
     most_pixels: int,
     transparent: str = "png",
     beyond: str = "the tints by elevation stay there",
-    stacklevel: int = 2,
 ) -> Ortho:
     """Read the picture to drape over surfaces of one CRS.
 
@@ -54,8 +53,6 @@ def read_ortho(
         Kind of picture where a part is transparent.
     beyond : str
         What becomes of the surface beyond the picture, for the sentence that tells of it.
-    stacklevel : int
-        Of the caller who is told.
 
     Raises
     ------
@@ -97,7 +94,7 @@ def read_ortho(
     if gap > 0.0:
         told.append(f"'{path}' does not reach over {gap:.1%} of the vertices: {beyond}.")
     for sentence in told:
-        warnings.warn(sentence, LossWarning, stacklevel=stacklevel)
+        warn(sentence)
     return replace(ortho, gap=gap, told=tuple(told))
 
 

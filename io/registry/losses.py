@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.errors import LossWarning
+from ...base.notes import warn
 from ...base.results import Features
 from ...base.sentences import counted, shown
 
@@ -38,9 +37,7 @@ def tell_lost_attributes(names: Iterable[str], path: Path, reason: str) -> None:
     """Warn of attributes of points that a file does not hold, and why, if there are any."""
     lost = ", ".join(names)
     if lost:
-        warnings.warn(
-            f"'{path}' does not hold the attributes {lost}: {reason}.", LossWarning, stacklevel=4
-        )
+        warn(f"'{path}' does not hold the attributes {lost}: {reason}.")
 
 
 def select_attributes(
@@ -65,11 +62,7 @@ def keep_on_one_line(columns: Mapping[str, Any], path: Path) -> dict[str, AnyArr
             broken.append(name)
         kept[name] = values
     if broken:
-        warnings.warn(
-            f"'{path}': line breaks within the texts of {', '.join(broken)} became blanks.",
-            LossWarning,
-            stacklevel=4,
-        )
+        warn(f"'{path}': line breaks within the texts of {', '.join(broken)} became blanks.")
     return kept
 
 
@@ -83,11 +76,9 @@ def tell_formulas(columns: Mapping[str, Any], path: Path) -> None:
         if isinstance(text, str) and _FORMULA.match(text) and not _is_number(text)
     ]
     if found:
-        warnings.warn(
+        warn(
             f"'{path}': {counted(len(found), 'text')} begin with =, +, - or @, which spreadsheets "
-            f"compute as formulas (first: {shown(found[0])}): import these columns as text.",
-            LossWarning,
-            stacklevel=4,
+            f"compute as formulas (first: {shown(found[0])}): import these columns as text."
         )
 
 
@@ -112,11 +103,9 @@ def tell_lost_lines(survey: Survey, chosen: Format, file: Path) -> None:
     names = counts if all_lost else ("erased area",) if "erased areas" in chosen.loses else ()
     lost = [counted(counts[name], name, _PLURALS.get(name, "")) for name in names if counts[name]]
     if lost:
-        warnings.warn(
+        warn(
             f"'{file}' does not hold the lines of the survey ({', '.join(lost)}): the format "
-            f"{chosen.name} has no place for them.",
-            LossWarning,
-            stacklevel=3,
+            f"{chosen.name} has no place for them."
         )
 
 
@@ -132,4 +121,4 @@ def tell_unknown_elevations(obj: object, path: Path) -> None:
             else f"lines with {counted(count, 'vertex', 'vertices')} of unknown elevation lost "
             "all their elevations"
         )
-        warnings.warn(f"'{path}': {what}.", LossWarning, stacklevel=4)
+        warn(f"'{path}': {what}.")

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import TYPE_CHECKING
 
 from ...base.crs import CRS
-from ...base.errors import CrsError, LossWarning, WriteError
+from ...base.errors import CrsError, WriteError
+from ...base.notes import warn
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -45,11 +45,9 @@ def require_kept(crs: CRS | None, found: str | None, path: Path) -> None:
             path=path,
         )
     if not kept.to_pyproj().equals(crs.to_pyproj(), ignore_axis_order=True):
-        warnings.warn(
+        warn(
             f"'{path}' has the CRS as the format can describe it, '{kept.name}', which PROJ does "
-            f"not take for the same as {crs.label}.",
-            LossWarning,
-            stacklevel=4,
+            f"not take for the same as {crs.label}."
         )
 
 

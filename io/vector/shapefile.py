@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.errors import LossWarning, WriteError
+from ...base.errors import WriteError
+from ...base.notes import warn
 from ...base.sentences import counted
 from ..registry.side_files import replacing_data_set
 from .ogr import write_layer
@@ -127,7 +127,7 @@ def _warn_of_losses(features: Features, names: list[str], path: Path) -> None:
     if features.notes:
         lost.append("notes have no place")
     if lost:
-        warnings.warn(f"'{path}' is a shapefile: {', and '.join(lost)}.", LossWarning, stacklevel=4)
+        warn(f"'{path}' is a shapefile: {', and '.join(lost)}.")
 
 
 def _require_room(features: Features, path: Path) -> None:

@@ -8,7 +8,6 @@ data.
 from __future__ import annotations
 
 import io
-import warnings
 from contextlib import contextmanager
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -17,7 +16,8 @@ import numpy as np
 
 from ....base import optional
 from ....base.atomic import replacing
-from ....base.errors import FormatError, LossWarning, OptionError, choice
+from ....base.errors import FormatError, OptionError, choice
+from ....base.notes import warn
 from ....base.policies import DrawingVersion
 from ....base.results import Features
 from ....tin import TIN, Surface, Survey
@@ -92,11 +92,7 @@ def write(
         obj, unit, path, is_known=lambda one: find_code(one) > 0, format_name="DXF"
     )
     if version == "R12" and obj.crs is not None:
-        warnings.warn(
-            f"'{path}' keeps no CRS and no unit: R12 has no place for them.",
-            LossWarning,
-            stacklevel=3,
-        )
+        warn(f"'{path}' keeps no CRS and no unit: R12 has no place for them.")
     with _fix_dates():
         document = _make_document(ezdxf, obj, version, along, factor)
         head, tail, encoding, writer = _split(document, version)

@@ -7,14 +7,14 @@ that the unit of elevations is not known, stands in elements ``Feature``, as the
 
 from __future__ import annotations
 
-import warnings
 from typing import IO, TYPE_CHECKING
 
 import numpy as np
 
 from ....base.atomic import replacing
 from ....base.crs import CRS
-from ....base.errors import FormatError, LossWarning, OptionError
+from ....base.errors import FormatError, OptionError
+from ....base.notes import warn
 from ....base.results import Features
 from ....tin import TIN, Surface, Survey
 from ...registry.losses import select_attributes, tell_unknown_elevations
@@ -276,11 +276,9 @@ def _select_texts(obj: TIN | Survey | Features, path: Path) -> dict[str, list[st
     texts = {name: [_as_text(one) for one in values.tolist()] for name, values in held.items()}
     numbers = texts.get("number", [])
     if not all(numbers) or len(set(numbers)) < len(numbers):
-        warnings.warn(
+        warn(
             f"'{path}': points are numbered 1, 2, 3 ... anew, as numbers are missing or stand "
-            "twice, which LandXML does not allow.",
-            LossWarning,
-            stacklevel=4,
+            "twice, which LandXML does not allow."
         )
         del texts["number"]
     return texts

@@ -8,13 +8,13 @@ unit of elevations and a CRS without a number.
 from __future__ import annotations
 
 import json
-import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ....base.atomic import replacing
-from ....base.errors import LossWarning, OptionError, WriteError
+from ....base.errors import OptionError, WriteError
+from ....base.notes import warn
 from ....base.sentences import counted
 from ....tin.topology import mark_corners
 from ..common import format_crs, format_unit, require_tin
@@ -140,11 +140,9 @@ def _find_reference(tin: TIN) -> str | None:
         return None
     epsg = tin.crs.to_epsg()
     if epsg is None:
-        warnings.warn(
+        warn(
             f"CityJSON names a CRS by its EPSG number, and {tin.crs.label} has none: it is kept as "
-            "an attribute that other programs do not look for.",
-            LossWarning,
-            stacklevel=4,
+            "an attribute that other programs do not look for."
         )
         return None
     return f"https://www.opengis.net/def/crs/EPSG/0/{epsg}"

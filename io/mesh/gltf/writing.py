@@ -11,14 +11,14 @@ from __future__ import annotations
 import json
 import os
 import struct
-import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ....base.atomic import replacing
 from ....base.crs import assume_elevation_unit
-from ....base.errors import CrsError, LossWarning, WriteError
+from ....base.errors import CrsError, WriteError
+from ....base.notes import warn
 from ....base.sentences import counted
 from ....terrain.viewer.tints import interpolate_tints
 from ..common import format_crs, format_unit, require_factor, require_tin
@@ -113,7 +113,7 @@ def write(
             crs=tin.crs,
         )
     picture = choose_picture(drape, texture)
-    draped = None if picture is None else load_texture(picture, tin, stacklevel=4)
+    draped = None if picture is None else load_texture(picture, tin)
     origin = np.floor(tin.points.min(axis=0))
     scale = _choose_scale(tin) * (1.0, 1.0, exaggeration)
     mesh = _make_mesh(tin, origin, scale, draped, path)
@@ -185,7 +185,7 @@ def _find_areas(positions: Float32Array, triangles: Int32Array, path: Path) -> B
     if not has_area.any():
         raise WriteError(f"Cannot write '{path}': it has nothing but {told}.", path=path)
     if count:
-        warnings.warn(f"'{path}' does not hold {told}.", LossWarning, stacklevel=6)
+        warn(f"'{path}' does not hold {told}.")
     return has_area
 
 

@@ -18,7 +18,8 @@ import numpy as np
 from ....base.atomic import replacing_folder
 from ....base.checks import as_flag, is_whole_number
 from ....base.crs import CRS
-from ....base.errors import CrsError, LossWarning, OptionError, WriteError
+from ....base.errors import CrsError, OptionError, WriteError
+from ....base.notes import warn
 from ....tin import TIN
 from ...reprojection.transformation import reproject
 from ..common import require_tin
@@ -147,11 +148,9 @@ def _place(tin: TIN, path: Path) -> TIN:
     number[used] = np.arange(len(used))
     target = CRS(_ELLIPSOIDAL)
     if tin.crs.vertical_unit is None or not _has_vertical_transformation(tin.crs):
-        warnings.warn(
+        warn(
             f"The elevations are not known above the ellipsoid in {tin.crs.label}: they are "
-            "written as if they were, and differ by the height of the geoid, up to 110 m.",
-            LossWarning,
-            stacklevel=4,
+            "written as if they were, and differ by the height of the geoid, up to 110 m."
         )
         source, unit = tin.crs.horizontal, tin.elevation_unit or tin.crs.usual_elevation_unit
     else:

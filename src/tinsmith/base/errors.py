@@ -41,6 +41,8 @@ class TinsmithError(Exception):
     """
 
     file: Path | None = None
+    is_of_file = False
+    """Whether it is what a file holds that is at fault: the sentence names the file."""
 
     def __str__(self) -> str:
         text = str(self.args[0]) if self.args else ""
@@ -48,9 +50,12 @@ class TinsmithError(Exception):
 
     def add_file(self, file: Path) -> None:
         """Name the file of which the sentence speaks, unless one is named."""
-        if self.file is None:
-            self.file = file
-            self.args = (name_file(str(self.args[0]), str(file)),)
+        if self.file is not None or not self.args:
+            return
+        self.file = file
+        text = str(self.args[0])
+        if self.is_of_file or FILE in text:
+            self.args = (printable(name_file(text, str(file))),)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Copy and pickle sentence and data, whatever the class is made of."""
@@ -138,6 +143,8 @@ class CrsError(TinsmithError, ValueError):
         What was given.
     """
 
+    is_of_file = True
+
     def __init__(self, message: str, *, crs: object = None) -> None:
         super().__init__(message)
         self.crs = crs
@@ -152,6 +159,8 @@ class PointsError(TinsmithError, ValueError):
         The first few row numbers (0-based, in the caller's own input) at fault; may be empty.
     """
 
+    is_of_file = True
+
     def __init__(self, message: str, *, rows: Iterable[int] = ()) -> None:
         super().__init__(message)
         self.rows = tuple(int(row) for row in rows)
@@ -165,6 +174,8 @@ class LinesError(TinsmithError, ValueError):
     lines : tuple of int
         The first few lines (0-based, in the caller's own input) at fault; may be empty.
     """
+
+    is_of_file = True
 
     def __init__(self, message: str, *, lines: Iterable[int] = ()) -> None:
         super().__init__(message)
@@ -194,6 +205,8 @@ class ReadError(TinsmithError, ValueError):
         The first few line numbers at fault, counted from 1 as an editor does; may be empty.
     """
 
+    is_of_file = True
+
     def __init__(
         self, message: str, *, path: Path | None = None, lines: Sequence[int] = ()
     ) -> None:
@@ -209,6 +222,8 @@ class ReadError(TinsmithError, ValueError):
 
 class WriteError(TinsmithError, OSError):
     """A file that cannot be written; a file that was there before is left whole."""
+
+    is_of_file = True
 
     def __init__(self, message: str, *, path: Path | None = None) -> None:
         super().__init__(message)

@@ -47,7 +47,7 @@ def test_columns_that_fit_only_when_exchanged_are_refused_with_the_word_that_fit
     places = [f"{role} in {right.label(right.roles[role])}" for role in ROLES]
     assert str(caught.value) == (
         f"'a.csv': read as ENZ the points lie outside {AREA}, and read as "
-        f"{right.word} inside it: columns='{right.word}' takes the {', the '.join(places)}."
+        f"{right.word} inside it: `columns='{right.word}'` takes the {', the '.join(places)}."
     )
 
 

@@ -279,19 +279,19 @@ def test_a_decimal_mark_that_is_told_is_known_to_be(decimal, is_told):
             "E,N,Z,Q,R\n1.5,2.5,3.5\n",
             {},
             "'a.csv': the header names 5 columns (E, N, Z, Q, R), but rows have 3: say with the "
-            "option columns what all of them are, and check delimiter and decimal mark.",
+            "option `columns` what all of them are, and check delimiter and decimal mark.",
         ),
         (
             "E,Q,Z\n1.5,2.5,3.5\n",
             {},
             "'a.csv': the header (E, Q, Z) does not name easting, northing and elevation (known: "
-            "easting 'E', elevation 'Z'): say with the option columns which columns they are.",
+            "easting 'E', elevation 'Z'): say with the option `columns` which columns they are.",
         ),
         (
             "Q,R,S\n1.5,2.5,3.5\n",
             {},
             "'a.csv': the header (Q, R, S) does not name easting, northing and elevation (known: "
-            "none of it): say with the option columns which columns they are.",
+            "none of it): say with the option `columns` which columns they are.",
         ),
         (
             ",".join(["1.5"] * 1001) + "\n",
@@ -427,8 +427,8 @@ def test_the_encoding_is_found_or_told(tmp_path, data, encoding, text):
 @pytest.mark.parametrize(
     ("data", "encoding", "words"),
     [
-        (b"\xff", "utf-8", "is not utf-8 text: invalid start byte; the option encoding names"),
-        (b"\xff\xfea", None, "is not utf-16-le text: truncated data; the option encoding names"),
+        (b"\xff", "utf-8", "is not utf-8 text: invalid start byte; the option `encoding` names"),
+        (b"\xff\xfea", None, "is not utf-16-le text: truncated data; the option `encoding` names"),
         (b"a", "latin-7000", "Unknown encoding 'latin-7000' for"),
         (b"a\x00bcdefghijklmnop", None, "holds binary data, not delimited text."),
         (b"x" * 1_000_001, None, "line 1: 1,000,001 bytes are no row of points; at most 1,000,000"),

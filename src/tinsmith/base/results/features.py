@@ -10,10 +10,11 @@ import numpy as np
 from ..crs import CRS, Unit, require_one_unit, shorten_crs
 from ..errors import OptionError
 from ..methods import make_card
+from ..notes import as_notes, join_notes
 from ..ranges import require_degrees
 from ..sentences import counted
 from ..types import Bounds, Frozen
-from .columns import as_columns, as_name, as_notes, as_units, frozen_copy, join_notes
+from .columns import as_columns, as_name, as_units, frozen_copy
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

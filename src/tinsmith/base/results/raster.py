@@ -11,18 +11,11 @@ import numpy as np
 from ..crs import CRS, shorten_crs
 from ..errors import OptionError
 from ..methods import make_card
+from ..notes import as_notes, join_notes
 from ..ranges import require_degrees
 from ..sentences import counted
 from ..types import Frozen, Grid
-from .columns import (
-    FrozenMapping,
-    as_name,
-    as_notes,
-    as_units,
-    frozen_copy,
-    join_notes,
-    named_items,
-)
+from .columns import FrozenMapping, as_name, as_units, frozen_copy, named_items
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 from .. import optional
 from ..errors import OptionError
 from ..methods import make_card
+from ..notes import as_notes, join_notes
 from ..sentences import counted
 from ..types import Frozen
-from .columns import as_columns, as_name, as_notes, as_units, join_notes, unit_text
+from .columns import as_columns, as_name, as_units, unit_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
