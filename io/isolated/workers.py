@@ -19,6 +19,8 @@ from pathlib import Path
 from typing import Any
 
 from ...base.errors import ReadError
+from ...base.notes import naming_file
+from ...base.sentences import FILE
 from .answers import Answer, BrokenMessageError, receive, send
 from .limits import START_SECONDS, Limits, choose_limits
 
@@ -43,10 +45,9 @@ def run_isolated(
     Parameters
     ----------
     function : str
-        ``"module:function"`` of this package. It takes the arguments, of which ``path`` is the file
-        and ``shown`` its path as the user wrote it, for sentences, and returns an :class:`Answer`,
-        or is a generator of them; a :class:`Refusal` that it raises becomes a ReadError of the same
-        sentence.
+        ``"module:function"`` of this package. It takes the arguments and returns an
+        :class:`Answer`, or is a generator of them; a :class:`Refusal` that it raises becomes a
+        ReadError of the same sentence.
     arguments : mapping
         What JSON can hold.
     path : Path
@@ -72,13 +73,12 @@ def stream_isolated(
 
     Parameters and errors are those of :func:`run_isolated`; the limit of time is for each part.
     """
-    allowed = (
-        choose_limits(path.stat().st_size if path.is_file() else 0) if limits is None else limits
-    )
+    allowed = limits or choose_limits(path.stat().st_size if path.is_file() else 0)
     worker = _POOL.take(function.partition(":")[0])
-    parts = worker.ask({"function": function, "arguments": dict(arguments)}, path, allowed)
+    parts = worker.ask({"function": function, "arguments": dict(arguments)}, allowed)
     try:
-        yield parts
+        with naming_file(path):
+            yield parts
         for _ in parts:
             pass  # the end is read too, so that the child is free for the next file
     finally:
@@ -100,9 +100,7 @@ class _Worker:
         self._timed_out = False
         self._process = _start_child(module)
 
-    def ask(
-        self, request: dict[str, Any], path: Path, limits: Limits
-    ) -> Generator[Answer, None, None]:
+    def ask(self, request: dict[str, Any], limits: Limits) -> Generator[Answer, None, None]:
         """Yield the parts of the answer; anything but a sound end leaves the child unsound."""
         self.is_sound = False
         with contextlib.suppress(BrokenPipeError):
@@ -110,7 +108,7 @@ class _Worker:
             send(self._process.stdin, Answer({**request, "limits": list(limits)}, {}))
         seconds = START_SECONDS
         while True:
-            answer = self._receive_next(seconds, path, limits)
+            answer = self._receive_next(seconds, limits)
             kind = answer.value.get("kind")
             if kind in _SOUND_ENDS:
                 self.is_sound = True
@@ -119,10 +117,10 @@ class _Worker:
             if kind == "part":
                 yield Answer(answer.value["value"], answer.arrays)
             elif kind != "ready":
-                raise _describe_answer(answer.value, path, limits)
+                raise _describe_answer(answer.value, limits)
             seconds = limits.waiting_seconds
 
-    def _receive_next(self, seconds: float, path: Path, limits: Limits) -> Answer:
+    def _receive_next(self, seconds: float, limits: Limits) -> Answer:
         watchdog = threading.Timer(seconds, self._time_out)
         watchdog.daemon = True
         watchdog.start()
@@ -131,7 +129,7 @@ class _Worker:
             return receive(self._process.stdout, most_bytes=limits.memory)
         except BrokenMessageError:
             self.end()
-            raise _describe_death(self._process.returncode, self._timed_out, path, limits) from None
+            raise _describe_death(self._process.returncode, self._timed_out, limits) from None
         finally:
             watchdog.cancel()
 
@@ -249,38 +247,33 @@ def _choose_environment(module: str) -> dict[str, str]:
 # ---------------------------------------------------------------------------- sentences
 
 
-def _describe_answer(answer: dict[str, Any], path: Path, limits: Limits) -> ReadError:
+def _describe_answer(answer: dict[str, Any], limits: Limits) -> ReadError:
     if answer.get("kind") == "refusal":
-        return ReadError(_ODD_LETTERS.sub(" ", str(answer.get("text"))), path=path)
+        return ReadError(_ODD_LETTERS.sub(" ", str(answer.get("text"))))
     if answer.get("kind") == "memory":
-        return _describe_lack_of_memory(path, limits)
+        return _describe_lack_of_memory(limits)
     words = " ".join(_ODD_LETTERS.sub(" ", str(answer.get("text"))).split())
     reason = words[:_LONGEST_REASON].rstrip(" .")
-    return ReadError(
-        f"'{path}' cannot be read, it may be damaged or truncated: {reason}.", path=path
-    )
+    return ReadError(f"{FILE} cannot be read, it may be damaged or truncated: {reason}.")
 
 
-def _describe_death(code: int | None, timed_out: bool, path: Path, limits: Limits) -> ReadError:
+def _describe_death(code: int | None, timed_out: bool, limits: Limits) -> ReadError:
     too_long = timed_out or code == -getattr(signal, "SIGXCPU", 0)
     if too_long:
         return ReadError(
-            f"'{path}' cannot be read, it may be damaged: after {limits.seconds:.0f} "
+            f"{FILE} cannot be read, it may be damaged: after {limits.seconds:.0f} "
             f"{'second' if round(limits.seconds) == 1 else 'seconds'}, the limit for a file of "
-            "this size, there was no end.",
-            path=path,
+            "this size, there was no end."
         )
     if code == -getattr(signal, "SIGKILL", 0):
-        return _describe_lack_of_memory(path, limits)
+        return _describe_lack_of_memory(limits)
     return ReadError(
-        f"'{path}' cannot be read, it is damaged: the library that reads this format crashed.",
-        path=path,
+        f"{FILE} cannot be read, it is damaged: the library that reads this format crashed."
     )
 
 
-def _describe_lack_of_memory(path: Path, limits: Limits) -> ReadError:
+def _describe_lack_of_memory(limits: Limits) -> ReadError:
     return ReadError(
-        f"'{path}' cannot be read, it may be damaged: it asks for more than "
-        f"{limits.memory / (1 << 30):.1f} GiB of memory, the limit for a file of this size.",
-        path=path,
+        f"{FILE} cannot be read, it may be damaged: it asks for more than "
+        f"{limits.memory / (1 << 30):.1f} GiB of memory, the limit for a file of this size."
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -349,11 +348,10 @@ def _read_tile(
     header, start = tile.header, gathered.count
     with stream_isolated(
         f"{_CHILD}:read_points",
-        {"path": os.path.abspath(header.path), "shown": str(header.path),  # noqa: PTH100
-         "wanted": selection.to_request()},
+        {"path": str(header.path.absolute()), "wanted": selection.to_request()},
         path=header.path,
         limits=choose_limits(header.size),
-    ) as parts:  # fmt: skip
+    ) as parts:
         for part in parts:
             gathered.tally.add(part.value, part.arrays["classes"])
             gathered.append(part.arrays, header)

@@ -13,7 +13,7 @@ import numpy as np
 from ...base.checks import is_finite_number
 from ...base.crs import CRS, Unit
 from ...base.errors import CrsError, FormatError, OptionError, PointsError, ReadError
-from ...base.sentences import counted, height
+from ...base.sentences import FILE, counted, height
 from ...tin import TIN, Surface, Survey
 from ...tin.checking.overlaps import describe_overlaps
 from ...tin.screening.nodata import find_suspect_elevations
@@ -82,22 +82,22 @@ def read_content(path: Path) -> bytes:
         raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
 
 
-def require_writable(surface: object, path: Path) -> TIN | Survey:
+def require_writable(surface: object) -> TIN | Survey:
     """Return a TIN or a survey; refuse anything else."""
     if isinstance(surface, Surface | Survey):
         return cast("TIN | Survey", surface)  # writers ask it alone
     raise FormatError(
-        f"Cannot write '{path}': a {type(surface).__name__} is neither a TIN nor a Survey."
+        f"Cannot write {FILE}: a {type(surface).__name__} is neither a TIN nor a Survey."
     )
 
 
-def require_tin(surface: object, path: Path, *, format_name: str) -> TIN:
+def require_tin(surface: object, *, format_name: str) -> TIN:
     """Return a TIN; refuse a survey, which has no faces, and anything else."""
-    writable = require_writable(surface, path)
+    writable = require_writable(surface)
     if isinstance(writable, Surface):
         return writable
     raise FormatError(
-        f"Cannot write '{path}': {format_name} holds triangles, and a survey has none; "
+        f"Cannot write {FILE}: {format_name} holds triangles, and a survey has none; "
         "triangulate it first."
     )
 
@@ -147,14 +147,14 @@ def choose_reference(
         If the file names a unit that is none.
     """
     declared, own = CRS.of(crs), _find_crs(found_crs, crs is not None)
-    require_own_crs(own, declared, path)
+    require_own_crs(own, declared)
     system = declared if own is None else own
-    known = _find_unit(found_unit, path)
+    known = _find_unit(found_unit)
     vertical = None if system is None else system.vertical_unit
     return Reference(system, settle_unit(Unit.of(z_unit), known or vertical, path))
 
 
-def require_own_crs(own: CRS | None, declared: CRS | None, path: Path) -> None:
+def require_own_crs(own: CRS | None, declared: CRS | None) -> None:
     """Refuse to reproject a TIN.
 
     Raises
@@ -164,7 +164,7 @@ def require_own_crs(own: CRS | None, declared: CRS | None, path: Path) -> None:
     """
     if declared is not None and own is not None and not own.is_same(declared):
         raise CrsError(
-            f"'{path}' is in {own.label}, and {declared.label} is another CRS: a TIN is not "
+            f"{FILE} is in {own.label}, and {declared.label} is another CRS: a TIN is not "
             "reprojected, since its triangles would be no Delaunay triangles there; build it anew "
             "from its points.",
             crs=declared,
@@ -186,11 +186,11 @@ def format_unit(surface: TIN | Survey) -> str:
     return "" if surface.elevation_unit is None else surface.elevation_unit.text
 
 
-def _find_unit(text: str | None, path: Path) -> Unit | None:
+def _find_unit(text: str | None) -> Unit | None:
     try:
         return Unit.of(text or None)
     except OptionError:
-        raise ReadError(f"'{path}': '{text}' is no unit of elevations.", path=path) from None
+        raise ReadError(f"'{text}' is no unit of elevations.") from None
 
 
 @dataclass(slots=True)
@@ -252,7 +252,7 @@ def build_mesh(mesh: Mesh, path: Path, *, reference: Reference, faces: FacePolic
         return make_survey(
             points, path, attributes=attributes, reference=reference, notes=mesh.notes
         )
-    fans = cut_into_fans(mesh.corners, mesh.offsets, points, path)
+    fans = cut_into_fans(mesh.corners, mesh.offsets, points)
     flags = mesh.constrained
     if flags is not None and len(flags) != len(fans.triangles):
         flags = None
@@ -319,7 +319,7 @@ def make_tin(
     try:
         tin, told = make_surface(make, points, triangles, faces=faces, rounding=rounding)
     except PointsError as error:
-        raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
+        raise ReadError(f"{FILE} holds no TIN. {error}") from error
     placed = look_at_crs(tin.points, reference.crs, path) if looks_at_crs else ()
     told = [*notes, *told, *placed, *_describe_oddities(tin, faces)]
     told += _describe_suspects(tin.points[:, 2])
@@ -400,14 +400,13 @@ def make_survey(
         If there are none, or one is not finite.
     """
     if len(points) == 0:
-        raise ReadError(f"'{path}' holds no points.", path=path)
+        raise ReadError(f"{FILE} holds no points.")
     wrong = ~np.isfinite(points).all(axis=1)
     if wrong.any():
         row, count = int(np.argmax(wrong)), int(wrong.sum())
         raise ReadError(
-            f"'{path}': {count} {'point is' if count == 1 else 'points are'} not finite (first: "
-            f"point {row}, {points[row].tolist()}).",
-            path=path,
+            f"{count} {'point is' if count == 1 else 'points are'} not finite (first: "
+            f"point {row}, {points[row].tolist()})."
         )
     return Survey(
         points=points,
@@ -419,9 +418,7 @@ def make_survey(
     )
 
 
-def cut_into_fans(
-    corners: Int64Array, offsets: Int64Array, points: Float64Array, path: Path
-) -> Fans:
+def cut_into_fans(corners: Int64Array, offsets: Int64Array, points: Float64Array) -> Fans:
     """Cut polygons into triangles about their first corner, quadrilaterals along an inner diagonal.
 
     Parameters
@@ -436,7 +433,7 @@ def cut_into_fans(
     ReadError
         If a polygon has fewer than three corners, or a vertex number is out of range.
     """
-    require_vertices(corners, offsets, len(points), path)
+    require_vertices(corners, offsets, len(points))
     lengths = np.diff(offsets)
     if (lengths == 3).all():
         return Fans(corners.reshape(-1, 3), np.arange(len(lengths)))
@@ -455,24 +452,22 @@ def cut_into_fans(
     return Fans(np.stack(triangles, axis=1), polygon, (note,))
 
 
-def require_vertices(corners: Int64Array, offsets: Int64Array, n_vertices: int, path: Path) -> None:
+def require_vertices(corners: Int64Array, offsets: Int64Array, n_vertices: int) -> None:
     """Refuse polygons of fewer than three corners, or of vertices that there are not."""
     lengths = np.diff(offsets)
     if (lengths < 3).any():
         row = int(np.argmax(lengths < 3))
         raise ReadError(
-            f"'{path}': face {row} has {lengths[row]} "
-            f"corner{'' if lengths[row] == 1 else 's'}: 3 or more are needed.",
-            path=path,
+            f"face {row} has {lengths[row]} "
+            f"corner{'' if lengths[row] == 1 else 's'}: 3 or more are needed."
         )
     wrong = (corners < 0) | (corners >= n_vertices)
     if wrong.any():
         first = int(np.argmax(wrong))
         row = int(np.searchsorted(offsets, first, side="right")) - 1
         raise ReadError(
-            f"'{path}': face {row} names vertex {corners[first]}, and the file has the vertices "
-            f"0 to {n_vertices - 1}.",
-            path=path,
+            f"face {row} names vertex {corners[first]}, and the file has the vertices "
+            f"0 to {n_vertices - 1}."
         )
 
 

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...base.errors import ReadError
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from ...tin.topology import NO_NEIGHBOR
 from .common import Mesh, mesh_reader, read_content
 from .linework import Chain, add_lines, chain_edges
@@ -66,21 +66,20 @@ def read(path: Path) -> Mesh:
     """
     folder = path if path.is_dir() else path.parent
     tables = _read_tables(folder)
-    _require_sound(tables, folder)
+    _require_sound(tables)
     triangles = tables.corners - 1
     wanted = ~_read_mask(folder, len(triangles))
     used = np.zeros(len(tables.places), np.bool_)
     used[triangles[wanted]] = True
     if (used & (tables.elevations < _SUPERPOINT)).any():
         raise ReadError(
-            f"'{folder}' is a damaged Esri TIN: a triangle that is not masked reaches a "
-            "superpoint, which has no elevation.",
-            path=folder,
+            f"{FILE} is a damaged Esri TIN: a triangle that is not masked reaches a "
+            "superpoint, which has no elevation."
         )
     number = np.cumsum(used) - 1
     points = np.column_stack([tables.places, tables.elevations])[used]
     if not wanted.any():
-        raise ReadError(f"'{folder}' is an Esri TIN whose triangles are all masked.", path=folder)
+        raise ReadError(f"{FILE} is an Esri TIN whose triangles are all masked.")
     corners = number[triangles[wanted]].ravel()
 
     def add(tin: TIN) -> TIN:
@@ -122,28 +121,25 @@ def _read_numbers(path: Path, dtype: str, width: int) -> AnyArray:
         return numbers.astype(np.float64 if dtype[1] == "f" else np.int64)
 
 
-def _require_sound(tables: _Tables, folder: Path) -> None:
+def _require_sound(tables: _Tables) -> None:
     """Refuse files that do not fit together."""
     n_nodes, n_triangles = len(tables.places), len(tables.corners)
     if len(tables.elevations) != n_nodes:
         raise ReadError(
-            f"'{folder}' is a damaged Esri TIN: tnxy.adf has {counted(n_nodes, 'node')}, and "
-            f"tnz.adf {counted(len(tables.elevations), 'elevation')}.",
-            path=folder,
+            f"{FILE} is a damaged Esri TIN: tnxy.adf has {counted(n_nodes, 'node')}, and "
+            f"tnz.adf {counted(len(tables.elevations), 'elevation')}."
         )
     if len(tables.beside) != n_triangles:
         raise ReadError(
-            f"'{folder}' is a damaged Esri TIN: tnod.adf has {counted(n_triangles, 'triangle')}, "
-            f"and tedg.adf {len(tables.beside)}.",
-            path=folder,
+            f"{FILE} is a damaged Esri TIN: tnod.adf has {counted(n_triangles, 'triangle')}, "
+            f"and tedg.adf {len(tables.beside)}."
         )
     wrong = (tables.corners < 1) | (tables.corners > n_nodes)
     if wrong.any():
         row = int(np.argmax(wrong.any(axis=1)))
         raise ReadError(
-            f"'{folder}' is a damaged Esri TIN: triangle {row + 1} of tnod.adf has the nodes "
-            f"{tables.corners[row].tolist()}, and there are the nodes 1 to {n_nodes}.",
-            path=folder,
+            f"{FILE} is a damaged Esri TIN: triangle {row + 1} of tnod.adf has the nodes "
+            f"{tables.corners[row].tolist()}, and there are the nodes 1 to {n_nodes}."
         )
 
 
@@ -158,9 +154,8 @@ def _read_mask(folder: Path, n_triangles: int) -> BoolArray:
     length = 2 * int.from_bytes(index[-4:], "big")
     if len(index) < 4 or not 12 <= length <= len(content):
         raise ReadError(
-            f"'{folder}' is a damaged Esri TIN: tmsx.adf promises {length} bytes of mask, and "
-            f"tmsk.adf has {len(content)}.",
-            path=folder,
+            f"{FILE} is a damaged Esri TIN: tmsx.adf promises {length} bytes of mask, and "
+            f"tmsk.adf has {len(content)}."
         )
     mask = content[len(content) - length :]
     n_bits = int.from_bytes(mask[8:12], "big")
@@ -169,9 +164,8 @@ def _read_mask(folder: Path, n_triangles: int) -> BoolArray:
     n_words = int.from_bytes(mask[:4], "big")
     if n_words != len(words) or n_words != -(-n_bits // 32):
         raise ReadError(
-            f"'{folder}' is a damaged Esri TIN: tmsk.adf promises {n_bits} bits in {n_words} "
-            f"words, and has {len(words)}.",
-            path=folder,
+            f"{FILE} is a damaged Esri TIN: tmsk.adf promises {n_bits} bits in {n_words} "
+            f"words, and has {len(words)}."
         )
     masked = np.zeros(n_triangles, np.bool_)
     known = min(n_bits, n_triangles)

@@ -8,7 +8,6 @@ CRS and units.
 
 from __future__ import annotations
 
-import os
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,6 +16,7 @@ import numpy as np
 from ...base import optional
 from ...base.atomic import replacing_path
 from ...base.errors import ReadError
+from ...base.sentences import FILE
 from ...tin.topology import NO_NEIGHBOR, edge_keys, ends
 from ..isolated import run_isolated
 from .common import Mesh, mesh_reader, read_content, require_tin
@@ -56,14 +56,14 @@ def read(path: Path) -> Mesh:
     optional.require("meshio", "Reading Gmsh files")
     if not path.is_file():
         read_content(path)  # says why it cannot be read
-    where = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
-    others, arrays = run_isolated(f"{__package__}.gmsh_child:read_mesh", where, path=path)
+    others, arrays = run_isolated(
+        f"{__package__}.gmsh_child:read_mesh", {"path": str(path.absolute())}, path=path
+    )
     told = ", ".join(f"{count:,} of the kind {kind}" for kind, count in others.items())
     if len(arrays["corners"]) == 0 and others:
         raise ReadError(
-            f"'{path}' holds no faces, but other cells ({told}): triangles and quadrilaterals "
-            "can be read.",
-            path=path,
+            f"{FILE} holds no faces, but other cells ({told}): triangles and quadrilaterals "
+            "can be read."
         )
     return Mesh(
         arrays["points"],
@@ -76,7 +76,7 @@ def read(path: Path) -> Mesh:
 
 def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN as a Gmsh file, MSH 2.2 in text."""
-    tin = require_tin(surface, path, format_name="Gmsh")
+    tin = require_tin(surface, format_name="Gmsh")
     meshio = optional.load("meshio", "Writing Gmsh files")
     edges = _gather_edges(tin)
     number_of = {name: i for i, name in enumerate(dict.fromkeys([SURFACE, *edges.names]), start=1)}

@@ -58,11 +58,11 @@ def read(path: Path) -> Mesh:
     file without faces gives a survey.
     """
     content = common.read_content(path)
-    rows = split_rows(content, path)
+    rows = split_rows(content)
     vertices, faces = rows.select("v"), rows.select("f")
-    mesh = Mesh(
-        vertices.parse_floats(slice(1, 4), "a vertex needs x, y and z"), **find_reference(content)
-    )
+    points = vertices.parse_floats(slice(1, 4), "a vertex needs x, y and z")
+    crs, unit = find_reference(content)
+    mesh = Mesh(points, crs=crs, elevation_unit=unit)
     if len(faces):
         mesh.corners, mesh.offsets = _parse_faces(vertices, faces)
     return mesh
@@ -124,7 +124,7 @@ def write(
     WriteError
         Also if the texture itself would be overwritten.
     """
-    tin = common.require_tin(surface, path, format_name="OBJ")
+    tin = common.require_tin(surface, format_name="OBJ")
     source = choose_picture(drape, texture)
     if source is None:
         with replacing(path, binary=False) as file:

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...base.atomic import replacing
 from ...base.errors import ReadError
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from . import common
 from .common import Mesh, mesh_reader
 from .text_rows import (
@@ -53,12 +53,12 @@ def read(path: Path) -> Mesh:
     file without faces gives a survey.
     """
     content = common.read_content(path)
-    rows = _skip_keyword(split_rows(content, path))
+    rows = _skip_keyword(split_rows(content))
     counts = _parse_counts(rows)
     vertices, polygons = rows.cut(1, counts.vertices + 1), rows.cut(counts.vertices + 1)
-    mesh = Mesh(
-        vertices.parse_floats(slice(0, 3), "a vertex needs x, y and z"), **find_reference(content)
-    )
+    points = vertices.parse_floats(slice(0, 3), "a vertex needs x, y and z")
+    crs, unit = find_reference(content)
+    mesh = Mesh(points, crs=crs, elevation_unit=unit)
     if counts.faces:
         mesh.corners, mesh.offsets = _parse_faces(polygons.cut(0, counts.faces))
     return mesh
@@ -66,55 +66,49 @@ def read(path: Path) -> Mesh:
 
 def _skip_keyword(rows: TextRows) -> TextRows:
     """Return what stands behind the keyword, which some programs put before the counts."""
-    path = rows.path
     first = rows.texts[0].split() if rows.texts else [""]
     keyword = first[0]
     found = _KEYWORD.fullmatch(keyword)
     if "BINARY" in first:
         raise ReadError(
-            f"'{path}' is a binary OFF file, and only those in text are read: save it as that.",
-            path=path,
+            f"{FILE} is a binary OFF file, and only those in text are read: save it as that."
         )
     if found is None:
         raise ReadError(
-            f"'{path}' is no OFF file in text: it must begin with 'OFF', not '{keyword[:20]}'.",
-            path=path,
+            f"{FILE} is no OFF file in text: it must begin with 'OFF', not '{keyword[:20]}'."
         )
     if found[4] or found[5]:
         raise ReadError(
-            f"'{path}' is an OFF file of {keyword}, vertices in more than three dimensions, which "
-            "are no TIN.",
-            path=path,
+            f"{FILE} is an OFF file of {keyword}, vertices in more than three dimensions, which "
+            "are no TIN."
         )
     if len(first) > 1:
-        return TextRows(path, [" ".join(first[1:]), *rows.texts[1:]], rows.lines)
+        return TextRows([" ".join(first[1:]), *rows.texts[1:]], rows.lines)
     return rows.cut(1)
 
 
 def _parse_counts(rows: TextRows) -> _Counts:
     """Return the numbers of vertices and faces, once the file is long enough for them."""
-    path = rows.path
     if not rows.texts:
-        raise ReadError(f"'{path}' ends before the numbers of its vertices and faces.", path=path)
+        raise ReadError(f"{FILE} ends before the numbers of its vertices and faces.")
     first = rows.texts[0].split()
     if len(first) < 2:
         raise rows.describe_fault(0, "the numbers of vertices and of faces are needed")
-    counts = _Counts(*parse_integers(first[:2], rows.lines[0], path))
+    counts = _Counts(*parse_integers(first[:2], rows.lines[0]))
     if min(counts) < 0:
         raise rows.describe_fault(0, "a count is negative")
     if sum(counts) > len(rows) - 1:
         promised = counted(counts.vertices, "vertex", "vertices")
         raise ReadError(
-            f"'{path}' ends too early: it promises {promised} and "
-            f"{counted(counts.faces, 'face')}, and has {counted(len(rows) - 1, 'row')} for them.",
-            path=path,
+            f"{FILE} ends too early: it promises {promised} and "
+            f"{counted(counts.faces, 'face')}, and has {counted(len(rows) - 1, 'row')} for them."
         )
     return counts
 
 
 def _parse_faces(rows: TextRows) -> tuple[Int64Array, Int64Array]:
     """Return the vertex numbers of all faces, and the offsets of each."""
-    path, too_short = rows.path, "a face has fewer corners than it promises"
+    too_short = "a face has fewer corners than it promises"
     if all(text.startswith(("3 ", "3\t")) for text in rows.texts):
         corners = rows.parse_integers(slice(1, 4), too_short)
         return corners.ravel(), np.arange(0, corners.size + 1, 3)
@@ -122,17 +116,17 @@ def _parse_faces(rows: TextRows) -> tuple[Int64Array, Int64Array]:
     offsets = [0]
     for number, (text, line) in enumerate(zip(rows.texts, rows.lines, strict=True)):
         row = text.split()
-        count = parse_integers(row[:1], line, path, what="a face begins with its number of corners")
+        count = parse_integers(row[:1], line, what="a face begins with its number of corners")
         if not 0 <= count[0] <= len(row) - 1:
             raise rows.describe_fault(number, too_short)
-        found += parse_integers(row[1 : count[0] + 1], line, path)
+        found += parse_integers(row[1 : count[0] + 1], line)
         offsets.append(len(found))
     return np.array(found, np.int64), np.array(offsets, np.int64)
 
 
 def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN as OFF; :func:`read` gives the same vertices and triangles back."""
-    tin = common.require_tin(surface, path, format_name="OFF")
+    tin = common.require_tin(surface, format_name="OFF")
     with replacing(path, binary=False) as file:
         file.write("OFF\n")
         write_reference(file, tin)

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...base.atomic import replacing
 from ...base.errors import ReadError
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from ...tin.topology import find_offsets
 from . import common
 from .common import Mesh, mesh_reader
@@ -57,11 +57,11 @@ def read(path: Path) -> Mesh:
     ReadError
         Also if two nodes have one number, or an element names a node that is not there.
     """
-    rows = split_rows(common.read_content(path), path)
+    rows = split_rows(common.read_content(path))
     if not rows.texts or not rows.texts[0].startswith("MESH2D"):
-        raise ReadError(f"'{path}' is no 2DM mesh: it must begin with 'MESH2D'.", path=path)
+        raise ReadError(f"{FILE} is no 2DM mesh: it must begin with 'MESH2D'.")
     cards = rows.sort_by_keyword()
-    numbers, points = _parse_nodes(cards.get("ND", TextRows(path)))
+    numbers, points = _parse_nodes(cards.get("ND", TextRows()))
     mesh = Mesh(points)
     found = [_parse_elements(card, cards[card], numbers) for card in _FACES if card in cards]
     if not found:
@@ -69,7 +69,7 @@ def read(path: Path) -> Mesh:
     mesh.corners = np.concatenate([corners for corners, _ in found])
     mesh.offsets = find_offsets(np.concatenate([lengths for _, lengths in found]))
     mesh.notes = _describe_losses(cards)
-    strings = _parse_strings(cards.get("NS", TextRows(path)), numbers)
+    strings = _parse_strings(cards.get("NS", TextRows()), numbers)
     mesh.add_lines = lambda tin: add_lines(tin, strings, "segment")
     return mesh
 
@@ -118,7 +118,7 @@ def _parse_strings(rows: TextRows, numbers: Int64Array) -> list[Chain]:
     for i, (text, line) in enumerate(zip(rows.texts, rows.lines, strict=True)):
         row = text.split()
         for at, word in enumerate(row[1:], start=1):
-            node = parse_integers([word], line, rows.path)[0]
+            node = parse_integers([word], line)[0]
             called = np.array([[abs(node)]], np.int64)
             open_nodes.append(int(_find_nodes(called, numbers, rows.cut(i, i + 1))[0, 0]))
             if node < 0:
@@ -158,7 +158,7 @@ def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
 
     Lines of the TIN become node strings, as do chains of its other constrained edges.
     """
-    tin = common.require_tin(surface, path, format_name="2DM")
+    tin = common.require_tin(surface, format_name="2DM")
     with replacing(path, binary=False) as file:
         file.write("MESH2D\n")
         triangles = np.column_stack([np.arange(len(tin.triangles)), tin.triangles]) + 1

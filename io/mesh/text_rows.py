@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.errors import ReadError
+from ...base.sentences import FILE
 from .common import format_crs, format_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
-    from pathlib import Path
     from typing import IO
 
     from ...base.arrays import AnyArray, Float64Array, Int64Array
@@ -39,6 +39,7 @@ _BATCH = 65_536
 """Rows that are formatted at once."""
 
 _SHOWN_LETTERS = 60
+_NAMES = (b"crs", b"elevation unit")
 _RECORD = re.compile(rb"^# (crs|elevation unit): (.*?)\s*$", re.M)
 _HEAD = re.compile(rb"(?:[ \t\r]*(?:#[^\n]*|\w*OFF[^\n]*)?(?:\n|\Z))*")
 """Comments, empty lines and the keyword of OFF, before the first row."""
@@ -51,7 +52,6 @@ _MOST_DIGITS = 18
 class TextRows:
     """Rows of a text file, and the line of each, from 1 on."""
 
-    path: Path
     texts: list[str] = field(default_factory=list)
     lines: list[int] = field(default_factory=list)
 
@@ -60,7 +60,7 @@ class TextRows:
 
     def cut(self, start: int, stop: int | None = None) -> TextRows:
         """Return the rows from one to before another."""
-        return TextRows(self.path, self.texts[start:stop], self.lines[start:stop])
+        return TextRows(self.texts[start:stop], self.lines[start:stop])
 
     def parse_plain(self, columns: slice, dtype: type[np.generic]) -> AnyArray | None:
         """Return the numbers in some columns at once; None where a row is not plain."""
@@ -95,7 +95,7 @@ class TextRows:
             return np.array(picked, np.float64).reshape(-1, columns.stop - columns.start)
         except ValueError:
             for words, line in zip(picked, self.lines, strict=True):
-                _require_numbers(words, line, self.path)
+                _require_numbers(words, line)
             raise
 
     def parse_integers(self, columns: slice, what: str) -> Int64Array:
@@ -104,7 +104,7 @@ class TextRows:
         if plain is not None:
             return plain
         picked = zip(self._pick_words(columns, what), self.lines, strict=True)
-        numbers = [parse_integers(words, line, self.path) for words, line in picked]
+        numbers = [parse_integers(words, line) for words, line in picked]
         return np.array(numbers, np.int64).reshape(-1, columns.stop - columns.start)
 
     def _pick_words(self, columns: slice, what: str) -> list[list[str]]:
@@ -117,25 +117,25 @@ class TextRows:
 
     def describe_fault(self, row: int, what: str) -> ReadError:
         """Return the error of a row."""
-        return _describe_fault(self.texts[row].split(), self.lines[row], what, self.path)
+        return _describe_fault(self.texts[row].split(), self.lines[row], what)
 
     def select(self, keyword: str) -> TextRows:
         """Return the rows that begin with a word."""
         starts = (f"{keyword} ", f"{keyword}\t")
         kept = [k for k, text in enumerate(self.texts) if text.startswith(starts)]
-        return TextRows(self.path, [self.texts[k] for k in kept], [self.lines[k] for k in kept])
+        return TextRows([self.texts[k] for k in kept], [self.lines[k] for k in kept])
 
     def sort_by_keyword(self) -> dict[str, TextRows]:
         """Return the rows that begin with each word."""
         sorted_rows: dict[str, TextRows] = {}
         for text, line in zip(self.texts, self.lines, strict=True):
-            part = sorted_rows.setdefault(text.split(None, 1)[0], TextRows(self.path))
+            part = sorted_rows.setdefault(text.split(None, 1)[0], TextRows())
             part.texts.append(text)
             part.lines.append(line)
         return sorted_rows
 
 
-def split_rows(content: bytes, path: Path) -> TextRows:
+def split_rows(content: bytes) -> TextRows:
     """Cut a text into rows that are not empty, without comments and the spaces about them."""
     text = content.decode("utf-8", errors="replace").removeprefix("\ufeff")
     every = text.split("\n")
@@ -149,45 +149,42 @@ def split_rows(content: bytes, path: Path) -> TextRows:
                 every[k + 1] = ""
     lines = [number for number, line in enumerate(every, start=1) if line]
     texts = every if len(lines) == len(every) else [line for line in every if line]
-    return TextRows(path, texts, lines)
+    return TextRows(texts, lines)
 
 
-def _require_numbers(row: Sequence[str], line: int, path: Path) -> None:
+def _require_numbers(row: Sequence[str], line: int) -> None:
     try:
         np.array(row, np.float64)
     except ValueError:
-        raise _describe_fault(row, line, "a coordinate is no number", path) from None
+        raise _describe_fault(row, line, "a coordinate is no number") from None
 
 
 def parse_integers(
-    words: Sequence[str], line: int, path: Path, *, what: str = "a number must be whole"
+    words: Sequence[str], line: int, *, what: str = "a number must be whole"
 ) -> list[int]:
     """Return whole numbers; refuse words that are none, or that no file is large enough for."""
     for word in words:
         digits = word.lstrip("+-")
         if not (digits.isascii() and digits.isdecimal() and len(digits) <= _MOST_DIGITS):
-            raise _describe_fault(words, line, what, path)
+            raise _describe_fault(words, line, what)
     try:
         return [int(word) for word in words]
     except ValueError:
-        raise _describe_fault(words, line, what, path) from None
+        raise _describe_fault(words, line, what) from None
 
 
-def _describe_fault(row: Sequence[str], line: int, what: str, path: Path) -> ReadError:
+def _describe_fault(row: Sequence[str], line: int, what: str) -> ReadError:
     """Return the error of a row, with its line and its first words."""
     shown = " ".join(row[:12])[:_SHOWN_LETTERS]
-    return ReadError(f"'{path}', line {line}: {what} ('{shown}').", path=path, lines=[line])
+    return ReadError(f"{FILE}, line {line}: {what} ('{shown}').", lines=[line])
 
 
-def find_reference(content: bytes) -> dict[str, str]:
-    """Return the texts of ``crs`` and ``elevation_unit`` in the comments at the top."""
+def find_reference(content: bytes) -> tuple[str | None, str | None]:
+    """Return CRS and unit of elevations as the comments at the top tell them."""
     head = _HEAD.match(content)
-    found = _RECORD.findall(head[0] if head else b"")
-    return {
-        name.decode().replace(" ", "_"): text.decode("utf-8", "replace")
-        for name, text in reversed(found)  # the first counts
-        if text
-    }
+    found = dict(reversed(_RECORD.findall(head[0] if head else b"")))  # the first counts
+    crs, unit = (found.get(name, b"").decode("utf-8", "replace") for name in _NAMES)
+    return crs or None, unit or None
 
 
 def write_reference(file: IO[str], tin: TIN) -> None:

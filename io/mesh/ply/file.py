@@ -17,7 +17,7 @@ import numpy as np
 
 from ....base.atomic import replacing
 from ....base.errors import ReadError
-from ....base.sentences import counted
+from ....base.sentences import FILE, counted
 from ....tin import TIN, Surface, Survey
 from ...registry.losses import tell_lost_attributes
 from .. import common
@@ -68,10 +68,10 @@ def read(path: Path) -> Mesh:
     file without faces gives a survey.
     """
     content = common.read_content(path)
-    header = parse_header(content, path)
+    header = parse_header(content)
     names = {"vertex", "face", *STRIPS, *(("edge",) if header.lines is not None else ())}
-    tables = read_tables(content, header, path, names)
-    vertices = _require_vertices(tables, path)
+    tables = read_tables(content, header, names)
+    vertices = _require_vertices(tables)
     points = _stack_coordinates(vertices)
     notes = common.describe_single_precision(points, vertices.columns["x"].dtype)
     mesh = Mesh(
@@ -81,28 +81,27 @@ def read(path: Path) -> Mesh:
         elevation_unit=header.elevation_unit,
         notes=notes,
     )
-    found = find_faces(tables, path)
+    found = find_faces(tables)
     if found is None:
         mesh.notes = [*notes, *_describe_skipped(header)]
         return mesh
     mesh.corners, mesh.offsets = found
     mesh.constrained = _find_edge_flags(tables.get("face"))
     if header.lines is not None and "edge" in tables:
-        edges = mesh.constrained_edges = require_edges(tables["edge"], path, len(points))
-        lines = read_lines(header.lines, edges, path)
-        mesh.add_lines = lambda tin: _add_lines(tin, lines, path)
+        edges = mesh.constrained_edges = require_edges(tables["edge"], len(points))
+        lines = read_lines(header.lines, edges)
+        mesh.add_lines = lambda tin: _add_lines(tin, lines)
     return mesh
 
 
-def _add_lines(tin: TIN, lines: Lines, path: Path) -> TIN:
+def _add_lines(tin: TIN, lines: Lines) -> TIN:
     segments = lines.segments()
     is_edge = tin.is_edge(segments[:, 0], segments[:, 1])
     if not is_edge.all():
         row = int(np.argmin(is_edge))
         raise ReadError(
-            f"'{path}': edge {row}, of a line, joins vertices {segments[row].tolist()}, which are "
-            "no edge of a triangle.",
-            path=path,
+            f"edge {row}, of a line, joins vertices {segments[row].tolist()}, which are "
+            "no edge of a triangle."
         )
     return tin.replace(lines=lines)
 
@@ -113,10 +112,10 @@ def _stack_coordinates(vertices: Table) -> Float64Array:
         return np.stack(columns, axis=1).astype(np.float64)
 
 
-def _require_vertices(tables: dict[str, Table], path: Path) -> Table:
+def _require_vertices(tables: dict[str, Table]) -> Table:
     vertices = tables.get("vertex")
     if vertices is None or not set(_COORDINATES) <= vertices.columns.keys():
-        raise ReadError(f"'{path}' has no element 'vertex' with x, y and z.", path=path)
+        raise ReadError(f"{FILE} has no element 'vertex' with x, y and z.")
     return vertices
 
 
@@ -150,7 +149,7 @@ def write(surface: TIN | Survey, path: Path, *, progress: Tell | None = None) ->
     Of the attributes of points those that are numbers are written (whole numbers beyond 32 bits as
     double); PLY has no text.
     """
-    surface = common.require_writable(surface, path)
+    surface = common.require_writable(surface)
     columns, lost = _select_number_columns(surface.attributes)
     if isinstance(surface, Survey):
         tell_lost_attributes(lost, path, "PLY has doubles, and names of one ASCII word")

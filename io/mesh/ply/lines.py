@@ -17,12 +17,12 @@ import numpy as np
 
 from ....base.errors import ReadError
 from ....base.policies import LineKind
+from ....base.sentences import FILE
 from ....tin import topology
 from ....tin.constraints.breaklines import Lines
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
     from typing import Any
 
     from ....base.arrays import Int32Array, Int64Array
@@ -93,20 +93,20 @@ def parse_line_comment(text: str) -> LineComment | None:
     return LineComment(kind, source, n_edges, name)
 
 
-def require_edges(table: Table, path: Path, n_vertices: int) -> Int64Array:
+def require_edges(table: Table, n_vertices: int) -> Int64Array:
     """Return the edges of a file of ours as (k, 2) vertex numbers."""
     columns = [table.columns.get(name) for name in ENDS]
     if columns[0] is None or columns[1] is None:
-        raise ReadError(f"'{path}' has edges without vertex1 and vertex2.", path=path)
+        raise ReadError(f"{FILE} has edges without vertex1 and vertex2.")
     ends = np.stack([np.asarray(column, np.float64) for column in columns], axis=1)
     wrong = ~((ends >= 0) & (ends < n_vertices) & (ends == np.floor(ends))).all(axis=1)
     if wrong.any():
         row = int(np.argmax(wrong))
-        raise ReadError(f"'{path}': edge {row} does not join two of the vertices.", path=path)
+        raise ReadError(f"edge {row} does not join two of the vertices.")
     return ends.astype(np.int64)
 
 
-def read_lines(told: Sequence[LineComment], edges: Int64Array, path: Path) -> Lines:
+def read_lines(told: Sequence[LineComment], edges: Int64Array) -> Lines:
     """Return the lines that the header tells of, as chains of vertices.
 
     Raises
@@ -116,9 +116,7 @@ def read_lines(told: Sequence[LineComment], edges: Int64Array, path: Path) -> Li
     """
     counts = np.array([one.n_edges for one in told], np.int64)
     if counts.sum() > len(edges) or (counts < 1).any():
-        raise ReadError(
-            f"'{path}': its lines have {counts.sum()} edges, and there are {len(edges)}.", path=path
-        )
+        raise ReadError(f"its lines have {counts.sum()} edges, and there are {len(edges)}.")
     starts = np.cumsum(counts) - counts
     own = edges[: counts.sum()]
     follows = np.ones(len(own), np.bool_)
@@ -126,7 +124,7 @@ def read_lines(told: Sequence[LineComment], edges: Int64Array, path: Path) -> Li
     follows[starts] = True
     if not follows.all():
         row = int(np.argmin(follows))
-        raise ReadError(f"'{path}': edge {row} does not go on where its line is.", path=path)
+        raise ReadError(f"edge {row} does not go on where its line is.")
     vertices = np.insert(own[:, 1], starts, own[starts, 0])
     return Lines(
         vertices=vertices.astype(np.int32),

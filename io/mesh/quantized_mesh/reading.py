@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ....base.errors import OptionError, ReadError
+from ....base.sentences import FILE
 from ..common import Mesh, mesh_reader, read_content
 from .placing import find_placing
 from .tile import STEPS, BrokenTileError, TileName, decode_tile
@@ -43,16 +44,16 @@ def read(path: Path, *, tile: str | None = None) -> Mesh:
         Where it lies, "level/column/row", rows from the south; default what the path says.
     """
     name = _find_name(path, tile)
-    content = _unzip(read_content(path), path)
+    content = _unzip(read_content(path))
     try:
         found = decode_tile(content)
     except BrokenTileError as error:
-        raise ReadError(_describe_fault(path, content, str(error)), path=path) from None
-    placing = find_placing(found.center, name, path, is_declared=tile is not None)
+        raise ReadError(_describe_fault(content, str(error))) from None
+    placing = find_placing(found.center, name, is_declared=tile is not None)
     steps, triangles = _merge(found.steps, found.triangles)
     places = replace(found, steps=steps).place(placing.west, placing.south, placing.width)
     if len(triangles) == 0:
-        raise ReadError(f"'{path}' is a tile without any triangle.", path=path)
+        raise ReadError(f"{FILE} is a tile without any triangle.")
     return Mesh(
         places,
         triangles.ravel(),
@@ -74,14 +75,13 @@ def _find_name(path: Path, tile: str | None) -> TileName:
             return TileName(level, x, y)
     if tile is None:
         raise ReadError(
-            f"'{path}' does not tell where the tile lies: a path that ends in "
-            "level/column/row.terrain does, or tell it as tile.",
-            path=path,
+            f"{FILE} does not tell where the tile lies: a path that ends in "
+            "level/column/row.terrain does, or tell it as tile."
         )
     raise OptionError("tile", tile, "level/column/row of a tile, such as '14/17000/12000'")
 
 
-def _unzip(content: bytes, path: Path) -> bytes:
+def _unzip(content: bytes) -> bytes:
     """Return the content of a gzipped file, no more than a tile can have."""
     if not content.startswith(_GZIP):
         return content
@@ -89,16 +89,16 @@ def _unzip(content: bytes, path: Path) -> bytes:
     try:
         plain = opened.decompress(content, _LARGEST)
     except zlib.error as error:
-        raise ReadError(f"'{path}' is a damaged gzip file: {error}.", path=path) from None
+        raise ReadError(f"{FILE} is a damaged gzip file: {error}.") from None
     if not opened.eof:
-        raise ReadError(f"'{path}' is a gzip file that ends early, or no tile.", path=path)
+        raise ReadError(f"{FILE} is a gzip file that ends early, or no tile.")
     return plain
 
 
-def _describe_fault(path: Path, content: bytes, why: str) -> str:
+def _describe_fault(content: bytes, why: str) -> str:
     if _HEIGHTMAP_BYTES < len(content) <= _HEIGHTMAP_BYTES + 2 + 65536:
         why += "; it may be one of the older format heightmap-1.0, which is not read"
-    return f"'{path}' is no sound quantized-mesh tile: {why}."
+    return f"{FILE} is no sound quantized-mesh tile: {why}."
 
 
 def _merge(steps: Int64Array, triangles: Int64Array) -> tuple[Int64Array, Int64Array]:

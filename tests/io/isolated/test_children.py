@@ -111,7 +111,8 @@ CRASHED = "'some file' cannot be read, it is damaged: the library that reads thi
     ],
 )
 def test_each_end_of_a_child_has_its_sentence(code, timed_out, sentence):
-    error = workers._describe_death(code, timed_out, FILE, LIMITS)
+    error = workers._describe_death(code, timed_out, LIMITS)
+    error.add_file(FILE)
     assert str(error) == sentence
     assert error.file == FILE
 
@@ -121,14 +122,18 @@ def test_each_end_of_a_child_has_its_sentence(code, timed_out, sentence):
     [(1.0, "1 second"), (1.4, "1 second"), (1.6, "2 seconds"), (0.4, "0 seconds")],
 )
 def test_seconds_are_counted_in_words(seconds, words):
-    error = workers._describe_death(None, True, FILE, Limits(seconds, 1))
+    error = workers._describe_death(None, True, Limits(seconds, 1))
+    error.add_file(FILE)
     assert str(error) == TOO_LONG.format(words)
 
 
 @pytest.mark.parametrize(
     ("answer", "sentence"),
     [
-        ({"kind": "refusal", "text": "A whole\x07\x1b sentence."}, "A whole  sentence."),
+        (
+            {"kind": "refusal", "text": "A whole\x07\x1b sentence."},
+            "'some file': A whole  sentence.",
+        ),
         ({"kind": "memory", "text": "no matter"}, GREEDY),
         (
             {"kind": "fault", "text": "  two \n words. .."},
@@ -145,7 +150,8 @@ def test_seconds_are_counted_in_words(seconds, words):
     ],
 )
 def test_each_answer_that_is_none_has_its_sentence(answer, sentence):
-    error = workers._describe_answer(answer, FILE, LIMITS)
+    error = workers._describe_answer(answer, LIMITS)
+    error.add_file(FILE)
     assert str(error) == sentence
     assert error.file == FILE
 

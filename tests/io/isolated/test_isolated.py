@@ -68,7 +68,7 @@ def test_a_sound_child_is_used_again_and_another_is_not():
     first = run("process").value[0]
     assert first != os.getpid()
     assert run("process").value[0] == first
-    assert refused("refuse", text="No.") == "No."
+    assert refused("refuse", text="No.") == "'some file': No."
     assert run("process").value[0] == first
     refused("fail", text="broken")
     assert run("process").value[0] == first
