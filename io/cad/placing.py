@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...base.errors import ReadError
+from ...base.sentences import FILE
 from ...tin.topology import find_offsets
 from ..reprojection.placement import place
 
@@ -64,9 +65,7 @@ def place_rows(
         together[start : start + len(one), : one.shape[1]] = one
     if not np.isfinite(together).all():
         row = together[np.argmin(np.isfinite(together).all(axis=1))]
-        raise ReadError(
-            f"'{path}' has coordinates that are not finite (first: {row.tolist()}).", path=path
-        )
+        raise ReadError(f"{FILE} has coordinates that are not finite (first: {row.tolist()}).")
     placed = place(
         measures.apply(together),
         source=measures.source,

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError
+from ...base.sentences import FILE
 from ...tin.screening.area_of_use import AreaOfUse
 from ..reprojection.placement import settle_unit
 
@@ -110,7 +111,7 @@ def choose_measures(
     measures = Measures(source, _choose_elevation_unit(stated, declared, unit, path))
     along = None if source is None or source.is_geographic else source.horizontal_unit
     if along is not None and along.metres is not None:
-        _require_agreement(stated, declared, along, source, path)
+        _require_agreement(stated, declared, along, source)
         if unit is not None and unit.metres is not None and unit != along:
             measures = measures.tell(
                 f"Coordinates were converted from {unit.name} to {along.name}, the unit of the "
@@ -143,31 +144,27 @@ def _choose_elevation_unit(
     different = stated.elevation_unit not in (None, stated.unit)
     if different and declared.unit is None and stated.elevation_unit and stated.unit:
         raise ReadError(
-            f"'{path}' gives {stated.unit.name} for lengths and {stated.elevation_unit.name} for "
+            f"{FILE} gives {stated.unit.name} for lengths and {stated.elevation_unit.name} for "
             "elevations, which may stand for those of attributes only: declare the unit of the "
             f"elevations, `z_unit='{stated.unit.name}'` or "
-            f"`z_unit='{stated.elevation_unit.name}'`.",
-            path=path,
+            f"`z_unit='{stated.elevation_unit.name}'`."
         )
     return unit
 
 
-def _require_agreement(
-    stated: Stated, declared: Declared, along: Unit, source: CRS | None, path: Path
-) -> None:
+def _require_agreement(stated: Stated, declared: Declared, along: Unit, source: CRS | None) -> None:
     """Refuse a file whose unit is not that of its CRS, until the caller tells which is right."""
     told, label = stated.unit, "" if source is None else source.label
     if declared.unit is not None:
         if told is not None and declared.unit not in (told, along):
-            allowed = f"{told.name}, as '{path}' says, or {along.name}, the unit of {label}"
+            allowed = f"{told.name}, as {FILE} says, or {along.name}, the unit of {label}"
             raise OptionError("unit", declared.unit.name, allowed)
         return
     if told is not None and told != along:
         raise ReadError(
-            f"'{path}': {stated.what} says that coordinates are in {told.name}, and {label} "
+            f"{stated.what} says that coordinates are in {told.name}, and {label} "
             f"measures in {along.name}: tell which is right, `unit='{told.name}'` or "
-            f"`unit='{along.name}'`.",
-            path=path,
+            f"`unit='{along.name}'`."
         )
 
 

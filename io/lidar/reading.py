@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,7 +12,7 @@ from ...base.crs import CRS, Unit
 from ...base.errors import CrsError, OptionError, ReadError
 from ...base.sentences import coordinate, counted, inflect
 from ...tin import Bounds, Survey
-from ..isolated import choose_limits, stream_isolated
+from ..isolated import choose_limits, start_early, stream_isolated
 from ..isolated.free_memory import measure_free_memory
 from ..reprojection.placement import Placed, place, settle_unit
 from .crs import Reference, find_reference
@@ -38,6 +37,7 @@ if TYPE_CHECKING:
 
 __all__ = ["read"]
 
+_CHILD = f"{__package__}.las_child"
 _BYTES_PER_POINT = 24
 _MOST_POINTS = 2**31 - 1
 """The vertices of a TIN are numbered with 32 bits."""
@@ -114,6 +114,7 @@ def read(
     attributes that are kept without asking, and some 100 MB.
     """
     optional.require("laspy", "Reading lidar")
+    start_early(_CHILD)
     selection = parse_selection(classes, returns, window, resolution, every, withheld, attributes)
     headers = [parse_header(one) for one in _list_files(path)]
     _require_levels(headers, selection)
@@ -344,12 +345,11 @@ def _read_tile(
     """Add the points of a file that are wanted, in the CRS and the unit that are wanted."""
     header, start = tile.header, gathered.count
     with stream_isolated(
-        f"{__package__}.las_child:read_points",
-        {"path": os.path.abspath(header.path), "shown": str(header.path),  # noqa: PTH100
-         "wanted": selection.to_request()},
+        f"{_CHILD}:read_points",
+        {"path": str(header.path.absolute()), "wanted": selection.to_request()},
         path=header.path,
         limits=choose_limits(header.size),
-    ) as parts:  # fmt: skip
+    ) as parts:
         for part in parts:
             gathered.tally.add(part.value, part.arrays["classes"])
             gathered.append(part.arrays, header)

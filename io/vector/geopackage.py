@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ...base.atomic import folder_beside
 from ...base.checks import as_flag
 from ...base.errors import OptionError, WriteError
+from ...base.sentences import FILE
 from ..mesh.geopackage.containers import MARK, Placing, adding_layers
 from .ogr import describe, write_layer
 
@@ -59,7 +60,7 @@ def write(
     elevations, and notes, are metadata of the layer, a unit that is not known ``"unknown"``. NaN
     and missing texts are NULL.
     """
-    _require_free(features, path)
+    _require_free(features)
     placing = Placing(as_flag("overwrite", overwrite), as_flag("append", append))
     if placing.append and placing.overwrite:
         raise OptionError("append", append, "False where overwrite is True")
@@ -84,13 +85,12 @@ def _as_layer(layer: Any) -> str:
     return layer
 
 
-def _require_free(features: Features, path: Path) -> None:
+def _require_free(features: Features) -> None:
     """Refuse names that are taken."""
     names = [name.casefold() for name in features.columns]
     for name in features.columns:
         if name.casefold() in _OWN_COLUMNS or names.count(name.casefold()) > 1:
             why = "GeoPackage's own" if name.casefold() in _OWN_COLUMNS else "there twice"
             raise WriteError(
-                f"Cannot write '{path}': a column '{name}' is {why}, capitals aside: rename it.",
-                path=path,
+                f"Cannot write {FILE}: a column '{name}' is {why}, capitals aside: rename it."
             )

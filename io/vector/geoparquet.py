@@ -15,6 +15,7 @@ import numpy as np
 from ...base import optional
 from ...base.atomic import replacing_path
 from ...base.errors import WriteError
+from ...base.sentences import FILE
 from .ogr import describe, encode_geometries
 from .well_known_binary import encode_equal_shapes
 
@@ -47,12 +48,11 @@ def write(features: Features, path: Path) -> None:
     Coordinates and numbers are the same. The CRS is PROJJSON, ``null`` if it is not known; units
     and notes are metadata of the file.
     """
-    pyarrow = optional.load("pyarrow", f"Writing '{path}'")
-    parquet = optional.load("pyarrow.parquet", f"Writing '{path}'")
+    pyarrow = optional.load("pyarrow", f"Writing {FILE}")
+    parquet = optional.load("pyarrow.parquet", f"Writing {FILE}")
     if _GEOMETRY in features.columns:
         raise WriteError(
-            f"Cannot write '{path}': a column '{_GEOMETRY}' is GeoParquet's own: rename it.",
-            path=path,
+            f"Cannot write {FILE}: a column '{_GEOMETRY}' is GeoParquet's own: rename it."
         )
     columns = {name: _make_column(pyarrow, values) for name, values in features.columns.items()}
     columns[_GEOMETRY] = _encode_column(pyarrow, features)

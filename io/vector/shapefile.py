@@ -8,7 +8,7 @@ import numpy as np
 
 from ...base.errors import WriteError
 from ...base.notes import warn
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from ..registry.side_files import replacing_data_set
 from .ogr import write_layer
 from .well_known_binary import encode_tin
@@ -71,9 +71,9 @@ def write_multipatch(features: Features, path: Path) -> None:
 
 
 def _write(features: Features, path: Path, **how: Any) -> None:
-    _require_room(features, path)
+    _require_room(features)
     names = short_names(features.columns)
-    _warn_of_losses(features, names, path)
+    _warn_of_losses(features, names)
     with replacing_data_set(path, "shapefile") as new:
         write_layer(
             features,
@@ -112,7 +112,7 @@ def _cut(name: str, most: int) -> str:
     return name.encode()[:most].decode(errors="ignore")
 
 
-def _warn_of_losses(features: Features, names: list[str], path: Path) -> None:
+def _warn_of_losses(features: Features, names: list[str]) -> None:
     renamed = [
         f"'{name}' is '{short}'"
         for name, short in zip(features.columns, names, strict=True)
@@ -127,43 +127,40 @@ def _warn_of_losses(features: Features, names: list[str], path: Path) -> None:
     if features.notes:
         lost.append("notes have no place")
     if lost:
-        warn(f"'{path}' is a shapefile: {', and '.join(lost)}.")
+        warn(f"{FILE} is a shapefile: {', and '.join(lost)}.")
 
 
-def _require_room(features: Features, path: Path) -> None:
+def _require_room(features: Features) -> None:
     """Refuse what a shapefile would cut, round away or leave out."""
     size = features.coordinates.nbytes + 100 * len(features)
     if size > _MOST_BYTES:
-        raise _describe_excess(
-            path, f"{counted(len(features.coordinates), 'point')} take {size:,} bytes"
-        )
+        raise _describe_excess(f"{counted(len(features.coordinates), 'point')} take {size:,} bytes")
     if len(features.columns) > _MOST_COLUMNS:
-        raise _describe_excess(path, f"{counted(len(features.columns), 'column')} are there")
+        raise _describe_excess(f"{counted(len(features.columns), 'column')} are there")
     if np.isnan(features.coordinates).any():
-        raise _describe_excess(path, "some elevations are not known")
+        raise _describe_excess("some elevations are not known")
     for name, values in features.columns.items():
-        _require_values(name, values, path)
+        _require_values(name, values)
 
 
-def _require_values(name: str, values: AnyArray, path: Path) -> None:
+def _require_values(name: str, values: AnyArray) -> None:
     if values.dtype.kind in "OU":
         longest = max((len(value.encode()) for value in values if value is not None), default=0)
         if longest > _TEXT_BYTES:
-            raise _describe_excess(path, f"column '{name}' has a text of {longest} bytes")
+            raise _describe_excess(f"column '{name}' has a text of {longest} bytes")
         return
     numbers = values[np.isfinite(values)] if values.dtype.kind == "f" else values
     most = _LARGEST if values.dtype.kind == "f" else _LARGEST_WHOLE
     is_large = (numbers >= most) | (numbers <= -most) if values.dtype.kind != "b" else np.False_
     if np.isinf(values).any() if values.dtype.kind == "f" else False:
-        raise _describe_excess(path, f"column '{name}' has a number that is not finite")
+        raise _describe_excess(f"column '{name}' has a number that is not finite")
     if np.any(is_large):
-        raise _describe_excess(path, f"column '{name}' has the number {numbers[is_large][0]}")
+        raise _describe_excess(f"column '{name}' has the number {numbers[is_large][0]}")
 
 
-def _describe_excess(path: Path, what: str) -> WriteError:
+def _describe_excess(what: str) -> WriteError:
     return WriteError(
-        f"Cannot write '{path}': {what}, and a shapefile holds 2 GiB, 255 columns, texts of 254 "
+        f"Cannot write {FILE}: {what}, and a shapefile holds 2 GiB, 255 columns, texts of 254 "
         "bytes, numbers below 1e22 (whole ones 1e18) and elevations that are known; a GeoPackage "
-        "(.gpkg) holds them.",
-        path=path,
+        "(.gpkg) holds them."
     )

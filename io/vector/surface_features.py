@@ -18,23 +18,18 @@ from .geojson.writing import gather_edge_flags, group_rings
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from ...base.arrays import AnyArray, Float64Array
 
 __all__ = ["make_features", "make_whole_surface"]
 
 
-def make_features(
-    surface: TIN | Survey | Features, path: Path, kind: FeatureKind | None
-) -> Features:
+def make_features(surface: TIN | Survey | Features, kind: FeatureKind | None) -> Features:
     """Return what is to be written as features.
 
     Parameters
     ----------
     surface : TIN, Survey or Features
-    path : Path
-        For sentences.
     kind : {"triangles", "points", "edges", "lines", "hull"}, optional
         Default triangles, of a survey points.
 
@@ -52,7 +47,7 @@ def make_features(
                 f"Invalid kind '{kind}': features are written as they are, without one."
             )
         return surface
-    writable = require_writable(surface, path)
+    writable = require_writable(surface)
     if kind is not None:
         choice("kind", kind, FeatureKind)
     if isinstance(writable, Survey):

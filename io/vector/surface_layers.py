@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ...base.errors import FormatError
 from ...base.results import Features
+from ...base.sentences import FILE
 from ...tin import Survey
 from ..mesh.common import require_tin
 from . import flatgeobuf, geopackage, shapefile
@@ -49,7 +50,7 @@ def write_geopackage(
     overwrite : bool
         Replace the layer also if another program wrote or changed it.
     """
-    features = make_features(surface, path, None)
+    features = make_features(surface, None)
     geopackage.write(features, path, layer=layer, append=append, overwrite=overwrite)
 
 
@@ -62,7 +63,7 @@ def write_flatgeobuf(surface: Writable, path: Path, *, kind: FeatureKind | None 
         Of a TIN; default triangles.
     """
     is_survey = isinstance(surface, Survey)  # whose rows keep their order
-    flatgeobuf.write(make_features(surface, path, kind), path, has_index=not is_survey)
+    flatgeobuf.write(make_features(surface, kind), path, has_index=not is_survey)
 
 
 def write_shapefile(
@@ -83,13 +84,13 @@ def write_shapefile(
         If a MultiPatch is asked for of something else than the triangles of a TIN.
     """
     if not multipatch:
-        shapefile.write(make_features(surface, path, kind), path)
+        shapefile.write(make_features(surface, kind), path)
     elif kind in (None, "triangles") and not isinstance(surface, Features):
-        tin = require_tin(surface, path, format_name="a MultiPatch")
+        tin = require_tin(surface, format_name="a MultiPatch")
         shapefile.write_multipatch(make_whole_surface(tin), path)
     else:
         raise FormatError(
-            f"Cannot write '{path}': a MultiPatch holds the triangles of a TIN, no "
+            f"Cannot write {FILE}: a MultiPatch holds the triangles of a TIN, no "
             f"{'features' if isinstance(surface, Features) else kind}."
         )
 
@@ -101,7 +102,7 @@ def write_geoparquet(surface: Writable, path: Path, *, kind: FeatureKind | None 
     """
     from . import geoparquet
 
-    geoparquet.write(make_features(surface, path, kind), path)
+    geoparquet.write(make_features(surface, kind), path)
 
 
 def write_geojson_sequence(
@@ -115,4 +116,4 @@ def write_geojson_sequence(
     """
     from .geojson.features import write_feature_lines
 
-    write_feature_lines(make_features(surface, path, kind), path, progress=progress)
+    write_feature_lines(make_features(surface, kind), path, progress=progress)

@@ -13,8 +13,6 @@ from ...mesh.common import cut_into_fans
 from ..surfaces import Mesh
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ....base.arrays import BoolArray, Float64Array, Int64Array
 
 __all__ = ["make_mesh"]
@@ -23,14 +21,13 @@ _NO_AREA = 1e-12
 """Share of the squared length of a triangle that is no area, but the rounding of its corners."""
 
 
-def make_mesh(faces: Float64Array, path: Path) -> Mesh:
+def make_mesh(faces: Float64Array) -> Mesh:
     """Return points in the order in which faces name them, and triangles.
 
     Parameters
     ----------
     faces : (m, 4, 3) float64 array
         Corners; a triangle repeats one.
-    path : Path
 
     Raises
     ------
@@ -44,14 +41,14 @@ def make_mesh(faces: Float64Array, path: Path) -> Mesh:
     counts = is_new.sum(axis=1)
     kept = counts > 2
     if not kept.any():
-        raise ReadError(f"'{path}': none of its faces has three corners.", path=path)
+        raise ReadError("none of its faces has three corners.")
     notes: list[str] = []
     if not kept.all():
         lines = counted(int((~kept).sum()), "face")
         notes.append(f"Left out: {lines} with fewer than three different corners.")
     used = corners[kept][is_new[kept]]
     quads = corners[kept & (counts == 4)]
-    triangles = cut_into_fans(used, find_offsets(counts[kept]), points, path).triangles
+    triangles = cut_into_fans(used, find_offsets(counts[kept]), points).triangles
     with np.errstate(over="ignore", invalid="ignore"):  # what is too large is refused later
         if len(quads):
             notes.append(_describe_quads(points[quads]))

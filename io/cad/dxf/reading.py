@@ -10,7 +10,7 @@ import numpy as np
 
 from ....base.errors import LinesError, ReadError, choice
 from ....base.policies import BreaklineKind, DrawingContent, FacePolicy, LineKind
-from ....base.sentences import counted
+from ....base.sentences import FILE, counted
 from ....tin import Breakline, Survey, Water
 from ....tin.constraints.breaklines import as_ring
 from ....tin.screening.nodata import describe_elevations
@@ -108,10 +108,9 @@ def _choose_content(drawing: Drawing) -> str:
     n_other = len(together) - len(np.unique(corners, axis=0))
     if n_other:
         raise ReadError(
-            f"'{drawing.path}' has {counted(len(faces), 'face')} and {counted(n_other, 'point')} "
+            f"{FILE} has {counted(len(faces), 'face')} and {counted(n_other, 'point')} "
             "that are no corners of them: choose `content='surface'` or `content='source'`, or "
-            "name layers by the option `layer`.",
-            path=drawing.path,
+            "name layers by the option `layer`."
         )
     return "surface"
 
@@ -133,14 +132,11 @@ def _choose_measures(drawing: Drawing, declared: Declared) -> Measures:
 
 
 def _read_tin(drawing: Drawing, measures: Measures, declared: Declared, policy: FacePolicy) -> TIN:
-    require_own_crs(measures.source, declared.crs, drawing.path)
+    require_own_crs(measures.source, declared.crs)
     faces = drawing.arrays["faces"]
     if len(faces) == 0:
-        raise ReadError(
-            f"'{drawing.path}' has no faces (3DFACE, polyface or MESH) in the layers read.",
-            path=drawing.path,
-        )
-    mesh = make_mesh(measures.apply(faces.reshape(-1, 3)).reshape(-1, 4, 3), drawing.path)
+        raise ReadError(f"{FILE} has no faces (3DFACE, polyface or MESH) in the layers read.")
+    mesh = make_mesh(measures.apply(faces.reshape(-1, 3)).reshape(-1, 4, 3))
     mesh = merge_equal_points(mesh)
     notes = [*measures.notes, *mesh.notes, *drawing.describe_left_out()]
     return make_tin_with_lines(
@@ -188,9 +184,8 @@ def _read_survey(
     lines = drawing.lines if with_lines else []
     if not len(points) and not lines:
         raise ReadError(
-            f"'{drawing.path}' has {'neither points nor lines' if with_lines else 'no points'} in "
-            "the layers read.",
-            path=drawing.path,
+            f"{FILE} has {'neither points nor lines' if with_lines else 'no points'} in "
+            "the layers read."
         )
     told = _name_lines(drawing) if with_lines else []
     n_draped = sum(
@@ -220,7 +215,7 @@ def _read_survey(
     try:
         return _add_lines(survey, placing.rows[1:], told)
     except LinesError as error:
-        raise ReadError(f"'{drawing.path}': {error}", path=drawing.path) from error
+        raise ReadError(f"{error}") from error
 
 
 def _add_lines(

@@ -16,6 +16,7 @@ from ....base.crs import CRS
 from ....base.errors import FormatError, OptionError
 from ....base.notes import warn
 from ....base.results import Features
+from ....base.sentences import FILE
 from ....tin import TIN, Surface, Survey
 from ...registry.losses import select_attributes, tell_unknown_elevations
 from ..lengths import choose_length_unit
@@ -91,12 +92,12 @@ def write(
         left out, or line breaks in texts.
     """
     if not isinstance(obj, Surface | Survey | Features):
-        raise FormatError(f"Cannot write '{path}': a {type(obj).__name__} is no surface or survey.")
+        raise FormatError(f"Cannot write {FILE}: a {type(obj).__name__} is no surface or survey.")
     if not isinstance(surface, str) or not surface.strip():
         raise OptionError("surface", surface, "the name of a surface")
-    _require_lines(obj, path)
+    _require_lines(obj)
     along, factor = choose_length_unit(
-        obj, unit, path, is_known=lambda one: name_unit(one) is not None, format_name="LandXML"
+        obj, unit, is_known=lambda one: name_unit(one) is not None, format_name="LandXML"
     )
     texts = _select_texts(obj, path)
     with replacing(path, binary=False) as file:
@@ -137,9 +138,9 @@ def _scale(points: Float64Array, factor: float) -> Float64Array:
     return points if factor == 1.0 else points * [1.0, 1.0, factor]
 
 
-def _require_lines(obj: TIN | Survey | Features, path: Path) -> None:
+def _require_lines(obj: TIN | Survey | Features) -> None:
     if isinstance(obj, Features) and obj.kind == "polygons":
-        raise FormatError(f"Cannot write '{path}': LandXML holds points and lines, not polygons.")
+        raise FormatError(f"Cannot write {FILE}: LandXML holds points and lines, not polygons.")
     if isinstance(obj, Features) and obj.kind == "points":
         _require_elevations(obj)
 
@@ -276,7 +277,7 @@ def _select_texts(obj: TIN | Survey | Features, path: Path) -> dict[str, list[st
     numbers = texts.get("number", [])
     if not all(numbers) or len(set(numbers)) < len(numbers):
         warn(
-            f"'{path}': points are numbered 1, 2, 3 ... anew, as numbers are missing or stand "
+            f"{FILE}: points are numbered 1, 2, 3 ... anew, as numbers are missing or stand "
             "twice, which LandXML does not allow."
         )
         del texts["number"]

@@ -12,7 +12,7 @@ from ....base.atomic import replacing
 from ....base.errors import FormatError, WriteError, choice
 from ....base.policies import FeatureKind
 from ....base.results import Features
-from ....base.sentences import counted
+from ....base.sentences import FILE, counted
 from ....terrain.relief.gradients import aspect, measure_areas, measure_ring_area, slope
 from ....tin import Survey
 from ...mesh.common import require_writable
@@ -101,11 +101,11 @@ def write(
         _require_no_kind(kind)
         write_features(surface, path, projected=projected, progress=progress)
         return
-    surface = require_writable(surface, path)
+    surface = require_writable(surface)
     chosen = _require_kind(surface, kind)
     if chosen == "lines" and not isinstance(surface, Survey):
         require_lines(surface)
-    _require_finite_points(surface.points, path)
+    _require_finite_points(surface.points)
     place = keep_in_crs if projected else project_to_wgs84
     places = place(surface)
     if isinstance(surface, Survey) or chosen == "points":
@@ -114,7 +114,7 @@ def write(
     else:
         corners = places.xyz[surface.triangles, 0]
         if places.crs_member is None:
-            require_one_piece(corners, path)
+            require_one_piece(corners)
         used = places.xyz[_find_used_vertices(surface, chosen)]
         total = len(surface.triangles)
         features = _SURFACE_FEATURES[chosen](surface, places)
@@ -146,15 +146,14 @@ def _require_kind(surface: TIN | Survey, kind: str | None) -> str:
     return kind
 
 
-def _require_finite_points(points: Float64Array, path: Path) -> None:
+def _require_finite_points(points: Float64Array) -> None:
     wrong = ~np.isfinite(points).all(axis=1)
     if wrong.any():
         row, count = int(np.argmax(wrong)), int(wrong.sum())
         raise WriteError(
-            f"Cannot write '{path}': {counted(count, 'point')} "
+            f"Cannot write {FILE}: {counted(count, 'point')} "
             f"{'is' if count == 1 else 'are'} not finite (first: point "
-            f"{row}, {points[row].tolist()}), and JSON has only finite numbers.",
-            path=path,
+            f"{row}, {points[row].tolist()}), and JSON has only finite numbers."
         )
 
 
