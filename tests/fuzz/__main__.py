@@ -85,7 +85,7 @@ def run_all(campaigns: list[Campaign], options: Options) -> int:
 def replay(campaigns: dict[str, Campaign], find: dict[str, Any], *, has_limits: bool) -> int:
     child = Child(campaigns[find["campaign"]], find["seed"], has_limits=has_limits)
     try:
-        outcome = child.ask("case")
+        outcome = child.ask("case", find["case"])
     finally:
         child.stop()
     print(f"{outcome.kind}: {outcome.where}\n{outcome.text}" if outcome.kind else outcome.label)

@@ -140,7 +140,7 @@ def _recurs(campaign: Campaign, options: Options, number: int) -> bool:
     """Return whether a case hangs again, alone: a busy machine makes cases slow, too."""
     child = Child(campaign, options.seed, has_limits=options.has_limits)
     try:
-        return child.ask("number").kind is not None
+        return child.ask("number", number).kind is not None
     finally:
         child.stop()
 
@@ -149,7 +149,7 @@ def keep_find(campaign: Campaign, options: Options, number: int, outcome: Outcom
     """Make a find small, write it, and print how to see it again."""
     child = Child(campaign, options.seed, has_limits=options.has_limits)
     try:
-        case = child.ask("make")
+        case = child.ask("make", number)
         is_made = not isinstance(case, Outcome)
         small = _minimised(child, case, outcome, options.shrink_seconds) if is_made else None
     finally:
@@ -175,7 +175,7 @@ def keep_find(campaign: Campaign, options: Options, number: int, outcome: Outcom
 
 def _minimised(child: Child, case: Case, outcome: Outcome, seconds: float) -> Case:
     def is_same(candidate: Case) -> bool:
-        other = child.ask("case")
+        other = child.ask("case", candidate)
         return bool(other.kind == outcome.kind and other.where == outcome.where)
 
     if not is_same(case):

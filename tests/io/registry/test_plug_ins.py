@@ -152,9 +152,9 @@ def test_two_claims_to_a_suffix_are_refused_where_it_is_used(install, tmp_path):
         "is claimed by 2 formats: mine (ground-plus 1.2), twin (twins 3.0); the option `format`"
     )
     survey = ts.Survey(points=SQUARE)
-    assert claimed in fault(lambda: ts.read(path))
-    assert claimed in fault(lambda: ts.write(survey, path))
-    assert claimed in fault(lambda: ts.find_format(".mine"))
+    assert claimed in fault(ts.FormatError, lambda: ts.read(path))
+    assert claimed in fault(ts.FormatError, lambda: ts.write(survey, path))
+    assert claimed in fault(ts.FormatError, lambda: ts.find_format(".mine"))
     assert len(ts.read(path, format="twin")) == 1
     assert ts.write(survey, path, format="twin").read_text() == "MINE"
 
@@ -163,14 +163,16 @@ def test_a_suffix_may_be_shared_by_what_holds_other_things(install, tmp_path):
     table = replace(MINE, name="twin", read=None, writes=("Table",))
     install(Entry("a", replace(MINE, writes=("TIN",))), Entry("b", table))
     assert ts.write(ts.triangulate(SQUARE), tmp_path / "a.mine").exists()
-    assert "claimed" not in fault(lambda: ts.write(ts.Survey(points=SQUARE), tmp_path / "a.mine"))
+    assert "claimed" not in fault(
+        ts.FormatError, lambda: ts.write(ts.Survey(points=SQUARE), tmp_path / "a.mine")
+    )
 
 
 def test_built_in_format_is_not_replaced(install, tmp_path):
     install(Entry("a", replace(MINE, suffixes=(".ply",), sniff=None)))
     tin = ts.triangulate(SQUARE)
     claimed = "is claimed by 2 formats: ply (tinsmith), mine (ground-plus 1.2)"
-    assert claimed in fault(lambda: ts.write(tin, tmp_path / "a.ply"))
+    assert claimed in fault(ts.FormatError, lambda: ts.write(tin, tmp_path / "a.ply"))
     path = ts.write(tin, tmp_path / "a.ply", format="ply")
     assert isinstance(ts.read(path), ts.TIN)  # by its content
     assert len(ts.read(path, format="mine")) == 1
@@ -186,7 +188,7 @@ def test_content_of_a_built_in_format_is_read_by_it_and_told(install, tmp_path):
 def test_two_plug_ins_that_know_one_content_are_refused(install, tmp_path):
     install(Entry("a", MINE), Entry("b", replace(MINE, name="twin"), "twins", "3.0"))
     (tmp_path / "a.csv").write_bytes(b"MINE")
-    message = fault(lambda: ts.read(tmp_path / "a.csv"))
+    message = fault(ts.FormatError, lambda: ts.read(tmp_path / "a.csv"))
     assert "mine (ground-plus 1.2), twin (twins 3.0)" in message
 
 
@@ -213,8 +215,8 @@ def test_folder_of_a_format(install, tmp_path):
         (tmp_path / folder / "one").touch()
     assert ts.read(tmp_path / "tiles").points.max() == 1
     assert ts.read(tmp_path / "other", format="mine").points.max() == 1
-    assert "is a folder" in fault(lambda: ts.read(tmp_path / "other"))
-    assert "is a folder" in fault(lambda: ts.read(tmp_path / "tiles", format="ply"))
+    assert "is a folder" in fault(ts.ReadError, lambda: ts.read(tmp_path / "other"))
+    assert "is a folder" in fault(ts.ReadError, lambda: ts.read(tmp_path / "tiles", format="ply"))
 
 
 @pytest.mark.parametrize(
@@ -231,7 +233,7 @@ def test_folder_of_a_format(install, tmp_path):
 def test_reader_that_fails_is_named(install, tmp_path, reader, reason):
     install(Entry("a", replace(MINE, read=reader)))
     (tmp_path / "a.mine").write_bytes(b"MINE")
-    message = fault(lambda: ts.read(tmp_path / "a.mine"))
+    message = fault(ts.TinsmithError, lambda: ts.read(tmp_path / "a.mine"))
     assert "mine, of the plug-in ground-plus 1.2" in message
     assert reason in message
 
@@ -239,7 +241,7 @@ def test_reader_that_fails_is_named(install, tmp_path, reader, reason):
 def test_writer_that_fails_is_named(install, tmp_path):
     install(Entry("a", replace(MINE, write=name(write_and_fail))))
     write = lambda: ts.write(ts.triangulate(SQUARE), tmp_path / "a.mine")  # noqa: E731
-    message = fault(write)
+    message = fault(ts.WriteError, write)
     assert "mine, of the plug-in ground-plus 1.2, fails (RuntimeError: no ink)" in message
 
 

@@ -15,6 +15,7 @@ import tinsmith as ts
 from tinsmith.base.atomic import replacing, replacing_path
 from tinsmith.io import (
     FormatError,
+    ReadError,
     WriteError,
     find_format,
     known_formats,
@@ -83,7 +84,7 @@ def test_content_decides_before_the_suffix(name, head, expected):
 def test_foreign_content_is_named(tmp_path, content, kind):
     path = tmp_path / "points.csv"
     path.write_bytes(content)
-    assert kind in fault(lambda: read(path))
+    assert kind in fault(FormatError, lambda: read(path))
 
 
 def test_table_with_a_rasters_suffix_is_read(tmp_path):
@@ -107,13 +108,13 @@ def test_raster_with_a_tables_suffix_is_read(tmp_path):
 def test_suffix_of_a_table_on_binary_data(tmp_path):
     path = tmp_path / "points.csv"
     path.write_bytes(b"\x07\x00\x01\x02" * 300)
-    assert "binary" in fault(lambda: read(path))
+    assert "binary" in fault(ReadError, lambda: read(path))
 
 
 def test_unknown_suffix_names_the_known_ones(tmp_path):
     for name, word in (("points.abc", "'.abc'"), ("points", "no suffix")):
         (tmp_path / name).write_text(SURVEY)
-        message = fault(lambda name=name: read(tmp_path / name))
+        message = fault(FormatError, lambda name=name: read(tmp_path / name))
         assert word in message
         assert ".csv" in message
         assert ".tif" in message
@@ -124,7 +125,7 @@ def test_unknown_suffix_names_the_known_ones(tmp_path):
 def test_unknown_binary_file(tmp_path):
     path = tmp_path / "data.bin"
     path.write_bytes(bytes(range(256)) * 20)
-    assert "'.bin'" in fault(lambda: read(path))
+    assert "'.bin'" in fault(FormatError, lambda: read(path))
 
 
 # ------------------------------------------------------------------ files that cannot be read
@@ -132,11 +133,11 @@ def test_unknown_binary_file(tmp_path):
 
 def test_missing_empty_and_folder(tmp_path):
     (tmp_path / "empty.csv").touch()
-    assert "no file" in fault(lambda: read(tmp_path / "missing.csv"))
-    assert "folder" in fault(lambda: read(tmp_path))
-    assert "empty" in fault(lambda: read(tmp_path / "empty.csv"))
-    assert "no file" in fault(lambda: read(str(tmp_path / "missing.csv")))
-    fault(lambda: read("a\x00b.csv"))
+    assert "no file" in fault(ReadError, lambda: read(tmp_path / "missing.csv"))
+    assert "folder" in fault(ReadError, lambda: read(tmp_path))
+    assert "empty" in fault(ReadError, lambda: read(tmp_path / "empty.csv"))
+    assert "no file" in fault(ReadError, lambda: read(str(tmp_path / "missing.csv")))
+    fault(ReadError, lambda: read("a\x00b.csv"))
 
 
 def test_file_without_permission(tmp_path, monkeypatch):
@@ -147,22 +148,22 @@ def test_file_without_permission(tmp_path, monkeypatch):
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(Path, "open", refuse)
-    assert "permission" in fault(lambda: read(path))
+    assert "permission" in fault(ReadError, lambda: read(path))
 
 
 def test_format_by_name_prevails(tmp_path):
     path = tmp_path / "points.csv"
     path.write_text(SURVEY)
-    assert "'abc'" in fault(lambda: read(path, format="abc"))
-    fault(lambda: read(path, format="ply"))
+    assert "'abc'" in fault(FormatError, lambda: read(path, format="abc"))
+    fault(ReadError, lambda: read(path, format="ply"))
     pytest.importorskip("rasterio")
-    fault(lambda: read(path, format="raster"))
+    fault(ReadError, lambda: read(path, format="raster"))
 
 
 def test_format_that_is_only_written(tmp_path):
     path = tmp_path / "a.tif"
     path.write_bytes(b"II*\0")
-    message = fault(lambda: read(path, format="cog"))
+    message = fault(FormatError, lambda: read(path, format="cog"))
     assert "written, not read" in message
     assert ".csv" in message
 
@@ -170,7 +171,7 @@ def test_format_that_is_only_written(tmp_path):
 def test_unknown_option_names_those_there_are(tmp_path):
     path = tmp_path / "points.csv"
     path.write_text(SURVEY)
-    message = fault(lambda: read(path, bnad=1))
+    message = fault(FormatError, lambda: read(path, bnad=1))
     assert message.startswith("Unknown option bnad to read")
     assert "columns, delimiter, decimal" in message
     with pytest.raises(FormatError) as caught:
@@ -180,9 +181,11 @@ def test_unknown_option_names_those_there_are(tmp_path):
 
 def test_writers_are_found_by_suffix(tmp_path):
     survey = ts.Survey(points=np.eye(3))
-    assert "'.abc'" in fault(lambda: write(survey, tmp_path / "a.abc"))
-    assert "read, not written" in fault(lambda: write(survey, tmp_path / "a.hgt"))
-    assert "holds a Raster, not a Survey" in fault(lambda: write(survey, tmp_path / "a.tif"))
+    assert "'.abc'" in fault(FormatError, lambda: write(survey, tmp_path / "a.abc"))
+    assert "read, not written" in fault(FormatError, lambda: write(survey, tmp_path / "a.hgt"))
+    assert "holds a Raster, not a Survey" in fault(
+        FormatError, lambda: write(survey, tmp_path / "a.tif")
+    )
     assert write(survey, str(tmp_path / "a.CSV")) == tmp_path / "a.CSV"
     assert write(survey, tmp_path / "b.abc", format="csv").exists()
 
@@ -249,7 +252,7 @@ def test_full_disk_is_a_sentence(tmp_path):
             with beside.open("w") as file:
                 file.write("x")
 
-    assert "No space left" in fault(write_to_full)
+    assert "No space left" in fault(WriteError, write_to_full)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -262,7 +265,7 @@ def test_a_full_disk_is_told_whatever_a_library_says(tmp_path, monkeypatch):
             beside.write_text("half")
             raise RuntimeError("NetCDF: HDF error")
 
-    assert "no space is left on the disk" in fault(fail)
+    assert "no space is left on the disk" in fault(WriteError, fail)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -271,14 +274,14 @@ def test_places_that_cannot_be_written(tmp_path, monkeypatch):
         with replacing(path):
             pass
 
-    assert "no folder" in fault(lambda: attempt(tmp_path / "none" / "a.txt"))
-    assert "folder" in fault(lambda: attempt(tmp_path))
-    assert "device" in fault(lambda: attempt(Path(os.devnull)))
+    assert "no folder" in fault(WriteError, lambda: attempt(tmp_path / "none" / "a.txt"))
+    assert "folder" in fault(WriteError, lambda: attempt(tmp_path))
+    assert "device" in fault(WriteError, lambda: attempt(Path(os.devnull)))
     assert stat.S_ISCHR(Path(os.devnull).stat().st_mode)
     protected = tmp_path / "protected.txt"
     protected.write_text("old")
     monkeypatch.setattr(os, "access", lambda *_: False)
-    assert "read-only" in fault(lambda: attempt(protected))
+    assert "read-only" in fault(WriteError, lambda: attempt(protected))
     assert protected.read_text() == "old"
 
 
