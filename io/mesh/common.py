@@ -42,6 +42,7 @@ __all__ = [
     "flag_edges",
     "format_crs",
     "format_unit",
+    "join_places",
     "make_survey",
     "make_tin",
     "measure_rounding",
@@ -469,6 +470,21 @@ def require_vertices(corners: Int64Array, offsets: Int64Array, n_vertices: int) 
             f"face {row} names vertex {corners[first]}, and the file has the vertices "
             f"0 to {n_vertices - 1}."
         )
+
+
+def join_places(rows: AnyArray) -> tuple[AnyArray, Int64Array]:
+    """Return the distinct rows in the order in which they first come, and the number of each row.
+
+    Rows are the same where all numbers are, -0.0 and 0.0 too.
+    """
+    rows = rows + rows.dtype.type(0)  # turns -0.0 into 0.0
+    order = np.lexsort(rows.T[::-1])  # stable: of equal ones the first comes first
+    is_first = np.ones(len(order), np.bool_)
+    is_first[1:] = (rows[order[1:]] != rows[order[:-1]]).any(axis=1)
+    stands_for = np.empty(len(order), np.int64)
+    stands_for[order] = order[is_first][np.cumsum(is_first) - 1]
+    is_kept = stands_for == np.arange(len(order))
+    return rows[is_kept], (np.cumsum(is_kept) - 1)[stands_for]
 
 
 def flag_edges(triangles: AnyArray, edges: AnyArray, n_vertices: int) -> BoolArray:
