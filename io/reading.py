@@ -17,11 +17,11 @@ from ..base.errors import (
     ReadError,
     TinsmithError,
 )
-from ..base.notes import naming_file
 from ..base.plug_ins import describe_failure, warn_of_plug_in
 from ..base.progress import Progress
 from ..base.sentences import counted, inflect, printable
 from ..tin import TIN, Survey
+from .door import naming_file
 from .isolated.archives import unpack
 from .isolated.local_files import require_local
 from .isolated.spooling import (
@@ -494,8 +494,23 @@ def _choose_format(file: Path, name: str | None, options: Iterable[str] = ()) ->
         return _choose_format_of_folder(file, named)
     head = _read_head(file)
     if named is not None:
-        return named
+        return named if named.name == name else _tell_apart(named, file, head)
     return _find_format_of_part(file) or detect(file, head, options)
+
+
+def _tell_apart(named: Format, file: Path, head: bytes) -> Format:
+    """Return the format of a suffix that several have: the one that the content shows."""
+    alike = [
+        one
+        for one in lookup.known_formats()
+        if one.read is not None and {*one.suffixes} & {*named.suffixes}
+    ]
+    shown = (
+        one
+        for one in alike
+        if _recognises(one, one.sniff, head) or _recognises(one, one.sniff_file, file)
+    )
+    return next(shown, named)
 
 
 def _find_format_of_part(file: Path) -> Format | None:

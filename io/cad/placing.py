@@ -13,7 +13,6 @@ from ..reprojection.placement import place
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from ...base.arrays import Float64Array
     from ...base.crs import CRS, Unit
@@ -33,7 +32,11 @@ class Placing(NamedTuple):
 
 
 def place_rows(
-    parts: Sequence[Float64Array], measures: Measures, declared: Declared, path: Path
+    parts: Sequence[Float64Array],
+    measures: Measures,
+    declared: Declared,
+    *,
+    names_axes: bool = False,
 ) -> Placing:
     """Bring easting, northing and elevation of a file into the CRS wanted, all at once.
 
@@ -43,7 +46,8 @@ def place_rows(
         As in the file.
     measures : Measures
     declared : Declared
-    path : Path
+    names_axes : bool
+        Whether the format says which coordinate is the northing.
 
     Raises
     ------
@@ -63,9 +67,9 @@ def place_rows(
         measures.apply(together),
         source=measures.source,
         target=declared.crs,
-        path=path,
         unit=measures.elevation_unit,
         looks_at_area=False,
+        looks_at_order=not names_axes,
     )
     rows = [
         placed.points[start : start + len(one), : one.shape[1]]

@@ -14,7 +14,6 @@ from ..mesh.common import add_notes, join_places, make_tin
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...base.policies import FacePolicy, LineKind
@@ -73,13 +72,12 @@ def merge_equal_points(mesh: Mesh) -> Mesh:
 
 
 def make_tin_with_lines(
-    mesh: Mesh, lines: Sequence[EdgeLine], path: Path, *, reference: Reference, faces: FacePolicy
+    mesh: Mesh, lines: Sequence[EdgeLine], *, reference: Reference, faces: FacePolicy
 ) -> TIN:
     """Make a TIN as every mesh does; lines that run along its edges become its lines."""
     tin = make_tin(
         mesh.points,
         mesh.triangles,
-        path,
         constrained=mesh.constrained,
         reference=reference,
         notes=mesh.notes,

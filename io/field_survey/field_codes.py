@@ -29,6 +29,7 @@ from .figures import NO_LINES, RINGS, Fault, Figure
 from .geometry import build_polyline
 from .remarks import describe_faults
 from .several_files import NoCodesError, read_each_file, split_files
+from .shot_order import find_jump, require_one_order
 from .styles import MARKS, find_style
 
 if TYPE_CHECKING:
@@ -102,8 +103,9 @@ def lines_from_codes(
     LinesError
         If there are no descriptions or no line codes; if two styles are plausible and lead to
         different lines; if a curve needs too many vertices, or lies in degrees; without a
-        ``shot_order`` also if numbers are repeated and give other lines than rows, or if a line
-        without any mark crosses itself.
+        ``shot_order`` also if numbers are repeated and give other lines than rows, if a line jumps
+        in one of the two orders alone, or if a line without any mark crosses itself or joins
+        groups far apart.
     OptionError
         If a rule gives a code another role, or an option has a value that it cannot have.
     ReadError
@@ -140,7 +142,7 @@ def lines_from_codes(
     reading, notes = _read(order, texts, table, code_style, _make_namer(survey))
     if shot_order is None:
         by_row = read_in_style(range(len(survey)), texts, dict(table.rules), reading.style)
-        _require_one_order(survey, reading, by_row)
+        require_one_order(survey, reading, by_row)
     if not reading.figures and not _excludes(table, reading):
         known = ", ".join(table.rules)
         raise NoCodesError(f"No description begins with a line code: {known} are known.")
@@ -187,28 +189,6 @@ def _order_shots(survey: Survey, shot_order: ShotOrder | None) -> Int64Array:
             raise OptionError("shot_order", shot_order, "row, where points have no whole numbers")
         return np.arange(len(survey))
     return np.arange(len(survey)) if shot_order == "row" else np.argsort(numbers, kind="stable")
-
-
-def _require_one_order(survey: Survey, by_number: Reading, by_row: Reading) -> None:
-    """Refuse repeated numbers, such as those of two crews, where they leave the lines open."""
-    numbers = survey.attributes.get("number")
-    shots = sorted({row for one in by_number.figures for row in one.rows})
-    if numbers is None or not shots:
-        return
-    _, first, count = np.unique(numbers[shots], return_index=True, return_counts=True)
-    if (count == 1).all() or _list_keys(by_number) == _list_keys(by_row):
-        return
-    number = numbers[shots][first[np.argmax(count > 1)]]
-    raise LinesError(
-        f"{counted(int((count > 1).sum()), 'number')} of shots along lines "
-        f"{'is' if (count > 1).sum() == 1 else 'are'} repeated (first: {number}), and lines in the "
-        "order of numbers are others than in that of rows: the option `shot_order` says which is "
-        "right, number or row; files of their own are read one by one."
-    )
-
-
-def _list_keys(reading: Reading) -> set[tuple[object, ...]]:
-    return {one.key for one in reading.figures}
 
 
 def _make_namer(survey: Survey) -> Callable[[int], str]:
@@ -324,6 +304,8 @@ class _Builder:
                 self.faults.append(Fault("too few points", figure.name, tuple(figure.rows)))
                 continue
             self._find_doubts(figure, vertices)
+            if (jump := find_jump(self.survey.points, figure)) is not None:
+                self.faults.append(Fault("line that jumps", figure.name, jump))
             kind = figure.rule.kind
             found[kind if kind in RINGS else "line"].append((figure, vertices))
         return found

@@ -57,6 +57,10 @@ SENTENCES = {
     ),
     "open building": "{count} [building is|buildings are] not closed",
     "line that crosses itself": "{count} [line crosses itself|lines cross themselves]",
+    "line that jumps": (
+        "{count} [line jumps on a segment|lines jump on segments] more than ten times as long as "
+        "the others"
+    ),
     "contour that is not level": "{count} contour [line has|lines have] several elevations",
     "mark before a code": (
         "{count} [mark stands before its code and is|marks stand before their codes and are] not "
@@ -82,6 +86,7 @@ _HINTS = {
     "unknown code": ": their points are points of the surface",
     "unknown line code": ": their points are points of the surface; a code table defines codes",
     "line that crosses itself": ": check codes, marks and the order of the shots",
+    "line that jumps": ": check codes, marks and the order of the shots",
 }
 
 

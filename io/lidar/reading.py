@@ -181,11 +181,11 @@ def _locate(header: Header, target: CRS | None, declared: Unit | None) -> _Tile:
         text = text if str(header.path) in text else f"'{header.path}': {text}"
         raise CrsError(text, crs=error.crs) from error
     vertical = None if reference.crs is None else reference.crs.vertical_unit
-    unit = settle_unit(declared, reference.unit or vertical, header.path)
+    unit = settle_unit(declared, reference.unit or vertical)
     middle = header.middle[None, :]
     wanted = target or reference.crs
     if wanted is not None and wanted.is_geographic:  # refused before the points are read
-        place(middle, source=reference.crs, target=target, path=header.path, unit=unit)
+        place(middle, source=reference.crs, target=target, unit=unit)
     return _Tile(header, reference, unit)
 
 
@@ -225,9 +225,7 @@ def _require_comparable_units(
 def _foresee_unit(tile: _Tile, target: CRS | None) -> Unit | None:
     header = tile.header
     middle = header.middle[None, :]
-    return place(
-        middle, source=tile.reference.crs, target=target, path=header.path, unit=tile.unit
-    ).elevation_unit
+    return place(middle, source=tile.reference.crs, target=target, unit=tile.unit).elevation_unit
 
 
 def _name_crs(crs: CRS | None) -> str:
@@ -358,7 +356,7 @@ def _read_tile(
             gathered.tell_progress()
     own = gathered._points[start : gathered.count]
     odd = _describe_outside(own, header)
-    placed = place(own, source=tile.reference.crs, target=target, path=header.path, unit=tile.unit)
+    placed = place(own, source=tile.reference.crs, target=target, unit=tile.unit)
     gathered.replace(start, placed.points)
     placed = placed._replace(notes=(*placed.notes, *odd))
     theirs = placed.elevation_unit

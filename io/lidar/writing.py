@@ -114,7 +114,7 @@ def write(
     _require_points(surface.points)
     scaling = _choose_scaling(surface.points, _parse_scale(scale))
     attributes = surface.attributes if isinstance(surface, Survey) else {}
-    columns = _choose_columns(attributes, path)
+    columns = _choose_columns(attributes)
     header = _make_header(laspy, scaling, columns, surface.crs)
     _warn_of_unit(surface)
     with replacing(path) as file:
@@ -198,7 +198,7 @@ def _round_to_whole(values: Float64Array, scale: float, offset: float) -> Int32A
 # ------------------------------------------------------------------------ attributes
 
 
-def _choose_columns(attributes: Mapping[str, AnyArray], path: Path) -> dict[str, AnyArray]:
+def _choose_columns(attributes: Mapping[str, AnyArray]) -> dict[str, AnyArray]:
     """Return the attributes that the format holds, and tell of the others."""
     columns, texts = {}, []
     for name, given in attributes.items():
@@ -211,7 +211,7 @@ def _choose_columns(attributes: Mapping[str, AnyArray], path: Path) -> dict[str,
             columns[name] = _require_range(name, values)
         else:
             texts.append(name)
-    tell_lost_attributes(texts, path, "LAS has numbers, with names of 32 bytes")
+    tell_lost_attributes(texts, "LAS has numbers, with names of 32 bytes")
     return columns
 
 
@@ -301,4 +301,4 @@ def _require_crs(crs: CRS | None, path: Path) -> None:
     from .header import parse_header
 
     content = parse_header(path).find("LASF_Projection", 2112) or b""
-    require_kept(crs, content.split(b"\0")[0].decode(), path)
+    require_kept(crs, content.split(b"\0")[0].decode())

@@ -15,7 +15,7 @@ from ...base.crs import CRS, Unit
 from ...base.errors import CrsError, FormatError, OptionError, PointsError, ReadError
 from ...base.sentences import FILE, counted, height
 from ...tin import TIN, Surface, Survey
-from ...tin.checking.overlaps import describe_overlaps
+from ...tin.checking.overlaps import describe_oddities
 from ...tin.screening.nodata import find_suspect_elevations
 from ...tin.topology import edge_keys
 from ..reprojection.contradictions import look_at_crs
@@ -80,7 +80,7 @@ def read_content(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
+        raise ReadError(f"Cannot read {FILE}: {error.strerror or error}.") from error
 
 
 def require_writable(surface: object) -> TIN | Survey:
@@ -126,12 +126,13 @@ class Reference(NamedTuple):
 
     crs: CRS | None
     elevation_unit: Unit | None
+    is_declared: bool = False
+    """Whether the caller names the CRS, and the file does not."""
 
 
 def choose_reference(
     crs: CrsLike | None,
     z_unit: UnitLike | None,
-    path: Path,
     *,
     found_crs: str | None = None,
     found_unit: str | None = None,
@@ -152,7 +153,8 @@ def choose_reference(
     system = declared if own is None else own
     known = _find_unit(found_unit)
     vertical = None if system is None else system.vertical_unit
-    return Reference(system, settle_unit(Unit.of(z_unit), known or vertical, path))
+    unit = settle_unit(Unit.of(z_unit), known or vertical)
+    return Reference(system, unit, is_declared=own is None and system is not None)
 
 
 def require_own_crs(own: CRS | None, declared: CRS | None) -> None:
@@ -230,12 +232,12 @@ def mesh_reader(parse: Callable[..., Mesh]) -> Callable[..., TIN | Survey]:
         *,
         crs: CrsLike | None = None,
         z_unit: UnitLike | None = None,
-        faces: FacePolicy = "all",
+        faces: FacePolicy = "most",
         **options: Any,
     ) -> TIN | Survey:
         mesh = parse(path, **options)
         reference = choose_reference(
-            crs, z_unit, path, found_crs=mesh.crs, found_unit=mesh.elevation_unit
+            crs, z_unit, found_crs=mesh.crs, found_unit=mesh.elevation_unit
         )
         return build_mesh(mesh, path, reference=reference, faces=faces)
 
@@ -262,7 +264,6 @@ def build_mesh(mesh: Mesh, path: Path, *, reference: Reference, faces: FacePolic
     tin = make_tin(
         points,
         fans.triangles,
-        path,
         constrained=flags,
         reference=reference,
         attributes=attributes,
@@ -276,25 +277,23 @@ def build_mesh(mesh: Mesh, path: Path, *, reference: Reference, faces: FacePolic
 def make_tin(
     points: AnyArray,
     triangles: AnyArray,
-    path: Path,
     *,
     constrained: BoolArray | None = None,
     reference: Reference,
     attributes: Mapping[str, AnyArray] | None = None,
     notes: Sequence[str] = (),
-    faces: FacePolicy = "all",
+    faces: FacePolicy = "most",
     rounding: float = 0.0,
     looks_at_crs: bool = True,
 ) -> TIN:
     """Make a TIN of what a file holds; what makes none is a fault of the file.
 
-    Triangles that overlap without a common edge, and the like, are told in the notes of its report,
-    behind the ``notes`` given. Whether the coordinates contradict their CRS is looked at, unless
-    the reader has done so.
+    What is odd about it is told in the notes of its report, behind the ``notes`` given. Whether
+    the coordinates contradict their CRS is looked at, unless the reader has done so.
 
     Parameters
     ----------
-    faces : {"all", "surface"}
+    faces : {"most", "all", "surface"}
         As :func:`make_surface` takes it.
     rounding : float
         Likewise.
@@ -321,16 +320,14 @@ def make_tin(
         tin, told = make_surface(make, points, triangles, faces=faces, rounding=rounding)
     except PointsError as error:
         raise ReadError(f"{FILE} holds no TIN. {error}") from error
-    placed = look_at_crs(tin.points, reference.crs, path) if looks_at_crs else ()
-    told = [*notes, *told, *placed, *_describe_oddities(tin, faces)]
+    placed = _look_at_crs(tin.points, reference) if looks_at_crs else ()
+    told = [*notes, *told, *placed, *describe_oddities(tin)]
     told += _describe_suspects(tin.points[:, 2])
     return add_notes(tin, told) if told else tin
 
 
-def _describe_oddities(tin: TIN, faces: FacePolicy) -> list[str]:
-    told = describe_overlaps(tin, may_overlap=faces != "surface")
-    offer = " `faces='surface'` leaves them out."
-    return [note + offer * note.startswith("Triangles overlap") for note in told]
+def _look_at_crs(points: Float64Array, reference: Reference) -> tuple[str, ...]:
+    return look_at_crs(points, reference.crs, is_declared=reference.is_declared)
 
 
 def measure_rounding(points: Float64Array, dtype: Any) -> float:
@@ -415,7 +412,7 @@ def make_survey(
         crs=reference.crs,
         elevation_unit=reference.elevation_unit,
         source=path.name,
-        notes=[*notes, *look_at_crs(points, reference.crs, path)],
+        notes=[*notes, *_look_at_crs(points, reference)],
     )
 
 

@@ -16,7 +16,7 @@ from ...base.products import product
 from ...base.sentences import counted, name_file
 from ...terrain.drawing.models import choose_origin
 from ...tin import TIN
-from ...tin.checking.overlaps import describe_overlaps
+from ...tin.checking.overlaps import describe_oddities
 from .common import (
     add_notes,
     choose_reference,
@@ -225,7 +225,7 @@ def from_mesh(
     *,
     crs: CrsLike | None = None,
     z_unit: UnitLike | None = None,
-    faces: FacePolicy = "all",
+    faces: FacePolicy = "most",
 ) -> TIN:
     """Return a TIN of the triangles of another library's mesh, which are kept as they are.
 
@@ -236,9 +236,10 @@ def from_mesh(
         Declares the CRS; default the one that the mesh has from tinsmith.
     z_unit : Unit or str, optional
         Declares the unit of the elevations; default the one that the mesh has from tinsmith.
-    faces : {"all", "surface"}
-        "surface": leave out faces without area seen from above, and of faces that overlap all but
-        the largest; the report tells how many.
+    faces : {"most", "all", "surface"}
+        What becomes of faces without area seen from above, and of those that overlap larger ones:
+        "surface" leaves them out, "all" refuses the mesh, and "most" leaves them out where they are
+        at most one percent; the report tells how many.
 
     Returns
     -------
@@ -269,7 +270,6 @@ def from_mesh(
             reference = choose_reference(
                 crs,
                 z_unit,
-                name,
                 found_crs=_as_text(found.about.get("crs")),
                 found_unit=_as_text(found.about.get("elevation_unit")),
             )
@@ -291,11 +291,11 @@ def from_mesh(
         )
 
     tin, notes = make_surface(make, points, fans.triangles, faces=faces)
-    told = describe_overlaps(tin, may_overlap=faces != "surface")
-    overlaps = next((sentence for sentence in told if "overlap" in sentence), None)
-    if overlaps is not None:
-        raise PointsError(f"'{name}' holds no TIN. {overlaps} `faces='surface'` leaves them out.")
-    notes += [*describe_single_precision(points, found.dtype), *fans.notes, *told]
+    overlaps = next((note for note in notes if note.startswith("Triangles overlap")), "")
+    if overlaps:
+        raise PointsError(f"'{name}' holds no TIN. {overlaps}")
+    rounded = describe_single_precision(points, found.dtype)
+    notes += [*rounded, *fans.notes, *describe_oddities(tin)]
     return add_notes(tin, notes)
 
 

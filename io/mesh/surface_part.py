@@ -11,6 +11,7 @@ from ...base import optional
 from ...base.errors import PointsError, choice
 from ...base.policies import FacePolicy
 from ...base.sentences import counted, inflect
+from ...tin.checking.overlaps import find_overlap
 from ...tin.predicates import columns, orientation
 from ...tin.topology import find_offsets
 from ...tin.validation.points import as_points
@@ -27,6 +28,10 @@ __all__ = ["SurfacePart", "find_surface_part", "make_surface"]
 
 _ROUNDINGS = 2.0
 """How thick a triangle can seem that rounding turned over: each corner moves by half in x and y."""
+
+_ROUNDED = ", without area or turned over by rounding"
+_FEW = 0.01
+"""The share of the area, or of the number, that is left out without being asked, and told."""
 
 _BLOCK = 1 << 18
 """Triangles whose neighbours are looked for at a time."""
@@ -49,6 +54,13 @@ class SurfacePart(NamedTuple):
         """How many triangles are left out."""
         return int(np.count_nonzero(~self.kept))
 
+    @property
+    def is_nearly_all(self) -> bool:
+        """Whether few are left out: of the area, and of the number those without area."""
+        n_flat = int(np.count_nonzero(self.is_flat & ~self.kept))
+        overlapping = float(self.areas[~self.kept].sum())
+        return n_flat <= _FEW * len(self.kept) and overlapping <= _FEW * float(self.areas.sum())
+
     def keep_thick(self, thickness: float) -> SurfacePart:
         """Leave out only triangles that are no thicker."""
         return self._replace(kept=self.kept | (self.heights > thickness))
@@ -67,13 +79,17 @@ class SurfacePart(NamedTuple):
         count = counted(len(self.kept), "triangle")
         return f"{self.n_left_out:,} of {count} ({'; '.join(parts)})"
 
+    def describe_left_out(self, why: str) -> list[str]:
+        """Return a note of what is left out; none where nothing is."""
+        return [f"Left out{why}: {self.describe()}."] if self.n_left_out else []
+
 
 def make_surface(
     make: Callable[[BoolArray | slice], TIN],
     points: AnyArray,
     triangles: AnyArray,
     *,
-    faces: FacePolicy = "all",
+    faces: FacePolicy = "most",
     rounding: float = 0.0,
 ) -> tuple[TIN, list[str]]:
     """Make a TIN of the triangles of a mesh, or of those that make a surface.
@@ -84,10 +100,12 @@ def make_surface(
         Makes the TIN of some of the triangles.
     points : (n, 3) array
     triangles : (m, 3) int array
-    faces : {"all", "surface"}
-        "all": refuse a mesh with triangles that no TIN can have: without area seen from above, or
-        on the same side of an edge as another one. "surface": leave those out that have no area or
-        overlap others.
+    faces : {"most", "all", "surface"}
+        What becomes of triangles that no TIN can have, without area seen from above or on the same
+        side of an edge as another one: "all" refuses the mesh, and "most" leaves out what makes no
+        surface where that is at most one percent, and else refuses it: of the area what overlaps
+        others, of the number what has no area.
+        "surface" leaves out all triangles that have no area or overlap larger ones.
     rounding : float
         Distance of neighbouring numbers that the coordinates of the file can have, where it is
         known that rounding alone can make such triangles: those as thin are left out and told.
@@ -96,7 +114,7 @@ def make_surface(
     -------
     TIN
     list of str
-        Notes of what is left out.
+        Notes of what is left out, and of triangles that overlap and are not.
 
     Raises
     ------
@@ -105,24 +123,49 @@ def make_surface(
     """
     if choice("faces", faces, FacePolicy) == "surface":
         part = _find_part(points, triangles)
-        note = f"Left out to make a surface: {part.describe()}."
-        return make(part.kept), [note] * bool(part.n_left_out)
+        return make(part.kept), part.describe_left_out(" to make a surface")
     try:
-        return make(slice(None)), []
+        tin = make(slice(None))
     except PointsError as error:
         try:
             part = _find_part(points, triangles)
         except PointsError:
             raise error from None
-        thin = part.keep_thick(_ROUNDINGS * rounding)
-        if rounding > 0 and thin.n_left_out and thin.kept.any():
-            with suppress(PointsError):
-                note = f"Left out, without area or turned over by rounding: {thin.describe()}."
-                return make(thin.kept), [note]
-        if not part.n_left_out or not part.kept.any():
-            raise
-        offer = f"To read the others, `faces='surface'` leaves out {part.describe()}."
-        raise PointsError(f"{error} {offer}", rows=error.rows) from error
+        is_few = faces == "most" and part.is_nearly_all and not _repeat_corners(triangles)
+        return _leave_out(make, part, error, is_few=is_few, rounding=rounding)
+    overlap = find_overlap(tin)
+    if not overlap.is_found:
+        return tin, [overlap.sentence] * bool(overlap.sentence)
+    part = _find_part(points, triangles)
+    offer = f" `faces='surface'` leaves out {part.describe()}." if part.n_left_out else ""
+    return tin, [f"{overlap.sentence}{offer}"]
+
+
+def _repeat_corners(triangles: AnyArray) -> bool:
+    """Whether a triangle names a vertex twice, as in a damaged file."""
+    corners = np.asarray(triangles)
+    return bool((corners == np.roll(corners, 1, axis=1)).any())
+
+
+def _leave_out(
+    make: Callable[[BoolArray | slice], TIN],
+    part: SurfacePart,
+    error: PointsError,
+    *,
+    is_few: bool,
+    rounding: float,
+) -> tuple[TIN, list[str]]:
+    """Make a TIN without what rounding alone made, or without a few; else offer "surface"."""
+    thin = part.keep_thick(_ROUNDINGS * rounding)
+    if rounding > 0 and thin.n_left_out and thin.kept.any():
+        with suppress(PointsError):
+            return make(thin.kept), thin.describe_left_out(_ROUNDED)
+    if not part.n_left_out or not part.kept.any():
+        raise error
+    if is_few:
+        return make(part.kept), part.describe_left_out(" to make a surface")
+    offer = f"To read the others, `faces='surface'` leaves out {part.describe()}."
+    raise PointsError(f"{error} {offer}", rows=error.rows) from error
 
 
 def _find_part(points: AnyArray, triangles: AnyArray) -> SurfacePart:

@@ -15,6 +15,7 @@ from ...base import optional
 from ...base.checks import require_type
 from ...base.errors import OptionError
 from ...base.results import Raster
+from ..door import naming_file
 from .dem import Affine, Choice, Header, make_survey
 from .gdal_child import cut_strips, describe
 
@@ -104,7 +105,8 @@ def from_raster(
         **{**(about := describe(dataset)), "transform": Affine(*about["transform"])},
     )
     choice = Choice(number, window, cells, stride, nodata, fill)
-    return make_survey(header, partial(_cut, dataset), choice, crs=crs, z_unit=z_unit)
+    with naming_file(header.path):
+        return make_survey(header, partial(_cut, dataset), choice, crs=crs, z_unit=z_unit)
 
 
 @contextmanager

@@ -104,8 +104,9 @@ class Format:
     Either raises a MissingExtraError without the library that it needs. One that takes ``progress``
     calls it with the fraction done. What they say of themselves is only what goes beyond this.
 
-    Options of several readers: ``faces``, "all" or "surface", which leaves triangles out that make
-    no surface: those without area seen from above, and of those that overlap all but the largest;
+    Options of several readers: ``faces``, what becomes of triangles that make no surface, those
+    without area seen from above and all but the largest of those that overlap: "surface" leaves
+    them out, "all" refuses the file, "most" leaves them out up to one percent of the area;
     ``encoding`` of a text, found by looking if it is not given;
     ``source_crs``, the CRS of the file's coordinates if it is not ``crs``, to which they are
     reprojected; ``nodata``, a number or several, elevations that stand for none, besides those that

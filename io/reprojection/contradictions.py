@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.errors import CrsError, OptionError
+from ...base.georeference.axes import gives_northing_first
 from ...base.sentences import coordinate, counted
 from ...tin.screening.area_of_use import AreaOfUse
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
     from ...base.arrays import Float64Array
     from ...base.crs import CRS
@@ -28,6 +28,7 @@ __all__ = [
     "checking_crs",
     "look_at_crs",
     "look_at_degrees",
+    "look_at_order",
     "look_at_place",
     "refuse",
 ]
@@ -57,7 +58,7 @@ def checking_crs(is_checked: bool) -> Iterator[None]:
         _IS_CHECKED.reset(token)
 
 
-def refuse(sentence: str, path: Path, crs: CRS | None = None) -> str:
+def refuse(sentence: str, crs: CRS | None = None) -> str:
     """Refuse a contradiction; return it as a note where the caller wants no refusal.
 
     Raises
@@ -66,23 +67,44 @@ def refuse(sentence: str, path: Path, crs: CRS | None = None) -> str:
     """
     if not _IS_CHECKED.get():
         return f"{sentence}."
-    raise CrsError(f"'{path}': {sentence}; `check_crs=False` takes them as they are.", crs=crs)
+    raise CrsError(f"{sentence}; `check_crs=False` takes them as they are.", crs=crs)
 
 
-def look_at_crs(points: Float64Array, crs: CRS | None, path: Path) -> tuple[str, ...]:
+def look_at_crs(
+    points: Float64Array, crs: CRS | None, *, is_declared: bool = False
+) -> tuple[str, ...]:
     """Compare points, (n, 3), that stay where they are with their CRS.
+
+    ``is_declared`` tells that the caller names it and the file does not.
 
     Raises
     ------
     CrsError
         As :func:`look_at_degrees` and :func:`look_at_place`.
     """
-    return (*look_at_degrees(points, crs, path), *look_at_place(points, crs, None, path))
+    order = look_at_order(points, crs) if is_declared else ()
+    return (*look_at_degrees(points, crs), *look_at_place(points, crs, None), *order)
 
 
-def look_at_place(
-    points: Float64Array, source: CRS | None, target: CRS | None, path: Path
-) -> tuple[str, ...]:
+def look_at_order(points: Float64Array, crs: CRS | None) -> tuple[str, ...]:
+    """Tell where a CRS that the file does not name leaves open which coordinate comes first.
+
+    It names the northing first, and the points, (n, 3), lie in its area of use in either order.
+    """
+    area = AreaOfUse.of(crs, crs)
+    if crs is None or area is None or not gives_northing_first(crs):
+        return ()
+    if not all(area.covers_whole(points[:, order]) for order in ([0, 1], [1, 0])):
+        return ()
+    names = ("latitude", "longitude") if crs.is_geographic else ("northing", "easting")
+    return (
+        f"The file names no CRS, and {crs.label} gives the {names[0]} before the {names[1]}: the "
+        f"first coordinate was taken as the {names[1]}, and in the other order the points would "
+        "lie in its area of use, too.",
+    )
+
+
+def look_at_place(points: Float64Array, source: CRS | None, target: CRS | None) -> tuple[str, ...]:
     """Tell how many points lie outside the areas of use.
 
     Parameters
@@ -91,7 +113,6 @@ def look_at_place(
         As they are in the file.
     source, target : CRS or None
         Of the file, and the one that is wanted.
-    path : Path
 
     Raises
     ------
@@ -114,7 +135,7 @@ def look_at_place(
         return (f"{told}: check that the CRS is the right one.",)
     exchanged = f"{told} and, with easting and northing exchanged, inside"
     if 2 * len(outside) > len(points):
-        return (refuse(f"{exchanged}: the coordinates are in the other order", path, area.source),)
+        return (refuse(f"{exchanged}: the coordinates are in the other order", area.source),)
     return (f"{exchanged}: check the order of the coordinates.",)
 
 
@@ -132,7 +153,7 @@ def are_small_degrees(points: Float64Array, crs: CRS) -> bool:
     return area is not None and area.is_local(xy) and area.covers_as_degrees(xy)
 
 
-def look_at_degrees(points: Float64Array, crs: CRS | None, path: Path) -> tuple[str, ...]:
+def look_at_degrees(points: Float64Array, crs: CRS | None) -> tuple[str, ...]:
     """Look for longitudes and latitudes under a CRS that measures in lengths.
 
     Parameters
@@ -141,7 +162,6 @@ def look_at_degrees(points: Float64Array, crs: CRS | None, path: Path) -> tuple[
         As they are in the file.
     crs : CRS or None
         Of the coordinates, as the file or the caller says.
-    path : Path
 
     Raises
     ------
@@ -162,13 +182,13 @@ def look_at_degrees(points: Float64Array, crs: CRS | None, path: Path) -> tuple[
             f"the points lie outside the area of use of {area.label} and, as longitude and "
             f"latitude in degrees, inside ({first}): the CRS of the file is to be one in degrees"
         )
-        return (refuse(told, path, crs),)
+        return (refuse(told, crs),)
     if area.covers_as_degrees(points[:, [1, 0]]):
         told = (
             f"the points lie outside the area of use of {area.label} and, as latitude and "
             f"longitude in degrees, inside ({first}): the coordinates are in the other order"
         )
-        return (refuse(told, path, crs),)
+        return (refuse(told, crs),)
     return (_describe_local(crs, first),)
 
 

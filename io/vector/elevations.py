@@ -59,7 +59,7 @@ def find_elevation_unit(features: Features, declared: Unit | None) -> Unit | Non
     except OptionError:  # such as "unknown", which is what we write
         told = None
     vertical = None if features.crs is None else features.crs.vertical_unit
-    return settle_unit(declared, told or vertical, features.path)
+    return settle_unit(declared, told or vertical)
 
 
 def list_elevation_columns(features: Features) -> list[str]:

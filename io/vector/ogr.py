@@ -79,7 +79,7 @@ def write_layer(
         )
         _require_last(pyogrio, path, len(features))
         found = pyogrio.read_info(path)["crs"] if features.crs is not None else None
-    require_kept(features.crs, found, shown)
+    require_kept(features.crs, found)
 
 
 def _require_last(pyogrio: Any, path: Path, count: int) -> None:

@@ -47,7 +47,7 @@ def read(
     where: str | None = None,
     lines_as: LineReading | None = None,
     nodata: float | Sequence[float] | None = None,
-    faces: FacePolicy = "all",
+    faces: FacePolicy = "most",
 ) -> Survey | TIN:
     """Read the points of a vector layer, or the triangles that another program wrote as polygons.
 
@@ -197,8 +197,8 @@ def _make_survey(vertices: _Vertices, features: Features, asked: _Asked) -> Surv
     if not keep.any():
         raise ReadError(f"{FILE} has no elevation but nodata ({asked.nodata.tolist()}).")
     points = np.column_stack([vertices.xyz[keep, :2], found.z[keep]])
-    unit = settle_unit(asked.declared, found.unit, features.path) if found.unit else asked.unit
-    placed = place(points, source=features.crs, target=asked.crs, path=features.path, unit=unit)
+    unit = settle_unit(asked.declared, found.unit) if found.unit else asked.unit
+    placed = place(points, source=features.crs, target=asked.crs, unit=unit)
     rows = vertices.rows[keep]
     skipped = {
         "features without an elevation": len(np.unique(vertices.rows[np.isnan(found.z)])),
@@ -298,16 +298,13 @@ def _make_triangles(features: Features, asked: _Asked, faces: FacePolicy) -> TIN
     xyz = shapely.get_coordinates(features.geometries, include_z=True)
     corners = np.delete(xyz.reshape(-1, _TRIANGLE_CORNERS, 3), 3, axis=1).reshape(-1, 3)
     if not np.isfinite(corners).all():
-        raise ReadError("a corner of a triangle is not finite.")  # fmt: skip
+        raise ReadError("a corner of a triangle is not finite.")
     points, numbers = join_places(corners)
     triangles = numbers.reshape(-1, 3)
-    placed = place(
-        points, source=features.crs, target=asked.crs, path=features.path, unit=asked.unit
-    )
+    placed = place(points, source=features.crs, target=asked.crs, unit=asked.unit)
     tin = make_tin(
         placed.points,
         triangles,
-        features.path,
         reference=Reference(placed.crs, placed.elevation_unit),
         faces=faces,
         looks_at_crs=False,

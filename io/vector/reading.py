@@ -384,7 +384,7 @@ def _find_levels(features: Features, wanted: Wanted, z: float | str | None) -> l
         )
     unit = find_named_unit(name, features)
     if unit is not None:
-        wanted = wanted._replace(z_unit=settle_unit(wanted.z_unit, unit, features.path))
+        wanted = wanted._replace(z_unit=settle_unit(wanted.z_unit, unit))
         features = features._replace(elevation_unit="")  # is that of the geometries
     factor = find_elevation_factor(features, wanted, notes=[])
     return [None if level is None else level * factor for level in found]

@@ -16,7 +16,9 @@ from .campaign import Campaign, Case
 
 _KINDS = tuple(FACE_WRITERS)
 _OFFER = re.compile(r"`faces='surface'` leaves out ([\d,]+) of ([\d,]+) triangles")
-_ROUNDED = re.compile(r"Left out, without area or turned over by rounding: ([\d,]+) of")
+_LEFT_OUT = re.compile(
+    r"Left out(?:, without area or turned over by rounding| to make a surface): ([\d,]+) of"
+)
 
 
 def generate(rng: np.random.Generator) -> Case:
@@ -45,7 +47,7 @@ def examine(case: Case) -> str:
         except ts.ReadError as error:
             return _examine_refusal(str(error), len(case["triangles"]) - len(surface.triangles))
     _require_surface(surface)
-    told = sum(int(one[1]) for note in whole.notes if (one := _ROUNDED.search(note)))
+    told = sum(int(one[1]) for note in whole.notes if (one := _LEFT_OUT.search(note)))
     assert len(whole.triangles) == len(case["triangles"]) - told, "lost without a word"
     if len(surface.triangles) == len(whole.triangles):
         return "surface"

@@ -1,137 +1,303 @@
-"""Coordinates that contradict their CRS are refused by the reader of every format."""
+"""What contradicts itself is refused or told by the reader of every format: finds x readers.
 
-import json
+Each row of a table is a find, each entry what the reader of one format makes of it, or why the
+format cannot hold it. A format that is missing from a row fails.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 import pytest
+from support.doubtful_files import (
+    DEPTHS,
+    ERRORS,
+    QUADRILATERALS,
+    TIMES,
+    write_above_ground,
+    write_lines_in_feet,
+    write_points_in_degrees,
+)
+from support.placed_files import READ, write_points
 
 import tinsmith as ts
-from tinsmith.io.registry.lookup import known_formats
+
+pytestmark = pytest.mark.filterwarnings("ignore::tinsmith.LossWarning")
 
 CRS = "EPSG:32616"
 RNG = np.random.default_rng(1)
 OFFSETS = np.column_stack([50 * RNG.random((12, 2)), RNG.random(12)])
 SITE = OFFSETS + np.array([752700.0, 4024200.0, 320.0])
-EXCHANGED = SITE[:, [1, 0, 2]]
+WARSAW = OFFSETS + np.array([637000.0, 486000.0, 110.0])
 DEGREES = OFFSETS * np.array([1e-4, 1e-4, 1.0]) + np.array([-84.5, 36.3, 320.0])
+EXCHANGED = [1, 0, 2]
+LOCAL = (
+    'ENGCRS["Site grid",EDATUM["Site datum"],CS[Cartesian,2],AXIS["easting",east],'
+    'AXIS["northing",north],LENGTHUNIT["metre",1]]'
+)
 
-GEOGRAPHIC = ("geojson", "geojsonseq")
-"""Formats in longitude and latitude, which a file by hand holds in the other order."""
-BY_SUFFIX = {"raster": ".asc", "vector": ".gml"}
-"""Families that GDAL reads: a file of one of them by hand."""
-NOT_PLACED_BY_CRS = {
-    "gsi": "records of an instrument, through io.field_survey.instruments.records",
-    "sdr": "records of an instrument, through io.field_survey.instruments.records",
-    "jobxml": "records of an instrument, through io.field_survey.instruments.records",
-    "dc": "records of an instrument, through io.field_survey.instruments.records",
-    "esri-tin": "a folder of binary parts, through make_tin as the other meshes",
-    "terrain": "WGS 84 by its definition",
-    "quantized-mesh": "WGS 84 by its definition",
-    "dxf": "takes the order that lies in the area, with a note",
-    "landxml": "takes the order that lies in the area, with a note",
+
+class Refused(NamedTuple):
+    """The reader raises an error with these words."""
+
+    words: str
+
+
+class Noted(NamedTuple):
+    """The reader tells it in these words."""
+
+    words: str
+
+
+class Reason(NamedTuple):
+    """Why the format cannot hold it."""
+
+    words: str
+
+
+TEXT = ("delimited",)
+INSTRUMENTS = ("gsi", "sdr", "jobxml", "dc")
+CELLS = ("raster",)
+MESHES = ("tin", "ply", "obj", "stl", "vtk", "gmsh", "2dm", "ugrid", "esri-tin", "cityjson", "off")
+IN_DEGREES = ("geojson", "geojsonseq")
+LAYERS = ("gpkg", "flatgeobuf", "shapefile", "geoparquet", "vector")
+DRAWINGS = ("landxml", "dxf")
+PLAIN = (*TEXT, *INSTRUMENTS, *CELLS, *MESHES, *LAYERS, "las")
+"""Formats whose coordinates are in whatever CRS the caller names."""
+TILE = {"terrain": Reason("longitude and latitude by its definition, placed by its name")}
+RFC = Reason("longitude and latitude by its definition")
+
+
+def each(names, entry):
+    return dict.fromkeys(names, entry)
+
+
+# ------------------------------------------------------- places that contradict the CRS named
+
+PLACED = {
+    "easting and northing exchanged": {
+        **each(PLAIN, Refused("inside")),
+        **each(IN_DEGREES, Refused("in the other order")),
+        **each(DRAWINGS, Noted("taken in the other order than the format says")),
+        **TILE,
+    },
+    "degrees under a projected CRS": {
+        **each((*TEXT, *INSTRUMENTS, *LAYERS, "las"), Noted("taken to be degrees of WGS 84")),
+        "raster": Noted("taken to be degrees of WGS 84"),
+        **each((*MESHES, *DRAWINGS), Refused("as longitude and latitude in degrees, inside")),
+        "gpkg": Noted("taken to be degrees of WGS 84"),
+        **each(IN_DEGREES, RFC),
+        **TILE,
+    },
+    "latitude and longitude under a projected CRS": {
+        **each((*PLAIN, *DRAWINGS), Refused("as latitude and longitude in degrees, inside")),
+        **each(IN_DEGREES, Refused("in the other order")),
+        **TILE,
+    },
+    "metres under a geographic CRS": {
+        **each((*TEXT, *INSTRUMENTS, *CELLS, *LAYERS, *IN_DEGREES, "las"), Refused("are none")),
+        **each((*MESHES, *DRAWINGS), Refused("no longitude and latitude")),
+        **TILE,
+    },
+    "two orders within the area of use": {
+        **each((*CELLS, *MESHES, *LAYERS, "las", "dxf"), Noted("the northing before the easting")),
+        "delimited": Reason("its header or columns name the axes"),
+        **each(INSTRUMENTS, Reason("its records name the axes")),
+        "landxml": Reason("northing and easting by its definition"),
+        **each(IN_DEGREES, RFC),
+        **TILE,
+    },
 }
-WRITTEN = [
-    one.name
-    for one in known_formats()
-    if one.read
-    and one.is_built_in
-    and one.name not in (*GEOGRAPHIC, *BY_SUFFIX, *NOT_PLACED_BY_CRS)
-]
+POINTS = {
+    "easting and northing exchanged": (SITE[:, EXCHANGED], CRS),
+    "degrees under a projected CRS": (DEGREES, CRS),
+    "latitude and longitude under a projected CRS": (DEGREES[:, EXCHANGED], CRS),
+    "metres under a geographic CRS": (SITE, "EPSG:4326"),
+    "two orders within the area of use": (WARSAW[:, EXCHANGED], "EPSG:2180"),
+}
+
+# ----------------------------------------------------------------- what files say of themselves
+
+NO_WORD = Reason("nothing in it tells which way elevations grow, or what else numbers are")
+ONE_TIME = Reason("one surface, or points of one time")
+TRIANGLES = Reason("triangles only")
+NO_POLYGONS = Reason("points only")
+NOT_MOVED = Reason("triangles are not reprojected")
+NO_MODE = Reason("heights are elevations by its definition")
+OTHERS = {name for name in READ if name not in (*TEXT, *CELLS, "ugrid")}
+
+SAID = {
+    "depths": {
+        **each(OTHERS, NO_WORD),
+        **each(LAYERS, Refused("no column of numbers with such a name")),
+        **each(IN_DEGREES, Refused("no column of numbers with such a name")),
+        "delimited": Refused("'positive' may change what it means"),
+        "raster": Noted("their sign was changed"),
+        "ugrid": Noted("their sign was changed"),
+    },
+    "errors of elevations": {
+        **each(OTHERS, NO_WORD),
+        **each(LAYERS, Refused("no column of numbers with such a name")),
+        **each(IN_DEGREES, Refused("no column of numbers with such a name")),
+        "delimited": Refused("'uncertainty' may change what it means"),
+        "raster": Refused("which is no elevation"),
+        "ugrid": Refused("no elevations of its nodes are told"),
+    },
+    "a time series": {
+        **each(OTHERS, ONE_TIME),
+        "delimited": Refused("may change what it means"),
+        "raster": Refused("one for each time"),
+        "ugrid": Refused("no elevations of its nodes are told"),
+    },
+    "polygons of four corners": {
+        **each((*TEXT, *INSTRUMENTS, *CELLS, "las"), NO_POLYGONS),
+        **each(("tin", "stl", "esri-tin", "terrain"), TRIANGLES),
+        **each(
+            ("ply", "obj", "off", "vtk", "gmsh", "ugrid", "cityjson"), Noted("1 polygon of the")
+        ),
+        "2dm": Noted("1 quadrilateral of the file was cut"),
+        "dxf": Noted("1 face of four corners cut in two"),
+        "landxml": Refused("a face has 4 numbers"),
+        **each((*LAYERS, *IN_DEGREES), Refused("holds polygons, no points")),
+    },
+    "heights above the ground": {
+        **each(set(READ) - {"vector"}, NO_MODE),
+        "vector": Refused("by their altitudeMode relativeToGround, and are left out"),
+    },
+    "a place that PROJ cannot transform": {
+        **each(("delimited", *INSTRUMENTS, *CELLS, *LAYERS, *IN_DEGREES), Refused("no image from")),
+        "las": Refused("no image from"),
+        **each(DRAWINGS, Reason("lengths by its definition, moved as all points are")),
+        **each(MESHES, NOT_MOVED),
+        **TILE,
+    },
+}
+WRITERS = {
+    "depths": DEPTHS,
+    "errors of elevations": ERRORS,
+    "a time series": TIMES,
+    "polygons of four corners": QUADRILATERALS,
+}
 
 
-def _write(name, points, folder):
-    """Write points of no CRS in a format, as triangles where the format has only such."""
-    form = next(one for one in known_formats() if one.name == name and one.read)
-    path = folder / f"a{form.suffixes[0]}"
-    kind = {"kind": "points"} if "kind" in form.options("write") else {}
-    return ts.write(ts.triangulate(points), path, format=name, **kind)
-
-
-def _write_grid(corner, cell, path):
-    head = f"ncols 3\nnrows 3\nxllcorner {corner[0]}\nyllcorner {corner[1]}\ncellsize {cell}\n"
-    path.write_text(f"{head}1 2 3\n4 5 6\n7 8 9\n")
-
-
-def _write_gml(points, path):
-    members = "".join(
-        f'<gml:featureMember><a fid="a.{i}"><g><gml:Point><gml:coordinates>{x},{y},{z}'
-        "</gml:coordinates></gml:Point></g></a></gml:featureMember>"
-        for i, (x, y, z) in enumerate(points.tolist())
-    )
-    path.write_text(
-        '<?xml version="1.0"?><gml:FeatureCollection xmlns:gml="http://www.opengis.net/gml">'
-        f"{members}</gml:FeatureCollection>"
-    )
-
-
-@pytest.mark.parametrize("name", WRITTEN)
-def test_exchanged_axes_are_refused_by_every_reader(tmp_path, name):
-    path = _write(name, EXCHANGED, tmp_path)
-    with pytest.raises(ts.CrsError, match="inside"):
-        ts.read(path, format=name, crs=CRS)
-    right = tmp_path / "right"
-    right.mkdir()
-    found = ts.read(_write(name, SITE, right), format=name, crs=CRS)
-    assert np.allclose(np.sort(found.points[:, 0]), np.sort(SITE[:, 0]), atol=0.6)
-
-
-@pytest.mark.parametrize("name", [one for one in WRITTEN if one != "delimited"])
-def test_exchanged_axes_are_taken_where_the_caller_asks(tmp_path, name):
-    found = ts.read(_write(name, EXCHANGED, tmp_path), format=name, crs=CRS, check_crs=False)
-    notes = found.notes if isinstance(found, ts.Survey) else found.report.notes
-    assert any("in the other order" in one for one in notes)
-
-
-@pytest.mark.parametrize("name", WRITTEN)
-def test_degrees_never_become_metres_without_a_word(tmp_path, name):
-    path = _write(name, DEGREES, tmp_path)
-    try:
-        found = ts.read(path, format=name, crs=CRS)
-    except ts.TinsmithError:
-        return
-    notes = found.notes if isinstance(found, ts.Survey) else found.report.notes
-    assert any("degrees" in one for one in notes)
-    assert (found.points[:, 1] > 4e6).all()
-
-
-def test_longitude_and_latitude_in_the_other_order_are_refused(tmp_path):
-    features = [
-        {"type": "Feature", "properties": {}, "geometry": {"type": "Point", "coordinates": place}}
-        for place in DEGREES[:, [1, 0, 2]].tolist()
+def list_cases(table):
+    return [
+        pytest.param(find, name, entry, id=f"{find}-{name}")
+        for find, row in table.items()
+        for name, entry in row.items()
+        if not isinstance(entry, Reason)
     ]
-    path = tmp_path / "a.geojson"
-    path.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
-    with pytest.raises(ts.CrsError, match="in the other order"):
-        ts.read(path, crs=CRS)
 
 
-def test_a_grid_and_gml_with_exchanged_axes_are_refused(tmp_path):
-    _write_grid((4024200, 752700), 10, tmp_path / "a.asc")
-    _write_gml(EXCHANGED, tmp_path / "a.gml")
-    for name in ("a.asc", "a.gml"):
-        with pytest.raises(ts.CrsError, match="in the other order"):
-            ts.read(tmp_path / name, crs=CRS)
+def require(entry, read):
+    if isinstance(entry, Refused):
+        with pytest.raises(ts.TinsmithError, match=entry.words) as caught:
+            read()
+        assert str(caught.value).endswith(".")
+    else:
+        assert any(entry.words in note for note in read().notes)
 
 
-def test_a_grid_of_no_crs_in_degrees_is_placed_by_them(tmp_path):
-    _write_grid((-84.5, 36.3), 0.001, tmp_path / "a.asc")
-    found = ts.read(tmp_path / "a.asc", crs=CRS)
-    assert (found.points[:, 1] > 4e6).all()
-    assert any("degrees of WGS 84" in one for one in found.notes)
+@pytest.mark.parametrize("table", [PLACED, SAID], ids=["places", "content"])
+def test_every_reader_is_in_every_row(table):
+    for find, row in table.items():
+        assert set(row) == set(READ), find
 
 
-def test_every_format_that_is_read_is_looked_at():
-    known = {one.name for one in known_formats() if one.read and one.is_built_in}
-    assert known <= {*WRITTEN, *GEOGRAPHIC, *BY_SUFFIX, *NOT_PLACED_BY_CRS}
+@pytest.mark.parametrize(("find", "name", "entry"), list_cases(PLACED))
+def test_places_that_contradict_the_crs_are_refused_or_told(tmp_path, find, name, entry):
+    points, crs = POINTS[find]
+    if name in IN_DEGREES and find == "easting and northing exchanged":
+        points = DEGREES[:, EXCHANGED]
+    path = write_points(name, points, tmp_path)
+    require(entry, lambda: ts.read(path, format=name, crs=crs))
+
+
+@pytest.mark.parametrize("name", [one for one in READ if one not in (*IN_DEGREES, "terrain")])
+def test_places_that_agree_with_the_crs_are_read_without_a_word(tmp_path, name):
+    found = ts.read(write_points(name, SITE, tmp_path), format=name, crs=CRS)
+    assert not any(word in note for note in found.notes for word in ("order", "degrees", "area"))
+    assert abs(found.points[:, 0].mean() - SITE[:, 0].mean()) < 30
+    assert found.points[:, 1].min() > 4e6
+
+
+@pytest.mark.parametrize("name", [one for one in PLAIN if one != "delimited"])
+def test_exchanged_axes_are_taken_where_the_caller_asks(tmp_path, name):
+    path = write_points(name, SITE[:, EXCHANGED], tmp_path)
+    found = ts.read(path, format=name, crs=CRS, check_crs=False)
+    assert any("in the other order" in one for one in found.notes)
+
+
+@pytest.mark.parametrize(("find", "name", "entry"), list_cases(SAID))
+def test_what_a_file_says_of_its_numbers_is_refused_or_told(tmp_path, find, name, entry):
+    if find == "heights above the ground":
+        path, options = write_above_ground(tmp_path), {}
+    elif find == "a place that PROJ cannot transform":
+        path, options = write_points_in_degrees(name, DEGREES, tmp_path)
+    else:
+        path, options = WRITERS[find][name](SITE[:4], tmp_path)
+    require(entry, lambda: ts.read(path, format=name, crs=CRS, **options))
+
+
+# ------------------------------------------------------------------------------ units of layers
+
+
+WRITTEN = [name for name, one in READ.items() if one.write]
+
+
+@pytest.mark.parametrize("name", WRITTEN)
+def test_feet_are_feet_after_a_file_or_its_format_says_that_it_loses_them(tmp_path, name):
+    one = READ[name]
+    feet = SITE / [1, 1, 0.3048]
+    tin = ts.triangulate(feet, crs=CRS, z_unit="ft")
+    survey = ts.Survey(points=feet, crs=CRS, elevation_unit="ft")
+    for given in [tin] * ("TIN" in one.writes) + [survey] * ("Survey" in one.writes):
+        path = ts.write(given, tmp_path / f"{type(given).__name__}{one.suffixes[0]}", format=name)
+        found = ts.read(path, format=name, crs=CRS)
+        unit = found.elevation_unit
+        if unit is None:
+            assert "elevation unit" in one.loses
+            continue
+        assert (found.points[:, 2] * unit.metres).max() == pytest.approx(SITE[:, 2].max(), abs=0.01)
+        with pytest.raises(ts.OptionError, match="must be"):
+            ts.read(path, format=name, crs=CRS, z_unit="yd")
+
+
+@pytest.mark.parametrize("role", ["breaklines", "boundary", "water"])
+@pytest.mark.parametrize("name", [one for one in WRITTEN if "Features" in READ[one].writes])
+def test_lines_and_polygons_in_feet_join_points_in_metres(tmp_path, name, role):
+    if name == "landxml" and role != "breaklines":
+        return  # which has no polygons
+    path = write_lines_in_feet(name, role, tmp_path)
+    points = ts.Survey(points=SITE, crs=CRS, elevation_unit="m")
+    declared = {"z_unit": "ft"} if "elevation unit" in READ[name].loses else {}
+    if name in DRAWINGS:
+        declared = {}  # whose units are those of all lengths
+    found = getattr(ts.io.with_lines(points, **{role: [path]}, **declared), role)
+    if role == "water":
+        heights = found[0].z
+    elif role == "breaklines":
+        heights = found[0].coords[:, 2]
+    else:
+        heights = np.reshape(found[0], (-1, 3))[:, 2]
+    assert heights == pytest.approx(320.0, abs=1e-3)
+
+
+# ------------------------------------------------------------------------------- other CRSs
 
 
 def test_a_crs_that_proj_cannot_transform_is_an_error_of_the_file(tmp_path):
-    local = (
-        'ENGCRS["Site grid",EDATUM["Site datum"],CS[Cartesian,2],AXIS["easting",east],'
-        'AXIS["northing",north],LENGTHUNIT["metre",1]]'
-    )
     for name in ("delimited", "ply", "flatgeobuf"):
-        path = _write(name, SITE, tmp_path)
-        assert ts.read(path, crs=local).crs.name == "Site grid"
+        path = write_points(name, SITE, tmp_path)
+        assert ts.read(path, crs=LOCAL).crs.name == "Site grid"
     with pytest.raises(ts.CrsError, match="No transformation from Site grid"):
-        ts.read(_write("delimited", SITE, tmp_path), source_crs=local, crs=CRS)
+        ts.read(write_points("delimited", SITE, tmp_path), source_crs=LOCAL, crs=CRS)
+
+
+@pytest.mark.parametrize("name", ["ply", "flatgeobuf", "gpkg", "las", "geoparquet"])
+def test_a_file_that_names_its_crs_leaves_no_order_open(tmp_path, name):
+    one = READ[name]
+    given = ts.Survey(points=WARSAW, crs="EPSG:2180", elevation_unit="m")
+    path = ts.write(given, tmp_path / f"a{one.suffixes[0]}", format=name)
+    assert not any("before the easting" in note for note in ts.read(path).notes)

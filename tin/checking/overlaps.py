@@ -1,4 +1,4 @@
-"""What triangles of other programs may be wrong in although they fit together: told, not refused.
+"""What triangles of other programs may be wrong in although they fit together.
 
 Triangles that are counter-clockwise and agree about their edges cover a place as often as their
 boundary winds about it (see :mod:`.check`). So the boundary alone tells whether they overlap, and
@@ -7,7 +7,7 @@ a boundary that is one convex ring needs no further look.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -20,57 +20,53 @@ from .shape import find_boundary
 if TYPE_CHECKING:
     from ..surface import TIN
 
-__all__ = ["describe_overlaps"]
+__all__ = ["Overlap", "describe_oddities", "find_overlap"]
 
 _MOST_EDGES = 20_000
 """Edges of a boundary that are looked at here, in half a second; a check looks at any number."""
 
 
-def describe_overlaps(tin: TIN, *, may_overlap: bool = True) -> list[str]:
-    """Tell in sentences what is wrong with a TIN made of existing triangles.
+class Overlap(NamedTuple):
+    """Whether triangles overlap."""
 
-    Parameters
-    ----------
-    tin : TIN
-        As :meth:`TIN.from_triangles` makes it.
-    may_overlap : bool
-        False where it is known otherwise that no triangles overlap.
+    is_found: bool
+    sentence: str = ""
+    """What is to be told: where they do, or that it was not looked at."""
 
-    Returns
-    -------
-    list of str
-        About triangles that overlap, vertices of no triangle, and edges that are constrained on
-        one side only. Empty where :func:`check` at level 2 would find nothing but a boundary that
-        is concave or in several rings, as surfaces may have.
+
+def find_overlap(tin: TIN) -> Overlap:
+    """Look for triangles of a TIN that overlap, as :meth:`TIN.from_triangles` may make it.
 
     Examples
     --------
     >>> from tinsmith import TIN
     >>> points = [[0, 0, 1], [4, 0, 1], [0, 4, 1], [1, 1, 5], [5, 1, 5], [1, 5, 5]]
-    >>> describe_overlaps(TIN.from_triangles(points, [[0, 1, 2], [3, 4, 5]]))[0]
-    'Triangles overlap (westernmost place: near vertex 3); a check tells more.'
+    >>> find_overlap(TIN.from_triangles(points, [[0, 1, 2], [3, 4, 5]])).sentence
+    'Triangles overlap (westernmost place: near vertex 3).'
     """
-    return [
-        *(_describe_overlaps(find_boundary(tin), tin) if may_overlap else ()),
-        *_describe_unused(tin),
-        *_describe_one_sided(tin),
-    ]
-
-
-def _describe_overlaps(boundary: Boundary, tin: TIN) -> list[str]:
+    boundary = find_boundary(tin)
     if _is_convex(columns(tin.points), boundary):
-        return []
+        return Overlap(is_found=False)
     if len(boundary.start) > _MOST_EDGES:
-        return [
-            f"The boundary has {len(boundary.start):,} edges: whether triangles overlap was not "
-            "looked at; a check tells."
-        ]
+        return Overlap(
+            is_found=False,
+            sentence=f"The boundary has {len(boundary.start):,} edges: whether triangles overlap "
+            "was not looked at; a check tells.",
+        )
     fault = find_fault(boundary)
     if fault is None:
-        return []
-    return [
-        f"Triangles overlap (westernmost place: near vertex {fault.vertex}); a check tells more."
-    ]
+        return Overlap(is_found=False)
+    where = f"westernmost place: near vertex {fault.vertex}"
+    return Overlap(is_found=True, sentence=f"Triangles overlap ({where}).")
+
+
+def describe_oddities(tin: TIN) -> list[str]:
+    """Tell in sentences of vertices of no triangle, and edges constrained on one side only.
+
+    Beside overlaps that is all that :func:`check` at level 2 may find in a TIN made of existing
+    triangles but a boundary that is concave or in several rings, as surfaces may have.
+    """
+    return [*_describe_unused(tin), *_describe_one_sided(tin)]
 
 
 def _is_convex(xy: Columns, boundary: Boundary) -> bool:

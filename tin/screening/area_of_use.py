@@ -71,6 +71,10 @@ class AreaOfUse:
         some = xy[:: max(1, len(xy) // _SPREAD)]
         return bool(2 * self.covers(some).sum() > len(some))
 
+    def covers_whole(self, xy: Float64Array) -> bool:
+        """Whether the outermost of some points, and some between, lie in the areas themselves."""
+        return len(xy) > 0 and bool(self.covers(xy[_find_outermost(xy)], margin=0.0).all())
+
     def covers_as_degrees(self, xy: Float64Array) -> bool:
         """Whether points, spread over all of them, lie in all areas as longitude and latitude."""
         longitude, latitude = xy[_find_outermost(xy)].T

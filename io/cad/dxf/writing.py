@@ -97,8 +97,8 @@ def write(
     with _fix_dates():
         document = _make_document(ezdxf, obj, version, along, factor)
         head, tail, encoding, writer = _split(document, version)
-    _add_content(writer, obj, select_texts(obj, path), factor, labels=labels)
-    tell_unknown_elevations(obj, path)
+    _add_content(writer, obj, select_texts(obj), factor, labels=labels)
+    tell_unknown_elevations(obj)
     with replacing(path) as file:
         file.write(_encode(_count_handles(head, writer), encoding))
         for start in range(0, len(writer.parts), _CHUNK):

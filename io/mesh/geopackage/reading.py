@@ -69,22 +69,20 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
             f"{FILE} is open in another program, as '{journal.name}' beside it shows: close it "
             "there first."
         )
-    answer = run_isolated(
-        f"{__package__}.child:read_tables", {"path": str(path.absolute())}, path=path
-    )
+    answer = run_isolated(f"{__package__}.child:read_tables", {"path": str(path.absolute())})
     points, triangles, constrained = _take_mesh(answer)
     record = Record(_load_json(answer, "document"), _take_arrays(answer))
     digests = _load_json(answer, "digests")
     text = answer.value["document"]
     if digest_arrays(*record.arrays.values(), text=text) != digests.get("record"):
         raise ReadError(f"{FILE} is damaged: its record of the TIN is not as written.")
-    reference = _choose_reference(record, crs, z_unit, path)
+    reference = _choose_reference(record, crs, z_unit)
     mesh = digest_arrays(points, triangles, constrained)
     if (mesh, answer.value["lines"]) != (digests.get("mesh"), digests.get("lines")):
-        tin = make_tin(points, triangles, path, constrained=constrained, reference=reference)
+        tin = make_tin(points, triangles, constrained=constrained, reference=reference)
         return _add_note(tin)
     declared = _declare(record, reference)
-    told = () if record.document.get("crs") else look_at_crs(points, reference.crs, path)
+    told = look_at_crs(points, reference.crs, is_declared=True) if reference.is_declared else ()
     try:
         tin = unpack_tin(declared, points, triangles, constrained)
         return add_notes(tin, told) if told else tin
@@ -119,19 +117,17 @@ def _load_json(answer: Answer, name: str) -> dict[str, Any]:
     return found
 
 
-def _choose_reference(
-    record: Record, crs: CrsLike | None, z_unit: UnitLike | None, path: Path
-) -> Reference:
+def _choose_reference(record: Record, crs: CrsLike | None, z_unit: UnitLike | None) -> Reference:
     found = {}
     for name, key in (("crs", "crs"), ("elevation_unit", "unit")):
         tree = record.document.get(name)
         found[key] = tree.get(key) if isinstance(tree, dict) else None
-    return choose_reference(crs, z_unit, path, found_crs=found["crs"], found_unit=found["unit"])
+    return choose_reference(crs, z_unit, found_crs=found["crs"], found_unit=found["unit"])
 
 
 def _declare(record: Record, reference: Reference) -> Record:
     """Return the record with the reference that the file or else a caller names."""
-    crs, unit = reference
+    crs, unit = reference.crs, reference.elevation_unit
     named = {
         "crs": None if crs is None else {"crs": str(crs)},
         "elevation_unit": None if unit is None else {"unit": unit.text},

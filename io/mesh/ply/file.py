@@ -152,7 +152,7 @@ def write(surface: TIN | Survey, path: Path, *, progress: Tell | None = None) ->
     surface = common.require_writable(surface)
     columns, lost = _select_number_columns(surface.attributes)
     if isinstance(surface, Survey):
-        tell_lost_attributes(lost, path, "PLY has doubles, and names of one ASCII word")
+        tell_lost_attributes(lost, "PLY has doubles, and names of one ASCII word")
     body = {"vertex": _pack_vertices(surface.points, columns)}
     comments: list[str] = []
     if isinstance(surface, Surface):

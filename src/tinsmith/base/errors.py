@@ -108,6 +108,12 @@ class OptionError(TinsmithError, ValueError):
         self.or_none = or_none
         super().__init__(self.describe())
 
+    def add_file(self, file: Path) -> None:
+        """Name the file of which the sentence speaks."""
+        if isinstance(self.allowed, str):
+            self.allowed = self.allowed.replace(FILE, f"'{file}'")
+        super().add_file(file)
+
     def describe(self, flag: str = "") -> str:
         """Return the sentence, with the flag of a command in place of the option's name."""
         is_text = isinstance(self.allowed, str)

@@ -150,8 +150,8 @@ OutsidePolicy: TypeAlias = Literal["error", "nan", "cut"]
 DrawingContent: TypeAlias = Literal["surface", "source", "points"]
 """What is read of a drawing: triangles, the points and lines that make a surface, or points."""
 
-FacePolicy: TypeAlias = Literal["all", "surface"]
-"""Which triangles of a mesh are read: all, or those that make a surface seen from above."""
+FacePolicy: TypeAlias = Literal["most", "all", "surface"]
+"""Which triangles of a mesh are read: all but a few, all, or those that make a surface."""
 
 DrawingVersion: TypeAlias = Literal["R2010", "R12"]
 """Which version of DXF is written."""

@@ -353,8 +353,9 @@ _MESHES = under(
     choice_option(
         "--faces",
         FacePolicy,
-        "Triangles of a mesh to read: all, or those that make a surface, without those that have "
-        "no area seen from above or overlap larger ones.",
+        "Triangles of a mesh to read, where some make no surface (no area seen from above, or "
+        "overlapping larger ones): only the others; most, if at most 1 % of the area makes none; "
+        "or all, or none.",
     ),
     click.option(
         "--texts",

@@ -11,6 +11,7 @@ from tinsmith.io import ReadError
 from tinsmith.io.delimited import layout as layouts
 from tinsmith.io.delimited.layout import find_layout
 from tinsmith.io.delimited.lines import TextLines, decode_head, read_lines
+from tinsmith.io.door import naming_file
 
 USUAL = {
     "delimiter": ",",
@@ -437,7 +438,7 @@ def test_the_encoding_is_found_or_told(tmp_path, data, encoding, text):
 def test_text_that_cannot_be_read_is_told(tmp_path, data, encoding, words):
     path = tmp_path / "a.csv"
     path.write_bytes(data)
-    with pytest.raises(ReadError) as caught:
+    with pytest.raises(ReadError) as caught, naming_file(path):
         read_lines(path, encoding=encoding)
     assert words in str(caught.value)
     assert str(path) in str(caught.value)

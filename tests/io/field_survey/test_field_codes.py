@@ -280,6 +280,43 @@ def test_a_marked_line_that_crosses_itself_is_told():
     assert finding.kind == "line that crosses itself"
 
 
+def shoot(places, numbers=None, *, marks=True, **given):
+    """Read one line of shots along the first axis."""
+    codes = ["EP1"] * len(places)
+    if marks:
+        codes[0], codes[-1] = "EP1 BEG", "EP1 END"
+    attributes = {"description": np.array(codes, object)}
+    if numbers is not None:
+        attributes["number"] = np.array(numbers)
+    points = [[x, 0.1 * k, 5.0] for k, x in enumerate(places)]
+    return ts.lines_from_codes(ts.Survey(points=points, attributes=attributes), **given)
+
+
+def test_a_marked_line_that_jumps_is_told():
+    (finding,) = shoot([0, 1, 2, 3, 50, 51]).findings
+    assert (finding.kind, finding.rows) == ("line that jumps", (3, 4))
+    assert shoot([0, 1, 2, 3, 9, 10]).findings == []
+    assert shoot([0, 1, 30]).findings == []  # too few to say what is usual
+
+
+def test_shots_without_marks_in_groups_far_apart_are_refused():
+    for places in ([0, 1, 2, 100, 101, 102], [0, 1, 2, 100, 101, 102, 200, 201]):
+        with pytest.raises(ts.LinesError, match=r"EP1 have no mark .* in groups .* apart"):
+            shoot(places, marks=False)
+        (line,) = shoot(places, marks=False, shot_order="row").breaklines
+        assert len(line.coords) == len(places)
+
+
+def test_a_line_that_jumps_in_one_order_alone_is_refused():
+    numbers = [10 * k for k in range(30)]
+    numbers[25] = 35  # the shot at 25 between those at 3 and 4
+    with pytest.raises(ts.LinesError, match="jumps in the order of numbers and not in that of ro"):
+        shoot(range(30), numbers)
+    (line,) = shoot(range(30), numbers, shot_order="row").breaklines
+    assert line.coords[:, 0].tolist() == list(range(30))
+    assert shoot(range(30), numbers, shot_order="number").findings[0].kind == "line that jumps"
+
+
 def test_unknown_codes_with_marks_of_lines_are_told():
     codes = ["EP1 BEG", "EP1 END", "FENCE1 BEG", "FENCE1", "FENCE1 END", "EPP5 BEG", "GS", "TREE 7"]
     made = ts.Survey(

@@ -14,7 +14,7 @@ from tinsmith.base.errors import CrsError, FormatError, ReadError
 from tinsmith.cli import main
 from tinsmith.io.mesh import obj, stl, vtk
 from tinsmith.io.mesh.ply import file as ply
-from tinsmith.tin.checking.overlaps import describe_overlaps
+from tinsmith.tin.checking.overlaps import describe_oddities, find_overlap
 
 ORIGIN = np.array([745_000.0, 4_033_000.0, 200.0])
 SQUARE = np.array([[0, 0, 1], [1, 0, 2], [1, 1, 3], [0, 1, 4]], float)
@@ -595,8 +595,8 @@ def notes_of(tmp_path, text, name="a.obj"):
 
 def test_triangles_of_a_file_that_overlap_are_told(tmp_path):
     assert notes_of(tmp_path, TWO_OVER_EACH_OTHER) == [
-        "Triangles overlap (westernmost place: near vertex 3); a check tells more. "
-        "`faces='surface'` leaves them out."
+        "Triangles overlap (westernmost place: near vertex 3). `faces='surface'` leaves out 1 of 2 "
+        "triangles (1 that overlaps others, 50 % of the area)."
     ]
 
 
@@ -626,14 +626,16 @@ def test_an_edge_that_is_constrained_on_one_side_is_told():
     points = [[0, 0, 1], [4, 0, 1], [4, 4, 1], [0, 4, 1]]
     flags = [[False, True, False], [False, False, False]]
     tin = ts.TIN.from_triangles(points, [[0, 1, 2], [0, 2, 3]], constrained=flags)
-    assert describe_overlaps(tin) == ["1 edge is constrained on one side only."]
+    assert describe_oddities(tin) == ["1 edge is constrained on one side only."]
 
 
 def test_a_boundary_too_long_to_be_swept_is_told(monkeypatch):
     monkeypatch.setattr("tinsmith.tin.checking.overlaps._MOST_EDGES", 5)
     points = [[0, 0, 1], [4, 0, 1], [0, 4, 1], [1, 1, 5], [5, 1, 5], [1, 5, 5]]
     tin = ts.TIN.from_triangles(points, [[0, 1, 2], [3, 4, 5]])
-    assert "whether triangles overlap was not looked at" in describe_overlaps(tin)[0]
+    overlap = find_overlap(tin)
+    assert not overlap.is_found
+    assert "whether triangles overlap was not looked at" in overlap.sentence
 
 
 @pytest.mark.parametrize("command", ["info", "convert"])

@@ -73,8 +73,25 @@ def test_triangles_that_overlap_elsewhere_are_told_with_the_offer(tmp_path, kind
     path, how = write_faces(kind, points, [[0, 1, 2], [3, 4, 5]], tmp_path)
     tin = ts.read(path, **how)
     assert len(tin.triangles) == 2
-    assert any("`faces='surface'` leaves them out" in note for note in tin.notes)
+    assert any("`faces='surface'` leaves out 1 of 2 triangles" in note for note in tin.notes)
     assert len(ts.read(path, **how, faces="surface").triangles) == 1
+
+
+@pytest.mark.parametrize("kind", FACE_WRITERS)
+def test_few_triangles_that_make_no_surface_are_left_out_and_told(tmp_path, kind):
+    path, how = write_faces(kind, [*SQUARE, [8, 500, 2]], FOLDED_FACES, tmp_path)
+    tin = ts.read(path, **how)
+    assert len(tin.triangles) == 2
+    assert any(" 1 of 3 triangles (1 that overlaps others" in note for note in tin.notes)
+    with pytest.raises(ts.ReadError, match="`faces='surface'` leaves out 1 of 3"):
+        ts.read(path, **how, faces="all")
+
+
+@pytest.mark.parametrize("kind", ["obj", "ply", "off", "2dm"])
+def test_a_triangle_that_names_a_vertex_twice_is_refused(tmp_path, kind):
+    path, how = write_faces(kind, SQUARE, [[0, 1, 2], [0, 2, 2]], tmp_path)
+    with pytest.raises(ts.ReadError, match="`faces='surface'` leaves out 1 of 2"):
+        ts.read(path, **how)
 
 
 def test_the_command_line_offers_its_flag(tmp_path):

@@ -1,7 +1,6 @@
 """Points of a file in the CRS wanted: what is told of areas of use, whatever the format."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,7 +18,7 @@ SITE = np.array(
 
 
 def _place(points, source, target, **options):
-    return place(points, source=source, target=target, path=Path("a"), **options).notes
+    return place(points, source=source, target=target, **options).notes
 
 
 def test_points_in_the_area_of_their_crs_are_not_told():

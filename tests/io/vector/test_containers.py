@@ -282,3 +282,13 @@ def test_layers_have_the_form_that_older_programs_read(tmp_path):
     assert times == ["1970-01-01T00:00:00.000Z"]
     assert version == 10300
     assert {f"rtree_contours_geom_{name}" for name in ("insert", "update1", "delete")} <= triggers
+
+
+def test_the_name_of_a_format_that_two_share_is_told_apart_by_content(tmp_path):
+    points = np.array([[752700, 4024200, 320], [752710, 4024200, 321], [752700, 4024210, 322.0]])
+    ts.write(ts.Survey(points=points, crs="EPSG:32616"), tmp_path / "points.gpkg")
+    ts.write(ts.triangulate(points, crs="EPSG:32616"), tmp_path / "tin.gpkg")
+    assert isinstance(ts.read(tmp_path / "points.gpkg", format="gpkg"), ts.Survey)
+    assert isinstance(ts.read(tmp_path / "tin.gpkg", format="gpkg"), ts.TIN)
+    with pytest.raises(ts.ReadError, match="no GeoPackage of a TIN"):
+        ts.read(tmp_path / "points.gpkg", format="tin")

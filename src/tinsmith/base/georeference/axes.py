@@ -17,6 +17,7 @@ __all__ = [
     "DrawnCRS",
     "Label",
     "find_axes",
+    "gives_northing_first",
     "label_axes",
     "turn_into_drawing",
     "undo_north_up",
@@ -136,6 +137,18 @@ def _read_axes(text: str) -> Axes:
     if not is_cross or any(one not in _VECTORS for one in directions):
         return _EAST_NORTH
     return Axes(*directions)
+
+
+def gives_northing_first(crs: CRS) -> bool:
+    """Whether a CRS names the northing, or the latitude, before the easting or longitude.
+
+    Examples
+    --------
+    >>> gives_northing_first(CRS("EPSG:2180")), gives_northing_first(CRS("EPSG:32616"))
+    (True, False)
+    """
+    axes = crs.to_pyproj().axis_info[:2]
+    return [str(axis.direction) for axis in axes] == ["north", "east"]
 
 
 def label_axes(crs: CRS | None) -> tuple[Label, Label]:
