@@ -80,7 +80,7 @@ def read_content(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise ReadError(f"Cannot read {FILE}: {error.strerror or error}.") from error
+        raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
 
 
 def require_writable(surface: object) -> TIN | Survey:

@@ -113,7 +113,8 @@ def _read_numbers(path: Path, dtype: str, width: int) -> AnyArray:
     row = width * np.dtype(dtype).itemsize
     if len(content) % row:
         raise ReadError(
-            f"{FILE} is damaged: its {len(content)} bytes are no whole number of rows of {row}."
+            f"'{path}' is damaged: its {len(content)} bytes are no whole number of rows of {row}.",
+            path=path,
         )
     numbers = np.frombuffer(content, dtype).reshape(-1, width)
     with np.errstate(invalid="ignore"):  # what is not finite is refused later

@@ -57,7 +57,7 @@ def read(path: Path) -> Mesh:
     if not path.is_file():
         read_content(path)  # says why it cannot be read
     others, arrays = run_isolated(
-        f"{__package__}.gmsh_child:read_mesh", {"path": str(path.absolute())}
+        f"{__package__}.gmsh_child:read_mesh", {"path": str(path.absolute())}, path=path
     )
     told = ", ".join(f"{count:,} of the kind {kind}" for kind, count in others.items())
     if len(arrays["corners"]) == 0 and others:

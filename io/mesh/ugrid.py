@@ -82,7 +82,7 @@ def read(
     if not path.is_file():
         read_content(path)  # says why it cannot be read
     wanted = {"path": str(path.absolute()), "surface": surface, "variable": variable}
-    value, arrays = run_isolated(f"{__package__}.ugrid_child:read_mesh", wanted)
+    value, arrays = run_isolated(f"{__package__}.ugrid_child:read_mesh", wanted, path=path)
     points, notes = arrays["points"], []
     if value["depth"]:
         points[:, 2] *= -1.0

@@ -88,6 +88,7 @@ def _read_in_child(path: Path) -> Answer:
     return run_isolated(
         f"{__package__}.vtk_child:read_mesh",
         {"path": str(path.absolute()), "kind": kind[1].decode()},
+        path=path,
     )
 
 

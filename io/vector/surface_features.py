@@ -31,8 +31,8 @@ __all__ = ["Writable", "choose_kind", "make_features", "make_whole_surface"]
 Writable: TypeAlias = TIN | Survey | Features
 
 
-def choose_kind(surface: Writable, kind: str | None) -> FeatureKind | None:
-    """Return the kind of parts of a surface that is to be written; None for features.
+def choose_kind(surface: Writable, kind: str | None) -> str:
+    """Return the kind of parts of a surface that is to be written; "" for features.
 
     Raises
     ------
@@ -46,16 +46,16 @@ def choose_kind(surface: Writable, kind: str | None) -> FeatureKind | None:
             raise FormatError(
                 f"Invalid kind '{kind}': features are written as they are, without one."
             )
-        return None
+        return ""
     is_survey = isinstance(require_writable(surface), Survey)
     if kind is None:
         return "points" if is_survey else "triangles"
-    if is_survey and choice("kind", kind, FeatureKind) != "points":
+    choice("kind", kind, FeatureKind)
+    if is_survey and kind != "points":
         raise FormatError(
             f"A survey has no {kind}, only points: triangulate it first.", known=("points",)
         )
-    chosen: FeatureKind = choice("kind", kind, FeatureKind)
-    return chosen
+    return kind
 
 
 def make_features(surface: Writable, kind: FeatureKind | None) -> Features:
@@ -73,13 +73,11 @@ def make_features(surface: Writable, kind: FeatureKind | None) -> Features:
         As :func:`choose_kind`; also if a TIN without lines is asked for lines.
     """
     chosen = choose_kind(surface, kind)
-    if isinstance(surface, Features) or chosen is None:
+    if isinstance(surface, Features):
         return surface
     if isinstance(surface, Survey):
         return Features.of_points(
-            surface.points,
-            columns=_list_columns(surface),
-            **_describe_reference(surface, "points"),
+            surface.points, columns=_list_columns(surface), **_describe_reference(surface, "points")
         )
     return _MAKERS[chosen](surface)
 

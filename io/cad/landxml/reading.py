@@ -99,11 +99,7 @@ def _as_wanted(surface: str | int | None) -> str | int | None:
 
 
 def _read_tin(
-    found: Content,
-    chosen: Surface,
-    declared: Declared,
-    notes: list[str],
-    faces: FacePolicy,
+    found: Content, chosen: Surface, declared: Declared, notes: list[str], faces: FacePolicy
 ) -> TIN:
     mesh = make_mesh(found, chosen)
     measures = _choose_measures(found, chosen, declared)

@@ -69,7 +69,9 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
             f"{FILE} is open in another program, as '{journal.name}' beside it shows: close it "
             "there first."
         )
-    answer = run_isolated(f"{__package__}.child:read_tables", {"path": str(path.absolute())})
+    answer = run_isolated(
+        f"{__package__}.child:read_tables", {"path": str(path.absolute())}, path=path
+    )
     points, triangles, constrained = _take_mesh(answer)
     record = Record(_load_json(answer, "document"), _take_arrays(answer))
     digests = _load_json(answer, "digests")

@@ -68,11 +68,7 @@ def write_features(
 
 
 def write_feature_lines(
-    surface: Writable,
-    path: Path,
-    *,
-    kind: FeatureKind | None = None,
-    progress: Tell | None = None,
+    surface: Writable, path: Path, *, kind: FeatureKind | None = None, progress: Tell | None = None
 ) -> None:
     """Write a kind of parts of a surface, or features, as lines of GeoJSON, each a feature.
 

@@ -103,7 +103,7 @@ def write(
     each vertex.
     """
     chosen = choose_kind(surface, kind)
-    if isinstance(surface, Features) or chosen is None:
+    if isinstance(surface, Features):
         write_features(surface, path, projected=projected, progress=progress)
         return
     if chosen == "lines" and not isinstance(surface, Survey):
