@@ -13,7 +13,6 @@ from ..reprojection.placement import place
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from ...base.arrays import Float64Array
     from ...base.crs import CRS, Unit
@@ -36,7 +35,6 @@ def place_rows(
     parts: Sequence[Float64Array],
     measures: Measures,
     declared: Declared,
-    path: Path,
     *,
     names_axes: bool = False,
 ) -> Placing:
@@ -48,7 +46,6 @@ def place_rows(
         As in the file.
     measures : Measures
     declared : Declared
-    path : Path
     names_axes : bool
         Whether the format says which coordinate is the northing.
 

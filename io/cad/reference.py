@@ -18,8 +18,6 @@ from ...tin.screening.area_of_use import AreaOfUse
 from ..reprojection.placement import settle_unit
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ...base.arrays import Float64Array
     from ...base.crs import CrsLike, UnitLike
 
@@ -85,16 +83,13 @@ class Measures:
         return rows
 
 
-def choose_measures(
-    stated: Stated, declared: Declared, path: Path, *, sample: Float64Array
-) -> Measures:
+def choose_measures(stated: Stated, declared: Declared, *, sample: Float64Array) -> Measures:
     """Decide what coordinates and elevations are measured in.
 
     Parameters
     ----------
     stated : Stated
     declared : Declared
-    path : Path
     sample : (n, 2) float64 array
         Easting and northing of some points, as in the file, to be looked for in the area of the
         CRS; may be empty.
@@ -108,7 +103,7 @@ def choose_measures(
     """
     source = stated.crs or declared.crs
     unit = declared.unit or stated.unit
-    measures = Measures(source, _choose_elevation_unit(stated, declared, unit, path))
+    measures = Measures(source, _choose_elevation_unit(stated, declared, unit))
     along = None if source is None or source.is_geographic else source.horizontal_unit
     if along is not None and along.metres is not None:
         _require_agreement(stated, declared, along, source)
@@ -131,9 +126,7 @@ def choose_measures(
     return _look_at_area(measures, declared.crs, sample)
 
 
-def _choose_elevation_unit(
-    stated: Stated, declared: Declared, unit: Unit | None, path: Path
-) -> Unit | None:
+def _choose_elevation_unit(stated: Stated, declared: Declared, unit: Unit | None) -> Unit | None:
     if declared.elevation_unit is not None:
         known = None if declared.unit is not None else stated.elevation_unit or stated.unit
         if stated.elevation_unit is not None and stated.elevation_unit != stated.unit:

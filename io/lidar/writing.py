@@ -114,7 +114,7 @@ def write(
     _require_points(surface.points)
     scaling = _choose_scaling(surface.points, _parse_scale(scale))
     attributes = surface.attributes if isinstance(surface, Survey) else {}
-    columns = _choose_columns(attributes, path)
+    columns = _choose_columns(attributes)
     header = _make_header(laspy, scaling, columns, surface.crs)
     _warn_of_unit(surface)
     with replacing(path) as file:
@@ -198,7 +198,7 @@ def _round_to_whole(values: Float64Array, scale: float, offset: float) -> Int32A
 # ------------------------------------------------------------------------ attributes
 
 
-def _choose_columns(attributes: Mapping[str, AnyArray], path: Path) -> dict[str, AnyArray]:
+def _choose_columns(attributes: Mapping[str, AnyArray]) -> dict[str, AnyArray]:
     """Return the attributes that the format holds, and tell of the others."""
     columns, texts = {}, []
     for name, given in attributes.items():

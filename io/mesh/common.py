@@ -42,6 +42,7 @@ __all__ = [
     "flag_edges",
     "format_crs",
     "format_unit",
+    "join_places",
     "make_survey",
     "make_tin",
     "measure_rounding",
@@ -132,7 +133,6 @@ class Reference(NamedTuple):
 def choose_reference(
     crs: CrsLike | None,
     z_unit: UnitLike | None,
-    path: Path,
     *,
     found_crs: str | None = None,
     found_unit: str | None = None,
@@ -237,7 +237,7 @@ def mesh_reader(parse: Callable[..., Mesh]) -> Callable[..., TIN | Survey]:
     ) -> TIN | Survey:
         mesh = parse(path, **options)
         reference = choose_reference(
-            crs, z_unit, path, found_crs=mesh.crs, found_unit=mesh.elevation_unit
+            crs, z_unit, found_crs=mesh.crs, found_unit=mesh.elevation_unit
         )
         return build_mesh(mesh, path, reference=reference, faces=faces)
 
@@ -264,7 +264,6 @@ def build_mesh(mesh: Mesh, path: Path, *, reference: Reference, faces: FacePolic
     tin = make_tin(
         points,
         fans.triangles,
-        path,
         constrained=flags,
         reference=reference,
         attributes=attributes,
@@ -278,7 +277,6 @@ def build_mesh(mesh: Mesh, path: Path, *, reference: Reference, faces: FacePolic
 def make_tin(
     points: AnyArray,
     triangles: AnyArray,
-    path: Path,
     *,
     constrained: BoolArray | None = None,
     reference: Reference,
@@ -469,6 +467,21 @@ def require_vertices(corners: Int64Array, offsets: Int64Array, n_vertices: int) 
             f"face {row} names vertex {corners[first]}, and the file has the vertices "
             f"0 to {n_vertices - 1}."
         )
+
+
+def join_places(rows: AnyArray) -> tuple[AnyArray, Int64Array]:
+    """Return the distinct rows in the order in which they first come, and the number of each row.
+
+    Rows are the same where all numbers are, -0.0 and 0.0 too.
+    """
+    rows = rows + rows.dtype.type(0)  # turns -0.0 into 0.0
+    order = np.lexsort(rows.T[::-1])  # stable: of equal ones the first comes first
+    is_first = np.ones(len(order), np.bool_)
+    is_first[1:] = (rows[order[1:]] != rows[order[:-1]]).any(axis=1)
+    stands_for = np.empty(len(order), np.int64)
+    stands_for[order] = order[is_first][np.cumsum(is_first) - 1]
+    is_kept = stands_for == np.arange(len(order))
+    return rows[is_kept], (np.cumsum(is_kept) - 1)[stands_for]
 
 
 def flag_edges(triangles: AnyArray, edges: AnyArray, n_vertices: int) -> BoolArray:

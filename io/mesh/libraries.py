@@ -270,7 +270,6 @@ def from_mesh(
             reference = choose_reference(
                 crs,
                 z_unit,
-                name,
                 found_crs=_as_text(found.about.get("crs")),
                 found_unit=_as_text(found.about.get("elevation_unit")),
             )

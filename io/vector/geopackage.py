@@ -13,9 +13,11 @@ from ...base.errors import OptionError, WriteError
 from ...base.sentences import FILE
 from ..mesh.geopackage.containers import MARK, Placing, adding_layers
 from .ogr import describe, write_layer
+from .surface_features import make_features
 
 if TYPE_CHECKING:
     from ...base.results import Features
+    from ...tin import Survey
 
 __all__ = ["write"]
 
@@ -27,14 +29,14 @@ _RESERVED = re.compile(r"(gpkg|rtree|sqlite)_", re.IGNORECASE)
 
 
 def write(
-    features: Features,
+    surface: Features | Survey,
     path: Path,
     *,
     layer: str | None = None,
     append: bool = False,
     overwrite: bool = False,
 ) -> None:
-    """Write features as a layer of a GeoPackage; its other layers stay as they are.
+    """Write features, or points of a survey, as a layer of a GeoPackage; other layers stay.
 
     Parameters
     ----------
@@ -60,6 +62,7 @@ def write(
     elevations, and notes, are metadata of the layer, a unit that is not known ``"unknown"``. NaN
     and missing texts are NULL.
     """
+    features = make_features(surface, None)
     _require_free(features)
     placing = Placing(as_flag("overwrite", overwrite), as_flag("append", append))
     if placing.append and placing.overwrite:

@@ -17,13 +17,16 @@ from ...base.atomic import replacing_path
 from ...base.errors import WriteError
 from ...base.sentences import FILE
 from .ogr import describe, encode_geometries
+from .surface_features import make_features
 from .well_known_binary import encode_equal_shapes
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...base.arrays import AnyArray
+    from ...base.policies import FeatureKind
     from ...base.results import Features
+    from .surface_features import Writable
 
 __all__ = ["write"]
 
@@ -33,8 +36,13 @@ _MOST_BYTES = 2**31 - 1
 """What the offsets of one column of Arrow reach."""
 
 
-def write(features: Features, path: Path) -> None:
-    """Write features as GeoParquet, geometries as well-known binary.
+def write(surface: Writable, path: Path, *, kind: FeatureKind | None = None) -> None:
+    """Write a kind of parts of a surface, or features, as GeoParquet, as well-known binary.
+
+    Parameters
+    ----------
+    kind : {"triangles", "points", "edges", "lines", "hull"}, optional
+        Of a TIN; default triangles.
 
     Raises
     ------
@@ -48,6 +56,7 @@ def write(features: Features, path: Path) -> None:
     Coordinates and numbers are the same. The CRS is PROJJSON, ``null`` if it is not known; units
     and notes are metadata of the file.
     """
+    features = make_features(surface, kind)
     pyarrow = optional.load("pyarrow", f"Writing {FILE}")
     parquet = optional.load("pyarrow.parquet", f"Writing {FILE}")
     if _GEOMETRY in features.columns:

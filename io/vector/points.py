@@ -18,7 +18,7 @@ from ...base.sentences import FILE, counted
 from ...tin import TIN, Breakline, Survey
 from ...tin.screening.nodata import describe_elevations, parse_nodata
 from ...tin.topology import find_offsets
-from ..mesh.common import Reference, make_tin
+from ..mesh.common import Reference, join_places, make_tin
 from ..reprojection.placement import place, settle_unit
 from .elevations import find_elevation_unit, find_elevations
 from .features import Features, read_features
@@ -298,13 +298,13 @@ def _make_triangles(features: Features, asked: _Asked, faces: FacePolicy) -> TIN
     xyz = shapely.get_coordinates(features.geometries, include_z=True)
     corners = np.delete(xyz.reshape(-1, _TRIANGLE_CORNERS, 3), 3, axis=1).reshape(-1, 3)
     if not np.isfinite(corners).all():
-        raise ReadError("a corner of a triangle is not finite.")  # fmt: skip
-    points, triangles = _join_corners(corners)
+        raise ReadError("a corner of a triangle is not finite.")
+    points, numbers = join_places(corners)
+    triangles = numbers.reshape(-1, 3)
     placed = place(points, source=features.crs, target=asked.crs, unit=asked.unit)
     tin = make_tin(
         placed.points,
         triangles,
-        features.path,
         reference=Reference(placed.crs, placed.elevation_unit),
         faces=faces,
         looks_at_crs=False,
@@ -313,22 +313,3 @@ def _make_triangles(features: Features, asked: _Asked, faces: FacePolicy) -> TIN
     if placed.points is not points:
         notes.append(f"Vertices were reprojected to {placed.crs}; the triangles are the file's.")
     return tin.replace(report=replace(tin.report, notes=[*tin.report.notes, *notes]))
-
-
-def _join_corners(
-    corners: Float64Array,
-) -> tuple[Float64Array, Int64Array]:
-    """Return distinct corners, in the order in which they come, and triangles of their numbers."""
-    corners = corners + 0.0  # -0.0 is the same place
-    order = np.lexsort(corners.T[::-1])
-    near = corners[order]
-    is_new = np.ones(len(near), np.bool_)
-    is_new[1:] = (near[1:] != near[:-1]).any(axis=1)
-    group = np.empty(len(near), np.int64)
-    group[order] = np.cumsum(is_new) - 1
-    first = np.full(int(is_new.sum()), len(near))
-    np.minimum.at(first, group, np.arange(len(near)))
-    ranks = np.empty(len(first), np.int64)
-    by_place = np.argsort(first)
-    ranks[by_place] = np.arange(len(first))
-    return corners[first[by_place]], ranks[group].reshape(-1, 3)

@@ -6,11 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.errors import WriteError
+from ...base.errors import FormatError, WriteError
 from ...base.notes import warn
+from ...base.results import Features
 from ...base.sentences import FILE, counted
+from ..mesh.common import require_tin
 from ..registry.side_files import replacing_data_set
 from .ogr import write_layer
+from .surface_features import make_features, make_whole_surface
 from .well_known_binary import encode_tin
 
 if TYPE_CHECKING:
@@ -18,9 +21,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...base.arrays import AnyArray
-    from ...base.results import Features
+    from ...base.policies import FeatureKind
+    from .surface_features import Writable
 
-__all__ = ["short_names", "write", "write_multipatch"]
+__all__ = ["short_names", "write"]
 
 _NAME_BYTES = 10
 _TEXT_BYTES = 254
@@ -31,15 +35,28 @@ _LARGEST = 1e22
 _LARGEST_WHOLE = 10**18
 
 
-def write(features: Features, path: Path) -> None:
-    """Write features as a shapefile: PointZ, PolyLineZ or PolygonZ where there are elevations.
+def write(
+    surface: Writable, path: Path, *, kind: FeatureKind | None = None, multipatch: bool = False
+) -> None:
+    """Write a kind of parts of a surface, or features, as a shapefile.
 
-    Its parts are written beside it: ``.shx``, ``.dbf``, ``.cpg``, with a CRS ``.prj``.
+    They are PointZ, PolyLineZ or PolygonZ where there are elevations. Its parts are written beside
+    it: ``.shx``, ``.dbf``, ``.cpg``, with a CRS ``.prj``.
+
+    Parameters
+    ----------
+    kind : {"triangles", "points", "edges", "lines", "hull"}, optional
+        Of a TIN; default triangles.
+    multipatch : bool
+        Write all triangles of a TIN as one MultiPatch, the surface that ArcGIS knows, without
+        slope, aspect and area: each is an outer ring. GDAL reads it as a TIN, QGIS as polygons.
 
     Raises
     ------
     MissingExtraError
         If pyogrio is not installed.
+    FormatError
+        If a MultiPatch is asked for of something else than the triangles of a TIN.
     WriteError
         If the file cannot be written, would be larger than 2 GiB, or a value has no room: texts of
         more than 254 bytes, numbers of 1e22 and more, elevations that are not known.
@@ -54,23 +71,18 @@ def write(features: Features, path: Path) -> None:
     Coordinates are the same float64; numbers have 15 decimals at most. All parts take their places
     after all of them are written, the ``.shp`` last.
     """
-    _write(features, path)
-
-
-def write_multipatch(features: Features, path: Path) -> None:
-    """Write one feature of triangles as a MultiPatch, the surface that ArcGIS knows.
-
-    Parameters, errors and warnings are those of :func:`write`.
-
-    Notes
-    -----
-    Each triangle is an outer ring. GDAL reads it as a TIN, QGIS as polygons.
-    """
-    tin = np.array([encode_tin(features.coordinates.reshape(-1, 4, 3))], object)
-    _write(features, path, geometries=tin, geometry_type="Unknown", SHPT="MULTIPATCH")
-
-
-def _write(features: Features, path: Path, **how: Any) -> None:
+    how: dict[str, Any] = {}
+    if not multipatch:
+        features = make_features(surface, kind)
+    elif kind in (None, "triangles") and not isinstance(surface, Features):
+        features = make_whole_surface(require_tin(surface, format_name="a MultiPatch"))
+        tin = np.array([encode_tin(features.coordinates.reshape(-1, 4, 3))], object)
+        how = {"geometries": tin, "geometry_type": "Unknown", "SHPT": "MULTIPATCH"}
+    else:
+        raise FormatError(
+            f"Cannot write {FILE}: a MultiPatch holds the triangles of a TIN, no "
+            f"{'features' if isinstance(surface, Features) else kind}."
+        )
     _require_room(features)
     names = short_names(features.columns)
     _warn_of_losses(features, names)

@@ -9,11 +9,11 @@ import numpy as np
 from ....base.errors import ReadError
 from ....base.sentences import counted
 from ....tin.topology import find_offsets
-from ...mesh.common import cut_into_fans
+from ...mesh.common import cut_into_fans, join_places
 from ..surfaces import Mesh
 
 if TYPE_CHECKING:
-    from ....base.arrays import BoolArray, Float64Array, Int64Array
+    from ....base.arrays import BoolArray, Float64Array
 
 __all__ = ["make_mesh"]
 
@@ -34,7 +34,8 @@ def make_mesh(faces: Float64Array) -> Mesh:
     ReadError
         If no face has three corners.
     """
-    points, corners = _join_corners(faces)
+    points, numbers = join_places(faces.reshape(-1, 3))
+    corners = numbers.reshape(-1, 4)
     is_new = corners != np.roll(corners, 1, axis=1)
     is_new[:, 2] &= corners[:, 2] != corners[:, 0]
     is_new[:, 3] &= corners[:, 3] != corners[:, 1]
@@ -66,20 +67,6 @@ def _find_lines(corners: Float64Array) -> BoolArray:
     longest = np.maximum((u * u).sum(axis=1), (v * v).sum(axis=1))
     is_line: BoolArray = area <= _NO_AREA * longest
     return is_line
-
-
-def _join_corners(
-    faces: Float64Array,
-) -> tuple[Float64Array, Int64Array]:
-    """Return each place once, in the order of first use, and the corners by number."""
-    rows = faces.reshape(-1, 3) + 0.0
-    order = np.lexsort(rows.T[::-1])
-    is_first = np.ones(len(order), np.bool_)
-    is_first[1:] = (rows[order[1:]] != rows[order[:-1]]).any(axis=1)
-    stands_for = np.empty(len(order), np.int64)
-    stands_for[order] = order[is_first][np.cumsum(is_first) - 1]
-    firsts, corners = np.unique(stands_for, return_inverse=True)
-    return rows[firsts], corners.reshape(faces.shape[:2])
 
 
 def _describe_quads(corners: Float64Array) -> str:

@@ -120,7 +120,7 @@ def _choose_measures(drawing: Drawing, declared: Declared) -> Measures:
     rows = np.concatenate([arrays[name].reshape(-1, 3) for name in ("points", "faces", "lines")])
     stated = drawing.stated
     sample = rows[:: max(1, len(rows) // _SAMPLE), :2]
-    measures = choose_measures(stated, declared, drawing.path, sample=sample)
+    measures = choose_measures(stated, declared, sample=sample)
     if stated.unit is not None and declared.unit is None:
         return measures.tell(f"Lengths are in {stated.unit.name}, by $INSUNITS.", first=True)
     if stated.unit is None and declared.unit is None and measures.elevation_unit is None:
@@ -142,7 +142,6 @@ def _read_tin(drawing: Drawing, measures: Measures, declared: Declared, policy: 
     return make_tin_with_lines(
         mesh._replace(notes=notes),
         _select_edge_lines(drawing, measures),
-        drawing.path,
         reference=Reference(
             measures.source, measures.elevation_unit, is_declared=drawing.stated.crs is None
         ),
@@ -198,7 +197,7 @@ def _read_survey(
         )
     if len(drawing.arrays["faces"]):
         notes.append(f"Not read: {counted(len(drawing.arrays['faces']), 'face')}.")
-    placing = place_rows([points, *lines], measures, declared, drawing.path)
+    placing = place_rows([points, *lines], measures, declared)
     survey = Survey(
         points=placing.rows[0],
         attributes=attributes,

@@ -57,7 +57,7 @@ def parse(path: Path, *, surface: str | int | None = None, points_only: bool = F
     ReadError
         If it is no well-formed XML, no LandXML, or what an element holds is not what it should.
     """
-    parser = _Parser(path, surface, points_only)
+    parser = _Parser(surface, points_only)
     with translate_system_errors(path), path.open("rb") as file:
         while chunk := file.read(_CHUNK):
             parser.feed(chunk)
@@ -68,9 +68,8 @@ def parse(path: Path, *, surface: str | int | None = None, points_only: bool = F
 class _Parser:
     """Handlers of expat, and the element that is open."""
 
-    def __init__(self, path: Path, surface: str | int | None, points_only: bool) -> None:
+    def __init__(self, surface: str | int | None, points_only: bool) -> None:
         self.content = Content()
-        self.path = path
         self._wanted = surface
         self._points_only = points_only
         self._stack: list[str] = []

@@ -78,12 +78,12 @@ def read(
     kind = content or _choose_content(found, chosen)
     notes = _describe_rest(found, chosen, kind)
     if kind == "surface" and chosen is not None:
-        return _read_tin(found, chosen, declared, path, notes, faces)
+        return _read_tin(found, chosen, declared, notes, faces)
     if kind != "points" and chosen is None:
         has = "source data" if kind == "source" else "visible faces"
         raise ReadError(f"{FILE} has no surface with {has}.")
     source = chosen if kind == "source" else None
-    measures = _choose_measures(found, source, declared, path)
+    measures = _choose_measures(found, source, declared)
     measures = measures.tell(*notes, first=True)
     if source is not None:
         return make_survey_of_source(found, source, measures, declared, path)
@@ -99,15 +99,10 @@ def _as_wanted(surface: str | int | None) -> str | int | None:
 
 
 def _read_tin(
-    found: Content,
-    chosen: Surface,
-    declared: Declared,
-    path: Path,
-    notes: list[str],
-    faces: FacePolicy,
+    found: Content, chosen: Surface, declared: Declared, notes: list[str], faces: FacePolicy
 ) -> TIN:
     mesh = make_mesh(found, chosen)
-    measures = _choose_measures(found, chosen, declared, path)
+    measures = _choose_measures(found, chosen, declared)
     require_own_crs(measures.source, declared.crs)
     points = measures.apply(mesh.points[:, [1, 0, 2]])
     mesh = merge_equal_points(
@@ -116,7 +111,6 @@ def _read_tin(
     return make_tin_with_lines(
         mesh,
         select_edge_lines(chosen, measures),
-        path,
         reference=Reference(measures.source, measures.elevation_unit),
         faces=faces,
     )
@@ -212,9 +206,7 @@ def _describe_rest(found: Content, chosen: Surface | None, kind: str) -> list[st
 # ------------------------------------------------------------------ reference
 
 
-def _choose_measures(
-    found: Content, chosen: Surface | None, declared: Declared, path: Path
-) -> Measures:
+def _choose_measures(found: Content, chosen: Surface | None, declared: Declared) -> Measures:
     sample = _take_sample(found, chosen)
     stated, notes = find_stated(found, sample=sample, is_crs_declared=declared.crs is not None)
     system = stated.crs or declared.crs
@@ -224,7 +216,7 @@ def _choose_measures(
             f"{FILE} does not say its units: declare that of the elevations, such as "
             "`z_unit='m'` or `z_unit='US survey foot'`, or that of all lengths, `unit='ft'`."
         )
-    return choose_measures(stated, declared, path, sample=sample).tell(*notes, first=True)
+    return choose_measures(stated, declared, sample=sample).tell(*notes, first=True)
 
 
 def _take_sample(found: Content, chosen: Surface | None) -> Float64Array:

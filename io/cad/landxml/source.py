@@ -55,9 +55,7 @@ def make_survey_of_points(
         raise ReadError(
             f"{FILE} has no survey point with an elevation{f' ({why})' if why else ''}."
         )
-    placing = place_rows(
-        [points.rows[kept][:, [1, 0, 2]]], measures, declared, path, names_axes=True
-    )
+    placing = place_rows([points.rows[kept][:, [1, 0, 2]]], measures, declared, names_axes=True)
     return Survey(
         points=placing.rows[0],
         attributes=_gather_attributes(points, kept),
@@ -135,7 +133,7 @@ def make_survey_of_source(
             notes.append(f"Its points are the {counted(len(kept), 'survey point')} of the file.")
     lines = [*_iterate_lines(surface), *_resolve_chains(found, surface)]
     placing = place_rows(
-        [*points, *(rows for _, rows in lines)], measures, declared, path, names_axes=True
+        [*points, *(rows for _, rows in lines)], measures, declared, names_axes=True
     )
     rows = placing.rows[: len(points)]
     survey = Survey(

@@ -99,7 +99,7 @@ def write(
     along, factor = choose_length_unit(
         obj, unit, is_known=lambda one: name_unit(one) is not None, format_name="LandXML"
     )
-    texts = _select_texts(obj, path)
+    texts = _select_texts(obj)
     with replacing(path, binary=False) as file:
         file.write(_ROOT)
         _write_reference(file, obj, along)
@@ -263,7 +263,7 @@ def _write_points(file: IO[str], points: Float64Array, texts: dict[str, list[str
     file.write("</CgPoints>\n")
 
 
-def _select_texts(obj: TIN | Survey | Features, path: Path) -> dict[str, list[str]]:
+def _select_texts(obj: TIN | Survey | Features) -> dict[str, list[str]]:
     """Return the texts of points that LandXML holds; numbers only if they all differ."""
     if isinstance(obj, Surface) or (isinstance(obj, Features) and obj.kind != "points"):
         return {}

@@ -9,7 +9,7 @@ import numpy as np
 
 from ....base.errors import ReadError
 from ....base.sentences import FILE
-from ..common import Mesh, mesh_reader, read_content, require_vertices
+from ..common import Mesh, join_places, mesh_reader, read_content, require_vertices
 from .decimals import DecimalGrid
 from .sequence import City, SequenceError, parse_city
 
@@ -201,12 +201,10 @@ def _scale(values: Float64Array, scale: float, translate: float) -> Float64Array
 def _merge_vertices(points: Float64Array, corners: Int64Array) -> tuple[Float64Array, Int64Array]:
     """Return the vertices that polygons have, each place once, in the order of the file."""
     used = np.unique(corners)
-    _, first, number = np.unique(points[used], axis=0, return_index=True, return_inverse=True)
-    rank = np.empty(len(first), np.int64)
-    rank[np.argsort(first)] = np.arange(len(first))
+    places, number = join_places(points[used])
     place = np.zeros(len(points), np.int64)
-    place[used] = rank[number.ravel()]
-    return points[used][np.sort(first)], place[corners]
+    place[used] = number
+    return places, place[corners]
 
 
 def _find_reference(

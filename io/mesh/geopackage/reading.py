@@ -78,10 +78,10 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     text = answer.value["document"]
     if digest_arrays(*record.arrays.values(), text=text) != digests.get("record"):
         raise ReadError(f"{FILE} is damaged: its record of the TIN is not as written.")
-    reference = _choose_reference(record, crs, z_unit, path)
+    reference = _choose_reference(record, crs, z_unit)
     mesh = digest_arrays(points, triangles, constrained)
     if (mesh, answer.value["lines"]) != (digests.get("mesh"), digests.get("lines")):
-        tin = make_tin(points, triangles, path, constrained=constrained, reference=reference)
+        tin = make_tin(points, triangles, constrained=constrained, reference=reference)
         return _add_note(tin)
     declared = _declare(record, reference)
     told = look_at_crs(points, reference.crs, is_declared=True) if reference.is_declared else ()
@@ -119,14 +119,12 @@ def _load_json(answer: Answer, name: str) -> dict[str, Any]:
     return found
 
 
-def _choose_reference(
-    record: Record, crs: CrsLike | None, z_unit: UnitLike | None, path: Path
-) -> Reference:
+def _choose_reference(record: Record, crs: CrsLike | None, z_unit: UnitLike | None) -> Reference:
     found = {}
     for name, key in (("crs", "crs"), ("elevation_unit", "unit")):
         tree = record.document.get(name)
         found[key] = tree.get(key) if isinstance(tree, dict) else None
-    return choose_reference(crs, z_unit, path, found_crs=found["crs"], found_unit=found["unit"])
+    return choose_reference(crs, z_unit, found_crs=found["crs"], found_unit=found["unit"])
 
 
 def _declare(record: Record, reference: Reference) -> Record:

@@ -11,14 +11,13 @@ import numpy as np
 
 from ....base.errors import OptionError, ReadError
 from ....base.sentences import FILE
-from ..common import Mesh, mesh_reader, read_content
+from ..common import Mesh, join_places, mesh_reader, read_content
 from .placing import find_placing
 from .tile import STEPS, BrokenTileError, TileName, decode_tile
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....base.arrays import Int64Array
 
 __all__ = ["read"]
 
@@ -50,7 +49,8 @@ def read(path: Path, *, tile: str | None = None) -> Mesh:
     except BrokenTileError as error:
         raise ReadError(_describe_fault(content, str(error))) from None
     placing = find_placing(found.center, name, is_declared=tile is not None)
-    steps, triangles = _merge(found.steps, found.triangles)
+    steps, number = join_places(found.steps)  # at one place and height
+    triangles = number[found.triangles]
     places = replace(found, steps=steps).place(placing.west, placing.south, placing.width)
     if len(triangles) == 0:
         raise ReadError(f"{FILE} is a tile without any triangle.")
@@ -99,11 +99,3 @@ def _describe_fault(content: bytes, why: str) -> str:
     if _HEIGHTMAP_BYTES < len(content) <= _HEIGHTMAP_BYTES + 2 + 65536:
         why += "; it may be one of the older format heightmap-1.0, which is not read"
     return f"{FILE} is no sound quantized-mesh tile: {why}."
-
-
-def _merge(steps: Int64Array, triangles: Int64Array) -> tuple[Int64Array, Int64Array]:
-    """Make vertices at one place one, where they have one height too."""
-    kept, first, number = np.unique(steps, axis=0, return_index=True, return_inverse=True)
-    rank = np.empty(len(kept), np.int64)
-    rank[np.argsort(first)] = np.arange(len(kept))
-    return steps[np.sort(first)], rank[number.ravel()][triangles]

@@ -12,6 +12,7 @@ from ....base.atomic import replacing
 from ....base.errors import WriteError
 from ....base.results.columns import unit_text
 from ....base.sentences import FILE
+from ..surface_features import make_features
 from .coordinates import format_positions, keep_in_crs, project_to_wgs84
 from .values import json_texts, properties_template
 
@@ -21,8 +22,10 @@ if TYPE_CHECKING:
 
     from ....base.arrays import Float64Array, Int64Array, ObjectArray
     from ....base.crs import CRS, Unit
+    from ....base.policies import FeatureKind
     from ....base.progress import Tell
     from ....base.results import Features
+    from ..surface_features import Writable
     from .coordinates import Places
 
 __all__ = ["write_feature_lines", "write_features"]
@@ -64,11 +67,20 @@ def write_features(
         file.write("\n]}\n")
 
 
-def write_feature_lines(features: Features, path: Path, *, progress: Tell | None = None) -> None:
-    """Write features as a sequence of GeoJSON texts, a line each, with no head around them.
+def write_feature_lines(
+    surface: Writable, path: Path, *, kind: FeatureKind | None = None, progress: Tell | None = None
+) -> None:
+    """Write a kind of parts of a surface, or features, as lines of GeoJSON, each a feature.
 
-    Parameters, errors and coordinates are those of :func:`write_features`.
+    The CRS must be known: coordinates are WGS 84 longitude and latitude, elevations metres, as
+    those of a GeoJSON file.
+
+    Parameters
+    ----------
+    kind : {"triangles", "points", "edges", "lines", "hull"}, optional
+        Of a TIN; default triangles.
     """
+    features = make_features(surface, kind)
     places = project_to_wgs84(_locate(features))
     _require_one_side(places.xyz, features)
     with replacing(path, binary=False) as file:
