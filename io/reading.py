@@ -11,7 +11,6 @@ from typing import IO, TYPE_CHECKING, Any, NamedTuple, cast, overload
 from ..base.atomic import as_path
 from ..base.crs import CRS, Unit
 from ..base.errors import (
-    CrsError,
     FormatError,
     MissingExtraError,
     OptionError,
@@ -22,6 +21,7 @@ from ..base.plug_ins import describe_failure, warn_of_plug_in
 from ..base.progress import Progress
 from ..base.sentences import counted, inflect, printable
 from ..tin import TIN, Survey
+from .door import naming_file
 from .isolated.archives import unpack
 from .isolated.local_files import require_local
 from .isolated.spooling import (
@@ -364,7 +364,7 @@ def _read_path(file: Path, asked: _Asked) -> Survey | TIN:
     if _is_folder(file) and (tiles := _list_tiles(file, asked.format)):
         found = _read_several(tiles, asked)
         return _name_folder(found, file, tiles) if isinstance(found, Survey) else found
-    with open_ordinary_file(file) as local, unpack(local) as inner:
+    with naming_file(file), open_ordinary_file(file) as local, unpack(local) as inner:
         found = _read_file(inner, *asked)
     return found if inner == file else _restore_source(found, inner, file)
 
@@ -398,7 +398,12 @@ def read_stream(
     """
     source = Path(name)
     declared = _collect_declared(crs, z_unit)
-    with spool(stream, source) as local, unpack(local) as inner, checking_crs(check_crs):
+    with (
+        naming_file(source),
+        spool(stream, source) as local,
+        unpack(local) as inner,
+        checking_crs(check_crs),
+    ):
         return _restore_source(_read_file(inner, format, declared, options, wishes), inner, source)
 
 
@@ -425,8 +430,6 @@ def _read_file(
         of_file["progress"] = progress
     try:
         found = reader(file, crs=declared["crs"], **of_file)
-    except CrsError as error:
-        raise _name_file(error, file) from error
     except OSError as error:  # a file that vanishes, a disk that fails
         if isinstance(error, TinsmithError):
             raise
@@ -576,12 +579,6 @@ def _restore_source(found: Survey | TIN, copy: Path, file: Path) -> Survey | TIN
         return found
     notes = [note.replace(copy.name, file.name) for note in found.notes]
     return replace(found, source=file.name, notes=notes)
-
-
-def _name_file(error: CrsError, file: Path) -> CrsError:
-    """Return an error of a CRS with the name of the file that it stands in."""
-    sentence = str(error) if str(file) in str(error) else f"'{file}': {error}"
-    return CrsError(printable(sentence), crs=error.crs)
 
 
 def detect(path: Path, head: bytes, options: Iterable[str] = ()) -> Format:

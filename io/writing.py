@@ -12,6 +12,7 @@ from ..base.products import product
 from ..base.progress import Progress
 from ..base.results import Features, Raster, Table
 from ..tin import Surface, Survey
+from .door import naming_file
 from .registry.format import require_options, takes_progress
 from .registry.lookup import find_writer
 from .registry.losses import tell_lost_lines
@@ -20,7 +21,8 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Callable
 
-    from .registry.format import Format
+    from .door import naming_file
+from .registry.format import Format
 
 __all__ = ["find_kind", "write"]
 
@@ -88,10 +90,10 @@ def write(
     done = Progress(progress)
     if progress is not None and takes_progress(writer):
         options["progress"] = done.stage(0.0, 1.0)
-    with done.passing_on():
+    with done.passing_on(), naming_file(file):
         _call_writer(chosen, writer, obj, file, options)
-    if isinstance(obj, Survey) and options.get("kind") != "points":
-        tell_lost_lines(obj, chosen, file)
+        if isinstance(obj, Survey) and options.get("kind") != "points":
+            tell_lost_lines(obj, chosen)
     done.end()
     return file
 

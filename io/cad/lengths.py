@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import TYPE_CHECKING
 
 from ...base.crs import Unit
-from ...base.errors import CrsError, LossWarning, OptionError, WriteError
+from ...base.errors import CrsError, OptionError, WriteError
+from ...base.notes import warn
+from ...base.sentences import FILE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from ...base.crs import UnitLike
     from ...base.results import Features
@@ -22,7 +22,6 @@ __all__ = ["choose_length_unit"]
 def choose_length_unit(
     obj: TIN | Survey | Features,
     unit: UnitLike | None,
-    path: Path,
     *,
     is_known: Callable[[Unit], bool],
     format_name: str,
@@ -34,7 +33,6 @@ def choose_length_unit(
     obj : TIN, Survey or Features
     unit : Unit or str, optional
         Declared by the caller, where the CRS does not tell.
-    path : Path
     is_known : callable
         Whether the format has a unit.
     format_name : str
@@ -58,7 +56,7 @@ def choose_length_unit(
     if obj.crs is not None:
         if obj.crs.is_geographic:
             raise CrsError(
-                f"Cannot write '{path}': {format_name} holds lengths, and {obj.crs.label} measures "
+                f"Cannot write {FILE}: {format_name} holds lengths, and {obj.crs.label} measures "
                 "in degrees: reproject first.",
                 crs=obj.crs,
             )
@@ -67,28 +65,23 @@ def choose_length_unit(
             raise OptionError("unit", declared.name, f"{chosen.name}, the unit of {obj.crs.label}")
     if chosen is not None and not is_known(chosen):
         raise WriteError(
-            f"Cannot write '{path}': {format_name} has no unit {chosen.name}; it has metre, foot, "
-            "US survey foot and their like.",
-            path=path,
+            f"Cannot write {FILE}: {format_name} has no unit {chosen.name}; it has metre, foot, "
+            "US survey foot and their like."
         )
-    return chosen, _find_factor(obj.elevation_unit, chosen, path, format_name)
+    return chosen, _find_factor(obj.elevation_unit, chosen, format_name)
 
 
-def _find_factor(known: Unit | None, unit: Unit | None, path: Path, format_name: str) -> float:
+def _find_factor(known: Unit | None, unit: Unit | None, format_name: str) -> float:
     if unit is None:
-        warnings.warn(
-            f"'{path}' has no units, since none are known: programs that read it will guess; the "
-            "option unit names one.",
-            LossWarning,
-            stacklevel=5,
+        warn(
+            f"{FILE} has no units, since none are known: programs that read it will guess; the "
+            "option `unit` names one."
         )
         return 1.0
     if known is None or known == unit or known.metres is None or unit.metres is None:
         return 1.0
-    warnings.warn(
-        f"'{path}': elevations were converted from {known.name} to {unit.name}, as {format_name} "
-        "has one unit for all lengths.",
-        LossWarning,
-        stacklevel=5,
+    warn(
+        f"{FILE}: elevations were converted from {known.name} to {unit.name}, as {format_name} "
+        "has one unit for all lengths."
     )
     return known.metres / unit.metres

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...base.errors import ReadError
+from ...base.sentences import FILE
 from ...tin.topology import find_offsets
 from ..reprojection.placement import place
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from ...base.arrays import Float64Array
     from ...base.crs import CRS, Unit
@@ -35,7 +35,6 @@ def place_rows(
     parts: Sequence[Float64Array],
     measures: Measures,
     declared: Declared,
-    path: Path,
     *,
     names_axes: bool = False,
 ) -> Placing:
@@ -47,7 +46,6 @@ def place_rows(
         As in the file.
     measures : Measures
     declared : Declared
-    path : Path
     names_axes : bool
         Whether the format says which coordinate is the northing.
 
@@ -64,14 +62,11 @@ def place_rows(
         together[start : start + len(one), : one.shape[1]] = one
     if not np.isfinite(together).all():
         row = together[np.argmin(np.isfinite(together).all(axis=1))]
-        raise ReadError(
-            f"'{path}' has coordinates that are not finite (first: {row.tolist()}).", path=path
-        )
+        raise ReadError(f"{FILE} has coordinates that are not finite (first: {row.tolist()}).")
     placed = place(
         measures.apply(together),
         source=measures.source,
         target=declared.crs,
-        path=path,
         unit=measures.elevation_unit,
         looks_at_area=False,
         looks_at_order=not names_axes,

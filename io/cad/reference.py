@@ -13,12 +13,11 @@ import numpy as np
 
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError
+from ...base.sentences import FILE
 from ...tin.screening.area_of_use import AreaOfUse
 from ..reprojection.placement import settle_unit
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ...base.arrays import Float64Array
     from ...base.crs import CrsLike, UnitLike
 
@@ -84,16 +83,13 @@ class Measures:
         return rows
 
 
-def choose_measures(
-    stated: Stated, declared: Declared, path: Path, *, sample: Float64Array
-) -> Measures:
+def choose_measures(stated: Stated, declared: Declared, *, sample: Float64Array) -> Measures:
     """Decide what coordinates and elevations are measured in.
 
     Parameters
     ----------
     stated : Stated
     declared : Declared
-    path : Path
     sample : (n, 2) float64 array
         Easting and northing of some points, as in the file, to be looked for in the area of the
         CRS; may be empty.
@@ -107,10 +103,10 @@ def choose_measures(
     """
     source = stated.crs or declared.crs
     unit = declared.unit or stated.unit
-    measures = Measures(source, _choose_elevation_unit(stated, declared, unit, path))
+    measures = Measures(source, _choose_elevation_unit(stated, declared, unit))
     along = None if source is None or source.is_geographic else source.horizontal_unit
     if along is not None and along.metres is not None:
-        _require_agreement(stated, declared, along, source, path)
+        _require_agreement(stated, declared, along, source)
         if unit is not None and unit.metres is not None and unit != along:
             measures = measures.tell(
                 f"Coordinates were converted from {unit.name} to {along.name}, the unit of the "
@@ -130,43 +126,38 @@ def choose_measures(
     return _look_at_area(measures, declared.crs, sample)
 
 
-def _choose_elevation_unit(
-    stated: Stated, declared: Declared, unit: Unit | None, path: Path
-) -> Unit | None:
+def _choose_elevation_unit(stated: Stated, declared: Declared, unit: Unit | None) -> Unit | None:
     if declared.elevation_unit is not None:
         known = None if declared.unit is not None else stated.elevation_unit or stated.unit
         if stated.elevation_unit is not None and stated.elevation_unit != stated.unit:
             known = None  # the file contradicts itself, and the caller knows better
-        return settle_unit(declared.elevation_unit, known, path)
+        return settle_unit(declared.elevation_unit, known)
     if stated.is_elevation_unknown and declared.unit is None:
         return None
     different = stated.elevation_unit not in (None, stated.unit)
     if different and declared.unit is None and stated.elevation_unit and stated.unit:
         raise ReadError(
-            f"'{path}' gives {stated.unit.name} for lengths and {stated.elevation_unit.name} for "
+            f"{FILE} gives {stated.unit.name} for lengths and {stated.elevation_unit.name} for "
             "elevations, which may stand for those of attributes only: declare the unit of the "
-            f"elevations, z_unit='{stated.unit.name}' or z_unit='{stated.elevation_unit.name}'.",
-            path=path,
+            f"elevations, `z_unit='{stated.unit.name}'` or "
+            f"`z_unit='{stated.elevation_unit.name}'`."
         )
     return unit
 
 
-def _require_agreement(
-    stated: Stated, declared: Declared, along: Unit, source: CRS | None, path: Path
-) -> None:
+def _require_agreement(stated: Stated, declared: Declared, along: Unit, source: CRS | None) -> None:
     """Refuse a file whose unit is not that of its CRS, until the caller tells which is right."""
     told, label = stated.unit, "" if source is None else source.label
     if declared.unit is not None:
         if told is not None and declared.unit not in (told, along):
-            allowed = f"{told.name}, as '{path}' says, or {along.name}, the unit of {label}"
+            allowed = f"{told.name}, as {FILE} says, or {along.name}, the unit of {label}"
             raise OptionError("unit", declared.unit.name, allowed)
         return
     if told is not None and told != along:
         raise ReadError(
-            f"'{path}': {stated.what} says that coordinates are in {told.name}, and {label} "
-            f"measures in {along.name}: tell which is right, unit='{told.name}' or "
-            f"unit='{along.name}'.",
-            path=path,
+            f"{stated.what} says that coordinates are in {told.name}, and {label} "
+            f"measures in {along.name}: tell which is right, `unit='{told.name}'` or "
+            f"`unit='{along.name}'`."
         )
 
 

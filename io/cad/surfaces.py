@@ -10,11 +10,10 @@ from ...base.sentences import counted
 from ...tin import TIN
 from ...tin.constraints.breaklines import Lines
 from ...tin.topology import directed_edges, edge_keys, find_offsets, mark_corners
-from ..mesh.common import add_notes, make_tin
+from ..mesh.common import add_notes, join_places, make_tin
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...base.policies import FacePolicy, LineKind
@@ -57,34 +56,28 @@ def merge_equal_points(mesh: Mesh) -> Mesh:
 
     Of equal points the first stays; the order stays too.
     """
-    order = np.lexsort(mesh.points.T[::-1])  # stable: of equal ones the first comes first
-    is_first = np.ones(len(order), np.bool_)
-    is_first[1:] = (mesh.points[order[1:]] != mesh.points[order[:-1]]).any(axis=1)
-    first = order[is_first]
-    stands_for = np.empty(len(order), np.int64)
-    stands_for[order] = first[np.cumsum(is_first) - 1]
-    triangles = stands_for[mesh.triangles]
-    is_used = mark_corners(triangles, len(mesh.points))
-    number = np.cumsum(is_used) - 1
+    places, numbers = join_places(mesh.points)
+    triangles = numbers[mesh.triangles]
+    is_used = mark_corners(triangles, len(places))
     notes = list(mesh.notes)
-    n_equal = len(mesh.points) - len(first)
-    n_unused = len(first) - int(is_used.sum())
+    n_equal = len(mesh.points) - len(places)
+    n_unused = len(places) - int(is_used.sum())
     if n_equal:
         have = "point has" if n_equal == 1 else "points have"
         notes.append(f"{n_equal:,} {have} the coordinates of another one, and became one with it.")
     if n_unused:
         notes.append(f"{counted(n_unused, 'point')} of no visible triangle left out.")
-    return Mesh(mesh.points[is_used], number[triangles], mesh.constrained, notes)
+    number = np.cumsum(is_used) - 1
+    return Mesh(places[is_used], number[triangles], mesh.constrained, notes)
 
 
 def make_tin_with_lines(
-    mesh: Mesh, lines: Sequence[EdgeLine], path: Path, *, reference: Reference, faces: FacePolicy
+    mesh: Mesh, lines: Sequence[EdgeLine], *, reference: Reference, faces: FacePolicy
 ) -> TIN:
     """Make a TIN as every mesh does; lines that run along its edges become its lines."""
     tin = make_tin(
         mesh.points,
         mesh.triangles,
-        path,
         constrained=mesh.constrained,
         reference=reference,
         notes=mesh.notes,

@@ -13,7 +13,6 @@ from .names import find_languages, parse_name
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from pathlib import Path
 
     from ...base.arrays import AnyArray, Float64Array
     from ...base.crs import CRS
@@ -46,7 +45,6 @@ def settle_axes(
     crs: CRS | None,
     area: AreaOfUse | None,
     line: AxesLine | None,
-    path: Path,
 ) -> tuple[Float64Array, Columns, list[str]]:
     """Take the header's X for the northing where a line near the table, or the CRS, does.
 
@@ -64,8 +62,6 @@ def settle_axes(
         None says nothing.
     line : AxesLine or None
         What says of X and Y which way they point.
-    path : Path
-        For sentences.
 
     Returns
     -------
@@ -86,13 +82,13 @@ def settle_axes(
     elif line is not None and line.is_turned:
         why = f"By {line.label} {_name_turn(east, north)}"
     elif line is None and (language := _find_language(columns)):
-        if not _lies_turned(points[:, :2], area, language, columns, path):
+        if not _lies_turned(points[:, :2], area, language, columns):
             return points, columns, []
         why = f"Only so do the points lie in the area of use: {_name_turn(east, north)}"
     else:
         is_odd = line is None and columns.roles["northing"] < columns.roles["easting"]
         return points, columns, [_describe_order(east, north)] if is_odd else []
-    note = f"{why}; columns='{columns.word}' takes them the other way round."
+    note = f"{why}; `columns='{columns.word}'` takes them the other way round."
     return points[:, [1, 0, 2]], columns.permute((1, 0, 2)), [note]
 
 
@@ -104,9 +100,7 @@ def _find_language(columns: Columns) -> str:
     return min(languages) if are_all else ""
 
 
-def _lies_turned(
-    xy: Float64Array, area: AreaOfUse | None, language: str, columns: Columns, path: Path
-) -> bool:
+def _lies_turned(xy: Float64Array, area: AreaOfUse | None, language: str, columns: Columns) -> bool:
     """Whether only with X as the northing the points lie in the area of use.
 
     Raises
@@ -120,10 +114,9 @@ def _lies_turned(
         return lies_turned
     turned = columns.permute((1, 0, 2)).word
     raise ReadError(
-        f"'{path}': its header is in {language}, where X is the northing on maps, and the area of "
-        f"use of the CRS does not tell: columns='{turned}' takes X for it, "
-        f"columns='{columns.word}' takes Y.",
-        path=path,
+        f"its header is in {language}, where X is the northing on maps, and the area of "
+        f"use of the CRS does not tell: `columns='{turned}'` takes X for it, "
+        f"`columns='{columns.word}'` takes Y.",
     )
 
 
@@ -166,7 +159,7 @@ def are_named_plainly(columns: Columns) -> bool:
     )
 
 
-def require_one_hemisphere(attributes: Mapping[str, AnyArray], path: Path) -> None:
+def require_one_hemisphere(attributes: Mapping[str, AnyArray]) -> None:
     """Refuse degrees beside a column that turns their sign: N or S, E or W.
 
     Raises
@@ -180,14 +173,13 @@ def require_one_hemisphere(attributes: Mapping[str, AnyArray], path: Path) -> No
         is_hemisphere = bool(letters) and letters <= _POSITIVE | _NEGATIVE
         if (is_named or is_hemisphere) and not letters <= _POSITIVE:
             raise ReadError(
-                f"'{path}': the column '{shorten(name)}' may turn the sign of latitudes and "
+                f"the column '{shorten(name)}' may turn the sign of latitudes and "
                 f"longitudes ({', '.join(sorted(letters)[:4])}): write those to the south and west "
                 "as negative numbers, and leave the column out.",
-                path=path,
             )
 
 
-def require_no_geocentric(points: Float64Array, columns: Columns, path: Path) -> None:
+def require_no_geocentric(points: Float64Array, columns: Columns) -> None:
     """Refuse X, Y, Z that count from the centre of the earth.
 
     Raises
@@ -203,8 +195,7 @@ def require_no_geocentric(points: Float64Array, columns: Columns, path: Path) ->
     low, high = _EARTH
     if is_high and (low <= radius <= high or low <= _FOOT * radius <= high):
         raise ReadError(
-            f"'{path}': its X, Y and Z lie {radius:,.0f} from their origin, as geocentric "
+            f"its X, Y and Z lie {radius:,.0f} from their origin, as geocentric "
             "coordinates do, which are no easting, northing and elevation: transform them first, "
-            f"or columns='{columns.word}' takes them nonetheless.",
-            path=path,
+            f"or `columns='{columns.word}'` takes them nonetheless.",
         )

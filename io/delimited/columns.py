@@ -200,7 +200,7 @@ def describe_doubts(header: Sequence[str]) -> str:
     if not doubts:
         return ""
     taken = names_coordinates(header)
-    word = "" if taken is None else f"; columns='{taken.word}' takes the values as they stand"
+    word = "" if taken is None else f"; `columns='{taken.word}'` takes the values as they stand"
     return "; ".join(doubts[:_SHOWN_DOUBTS]) + word
 
 
@@ -308,7 +308,9 @@ def _describe_contradictions(header: Sequence[str], roles: Mapping[str, int]) ->
         for role, column in roles.items()
         if column < len(header) and find_role(header[column]) in set(_ROLES) - {role}
     ]
-    return (f"The option columns takes {_join_words(wrong)}, against the header.",) if wrong else ()
+    return (
+        (f"The option `columns` takes {_join_words(wrong)}, against the header.",) if wrong else ()
+    )
 
 
 def _choose_name(given: Sequence[str], header: Sequence[str], column: int) -> str:

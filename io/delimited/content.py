@@ -138,7 +138,7 @@ def find_columns_by_content(
     if are_angles_in_parts(columns):
         raise ReadError(
             "it has no header, and its columns may be degrees and minutes: tinsmith takes decimal "
-            "degrees, or say with the option columns what they are."
+            "degrees, or say with the option `columns` what they are."
         )
     candidates = _propose_layouts(columns)
     may_differ = len({one.start for one in candidates}) > 1
@@ -170,7 +170,8 @@ def _require_no_doubt(chosen: _Candidate, columns: Sequence[Column], doubt: str)
     if doubt:
         raise ReadError(
             f"it has no header, and it is in doubt whether its columns are {chosen.word}, since "
-            f"{doubt}: columns='{chosen.word}' says so, other letters or names what else they are."
+            f"{doubt}: `columns='{chosen.word}'` says so, other letters or names what else they "
+            "are."
         )
 
 
@@ -190,7 +191,7 @@ def _propose_layouts(columns: Sequence[Column]) -> list[_Candidate]:
     if not found:
         raise ReadError(
             "it has no header, and its columns are not those of a known layout: say with the "
-            "option columns what they are, for example columns='PNEZD'."
+            "option `columns` what they are, for example `columns='PNEZD'`."
         )
     return found
 
@@ -344,7 +345,7 @@ def _describe_refusal(
 ) -> str:
     """Say which layouts are plausible, or why none is, and what would settle it."""
     named = left or candidates
-    settled = " or ".join(f"columns='{one.word}'" for one in named)
+    settled = " or ".join(f"`columns='{one.word}'`" for one in named)
     if not left:
         faults = "; ".join(f"{one.word} {_name_objection(one, area)}" for one in candidates)
         return f"it has no header, and no customary layout fits: {faults}. Say which by {settled}."
@@ -369,7 +370,7 @@ def require_no_split_decimals(body: Sequence[Sequence[str]], delimiter: str) -> 
         return
     if all(_may_be_decimals(row[start + i]) for row in body for i in (1, 3, 5)):
         raise ReadError(
-            "its commas may be delimiters or decimal marks: say with the option columns what the "
+            "its commas may be delimiters or decimal marks: say with the option `columns` what the "
             "columns are, or write the table with another delimiter."
         )
 

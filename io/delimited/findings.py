@@ -11,7 +11,7 @@ import numpy as np
 
 from ...base.crs import METRE, Unit
 from ...base.errors import CrsError, OptionError, ReadError
-from ...base.sentences import counted, height
+from ...base.sentences import FILE, counted, height
 from ...tin.screening.nodata import describe_elevations
 from .axes import are_named_plainly
 from .cells import is_number, split_line
@@ -21,7 +21,6 @@ from .lines import COMMENT_PREFIXES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
-    from pathlib import Path
 
     from ...base.arrays import AnyArray, Float64Array, Int64Array
     from ...base.crs import CRS
@@ -78,7 +77,6 @@ def require_in_area(
     rows: Int64Array,
     columns: Columns,
     area: AreaOfUse | None,
-    path: Path,
     *,
     is_headed: bool = False,
 ) -> list[str]:
@@ -93,8 +91,6 @@ def require_in_area(
     columns : Columns
     area : AreaOfUse or None
         None says nothing.
-    path : Path
-        For sentences.
     is_headed : bool, optional
         Whether a header names the columns: where it does so in plain words, it is the CRS that
         must be wrong.
@@ -112,7 +108,7 @@ def require_in_area(
     if len(outside) == 0:
         return []
     if 2 * len(outside) > len(points):
-        _require_no_exchange(points, columns, area, path, is_headed=is_headed)
+        _require_no_exchange(points, columns, area, is_headed=is_headed)
         return [
             f"{_count(len(outside), len(points))} outside the area of use of {area.label}: check "
             "that the CRS of the points is the right one."
@@ -126,7 +122,7 @@ def require_in_area(
 
 
 def require_one_header(
-    faults: Sequence[Fault], lines: TextLines, delimiter: str, columns: Columns, path: Path
+    faults: Sequence[Fault], lines: TextLines, delimiter: str, columns: Columns
 ) -> None:
     """Refuse a header among the bad rows that names the coordinates otherwise than they are taken.
 
@@ -140,11 +136,10 @@ def require_one_header(
         if found is not None and _differs(found, columns):
             taken = list_names([columns.label(columns.roles[role]) for role in COORDINATES])
             raise ReadError(
-                f"'{path}', line {fault.line + 1}: a header ({list_names(cells)}) names other "
+                f"{FILE}, line {fault.line + 1}: a header ({list_names(cells)}) names other "
                 f"columns or units than easting, northing and elevation are taken from ({taken}): "
-                "say with the option columns what they are, or read the parts of the file by "
+                "say with the option `columns` what they are, or read the parts of the file by "
                 "themselves.",
-                path=path,
                 lines=[fault.line + 1],
             )
 
@@ -262,7 +257,7 @@ def find_unit_words(attributes: Mapping[str, AnyArray]) -> list[str]:
         shown = " or ".join(f"'{word}'" for word in units[:_SHOWN])
         place = "every row" if n_rows == len(texts) else f"{n_rows:,} of {len(texts):,} rows"
         told = (
-            "if this is the unit of the elevations, the option z_unit says so"
+            "if this is the unit of the elevations, the option `z_unit` says so"
             if len(units) == 1
             else "if these are the units of the elevations, make them one"
         )
@@ -276,7 +271,7 @@ def _count(number: int, total: int = 0) -> str:
 
 
 def _require_no_exchange(
-    points: Float64Array, columns: Columns, area: AreaOfUse, path: Path, *, is_headed: bool
+    points: Float64Array, columns: Columns, area: AreaOfUse, *, is_headed: bool
 ) -> None:
     """Refuse points that lie in the area once their columns are exchanged."""
     orders = sorted(permutations(range(3)), key=lambda order: order != (1, 0, 2))
@@ -286,25 +281,23 @@ def _require_no_exchange(
             right = columns.permute(order)
             if is_headed and are_named_plainly(columns):
                 raise CrsError(
-                    f"'{path}': the points lie outside the area of use of {area.label}, and would "
+                    f"the points lie outside the area of use of {area.label}, and would "
                     f"lie inside it if {columns.word} were {right.word}; the header says that they "
                     f"are not: check that {area.source.label} is the CRS of the points, or say "
-                    "with the option columns what they are."
+                    "with the option `columns` what they are."
                 )
             places = (
                 f"{role} in {right.label(right.roles[role])}"
                 for role in ("easting", "northing", "elevation")
             )
             raise CrsError(
-                f"'{path}': read as {columns.word} the points lie outside the area of use of "
-                f"{area.label}, and read as {right.word} inside it: columns='{right.word}' takes "
+                f"read as {columns.word} the points lie outside the area of use of "
+                f"{area.label}, and read as {right.word} inside it: `columns='{right.word}'` takes "
                 f"the {', the '.join(places)}."
             )
 
 
-def require_unit_of_crs(
-    columns: Columns, crs: CRS | None, path: Path, *, is_told: bool
-) -> list[str]:
+def require_unit_of_crs(columns: Columns, crs: CRS | None, *, is_told: bool) -> list[str]:
     """Say where the header gives eastings and northings another unit than their CRS has.
 
     Parameters
@@ -312,8 +305,6 @@ def require_unit_of_crs(
     columns : Columns
     crs : CRS or None
         Of the coordinates in the file.
-    path : Path
-        For sentences.
     is_told : bool
         Whether the caller has said what the columns are, against the header.
 
@@ -323,7 +314,7 @@ def require_unit_of_crs(
         If they are not both feet, of either kind, and the caller has not told the columns.
     """
     if crs is None:
-        return _require_units_of_a_kind(columns, path, is_told=is_told)
+        return _require_units_of_a_kind(columns, is_told=is_told)
     if crs.is_geographic:
         return []
     wanted = crs.horizontal_unit
@@ -337,8 +328,8 @@ def require_unit_of_crs(
         )
         if is_far and not is_told:
             raise CrsError(
-                f"'{path}': {sentence}: the options source_crs and crs name the CRS that the "
-                "points are in, and the one that they go to; columns tells the columns whatever "
+                f"{sentence}: the options `source_crs` and `crs` name the CRS that the "
+                "points are in, and the one that they go to; `columns` tells the columns whatever "
                 "the header says.",
                 crs=crs,
             )
@@ -346,16 +337,16 @@ def require_unit_of_crs(
     return []
 
 
-def _require_units_of_a_kind(columns: Columns, path: Path, *, is_told: bool) -> list[str]:
+def _require_units_of_a_kind(columns: Columns, *, is_told: bool) -> list[str]:
     """Say where the header gives eastings another unit than elevations, which no CRS then keeps."""
     across, up = (_find_unit(columns.units.get(role)) for role in ("easting", "elevation"))
     if across is None or across == (up or METRE):
         return []
     if up is not None and not is_told:
         raise CrsError(
-            f"'{path}': the header gives the easting in {across.name} and the elevation in "
-            f"{up.name}: the option crs names the CRS that the points are in, columns tells the "
-            "columns whatever the header says."
+            f"the header gives the easting in {across.name} and the elevation in "
+            f"{up.name}: the option `crs` names the CRS that the points are in, `columns` tells "
+            "the columns whatever the header says."
         )
     return [
         f"The header gives the easting in {across.name}, which is not kept where no CRS is named."

@@ -150,7 +150,7 @@ def _choose_pair(
     )
     return pair, (
         f"the header names several groups of coordinates ({shown}), and leaves open which is "
-        "meant with which elevation: say with the option columns."
+        "meant with which elevation: say with the option `columns`."
     )
 
 
@@ -182,8 +182,8 @@ def _choose_elevation(
     if not _are_of_one_system(names[left[0]], pair.name):
         return left[0], (
             f"the header gives the elevation ('{_shorten(header[left[0]])}') another system than "
-            f"the easting ('{_shorten(header[pair.east])}'): say with the option columns what the "
-            "columns are."
+            f"the easting ('{_shorten(header[pair.east])}'): say with the option `columns` what "
+            "the columns are."
         )
     return left[0], ""
 
@@ -216,7 +216,7 @@ def _find_repeated(
         if len(same) > 1:
             return (
                 f"the header has {len(same)} columns named '{_shorten(header[column])}' for the "
-                f"{role}: say with the option columns which is meant."
+                f"{role}: say with the option `columns` which is meant."
             )
     return ""
 
@@ -261,7 +261,7 @@ def _has_partner(names: Sequence[ColumnName], column: int) -> bool:
 def _describe_several(header: Sequence[str], role: str, columns: Iterable[int]) -> str:
     shown = ", ".join(f"'{_shorten(header[i])}'" for i in columns)
     return (
-        f"the header has several columns for the {role} ({shown}): say with the option columns "
+        f"the header has several columns for the {role} ({shown}): say with the option `columns` "
         "which is meant."
     )
 

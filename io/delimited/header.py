@@ -144,7 +144,7 @@ def _fit_header(
     raise ReadError(
         f"the header names {counted(len(header), 'column')} ({list_names(header)}), but rows have "
         f"{count}: "
-        "say with the option columns what all of them are, and check delimiter and decimal mark."
+        "say with the option `columns` what all of them are, and check delimiter and decimal mark."
     )
 
 
@@ -162,7 +162,7 @@ def _find_columns_by_name(
             raise ReadError(f"the header ({list_names(header)}) leaves its meaning open: {doubts}.")
         raise ReadError(
             f"the header ({list_names(header)}) does not name easting, northing and elevation "
-            f"(known: {', '.join(found) or 'none of it'}): say with the option columns which "
+            f"(known: {', '.join(found) or 'none of it'}): say with the option `columns` which "
             "columns they are."
         )
     return columns
@@ -203,7 +203,7 @@ def join_numbers(header: Sequence[str], body: Sequence[Sequence[str]]) -> list[s
         return list(header)
     raise ReadError(
         f"the header ({list_names(header)}) leaves open whether '{joined[at]}' is one column or "
-        "two: say with the option columns what all of them are."
+        "two: say with the option `columns` what all of them are."
     )
 
 

@@ -107,7 +107,7 @@ def find_heading(lines: TextLines, rows: Int64Array, count: int) -> Heading | No
         if names is not None and giving is not None and names != giving.names:
             raise ReadError(
                 f"{giving.label} and {Heading(line, whole).label} give two orders of its columns: "
-                "say with the option columns which is right."
+                "say with the option `columns` which is right."
             )
         if names is not None and giving is None:
             giving = Heading(line, whole, names)
@@ -252,7 +252,7 @@ def find_unit_line(lines: TextLines, rows: Int64Array) -> UnitLine | None:
             return UnitLine(
                 "",
                 whole,
-                f"L{whole[1:]} tells a unit, which is not looked at: the option z_unit says that "
+                f"L{whole[1:]} tells a unit, which is not looked at: the option `z_unit` says that "
                 "of the elevations.",
             )
     return None

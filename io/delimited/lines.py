@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.errors import ReadError
+from ...base.sentences import FILE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -159,23 +160,22 @@ def read_lines(path: Path, *, encoding: str | None = None) -> TextLines:
         data = path.read_bytes()
     except OSError as error:
         raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
-    text = _convert_to_utf8(data, encoding, path)
+    text = _convert_to_utf8(data, encoding)
     if b"\x00" in text:
         raise ReadError(f"'{path}' holds binary data, not delimited text.", path=path)
     lines = TextLines.of(text.rstrip(b"\x1a"))
-    _require_short(lines, path)
+    _require_short(lines)
     return lines
 
 
-def _require_short(lines: TextLines, path: Path) -> None:
+def _require_short(lines: TextLines) -> None:
     """Refuse a line so long that it is no row, before anything tries to understand it."""
     lengths = lines.ends - lines.starts
     if len(lengths) and lengths.max() > _LONGEST_LINE:
         line = int(lengths.argmax())
         raise ReadError(
-            f"'{path}', line {line + 1}: {lengths[line]:,} bytes are no row of points; at most "
+            f"{FILE}, line {line + 1}: {lengths[line]:,} bytes are no row of points; at most "
             f"{_LONGEST_LINE:,} are read.",
-            path=path,
             lines=[line + 1],
         )
 
@@ -190,7 +190,7 @@ def decode_head(head: bytes) -> str | None:
     return whole if line_end else text
 
 
-def _convert_to_utf8(data: bytes, encoding: str | None, path: Path) -> bytes:
+def _convert_to_utf8(data: bytes, encoding: str | None) -> bytes:
     found, skipped = _detect_encoding(data)
     try:
         if encoding is not None:
@@ -199,12 +199,11 @@ def _convert_to_utf8(data: bytes, encoding: str | None, path: Path) -> bytes:
             return _require_utf8(data[skipped:] if skipped else data)
         return data[skipped:].decode(found).encode()
     except LookupError as error:
-        raise ReadError(f"Unknown encoding '{encoding}' for '{path}'.", path=path) from error
+        raise ReadError(f"Unknown encoding '{encoding}' for {FILE}.") from error
     except UnicodeError as error:
         raise ReadError(
-            f"'{path}' is not {encoding or found} text: {getattr(error, 'reason', error)}; "
-            "the option encoding names another.",
-            path=path,
+            f"{FILE} is not {encoding or found} text: {getattr(error, 'reason', error)}; "
+            "the option `encoding` names another.",
         ) from error
 
 

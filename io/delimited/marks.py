@@ -181,7 +181,7 @@ def require_no_delimiter(mark: str, delimiter: str, cells: Sequence[Sequence[str
     if mark == delimiter and not any(mark in cell for row in cells for cell in row):
         raise ReadError(
             f"its columns are separated by '{delimiter}', and no cell holds one, though the option "
-            "decimal names it: write the table with another delimiter, or quote its numbers."
+            "`decimal` names it: write the table with another delimiter, or quote its numbers."
         )
 
 
@@ -200,7 +200,7 @@ def require_one_kind_of_comma(sample: Sequence[str]) -> None:
     if grouped is not None:
         raise ReadError(
             f"its commas may separate columns or thousands ('{grouped}', without the blank or "
-            "other letter that the other commas have beside them): delimiter=',' takes each as a "
+            "other letter that the other commas have beside them): `delimiter=','` takes each as a "
             "delimiter."
         )
 
@@ -230,7 +230,7 @@ def require_no_blank_groups(sample: Sequence[str], n_told: int) -> None:
     if rows and all(grouped) and not is_told:
         raise ReadError(
             f"its blanks may separate columns or thousands ('{grouped[0]}', beside wider blanks): "
-            "write the table with another delimiter, or say with the option columns what all of "
+            "write the table with another delimiter, or say with the option `columns` what all of "
             "them are."
         )
 
@@ -308,8 +308,8 @@ def find_decimal_mark(rows: Iterable[Sequence[str]], delimiter: str) -> DecimalM
             f"('{commas[0]}').",
         )
     raise ReadError(
-        f"its commas may be decimal marks or separate thousands ('{commas[0]}'): decimal=',' "
-        "or decimal='.' settles it."
+        f"its commas may be decimal marks or separate thousands ('{commas[0]}'): `decimal=','` "
+        "or `decimal='.'` settles it."
     )
 
 

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...base.errors import OptionError, ReadError
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from ...tin.screening.area_of_use import AreaOfUse
+from ..door import names_its_file
 from .axes import describe_turn, is_northing, require_one_hemisphere
 from .columns import describe_doubts
 from .grouping import find_plane_pair
@@ -50,6 +51,7 @@ class _Table(NamedTuple):
     lines: list[int]
 
 
+@names_its_file
 def read_query_points(
     path: Path,
     *,
@@ -83,8 +85,8 @@ def read_query_points(
         If there is no column of a name given, or the delimiter is no single character.
     """
     table = _read_table(path, delimiter)
-    chosen, notes = _find_coordinates(table.header, columns, path)
-    xy = np.column_stack([_parse_numbers(table, column, path) for column in chosen])
+    chosen, notes = _find_coordinates(table.header, columns)
+    xy = np.column_stack([_parse_numbers(table, column) for column in chosen])
     cells = np.array(table.rows, object).reshape(len(table.rows), len(table.header))
     names = [table.header[column] for column in chosen]
     found = QueryPoints(
@@ -93,15 +95,13 @@ def read_query_points(
         is_degrees=any(parse_name(name).kind == "angle" for name in names),
         notes=notes,
     )
-    return found if columns is not None else _settle_header(found, names, crs, path)
+    return found if columns is not None else _settle_header(found, names, crs)
 
 
-def _settle_header(
-    points: QueryPoints, names: Sequence[str], crs: CRS | None, path: Path
-) -> QueryPoints:
+def _settle_header(points: QueryPoints, names: Sequence[str], crs: CRS | None) -> QueryPoints:
     """Look at what names alone leave open: hemispheres, and an X that points north."""
     if points.is_degrees:
-        require_one_hemisphere(points.columns, path)
+        require_one_hemisphere(points.columns)
     if crs is None or not is_northing(names[0], points.xy, crs, AreaOfUse.of(crs, None)):
         return points
     turned = points.xy[:, ::-1].copy()
@@ -120,14 +120,14 @@ def _read_table(path: Path, delimiter: str | None) -> _Table:
         raise ReadError(
             f"'{path}' is empty: a line with the names of columns is needed.", path=path
         )
-    mark = _find_delimiter(text.partition("\n")[0], delimiter, path)
+    mark = _find_delimiter(text.partition("\n")[0], delimiter)
     reader = csv.reader(StringIO(text, newline=""), delimiter=mark, strict=True)
     try:
         found = [(reader.line_num, row) for row in reader if any(cell.strip() for cell in row)]
     except csv.Error as error:
         raise ReadError(f"'{path}', line {reader.line_num}: {error}.", path=path) from error
     header = [name.strip() for name in found[0][1]]
-    _require_names(header, path)
+    _require_names(header)
     rows, numbers = [row for _, row in found[1:]], [number for number, _ in found[1:]]
     uneven = [n for n, row in zip(numbers, rows, strict=True) if len(row) != len(header)]
     if uneven:
@@ -140,7 +140,7 @@ def _read_table(path: Path, delimiter: str | None) -> _Table:
     return _Table(header, rows, numbers)
 
 
-def _find_delimiter(header: str, given: str | None, path: Path) -> str:
+def _find_delimiter(header: str, given: str | None) -> str:
     if given is not None:
         if len(given) != 1 or given in '"\r\n':
             raise OptionError("delimiter", given, "a single character")
@@ -149,20 +149,18 @@ def _find_delimiter(header: str, given: str | None, path: Path) -> str:
     if len(found) == 1:
         return found[0]
     what = " and ".join(_DELIMITERS[mark] for mark in found) or "no delimiter"
-    raise ReadError(
-        f"The header of '{path}' has {what}: name what separates its columns.", path=path
-    )
+    raise ReadError(f"The header of {FILE} has {what}: name what separates its columns.")
 
 
-def _require_names(header: Sequence[str], path: Path) -> None:
+def _require_names(header: Sequence[str]) -> None:
     for name in header:
         if not name or header.count(name) > 1:
             what = f"'{name}' twice" if name else "a column without a name"
-            raise ReadError(f"The header of '{path}' has {what}: names must differ.", path=path)
+            raise ReadError(f"The header of {FILE} has {what}: names must differ.")
 
 
 def _find_coordinates(
-    header: Sequence[str], named: tuple[str, str] | None, path: Path
+    header: Sequence[str], named: tuple[str, str] | None
 ) -> tuple[tuple[int, int], tuple[str, ...]]:
     """Return the columns of easting and northing, and what was assumed."""
     if named is not None:
@@ -174,25 +172,22 @@ def _find_coordinates(
     if pair is None:
         names = "; ".join(filter(None, (", ".join(header), describe_doubts(header))))
         raise ReadError(
-            f"Which columns of '{path}' are easting and northing is open: name them; it has "
-            f"{names}.",
-            path=path,
+            f"Which columns of {FILE} are easting and northing is open: name them; it has {names}.",
         )
     east, north = pair
     note = f"By the header {header[east]} is the easting and {header[north]} the northing."
     return (east, north), (note,)
 
 
-def _parse_numbers(table: _Table, column: int, path: Path) -> Float64Array:
+def _parse_numbers(table: _Table, column: int) -> Float64Array:
     values = np.array([_parse_number(row[column]) for row in table.rows], np.float64)
     wrong = np.flatnonzero(~np.isfinite(values))
     if len(wrong):
         lines = [table.lines[row] for row in wrong[:_SHOWN]]
         cell = table.rows[wrong[0]][column]
         raise ReadError(
-            f"'{path}' has {counted(len(wrong), 'row')} whose {table.header[column]} is no finite "
+            f"{FILE} has {counted(len(wrong), 'row')} whose {table.header[column]} is no finite "
             f"number (first: line {lines[0]}, '{cell}').",
-            path=path,
             lines=lines,
         )
     return values

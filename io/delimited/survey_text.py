@@ -12,7 +12,7 @@ from ...base.atomic import replacing
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError, WriteError
 from ...base.progress import Progress
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from ...base.types import RowSources
 from ...tin import TIN, Survey
 from ...tin.screening.area_of_use import AreaOfUse
@@ -142,27 +142,25 @@ def read(
     layout = find_layout(
         lines, path, columns=columns, delimiter=delimiter, decimal=decimal, comment=comment
     )
-    cells = read_cells(lines, layout, path, progress=done.stage(0.1, 0.9))
+    cells = read_cells(lines, layout, progress=done.stage(0.1, 0.9))
     if cells.faults and not skip_bad:
-        raise describe_faults_of_rows(cells.faults, len(layout.rows), lines, layout, path)
+        raise describe_faults_of_rows(cells.faults, len(layout.rows), lines, layout)
     target = CRS.of(crs)
     source = _find_source_crs(layout, declared, target)
     area = AreaOfUse.of(source, target)
-    meaning, notes = _find_columns(cells, layout, area, left_out, path)
-    told_units = require_unit_of_crs(meaning, source or target, path, is_told=columns is not None)
-    require_one_mark(cells, meaning, layout, path)
+    meaning, notes = _find_columns(cells, layout, area, left_out)
+    told_units = require_unit_of_crs(meaning, source or target, is_told=columns is not None)
+    require_one_mark(cells, meaning, layout)
     table = read_table(cells, layout, meaning, lines)
-    table, told_cut = leave_out_cut_row(table, lines, layout, meaning, path, skip_bad=skip_bad)
-    _require_few_faults(table.faults, lines, layout, path, skip_bad=skip_bad)
-    require_one_header(table.faults, lines, layout.delimiter, meaning, path)
-    told = _account_for_rows(table, left_out, path)
-    unit, told_unit = _find_unit(layout, lines, Unit.of(z_unit), path)
+    table, told_cut = leave_out_cut_row(table, lines, layout, meaning, skip_bad=skip_bad)
+    _require_few_faults(table.faults, lines, layout, skip_bad=skip_bad)
+    require_one_header(table.faults, lines, layout.delimiter, meaning)
+    told = _account_for_rows(table, left_out)
+    unit, told_unit = _find_unit(layout, lines, Unit.of(z_unit))
     where = _Reference(source, target, area)
-    told = _settle_places(told, lines, layout, meaning, where, path, is_told=columns is not None)
+    told = _settle_places(told, lines, layout, meaning, where, is_told=columns is not None)
     notes = [*layout.notes, *notes, *told_units, *told_cut, *told_unit, *told.notes]
-    placed = place(
-        told.points, source=source, target=target, path=path, unit=unit, looks_at_area=False
-    )
+    placed = place(told.points, source=source, target=target, unit=unit, looks_at_area=False)
     left_out_lines = {**layout.left_out, **told.lines}
     return Survey(
         points=placed.points,
@@ -211,7 +209,6 @@ def _settle_places(
     layout: Layout,
     columns: Columns,
     where: _Reference,
-    path: Path,
     *,
     is_told: bool,
 ) -> _Accounted:
@@ -221,31 +218,30 @@ def _settle_places(
     points = told.points
     if is_headed:
         if columns.is_degrees:
-            require_one_hemisphere(told.attributes, path)
-        require_no_geocentric(points, columns, path)
+            require_one_hemisphere(told.attributes)
+        require_no_geocentric(points, columns)
         crs, line = where.source or where.target, find_axes_line(lines, layout.rows)
-        points, columns, turned = settle_axes(points, columns, crs, where.area, line, path)
+        points, columns, turned = settle_axes(points, columns, crs, where.area, line)
         notes += turned
     told = told._replace(points=points)
-    notes += require_in_area(points, told.rows, columns, where.area, path, is_headed=is_headed)
+    notes += require_in_area(points, told.rows, columns, where.area, is_headed=is_headed)
     notes += _find_odd(told, lines, layout, columns, in_degrees=is_geographic(where.source))
     return told._replace(notes=notes)
 
 
 def _find_unit(
-    layout: Layout, lines: TextLines, declared: Unit | None, path: Path
+    layout: Layout, lines: TextLines, declared: Unit | None
 ) -> tuple[Unit | None, list[str]]:
     """Return the unit of elevations by the header, a line near the table or the caller."""
     named = _find_known_unit(layout.elevation_unit)
     line = find_unit_line(lines, layout.rows)
     if line is None or not line.unit:
-        return settle_unit(declared, named, path), [line.note] if line else []
+        return settle_unit(declared, named), [line.note] if line else []
     told = _find_known_unit(line.unit)
     if named not in (None, told) or declared not in (None, told):
         raise ReadError(
-            f"'{path}': {line.label} tells {line.unit} as the unit of the elevations, and the "
-            f"{'header' if named else 'option z_unit'} another: make them agree.",
-            path=path,
+            f"{line.label} tells {line.unit} as the unit of the elevations, and the "
+            f"{'header' if named else 'option `z_unit`'} another: make them agree.",
         )
     return told, [line.note]
 
@@ -273,7 +269,6 @@ def _find_columns(
     layout: Layout,
     area: AreaOfUse | None,
     nodata: Float64Array,
-    path: Path,
 ) -> tuple[Columns, list[str]]:
     """Return what the columns mean, by word or header, else by what is in them."""
     if layout.columns is not None:
@@ -288,7 +283,7 @@ def _find_columns(
             heading=layout.heading.label if layout.heading else "",
         )
     except ReadError as error:
-        raise ReadError(f"'{path}': {error}", path=path) from None
+        raise ReadError(str(error)) from None
     return found, [note]
 
 
@@ -296,11 +291,11 @@ def _find_columns(
 
 
 def _require_few_faults(
-    faults: Sequence[Fault], lines: TextLines, layout: Layout, path: Path, *, skip_bad: bool
+    faults: Sequence[Fault], lines: TextLines, layout: Layout, *, skip_bad: bool
 ) -> None:
     """Refuse bad rows that are not to be skipped, or are most of the rows."""
     if faults and (not skip_bad or 2 * len(faults) > len(layout.rows)):
-        raise describe_faults_of_rows(faults, len(layout.rows), lines, layout, path)
+        raise describe_faults_of_rows(faults, len(layout.rows), lines, layout)
 
 
 class _Accounted(NamedTuple):
@@ -313,13 +308,13 @@ class _Accounted(NamedTuple):
     notes: list[str]
 
 
-def _account_for_rows(table: Table, nodata: Float64Array, path: Path) -> _Accounted:
+def _account_for_rows(table: Table, nodata: Float64Array) -> _Accounted:
     """Leave out points without an elevation, and say what became of every row."""
     z = table.points[:, 2]
     is_flat = np.isnan(z)
     is_nodata = np.isin(z, nodata) if len(nodata) else np.zeros(len(z), np.bool_)
     if (is_flat | is_nodata).all():
-        raise ReadError(f"'{path}': of {counted(len(z), 'row')}, none has an elevation.", path=path)
+        raise ReadError(f"of {counted(len(z), 'row')}, none has an elevation.")
     lines: dict[str, tuple[int, ...]] = {}
     notes = find_unit_words(table.attributes)
     if table.n_grouped:
@@ -382,14 +377,14 @@ def write(
     elevations, ``elevation (ft)``, if it is known.
     """
     is_bare = path.suffix.lower() in _BARE_SUFFIXES
-    table = _choose_written_columns(obj, columns, is_bare, path)
+    table = _choose_written_columns(obj, columns, is_bare)
     separator = delimiter or _SUFFIX_DELIMITERS.get(path.suffix.lower(), ",")
     if len(separator) != 1 or separator in '"\n\r.' or separator.isalnum():
         raise WriteError(f"Cannot write '{path}': '{delimiter}' is no delimiter.", path=path)
     names = (
         [] if (is_bare if header is None else not header) else [_name_written_columns(table, obj)]
     )
-    values = list(keep_on_one_line(table, path).values())
+    values = list(keep_on_one_line(table).values())
     with replacing(path, binary=False) as file:
         writer = csv.writer(
             file, delimiter=separator, lineterminator="\n", quoting=_choose_quoting(values[0])
@@ -413,7 +408,7 @@ def _name_written_columns(table: Mapping[str, AnyArray], obj: TIN | Survey) -> l
 
 
 def _choose_written_columns(
-    obj: TIN | Survey, letters: str | None, is_bare: bool, path: Path
+    obj: TIN | Survey, letters: str | None, is_bare: bool
 ) -> dict[str, AnyArray]:
     attributes = dict(obj.attributes) if isinstance(obj, Survey) else {}
     coordinates = dict(zip(("easting", "northing", "elevation"), obj.points.T, strict=True))
@@ -425,12 +420,10 @@ def _choose_written_columns(
         return {"number": number, **surveyed, "description": description, **others}
     if letters is None:
         return coordinates if is_bare else {**coordinates, **attributes}
-    return _choose_by_letters(letters, {**attributes, **coordinates}, path)
+    return _choose_by_letters(letters, {**attributes, **coordinates})
 
 
-def _choose_by_letters(
-    letters: str, available: dict[str, AnyArray], path: Path
-) -> dict[str, AnyArray]:
+def _choose_by_letters(letters: str, available: dict[str, AnyArray]) -> dict[str, AnyArray]:
     roles = {"P": "number", "N": "northing", "Y": "northing", "E": "easting", "X": "easting"}
     roles |= {"Z": "elevation", "H": "elevation", "D": "description"}
     chosen: dict[str, AnyArray] = {}
@@ -439,9 +432,8 @@ def _choose_by_letters(
         if role is None or role not in available or role in chosen:
             wrong = "twice" if role in chosen else "not there" if role else "unknown"
             raise WriteError(
-                f"Cannot write '{path}': column {letter} of '{letters}' is {wrong}; the letters "
+                f"Cannot write {FILE}: column {letter} of '{letters}' is {wrong}; the letters "
                 f"are {', '.join(roles)}.",
-                path=path,
             )
         chosen[role] = available[role]
     return chosen

@@ -16,7 +16,7 @@ import numpy as np
 
 from ...base.errors import ReadError
 from ...base.progress import Progress
-from ...base.sentences import counted, inflect
+from ...base.sentences import FILE, counted, inflect
 from .cell_bounds import find_cell_bounds
 from .cells import (
     BLANKS,
@@ -34,7 +34,6 @@ from .parsing import parse_column
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
-    from pathlib import Path
 
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ...base.progress import Tell
@@ -94,17 +93,13 @@ class Table(NamedTuple):
     n_grouped: int
 
 
-def read_cells(
-    lines: TextLines, layout: Layout, path: Path, *, progress: Tell | None = None
-) -> Cells:
+def read_cells(lines: TextLines, layout: Layout, *, progress: Tell | None = None) -> Cells:
     """Read the cells of every row.
 
     Parameters
     ----------
     lines : TextLines
     layout : Layout
-    path : Path
-        For sentences.
     progress : callable, optional
         Called with the fraction done, by blocks of rows that are rewritten, and by columns.
 
@@ -127,13 +122,12 @@ def read_cells(
             return Cells(_parse_columns(bounds, layout, done.stage(0.3, 1.0)), layout.rows)
     data, rows, faults = _rewrite_rows(lines, layout, done.stage(0.0, _REWRITTEN))
     if len(rows) == 0:
-        raise describe_faults_of_rows(faults, len(layout.rows), lines, layout, path)
+        raise describe_faults_of_rows(faults, len(layout.rows), lines, layout)
     bounds = find_cell_bounds(data, _REWRITTEN_DELIMITER, layout.count)
     if bounds is None or len(bounds) != len(rows):
         raise ReadError(
-            f"'{path}' has {counted(len(rows), 'row')}, but the parser makes others of them: "
+            f"{FILE} has {counted(len(rows), 'row')}, but the parser makes others of them: "
             "check its quotes.",
-            path=path,
         )
     columns = _parse_columns(bounds, layout, done.stage(_REWRITTEN, 1.0))
     return Cells(columns, rows, tuple(faults))
@@ -151,15 +145,15 @@ def _parse_columns(
 
 
 def describe_faults_of_rows(
-    faults: Sequence[Fault], n_rows: int, lines: TextLines, layout: Layout, path: Path
+    faults: Sequence[Fault], n_rows: int, lines: TextLines, layout: Layout
 ) -> ReadError:
     """Return the error that counts the rows at fault, and shows the first of the first kind."""
     kind = "quote" if any(fault.kind == "quote" for fault in faults) else faults[0].kind
     wrong = [fault for fault in faults if fault.kind == kind]
     numbers = [fault.line + 1 for fault in wrong[:_SHOWN]]
     if kind == "quote":
-        sentence = f"'{path}', line {numbers[0]}: {wrong[0].what}."
-        return ReadError(sentence, path=path, lines=numbers)
+        sentence = f"{FILE}, line {numbers[0]}: {wrong[0].what}."
+        return ReadError(sentence, lines=numbers)
     join = " " if kind == "columns" else ": "
     shown = ", ".join(f"line {one.line + 1}{join}{one.what}" for one in wrong[:_SHOWN])
     mark = "point" if layout.decimal == "." else "comma"
@@ -170,10 +164,9 @@ def describe_faults_of_rows(
     is_cut = kind == "columns" and wrong[-1].line == len(lines) - 1 and not lines.is_whole
     hint = "; the last line has no end, so the file may be truncated" if is_cut else ""
     return ReadError(
-        f"'{path}': {len(wrong)} of {counted(n_rows, 'row')} {inflect(fails, len(wrong))} "
-        f"({shown}{', ...' if len(wrong) > _SHOWN else ''}){hint}; the option skip_bad leaves "
+        f"{len(wrong)} of {counted(n_rows, 'row')} {inflect(fails, len(wrong))} "
+        f"({shown}{', ...' if len(wrong) > _SHOWN else ''}){hint}; the option `skip_bad` leaves "
         "such rows out.",
-        path=path,
         lines=numbers,
     )
 
@@ -363,7 +356,7 @@ def _measure_distinct_share(values: Float64Array) -> float:
 # ------------------------------------------------------------------ the table
 
 
-def require_one_mark(cells: Cells, columns: Columns, layout: Layout, path: Path) -> None:
+def require_one_mark(cells: Cells, columns: Columns, layout: Layout) -> None:
     """Refuse 512,350 beside 512.700: a decimal mark or a group, as no other coordinate tells.
 
     Raises
@@ -384,11 +377,10 @@ def require_one_mark(cells: Cells, columns: Columns, layout: Layout, path: Path)
         if grouped[i] and divided is not None:
             line = int(cells.rows[column.index(grouped[i][0])]) + 1
             raise ReadError(
-                f"'{path}', line {line}: '{grouped[i][0]}' beside '{divided}' in "
+                f"{FILE}, line {line}: '{grouped[i][0]}' beside '{divided}' in "
                 f"{columns.label(i)} may have a decimal mark or separate thousands: write all "
-                f"numbers in one way, or decimal='{mark}' takes the other mark as that of "
+                f"numbers in one way, or `decimal='{mark}'` takes the other mark as that of "
                 "thousands.",
-                path=path,
                 lines=[line],
             )
 

@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...base.errors import ReadError
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from .cells import is_number, split_line
 from .table import Fault, Table
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from .columns import Columns
     from .layout import Layout
     from .lines import TextLines
@@ -26,7 +24,7 @@ _FEWEST = 3
 
 
 def leave_out_cut_row(
-    table: Table, lines: TextLines, layout: Layout, columns: Columns, path: Path, *, skip_bad: bool
+    table: Table, lines: TextLines, layout: Layout, columns: Columns, *, skip_bad: bool
 ) -> tuple[Table, list[str]]:
     """Leave out a last row whose last number lacks decimals that all others have.
 
@@ -36,8 +34,6 @@ def leave_out_cut_row(
     lines : TextLines
     layout : Layout
     columns : Columns
-    path : Path
-        For sentences.
     skip_bad : bool
         Whether bad rows are left out.
 
@@ -74,9 +70,8 @@ def leave_out_cut_row(
         ]
     if not skip_bad:
         raise ReadError(
-            f"'{path}', line {last + 1}: {what}, those above have {fewest}, and the line has no "
-            "end: the file may be truncated; the option skip_bad leaves the row out.",
-            path=path,
+            f"{FILE}, line {last + 1}: {what}, those above have {fewest}, and the line has no "
+            "end: the file may be truncated; the option `skip_bad` leaves the row out.",
             lines=[last + 1],
         )
     return _drop_last(table, Fault(last, "number", f"{what} and may be cut off")), []

@@ -263,7 +263,7 @@ def _refuse(one: Reading, other: Reading, name_row: Callable[[int], str]) -> Lin
     shown = _find_difference(one, other, name_row)
     return LinesError(
         f"The field codes can be read in two styles, {names}, and lead to different lines{shown}: "
-        "the option code_style says which is meant."
+        "the option `code_style` says which is meant."
     )
 
 

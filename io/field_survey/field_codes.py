@@ -156,7 +156,7 @@ def _choose_table(
     if code_table is None:
         return CodeTable(make_rules(RULES if rules is None else rules), is_complete=False)
     if rules is not None:
-        raise OptionError("rules", rules, "left out where there is a code_table")
+        raise OptionError("rules", rules, "left out where there is a `code_table`")
     return code_table if isinstance(code_table, CodeTable) else read_code_table(code_table)
 
 
@@ -344,7 +344,7 @@ class _Builder:
                 raise LinesError(
                     f"The {len(figure.rows)} shots of the code {figure.name} have no mark to begin "
                     "or end a line, and one line through them all crosses itself: a code table "
-                    "says that they are points, or the option shot_order that they are one line."
+                    "says that they are points, or the option `shot_order` that they are one line."
                 )
         self.faults += [
             Fault("line that crosses itself", one.name, (one.rows[0], one.rows[-1]))

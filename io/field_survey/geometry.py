@@ -181,7 +181,7 @@ class _Line:
             raise LinesError(
                 f"A curve of {self.figure.name} would need more than {MOST_VERTICES:,} vertices "
                 f"between two shots for its chords to keep within {tolerance:g} of it: a larger "
-                "arc_tolerance needs fewer."
+                "`arc_tolerance` needs fewer."
             )
 
     def _tell(self, kind: str, first: int, last: int) -> None:

@@ -50,7 +50,7 @@ def _require_single_numbers(survey: Survey, by_number: Reading, by_row: Reading)
     raise LinesError(
         f"{counted(int((count > 1).sum()), 'number')} of shots along lines "
         f"{'is' if (count > 1).sum() == 1 else 'are'} repeated (first: {number}), and lines in the "
-        "order of numbers are others than in that of rows: the option shot_order says which is "
+        "order of numbers are others than in that of rows: the option `shot_order` says which is "
         "right, number or row; files of their own are read one by one."
     )
 
@@ -68,14 +68,14 @@ def _require_no_jump(points: Float64Array, by_number: Reading, by_row: Reading) 
             jumps, smooth = ("numbers", "rows") if there is None else ("rows", "numbers")
             raise LinesError(
                 f"The line {figure.name} jumps in the order of {jumps} and not in that of "
-                f"{smooth}: the option shot_order says which is right, number or row."
+                f"{smooth}: the option `shot_order` says which is right, number or row."
             )
         if here is not None and not figure.marks and _are_groups(points, figure):
             length = coordinate(float(_measure(points, figure).max()))
             raise LinesError(
                 f"The {len(figure.rows)} shots of the code {figure.name} have no mark to begin or "
                 f"end a line, and lie in groups {length} apart: a code table says that they are "
-                "points, marks make lines of them, or the option shot_order says that they are "
+                "points, marks make lines of them, or the option `shot_order` says that they are "
                 "one line."
             )
 

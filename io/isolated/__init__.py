@@ -2,5 +2,4 @@
 
 from ...base.lazy import lazy_names
 
-# A program that may fork its readers asks for that at its start, without numpy.
 __getattr__, __dir__, __all__ = lazy_names(__name__)

@@ -23,11 +23,16 @@ _LONGEST_REQUEST = 1 << 24
 _MARGIN_SECONDS = 5.0
 
 
-def serve_requests() -> None:
-    """Answer requests until there are no more."""
+def serve_requests(module: str) -> None:
+    """Answer requests to a module until there are no more.
+
+    Its library is loaded while the program prepares its first request, which is told of a fault.
+    """
     requests = os.fdopen(os.dup(0), "rb", buffering=0)
     answers = os.fdopen(os.dup(1), "wb", buffering=0)
     _silence()
+    with contextlib.suppress(Exception):
+        getattr(import_module(module), "prepare", int)()
     with contextlib.suppress(BrokenMessageError, BrokenPipeError, KeyboardInterrupt):
         while True:
             _serve(receive(requests, most_bytes=_LONGEST_REQUEST).value, _Buffered(answers))

@@ -31,6 +31,6 @@ def require_local(path: str | os.PathLike[str]) -> None:
     if _ELSEWHERE.match(str(path)):
         raise ReadError(
             f"'{path}' is an address, and only files of this machine are read: download it first, "
-            "or let the option remote do so where points or a TIN are read.",
+            "or let the option `remote` do so where points or a TIN are read.",
             path=Path(path),
         )

@@ -132,5 +132,5 @@ def rename_in_error(error: TinsmithError, copy: Path, path: Path) -> None:
         parts = error.args[0].split(str(copy))  # the new name may hold the old one
         text = str(path).join(part.replace(copy.name, path.name) for part in parts)
         error.args = (text, *error.args[1:])
-    if getattr(error, "path", None) == copy:
-        error.path = path  # type: ignore[attr-defined]
+    if error.file == copy:
+        error.file = path

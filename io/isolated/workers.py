@@ -19,15 +19,16 @@ from pathlib import Path
 from typing import Any
 
 from ...base.errors import ReadError
+from ...base.notes import naming_file
+from ...base.sentences import FILE
 from .answers import Answer, BrokenMessageError, receive, send
-from .forking import Fork, can_fork
 from .limits import START_SECONDS, Limits, choose_limits
 
-__all__ = ["run_isolated", "stream_isolated"]
+__all__ = ["run_isolated", "start_early", "stream_isolated"]
 
 _START = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]);"
-    "from tinsmith.io.isolated.child import serve_requests; serve_requests()"
+    "from tinsmith.io.isolated.child import serve_requests; serve_requests(sys.argv[2])"
 )
 _SOUND_ENDS = frozenset({"end", "refusal", "fault"})
 """Answers after which a child may read a further file."""
@@ -44,10 +45,9 @@ def run_isolated(
     Parameters
     ----------
     function : str
-        ``"module:function"`` of this package. It takes the arguments, of which ``path`` is the file
-        and ``shown`` its path as the user wrote it, for sentences, and returns an :class:`Answer`,
-        or is a generator of them; a :class:`Refusal` that it raises becomes a ReadError of the same
-        sentence.
+        ``"module:function"`` of this package. It takes the arguments and returns an
+        :class:`Answer`, or is a generator of them; a :class:`Refusal` that it raises becomes a
+        ReadError of the same sentence.
     arguments : mapping
         What JSON can hold.
     path : Path
@@ -73,18 +73,22 @@ def stream_isolated(
 
     Parameters and errors are those of :func:`run_isolated`; the limit of time is for each part.
     """
-    allowed = (
-        choose_limits(path.stat().st_size if path.is_file() else 0) if limits is None else limits
-    )
+    allowed = limits or choose_limits(path.stat().st_size if path.is_file() else 0)
     worker = _POOL.take(function.partition(":")[0])
-    parts = worker.ask({"function": function, "arguments": dict(arguments)}, path, allowed)
+    parts = worker.ask({"function": function, "arguments": dict(arguments)}, allowed)
     try:
-        yield parts
+        with naming_file(path):
+            yield parts
         for _ in parts:
             pass  # the end is read too, so that the child is free for the next file
     finally:
         parts.close()
         _POOL.give_back(worker)
+
+
+def start_early(module: str) -> None:
+    """Start the child that will read with a module, while the caller prepares its request."""
+    _POOL.give_back(_POOL.take(module))
 
 
 class _Worker:
@@ -94,11 +98,9 @@ class _Worker:
         self.module = module
         self.is_sound = True
         self._timed_out = False
-        self._process = _fork_worker(module) if can_fork() else _start_worker(module)
+        self._process = _start_child(module)
 
-    def ask(
-        self, request: dict[str, Any], path: Path, limits: Limits
-    ) -> Generator[Answer, None, None]:
+    def ask(self, request: dict[str, Any], limits: Limits) -> Generator[Answer, None, None]:
         """Yield the parts of the answer; anything but a sound end leaves the child unsound."""
         self.is_sound = False
         with contextlib.suppress(BrokenPipeError):
@@ -106,7 +108,7 @@ class _Worker:
             send(self._process.stdin, Answer({**request, "limits": list(limits)}, {}))
         seconds = START_SECONDS
         while True:
-            answer = self._receive_next(seconds, path, limits)
+            answer = self._receive_next(seconds, limits)
             kind = answer.value.get("kind")
             if kind in _SOUND_ENDS:
                 self.is_sound = True
@@ -115,10 +117,10 @@ class _Worker:
             if kind == "part":
                 yield Answer(answer.value["value"], answer.arrays)
             elif kind != "ready":
-                raise _describe_answer(answer.value, path, limits)
+                raise _describe_answer(answer.value, limits)
             seconds = limits.waiting_seconds
 
-    def _receive_next(self, seconds: float, path: Path, limits: Limits) -> Answer:
+    def _receive_next(self, seconds: float, limits: Limits) -> Answer:
         watchdog = threading.Timer(seconds, self._time_out)
         watchdog.daemon = True
         watchdog.start()
@@ -127,7 +129,7 @@ class _Worker:
             return receive(self._process.stdout, most_bytes=limits.memory)
         except BrokenMessageError:
             self.end()
-            raise _describe_death(self._process.returncode, self._timed_out, path, limits) from None
+            raise _describe_death(self._process.returncode, self._timed_out, limits) from None
         finally:
             watchdog.cancel()
 
@@ -205,15 +207,9 @@ if hasattr(os, "register_at_fork"):
 # ---------------------------------------------------------------------- starting a child
 
 
-def _fork_worker(module: str) -> Fork:
-    from .child import serve_requests
-
-    return Fork(serve_requests, _choose_environment(module))
-
-
-def _start_worker(module: str) -> subprocess.Popen[bytes]:
+def _start_child(module: str) -> subprocess.Popen[bytes]:
     return subprocess.Popen(
-        [_find_interpreter(), "-P", "-c", _START, _search_path()],
+        [_find_interpreter(), "-P", "-c", _START, _search_path(), module],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
@@ -251,38 +247,33 @@ def _choose_environment(module: str) -> dict[str, str]:
 # ---------------------------------------------------------------------------- sentences
 
 
-def _describe_answer(answer: dict[str, Any], path: Path, limits: Limits) -> ReadError:
+def _describe_answer(answer: dict[str, Any], limits: Limits) -> ReadError:
     if answer.get("kind") == "refusal":
-        return ReadError(_ODD_LETTERS.sub(" ", str(answer.get("text"))), path=path)
+        return ReadError(_ODD_LETTERS.sub(" ", str(answer.get("text"))))
     if answer.get("kind") == "memory":
-        return _describe_lack_of_memory(path, limits)
+        return _describe_lack_of_memory(limits)
     words = " ".join(_ODD_LETTERS.sub(" ", str(answer.get("text"))).split())
     reason = words[:_LONGEST_REASON].rstrip(" .")
-    return ReadError(
-        f"'{path}' cannot be read, it may be damaged or truncated: {reason}.", path=path
-    )
+    return ReadError(f"{FILE} cannot be read, it may be damaged or truncated: {reason}.")
 
 
-def _describe_death(code: int | None, timed_out: bool, path: Path, limits: Limits) -> ReadError:
+def _describe_death(code: int | None, timed_out: bool, limits: Limits) -> ReadError:
     too_long = timed_out or code == -getattr(signal, "SIGXCPU", 0)
     if too_long:
         return ReadError(
-            f"'{path}' cannot be read, it may be damaged: after {limits.seconds:.0f} "
+            f"{FILE} cannot be read, it may be damaged: after {limits.seconds:.0f} "
             f"{'second' if round(limits.seconds) == 1 else 'seconds'}, the limit for a file of "
-            "this size, there was no end.",
-            path=path,
+            "this size, there was no end."
         )
     if code == -getattr(signal, "SIGKILL", 0):
-        return _describe_lack_of_memory(path, limits)
+        return _describe_lack_of_memory(limits)
     return ReadError(
-        f"'{path}' cannot be read, it is damaged: the library that reads this format crashed.",
-        path=path,
+        f"{FILE} cannot be read, it is damaged: the library that reads this format crashed."
     )
 
 
-def _describe_lack_of_memory(path: Path, limits: Limits) -> ReadError:
+def _describe_lack_of_memory(limits: Limits) -> ReadError:
     return ReadError(
-        f"'{path}' cannot be read, it may be damaged: it asks for more than "
-        f"{limits.memory / (1 << 30):.1f} GiB of memory, the limit for a file of this size.",
-        path=path,
+        f"{FILE} cannot be read, it may be damaged: it asks for more than "
+        f"{limits.memory / (1 << 30):.1f} GiB of memory, the limit for a file of this size."
     )

@@ -15,7 +15,8 @@ from typing import IO, TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...base.errors import ReadError
-from ...base.sentences import coordinate, counted, inflect
+from ...base.notes import naming_file
+from ...base.sentences import FILE, coordinate, counted, inflect
 from ..isolated.spooling import translate_system_errors
 
 if TYPE_CHECKING:
@@ -108,26 +109,26 @@ def parse_header(path: Path) -> Header:
         If it is no LAS file of a version that is read, or says what cannot be: more points or
         records than the file has bytes for, a scale of 0, an unknown format of points.
     """
-    with translate_system_errors(path), path.open("rb") as file:
+    with naming_file(path), translate_system_errors(path), path.open("rb") as file:
         return _parse(file, path, path.stat().st_size)
 
 
 def _parse(file: IO[bytes], path: Path, size: int) -> Header:
     fixed = file.read(_FIXED.size)
     if not fixed.startswith(b"LASF") or len(fixed) < _FIXED.size:
-        raise _describe_fault(path, "it has no whole header of LAS")
+        raise _describe_fault("it has no whole header of LAS")
     fields = _FIXED.unpack(fixed)
     major, version, header_bytes, offset, n_records = *fields[4:6], *fields[10:13]
-    _require_version(major, version, header_bytes, path)
-    _require_offset(header_bytes, offset, size, path)
+    _require_version(major, version, header_bytes)
+    _require_offset(header_bytes, offset, size)
     file.seek(0)
     whole = file.read(header_bytes)
-    point_format, point_bytes = _require_point_format(fields[13], fields[14], version, path)
+    point_format, point_bytes = _require_point_format(fields[13], fields[14], version)
     is_compressed = bool(fields[13] & _COMPRESSED_BITS)
-    count = _find_count(whole, version, fields[15], path)
-    scales, offsets = _require_scales(fields[17:], path)
-    records = _read_records(file, _RECORD, header_bytes, offset, n_records, path)
-    further, first_further = _read_extended_records(file, whole, version, size, path)
+    count = _find_count(whole, version, fields[15])
+    scales, offsets = _require_scales(fields[17:])
+    records = _read_records(file, _RECORD, header_bytes, offset, n_records)
+    further, first_further = _read_extended_records(file, whole, version, size)
     header = Header(
         path=path,
         size=size,
@@ -148,69 +149,60 @@ def _parse(file: IO[bytes], path: Path, size: int) -> Header:
     return header
 
 
-def _describe_fault(path: Path, what: str) -> ReadError:
-    return ReadError(f"'{path}' is damaged or cut short: {what}.", path=path)
+def _describe_fault(what: str) -> ReadError:
+    return ReadError(f"{FILE} is damaged or cut short: {what}.")
 
 
-def _require_version(major: int, version: int, header_bytes: int, path: Path) -> None:
+def _require_version(major: int, version: int, header_bytes: int) -> None:
     if major != 1 or version not in _HEADER_BYTES:
-        raise ReadError(
-            f"'{path}' is LAS {major}.{version}: the versions 1.0 to 1.4 can be read.", path=path
-        )
+        raise ReadError(f"{FILE} is LAS {major}.{version}: the versions 1.0 to 1.4 can be read.")
     if header_bytes < _HEADER_BYTES[version]:
         raise _describe_fault(
-            path,
             f"its header is said to have {header_bytes} bytes, and that of LAS 1.{version} has "
-            f"{_HEADER_BYTES[version]}",
+            f"{_HEADER_BYTES[version]}"
         )
 
 
-def _require_offset(header_bytes: int, offset: int, size: int, path: Path) -> None:
+def _require_offset(header_bytes: int, offset: int, size: int) -> None:
     if not header_bytes <= offset <= size:
         raise _describe_fault(
-            path,
             f"its points are said to begin at byte {offset:,}, and the header ends at byte "
-            f"{header_bytes:,}, the file at byte {size:,}",
+            f"{header_bytes:,}, the file at byte {size:,}"
         )
 
 
-def _require_point_format(
-    number: int, point_bytes: int, version: int, path: Path
-) -> tuple[int, int]:
+def _require_point_format(number: int, point_bytes: int, version: int) -> tuple[int, int]:
     plain = number & ~_COMPRESSED_BITS
     if plain >= len(_POINT_BYTES):
         raise ReadError(
-            f"'{path}' has points of the format {plain}: 0 to {len(_POINT_BYTES) - 1} can be read.",
-            path=path,
+            f"{FILE} has points of the format {plain}: 0 to {len(_POINT_BYTES) - 1} can be read."
         )
     if _VERSION_OF_FORMAT[plain] > version:
         raise _describe_fault(
-            path,
             f"it is LAS 1.{version} with points of the format {plain}, which LAS "
-            f"1.{_VERSION_OF_FORMAT[plain]} brought",
+            f"1.{_VERSION_OF_FORMAT[plain]} brought"
         )
     if point_bytes < _POINT_BYTES[plain]:
         raise _describe_fault(
-            path,
             f"a point is said to have {point_bytes} bytes, and one of the format {plain} has "
-            f"{_POINT_BYTES[plain]}",
+            f"{_POINT_BYTES[plain]}"
         )
     return plain, point_bytes
 
 
-def _find_count(whole: bytes, version: int, legacy: int, path: Path) -> int:
+def _find_count(whole: bytes, version: int, legacy: int) -> int:
     """Return the number of points; LAS 1.4 gives it twice, unless it needs more than 32 bits."""
     if version < 4:
         return legacy
     (count,) = struct.unpack_from("<Q", whole, 247)
     if legacy not in (0, count):
         said = counted(count, "point")
-        raise _describe_fault(path, f"it is said to have {said}, and in another place {legacy:,}")
+        raise _describe_fault(f"it is said to have {said}, and in another place {legacy:,}")
     return int(count)
 
 
 def _require_scales(
-    numbers: tuple[float, ...], path: Path
+    numbers: tuple[float, ...],
 ) -> tuple[
     np.ndarray[tuple[int], np.dtype[np.float64]], np.ndarray[tuple[int], np.dtype[np.float64]]
 ]:
@@ -219,9 +211,8 @@ def _require_scales(
         reach = np.abs(scales) * _LASTING + np.abs(offsets)
     if not np.isfinite(reach).all() or (scales == 0).any():
         raise _describe_fault(
-            path,
             f"its coordinates have the scales {_list(scales)} and the offsets {_list(offsets)}, "
-            "and finite ones, the scales not 0, are needed",
+            "and finite ones, the scales not 0, are needed"
         )
     return scales, offsets
 
@@ -234,17 +225,16 @@ def _list(numbers: np.ndarray[tuple[int], np.dtype[np.float64]]) -> str:
 
 
 def _read_records(
-    file: IO[bytes], form: struct.Struct, start: int, end: int, count: int, path: Path
+    file: IO[bytes], form: struct.Struct, start: int, end: int, count: int
 ) -> list[Record]:
     """Read records that lie between two bytes of the file, one after the other."""
     if count * form.size > end - start:
         raise _describe_fault(
-            path,
             inflect(
                 f"{counted(count, 'variable-length record')} [is|are] said to lie in "
                 f"{counted(max(0, end - start), 'byte')}",
                 count,
-            ),
+            )
         )
     records = []
     place = start
@@ -253,7 +243,7 @@ def _read_records(
         head = file.read(form.size)
         length = form.unpack(head)[3] if len(head) == form.size else end
         if place + form.size + length > end:
-            raise _describe_fault(path, f"variable-length record {number} reaches beyond its end")
+            raise _describe_fault(f"variable-length record {number} reaches beyond its end")
         _, user, kind, _, _ = form.unpack(head)
         if length <= _LARGEST_RECORD:
             records.append(Record(_read_text(user), kind, file.read(length)))
@@ -266,7 +256,7 @@ def _read_text(content: bytes) -> str:
 
 
 def _read_extended_records(
-    file: IO[bytes], whole: bytes, version: int, size: int, path: Path
+    file: IO[bytes], whole: bytes, version: int, size: int
 ) -> tuple[list[Record], int]:
     """Return the records behind the points, and where they begin; 0 without any."""
     if version < 4:
@@ -276,11 +266,10 @@ def _read_extended_records(
         return [], 0
     if start >= size:
         raise _describe_fault(
-            path,
             f"its extended records are said to begin at byte {start:,}, and the file ends at byte "
-            f"{size:,}",
+            f"{size:,}"
         )
-    return _read_records(file, _EXTENDED_RECORD, start, size, count, path), start
+    return _read_records(file, _EXTENDED_RECORD, start, size, count), start
 
 
 def _find_surplus(whole: bytes, version: int, end: int, until: int) -> int:
@@ -299,12 +288,11 @@ def _require_room(header: Header, file: IO[bytes]) -> None:
         _require_chunks(header, file)
     elif header.count * header.point_bytes > room:
         raise _describe_fault(
-            header.path,
             inflect(
                 f"{counted(header.count, 'point')} of {header.point_bytes} bytes [is|are] said to "
                 f"be in {counted(room, 'byte')}",
                 header.count,
-            ),
+            )
         )
 
 
@@ -312,7 +300,7 @@ def _require_chunks(header: Header, file: IO[bytes]) -> None:
     """Compare the number of points with the chunks that the compressor tells of."""
     laszip = header.find(*_LASZIP)
     if laszip is None or len(laszip) < 34:
-        raise _describe_fault(header.path, "it is compressed, and does not say how")
+        raise _describe_fault("it is compressed, and does not say how")
     compressor, _, _, _, _, _, chunk_size = struct.unpack_from("<HHBBHII", laszip)
     if compressor not in (2, 3) or header.count == 0:
         return  # no chunks; the size of all points is looked at where they are counted
@@ -321,12 +309,11 @@ def _require_chunks(header: Header, file: IO[bytes]) -> None:
         return
     if not (n_chunks - 1) * chunk_size < header.count <= n_chunks * chunk_size:
         raise _describe_fault(
-            header.path,
             inflect(
                 f"{counted(header.count, 'point')} [is|are] said to be in "
                 f"{counted(n_chunks, 'chunk')} of {chunk_size:,}",
                 header.count,
-            ),
+            )
         )
 
 
@@ -339,13 +326,10 @@ def _count_chunks(header: Header, file: IO[bytes]) -> int | None:
         (table,) = struct.unpack("<q", file.read(8).ljust(8, b"\0"))
     if not header.offset + 8 <= table <= header.size - 8:
         raise _describe_fault(
-            header.path,
-            f"the table of its chunks is said to be at byte {table:,} of {header.size:,}",
+            f"the table of its chunks is said to be at byte {table:,} of {header.size:,}"
         )
     file.seek(table)
     _, n_chunks = struct.unpack("<II", file.read(8))
     if n_chunks * header.point_bytes > header.size:  # each begins with a whole point
-        raise _describe_fault(
-            header.path, f"{n_chunks:,} chunks are said to be in {header.size:,} bytes"
-        )
+        raise _describe_fault(f"{n_chunks:,} chunks are said to be in {header.size:,} bytes")
     return int(n_chunks)

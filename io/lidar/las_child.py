@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...base.sentences import inflect
+from ...base.sentences import FILE, inflect
 from ..isolated import Answer, Refusal
 
 __all__ = ["ENVIRONMENT", "prepare", "read_points"]
@@ -43,7 +43,7 @@ def prepare() -> None:
     import laspy  # noqa: F401 - loaded here, before memory is limited
 
 
-def read_points(path: str, *, shown: str, wanted: dict[str, Any]) -> Iterator[Answer]:
+def read_points(path: str, *, wanted: dict[str, Any]) -> Iterator[Answer]:
     """Yield the points of a file that are wanted, as whole numbers, with their attributes.
 
     ``wanted`` is a Selection as it is sent. The value counts why points were left out, as
@@ -51,7 +51,7 @@ def read_points(path: str, *, shown: str, wanted: dict[str, Any]) -> Iterator[An
     and the attributes by their names.
     """
     done = 0
-    for points in _prefetch(_iterate_chunks(path, shown, wanted)):
+    for points in _prefetch(_iterate_chunks(path, wanted)):
         answer, done = _select(points, wanted, done)
         yield answer
 
@@ -65,7 +65,7 @@ def _prefetch(chunks: Iterator[Any]) -> Iterator[Any]:
             yield points
 
 
-def _iterate_chunks(path: str, shown: str, wanted: dict[str, Any]) -> Iterator[Any]:
+def _iterate_chunks(path: str, wanted: dict[str, Any]) -> Iterator[Any]:
     import laspy
 
     with open(path, "rb") as file:  # noqa: PTH123 - laspy takes a file
@@ -73,7 +73,7 @@ def _iterate_chunks(path: str, shown: str, wanted: dict[str, Any]) -> Iterator[A
         reader = laspy.LasReader(file, closefd=False, read_evlrs=False)
         is_octree = any(type(one).__name__ == "CopcInfoVlr" for one in reader.header.vlrs)
         is_layered = reader.header.point_format.id >= _LAYERED
-        _require_attributes(reader.header, wanted, shown)
+        _require_attributes(reader.header, wanted)
         file.seek(0)
         if is_octree and (wanted["window"] is not None or wanted["resolution"] is not None):
             yield from _iterate_levels(laspy.CopcReader(file), wanted, selection)
@@ -112,13 +112,11 @@ def _choose_fields(wanted: dict[str, Any]) -> Any:
     return selection
 
 
-def _require_attributes(header: Any, wanted: dict[str, Any], shown: str) -> None:
+def _require_attributes(header: Any, wanted: dict[str, Any]) -> None:
     names = [name for name in header.point_format.dimension_names if name not in "XYZ"]
     for name in wanted["attributes"] or ():
         if name not in names:
-            raise Refusal(
-                f"'{shown}' has no attribute '{name}': there is {', '.join(names)}, or all."
-            )
+            raise Refusal(f"{FILE} has no attribute '{name}': there is {', '.join(names)}, or all.")
 
 
 def _iterate_levels(reader: Any, wanted: dict[str, Any], selection: Any) -> Iterator[Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,7 +12,7 @@ from ...base.crs import CRS, Unit
 from ...base.errors import CrsError, OptionError, ReadError
 from ...base.sentences import coordinate, counted, inflect
 from ...tin import Bounds, Survey
-from ..isolated import choose_limits, stream_isolated
+from ..isolated import choose_limits, start_early, stream_isolated
 from ..isolated.free_memory import measure_free_memory
 from ..reprojection.placement import Placed, place, settle_unit
 from .crs import Reference, find_reference
@@ -38,6 +37,7 @@ if TYPE_CHECKING:
 
 __all__ = ["read"]
 
+_CHILD = f"{__package__}.las_child"
 _BYTES_PER_POINT = 24
 _MOST_POINTS = 2**31 - 1
 """The vertices of a TIN are numbered with 32 bits."""
@@ -114,6 +114,7 @@ def read(
     attributes that are kept without asking, and some 100 MB.
     """
     optional.require("laspy", "Reading lidar")
+    start_early(_CHILD)
     selection = parse_selection(classes, returns, window, resolution, every, withheld, attributes)
     headers = [parse_header(one) for one in _list_files(path)]
     _require_levels(headers, selection)
@@ -155,7 +156,7 @@ def _require_levels(headers: list[Header], selection: Selection) -> None:
             raise OptionError(
                 "resolution",
                 selection.resolution,
-                f"none for '{header.path}', as only COPC files have levels; the option every "
+                f"none for '{header.path}', as only COPC files have levels; the option `every` "
                 "thins others",
             )
 
@@ -180,11 +181,11 @@ def _locate(header: Header, target: CRS | None, declared: Unit | None) -> _Tile:
         text = text if str(header.path) in text else f"'{header.path}': {text}"
         raise CrsError(text, crs=error.crs) from error
     vertical = None if reference.crs is None else reference.crs.vertical_unit
-    unit = settle_unit(declared, reference.unit or vertical, header.path)
+    unit = settle_unit(declared, reference.unit or vertical)
     middle = header.middle[None, :]
     wanted = target or reference.crs
     if wanted is not None and wanted.is_geographic:  # refused before the points are read
-        place(middle, source=reference.crs, target=target, path=header.path, unit=unit)
+        place(middle, source=reference.crs, target=target, unit=unit)
     return _Tile(header, reference, unit)
 
 
@@ -215,7 +216,7 @@ def _require_comparable_units(
             raise ReadError(
                 f"'{first}' and '{tile.header.path.name}' in '{path}' have elevations in different "
                 f"units: {units[0] or 'unknown'} and {unit or 'unknown'}; read them one by one, or "
-                "declare the unit (z_unit) if it is that of all.",
+                "declare the unit (`z_unit`) if it is that of all.",
                 path=path,
             )
     return units
@@ -224,9 +225,7 @@ def _require_comparable_units(
 def _foresee_unit(tile: _Tile, target: CRS | None) -> Unit | None:
     header = tile.header
     middle = header.middle[None, :]
-    return place(
-        middle, source=tile.reference.crs, target=target, path=header.path, unit=tile.unit
-    ).elevation_unit
+    return place(middle, source=tile.reference.crs, target=target, unit=tile.unit).elevation_unit
 
 
 def _name_crs(crs: CRS | None) -> str:
@@ -346,19 +345,18 @@ def _read_tile(
     """Add the points of a file that are wanted, in the CRS and the unit that are wanted."""
     header, start = tile.header, gathered.count
     with stream_isolated(
-        f"{__package__}.las_child:read_points",
-        {"path": os.path.abspath(header.path), "shown": str(header.path),  # noqa: PTH100
-         "wanted": selection.to_request()},
+        f"{_CHILD}:read_points",
+        {"path": str(header.path.absolute()), "wanted": selection.to_request()},
         path=header.path,
         limits=choose_limits(header.size),
-    ) as parts:  # fmt: skip
+    ) as parts:
         for part in parts:
             gathered.tally.add(part.value, part.arrays["classes"])
             gathered.append(part.arrays, header)
             gathered.tell_progress()
     own = gathered._points[start : gathered.count]
     odd = _describe_outside(own, header)
-    placed = place(own, source=tile.reference.crs, target=target, path=header.path, unit=tile.unit)
+    placed = place(own, source=tile.reference.crs, target=target, unit=tile.unit)
     gathered.replace(start, placed.points)
     placed = placed._replace(notes=(*placed.notes, *odd))
     theirs = placed.elevation_unit

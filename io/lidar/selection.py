@@ -237,7 +237,7 @@ def describe_classes(tally: Tally, selection: Selection) -> list[str]:
     advice = f"; {_GROUND} alone is the ground" if _GROUND in there else ""
     return [
         f"Classes of the points: {listed}. All were taken, vegetation, buildings and noise too: "
-        f"the option classes takes some{advice}."
+        f"the option `classes` takes some{advice}."
     ]
 
 

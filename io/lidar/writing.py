@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import datetime as dt
-import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ...base import optional
 from ...base.atomic import replacing
-from ...base.errors import LossWarning, OptionError, WriteError
+from ...base.errors import OptionError, WriteError
+from ...base.notes import warn
 from ...base.progress import Progress
-from ...base.sentences import coordinate
+from ...base.sentences import FILE, coordinate
 from ...tin import TIN, Survey
 from ..mesh.common import require_writable
 from ..registry.losses import tell_lost_attributes
@@ -109,14 +109,14 @@ def write(
     bytes. The CRS is WKT in a variable-length record. The points of a TIN are its vertices; its
     triangles are not kept. The same points give the same bytes, and the date is 1970-01-01.
     """
-    surface = require_writable(surface, path)
-    laspy = optional.load("laspy", f"Writing '{path}'")
-    _require_points(surface.points, path)
-    scaling = _choose_scaling(surface.points, _parse_scale(scale), path)
+    surface = require_writable(surface)
+    laspy = optional.load("laspy", f"Writing {FILE}")
+    _require_points(surface.points)
+    scaling = _choose_scaling(surface.points, _parse_scale(scale))
     attributes = surface.attributes if isinstance(surface, Survey) else {}
-    columns = _choose_columns(attributes, path)
+    columns = _choose_columns(attributes)
     header = _make_header(laspy, scaling, columns, surface.crs)
-    _warn_of_unit(surface, path)
+    _warn_of_unit(surface)
     with replacing(path) as file:
         is_compressed = path.suffix.lower() == ".laz"
         with laspy.LasWriter(file, header, do_compress=is_compressed, closefd=False) as writer:
@@ -132,30 +132,27 @@ def _parse_scale(scale: float | None) -> float | None:
     return float(scale)
 
 
-def _require_points(points: Float64Array, path: Path) -> None:
+def _require_points(points: Float64Array) -> None:
     if len(points) == 0:
-        raise WriteError(f"Cannot write '{path}': there are no points.", path=path)
+        raise WriteError(f"Cannot write {FILE}: there are no points.")
     wrong = ~np.isfinite(points).all(axis=1)
     if wrong.any():
         row = int(np.argmax(wrong))
         raise WriteError(
-            f"Cannot write '{path}': point {row} is not finite, {points[row].tolist()}, and LAS "
-            "has only finite coordinates.",
-            path=path,
+            f"Cannot write {FILE}: point {row} is not finite, {points[row].tolist()}, and LAS "
+            "has only finite coordinates."
         )
 
 
 # ---------------------------------------------------------------------------- scales
 
 
-def _choose_scaling(points: Float64Array, scale: float | None, path: Path) -> _Scaling:
-    axes = [_scale_axis(points[:, k], scale, "xyz"[k], path) for k in range(3)]
+def _choose_scaling(points: Float64Array, scale: float | None) -> _Scaling:
+    axes = [_scale_axis(points[:, k], scale, "xyz"[k]) for k in range(3)]
     return _Scaling(*(np.array(column) for column in zip(*axes, strict=True)))
 
 
-def _scale_axis(
-    values: Float64Array, scale: float | None, axis: str, path: Path
-) -> tuple[float, float, float]:
+def _scale_axis(values: Float64Array, scale: float | None, axis: str) -> tuple[float, float, float]:
     """Return scale, offset and the largest error of one axis."""
     candidates = [10.0**-k for k in range(_COARSEST, _FINEST + 1)] if scale is None else [scale]
     enough = _ROUNDINGS * float(np.spacing(np.abs(values).max()))
@@ -169,12 +166,11 @@ def _scale_axis(
             return tried
     if best is None:
         raise WriteError(
-            f"Cannot write '{path}': the {axis} coordinates reach from "
+            f"Cannot write {FILE}: the {axis} coordinates reach from "
             f"{coordinate(values.min())} to "
             f"{coordinate(values.max())}, and with the scale {candidates[0]:g} 32 bits hold "
             "a length of "
-            f"{2 * _LARGEST * candidates[0]:g}.",
-            path=path,
+            f"{2 * _LARGEST * candidates[0]:g}."
         )
     return best
 
@@ -202,7 +198,7 @@ def _round_to_whole(values: Float64Array, scale: float, offset: float) -> Int32A
 # ------------------------------------------------------------------------ attributes
 
 
-def _choose_columns(attributes: Mapping[str, AnyArray], path: Path) -> dict[str, AnyArray]:
+def _choose_columns(attributes: Mapping[str, AnyArray]) -> dict[str, AnyArray]:
     """Return the attributes that the format holds, and tell of the others."""
     columns, texts = {}, []
     for name, given in attributes.items():
@@ -212,10 +208,10 @@ def _choose_columns(attributes: Mapping[str, AnyArray], path: Path) -> dict[str,
         if name == "gps_time" or (name not in _STANDARD and _fits_extra_bytes(name, values)):
             columns[name] = values
         elif name in _STANDARD and values.dtype.kind in "iuf":
-            columns[name] = _require_range(name, values, path)
+            columns[name] = _require_range(name, values)
         else:
             texts.append(name)
-    tell_lost_attributes(texts, path, "LAS has numbers, with names of 32 bytes")
+    tell_lost_attributes(texts, "LAS has numbers, with names of 32 bytes")
     return columns
 
 
@@ -224,28 +220,25 @@ def _fits_extra_bytes(name: str, values: AnyArray) -> bool:
     return is_plain and 0 < len(name.encode()) <= _NAME_BYTES and name not in ("X", "Y", "Z")
 
 
-def _require_range(name: str, values: AnyArray, path: Path) -> AnyArray:
+def _require_range(name: str, values: AnyArray) -> AnyArray:
     low, high = _STANDARD[name]
     fits = (values >= low) & (values <= high) & (values == np.rint(values))
     if not fits.all():
         row = int(np.argmin(fits))
         raise WriteError(
-            f"Cannot write '{path}': point {row} has the {name} {values[row]}, and LAS holds whole "
-            f"numbers from {low} to {high} there.",
-            path=path,
+            f"Cannot write {FILE}: point {row} has the {name} {values[row]}, and LAS holds whole "
+            f"numbers from {low} to {high} there."
         )
     return values
 
 
-def _warn_of_unit(surface: TIN | Survey, path: Path) -> None:
+def _warn_of_unit(surface: TIN | Survey) -> None:
     unit, crs = surface.elevation_unit, surface.crs
     told = None if crs is None else crs.vertical_unit
     if unit is not None and told is None:
-        warnings.warn(
-            f"'{path}' does not tell the unit of the elevations, the {unit}: its CRS has no "
-            "vertical axis.",
-            LossWarning,
-            stacklevel=3,
+        warn(
+            f"{FILE} does not tell the unit of the elevations, the {unit}: its CRS has no "
+            "vertical axis."
         )
 
 
@@ -308,4 +301,4 @@ def _require_crs(crs: CRS | None, path: Path) -> None:
     from .header import parse_header
 
     content = parse_header(path).find("LASF_Projection", 2112) or b""
-    require_kept(crs, content.split(b"\0")[0].decode(), path)
+    require_kept(crs, content.split(b"\0")[0].decode())

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import wraps
+from inspect import signature
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
@@ -10,10 +13,11 @@ import numpy as np
 from ...base.checks import is_finite_number
 from ...base.crs import CRS, Unit
 from ...base.errors import CrsError, FormatError, OptionError, PointsError, ReadError
-from ...base.sentences import counted, height
+from ...base.sentences import FILE, counted, height
 from ...tin import TIN, Surface, Survey
 from ...tin.checking.overlaps import describe_oddities
 from ...tin.screening.nodata import find_suspect_elevations
+from ...tin.topology import edge_keys
 from ..reprojection.contradictions import look_at_crs
 from ..reprojection.placement import settle_unit
 from .surface_part import make_surface
@@ -28,20 +32,26 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Fans",
+    "Mesh",
     "Reference",
     "add_notes",
+    "build_mesh",
     "choose_reference",
     "cut_into_fans",
     "describe_single_precision",
+    "flag_edges",
     "format_crs",
     "format_unit",
+    "join_places",
     "make_survey",
     "make_tin",
     "measure_rounding",
+    "mesh_reader",
     "read_content",
     "require_factor",
     "require_own_crs",
     "require_tin",
+    "require_vertices",
     "require_writable",
 ]
 
@@ -73,22 +83,22 @@ def read_content(path: Path) -> bytes:
         raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
 
 
-def require_writable(surface: object, path: Path) -> TIN | Survey:
+def require_writable(surface: object) -> TIN | Survey:
     """Return a TIN or a survey; refuse anything else."""
     if isinstance(surface, Surface | Survey):
         return cast("TIN | Survey", surface)  # writers ask it alone
     raise FormatError(
-        f"Cannot write '{path}': a {type(surface).__name__} is neither a TIN nor a Survey."
+        f"Cannot write {FILE}: a {type(surface).__name__} is neither a TIN nor a Survey."
     )
 
 
-def require_tin(surface: object, path: Path, *, format_name: str) -> TIN:
+def require_tin(surface: object, *, format_name: str) -> TIN:
     """Return a TIN; refuse a survey, which has no faces, and anything else."""
-    writable = require_writable(surface, path)
+    writable = require_writable(surface)
     if isinstance(writable, Surface):
         return writable
     raise FormatError(
-        f"Cannot write '{path}': {format_name} holds triangles, and a survey has none; "
+        f"Cannot write {FILE}: {format_name} holds triangles, and a survey has none; "
         "triangulate it first."
     )
 
@@ -123,7 +133,6 @@ class Reference(NamedTuple):
 def choose_reference(
     crs: CrsLike | None,
     z_unit: UnitLike | None,
-    path: Path,
     *,
     found_crs: str | None = None,
     found_unit: str | None = None,
@@ -140,15 +149,15 @@ def choose_reference(
         If the file names a unit that is none.
     """
     declared, own = CRS.of(crs), _find_crs(found_crs, crs is not None)
-    require_own_crs(own, declared, path)
+    require_own_crs(own, declared)
     system = declared if own is None else own
-    known = _find_unit(found_unit, path)
+    known = _find_unit(found_unit)
     vertical = None if system is None else system.vertical_unit
-    unit = settle_unit(Unit.of(z_unit), known or vertical, path)
+    unit = settle_unit(Unit.of(z_unit), known or vertical)
     return Reference(system, unit, is_declared=own is None and system is not None)
 
 
-def require_own_crs(own: CRS | None, declared: CRS | None, path: Path) -> None:
+def require_own_crs(own: CRS | None, declared: CRS | None) -> None:
     """Refuse to reproject a TIN.
 
     Raises
@@ -158,7 +167,7 @@ def require_own_crs(own: CRS | None, declared: CRS | None, path: Path) -> None:
     """
     if declared is not None and own is not None and not own.is_same(declared):
         raise CrsError(
-            f"'{path}' is in {own.label}, and {declared.label} is another CRS: a TIN is not "
+            f"{FILE} is in {own.label}, and {declared.label} is another CRS: a TIN is not "
             "reprojected, since its triangles would be no Delaunay triangles there; build it anew "
             "from its points.",
             crs=declared,
@@ -180,17 +189,94 @@ def format_unit(surface: TIN | Survey) -> str:
     return "" if surface.elevation_unit is None else surface.elevation_unit.text
 
 
-def _find_unit(text: str | None, path: Path) -> Unit | None:
+def _find_unit(text: str | None) -> Unit | None:
     try:
         return Unit.of(text or None)
     except OptionError:
-        raise ReadError(f"'{path}': '{text}' is no unit of elevations.", path=path) from None
+        raise ReadError(f"'{text}' is no unit of elevations.") from None
+
+
+@dataclass(slots=True)
+class Mesh:
+    """What a file holds: vertices, polygons, and what it says of them."""
+
+    points: Float64Array
+    """(n, 3)."""
+    corners: AnyArray = field(default_factory=lambda: np.empty(0, np.int64))
+    """(k,), vertex numbers of all polygons, one after the other."""
+    offsets: AnyArray = field(default_factory=lambda: np.zeros(1, np.int64))
+    """(n_polygons + 1,); a file without polygons gives a survey."""
+    constrained: BoolArray | None = None
+    """(n_polygons, 3), of edges opposite corners, where all polygons are triangles."""
+    constrained_edges: AnyArray | None = None
+    """(k, 2), the same by their vertices."""
+    attributes: Mapping[str, AnyArray] = field(default_factory=dict)
+    crs: str | None = None
+    elevation_unit: str | None = None
+    notes: Sequence[str] = ()
+    rounding: float = 0.0
+    """As :func:`make_surface` takes it."""
+    add_lines: Callable[[TIN], TIN] | None = None
+    """Adds the lines of the file to the TIN."""
+
+
+def mesh_reader(parse: Callable[..., Mesh]) -> Callable[..., TIN | Survey]:
+    """Make a reader of a function that says what a file holds, by its path and options.
+
+    The reader takes the options of every mesh too: ``crs``, ``z_unit`` and ``faces``.
+    """
+
+    @wraps(parse)
+    def read(
+        path: Path,
+        *,
+        crs: CrsLike | None = None,
+        z_unit: UnitLike | None = None,
+        faces: FacePolicy = "most",
+        **options: Any,
+    ) -> TIN | Survey:
+        mesh = parse(path, **options)
+        reference = choose_reference(
+            crs, z_unit, found_crs=mesh.crs, found_unit=mesh.elevation_unit
+        )
+        return build_mesh(mesh, path, reference=reference, faces=faces)
+
+    usual = signature(read, follow_wrapped=False).parameters
+    first, *own = signature(parse).parameters.values()
+    order = [first, usual["crs"], usual["z_unit"], *own, usual["faces"]]
+    vars(read)["__signature__"] = signature(parse).replace(parameters=order)
+    return read
+
+
+def build_mesh(mesh: Mesh, path: Path, *, reference: Reference, faces: FacePolicy) -> TIN | Survey:
+    """Make a TIN of what a file holds, or a survey of a file without polygons."""
+    points, attributes = mesh.points, dict(mesh.attributes)
+    if len(mesh.offsets) == 1:
+        return make_survey(
+            points, path, attributes=attributes, reference=reference, notes=mesh.notes
+        )
+    fans = cut_into_fans(mesh.corners, mesh.offsets, points)
+    flags = mesh.constrained
+    if flags is not None and len(flags) != len(fans.triangles):
+        flags = None
+    if flags is None and mesh.constrained_edges is not None:
+        flags = flag_edges(fans.triangles, mesh.constrained_edges, len(points))
+    tin = make_tin(
+        points,
+        fans.triangles,
+        constrained=flags,
+        reference=reference,
+        attributes=attributes,
+        notes=(*mesh.notes, *fans.notes),
+        faces=faces,
+        rounding=mesh.rounding,
+    )
+    return tin if mesh.add_lines is None else mesh.add_lines(tin)
 
 
 def make_tin(
     points: AnyArray,
     triangles: AnyArray,
-    path: Path,
     *,
     constrained: BoolArray | None = None,
     reference: Reference,
@@ -233,15 +319,15 @@ def make_tin(
     try:
         tin, told = make_surface(make, points, triangles, faces=faces, rounding=rounding)
     except PointsError as error:
-        raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
-    placed = _look_at_crs(tin.points, reference, path) if looks_at_crs else ()
+        raise ReadError(f"{FILE} holds no TIN. {error}") from error
+    placed = _look_at_crs(tin.points, reference) if looks_at_crs else ()
     told = [*notes, *told, *placed, *describe_oddities(tin)]
     told += _describe_suspects(tin.points[:, 2])
     return add_notes(tin, told) if told else tin
 
 
-def _look_at_crs(points: Float64Array, reference: Reference, path: Path) -> tuple[str, ...]:
-    return look_at_crs(points, reference.crs, path, is_declared=reference.is_declared)
+def _look_at_crs(points: Float64Array, reference: Reference) -> tuple[str, ...]:
+    return look_at_crs(points, reference.crs, is_declared=reference.is_declared)
 
 
 def measure_rounding(points: Float64Array, dtype: Any) -> float:
@@ -312,14 +398,13 @@ def make_survey(
         If there are none, or one is not finite.
     """
     if len(points) == 0:
-        raise ReadError(f"'{path}' holds no points.", path=path)
+        raise ReadError(f"{FILE} holds no points.")
     wrong = ~np.isfinite(points).all(axis=1)
     if wrong.any():
         row, count = int(np.argmax(wrong)), int(wrong.sum())
         raise ReadError(
-            f"'{path}': {count} {'point is' if count == 1 else 'points are'} not finite (first: "
-            f"point {row}, {points[row].tolist()}).",
-            path=path,
+            f"{count} {'point is' if count == 1 else 'points are'} not finite (first: "
+            f"point {row}, {points[row].tolist()})."
         )
     return Survey(
         points=points,
@@ -327,13 +412,11 @@ def make_survey(
         crs=reference.crs,
         elevation_unit=reference.elevation_unit,
         source=path.name,
-        notes=[*notes, *_look_at_crs(points, reference, path)],
+        notes=[*notes, *_look_at_crs(points, reference)],
     )
 
 
-def cut_into_fans(
-    corners: Int64Array, offsets: Int64Array, points: Float64Array, path: Path
-) -> Fans:
+def cut_into_fans(corners: Int64Array, offsets: Int64Array, points: Float64Array) -> Fans:
     """Cut polygons into triangles about their first corner, quadrilaterals along an inner diagonal.
 
     Parameters
@@ -348,23 +431,8 @@ def cut_into_fans(
     ReadError
         If a polygon has fewer than three corners, or a vertex number is out of range.
     """
+    require_vertices(corners, offsets, len(points))
     lengths = np.diff(offsets)
-    if (lengths < 3).any():
-        row = int(np.argmax(lengths < 3))
-        raise ReadError(
-            f"'{path}': face {row} has {lengths[row]} "
-            f"corner{'' if lengths[row] == 1 else 's'}: 3 or more are needed.",
-            path=path,
-        )
-    wrong = (corners < 0) | (corners >= len(points))
-    if wrong.any():
-        first = int(np.argmax(wrong))
-        row = int(np.searchsorted(offsets, first, side="right")) - 1
-        raise ReadError(
-            f"'{path}': face {row} names vertex {corners[first]}, and the file has the vertices "
-            f"0 to {len(points) - 1}.",
-            path=path,
-        )
     if (lengths == 3).all():
         return Fans(corners.reshape(-1, 3), np.arange(len(lengths)))
     corners = _turn_to_inner_diagonal(corners, offsets, points)
@@ -380,6 +448,46 @@ def cut_into_fans(
         "triangles: the file does not tell along which diagonals."
     )
     return Fans(np.stack(triangles, axis=1), polygon, (note,))
+
+
+def require_vertices(corners: Int64Array, offsets: Int64Array, n_vertices: int) -> None:
+    """Refuse polygons of fewer than three corners, or of vertices that there are not."""
+    lengths = np.diff(offsets)
+    if (lengths < 3).any():
+        row = int(np.argmax(lengths < 3))
+        raise ReadError(
+            f"face {row} has {lengths[row]} "
+            f"corner{'' if lengths[row] == 1 else 's'}: 3 or more are needed."
+        )
+    wrong = (corners < 0) | (corners >= n_vertices)
+    if wrong.any():
+        first = int(np.argmax(wrong))
+        row = int(np.searchsorted(offsets, first, side="right")) - 1
+        raise ReadError(
+            f"face {row} names vertex {corners[first]}, and the file has the vertices "
+            f"0 to {n_vertices - 1}."
+        )
+
+
+def join_places(rows: AnyArray) -> tuple[AnyArray, Int64Array]:
+    """Return the distinct rows in the order in which they first come, and the number of each row.
+
+    Rows are the same where all numbers are, -0.0 and 0.0 too.
+    """
+    rows = rows + rows.dtype.type(0)  # turns -0.0 into 0.0
+    order = np.lexsort(rows.T[::-1])  # stable: of equal ones the first comes first
+    is_first = np.ones(len(order), np.bool_)
+    is_first[1:] = (rows[order[1:]] != rows[order[:-1]]).any(axis=1)
+    stands_for = np.empty(len(order), np.int64)
+    stands_for[order] = order[is_first][np.cumsum(is_first) - 1]
+    is_kept = stands_for == np.arange(len(order))
+    return rows[is_kept], (np.cumsum(is_kept) - 1)[stands_for]
+
+
+def flag_edges(triangles: AnyArray, edges: AnyArray, n_vertices: int) -> BoolArray:
+    """Return which edges of triangles, each opposite a corner, are among some, (m, 3) flags."""
+    sides = np.stack([np.roll(triangles, -1, axis=1), np.roll(triangles, -2, axis=1)], axis=2)
+    return np.isin(edge_keys(sides, n_vertices), edge_keys(edges, n_vertices))
 
 
 def _turn_to_inner_diagonal(

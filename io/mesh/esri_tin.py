@@ -19,17 +19,16 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...base.errors import ReadError
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from ...tin.topology import NO_NEIGHBOR
-from .common import add_notes, choose_reference, make_tin, read_content
+from .common import Mesh, mesh_reader, read_content
 from .linework import Chain, add_lines, chain_edges
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
-    from ...base.crs import CrsLike, UnitLike
-    from ...base.policies import FacePolicy, LineKind
+    from ...base.policies import LineKind
     from ...tin import TIN
 
 __all__ = ["read"]
@@ -57,13 +56,8 @@ class _Tables(NamedTuple):
     enforced: Int64Array
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    faces: FacePolicy = "most",
-) -> TIN:
+@mesh_reader
+def read(path: Path) -> Mesh:
     """Read an Esri TIN by its folder, or any of the files in it.
 
     The CRS defaults to that of ``prj.adf``; the unit of the elevations the files do not tell.
@@ -72,29 +66,33 @@ def read(
     """
     folder = path if path.is_dir() else path.parent
     tables = _read_tables(folder)
-    _require_sound(tables, folder)
+    _require_sound(tables)
     triangles = tables.corners - 1
     wanted = ~_read_mask(folder, len(triangles))
     used = np.zeros(len(tables.places), np.bool_)
     used[triangles[wanted]] = True
     if (used & (tables.elevations < _SUPERPOINT)).any():
         raise ReadError(
-            f"'{folder}' is a damaged Esri TIN: a triangle that is not masked reaches a "
-            "superpoint, which has no elevation.",
-            path=folder,
+            f"{FILE} is a damaged Esri TIN: a triangle that is not masked reaches a "
+            "superpoint, which has no elevation."
         )
     number = np.cumsum(used) - 1
     points = np.column_stack([tables.places, tables.elevations])[used]
     if not wanted.any():
-        raise ReadError(f"'{folder}' is an Esri TIN whose triangles are all masked.", path=folder)
-    reference = choose_reference(crs, z_unit, folder, found_crs=_read_crs(folder))
-    tin = make_tin(points, number[triangles[wanted]], folder, reference=reference, faces=faces)
-    chains = _gather_chains(tables, triangles, np.where(used, number, -1), tin)
-    tin, lost = add_lines(tin, chains)
-    if not lost:
-        return tin
-    note = f"{counted(lost, 'enforced edge')} of the file lie along no edge and are left out."
-    return add_notes(tin, [note])
+        raise ReadError(f"{FILE} is an Esri TIN whose triangles are all masked.")
+    corners = number[triangles[wanted]].ravel()
+
+    def add(tin: TIN) -> TIN:
+        chains = _gather_chains(tables, triangles, np.where(used, number, -1), tin)
+        return add_lines(tin, chains, "enforced edge")
+
+    return Mesh(
+        points,
+        corners,
+        np.arange(0, len(corners) + 1, 3),
+        crs=_read_crs(folder),
+        add_lines=add,
+    )
 
 
 def _read_tables(folder: Path) -> _Tables:
@@ -123,28 +121,25 @@ def _read_numbers(path: Path, dtype: str, width: int) -> AnyArray:
         return numbers.astype(np.float64 if dtype[1] == "f" else np.int64)
 
 
-def _require_sound(tables: _Tables, folder: Path) -> None:
+def _require_sound(tables: _Tables) -> None:
     """Refuse files that do not fit together."""
     n_nodes, n_triangles = len(tables.places), len(tables.corners)
     if len(tables.elevations) != n_nodes:
         raise ReadError(
-            f"'{folder}' is a damaged Esri TIN: tnxy.adf has {counted(n_nodes, 'node')}, and "
-            f"tnz.adf {counted(len(tables.elevations), 'elevation')}.",
-            path=folder,
+            f"{FILE} is a damaged Esri TIN: tnxy.adf has {counted(n_nodes, 'node')}, and "
+            f"tnz.adf {counted(len(tables.elevations), 'elevation')}."
         )
     if len(tables.beside) != n_triangles:
         raise ReadError(
-            f"'{folder}' is a damaged Esri TIN: tnod.adf has {counted(n_triangles, 'triangle')}, "
-            f"and tedg.adf {len(tables.beside)}.",
-            path=folder,
+            f"{FILE} is a damaged Esri TIN: tnod.adf has {counted(n_triangles, 'triangle')}, "
+            f"and tedg.adf {len(tables.beside)}."
         )
     wrong = (tables.corners < 1) | (tables.corners > n_nodes)
     if wrong.any():
         row = int(np.argmax(wrong.any(axis=1)))
         raise ReadError(
-            f"'{folder}' is a damaged Esri TIN: triangle {row + 1} of tnod.adf has the nodes "
-            f"{tables.corners[row].tolist()}, and there are the nodes 1 to {n_nodes}.",
-            path=folder,
+            f"{FILE} is a damaged Esri TIN: triangle {row + 1} of tnod.adf has the nodes "
+            f"{tables.corners[row].tolist()}, and there are the nodes 1 to {n_nodes}."
         )
 
 
@@ -159,9 +154,8 @@ def _read_mask(folder: Path, n_triangles: int) -> BoolArray:
     length = 2 * int.from_bytes(index[-4:], "big")
     if len(index) < 4 or not 12 <= length <= len(content):
         raise ReadError(
-            f"'{folder}' is a damaged Esri TIN: tmsx.adf promises {length} bytes of mask, and "
-            f"tmsk.adf has {len(content)}.",
-            path=folder,
+            f"{FILE} is a damaged Esri TIN: tmsx.adf promises {length} bytes of mask, and "
+            f"tmsk.adf has {len(content)}."
         )
     mask = content[len(content) - length :]
     n_bits = int.from_bytes(mask[8:12], "big")
@@ -170,9 +164,8 @@ def _read_mask(folder: Path, n_triangles: int) -> BoolArray:
     n_words = int.from_bytes(mask[:4], "big")
     if n_words != len(words) or n_words != -(-n_bits // 32):
         raise ReadError(
-            f"'{folder}' is a damaged Esri TIN: tmsk.adf promises {n_bits} bits in {n_words} "
-            f"words, and has {len(words)}.",
-            path=folder,
+            f"{FILE} is a damaged Esri TIN: tmsk.adf promises {n_bits} bits in {n_words} "
+            f"words, and has {len(words)}."
         )
     masked = np.zeros(n_triangles, np.bool_)
     known = min(n_bits, n_triangles)

@@ -8,7 +8,6 @@ CRS and units.
 
 from __future__ import annotations
 
-import os
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,25 +16,17 @@ import numpy as np
 from ...base import optional
 from ...base.atomic import replacing_path
 from ...base.errors import ReadError
-from ...tin.topology import NO_NEIGHBOR, directed_edges, edge_keys, ends
+from ...base.sentences import FILE
+from ...tin.topology import NO_NEIGHBOR, edge_keys, ends
 from ..isolated import run_isolated
-from .common import (
-    choose_reference,
-    cut_into_fans,
-    make_survey,
-    make_tin,
-    read_content,
-    require_tin,
-)
+from .common import Mesh, mesh_reader, read_content, require_tin
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...base.arrays import BoolArray, Int32Array, Int64Array
-    from ...base.crs import CrsLike, UnitLike
-    from ...base.policies import FacePolicy
+    from ...base.arrays import Int32Array
     from ...base.progress import Tell
-    from ...tin import TIN, Survey
+    from ...tin import TIN
 
 __all__ = ["read", "write"]
 
@@ -54,13 +45,8 @@ class _Edges(NamedTuple):
     names: list[str]
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    faces: FacePolicy = "most",
-) -> TIN | Survey:
+@mesh_reader
+def read(path: Path) -> Mesh:
     """Read the faces of a Gmsh file; line elements along their edges become constrained.
 
     The file tells neither CRS nor unit. Quadrilaterals are cut along a diagonal, which the report
@@ -70,41 +56,27 @@ def read(
     optional.require("meshio", "Reading Gmsh files")
     if not path.is_file():
         read_content(path)  # says why it cannot be read
-    where = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
-    others, arrays = run_isolated(f"{__package__}.gmsh_child:read_mesh", where, path=path)
-    points = arrays["points"]
-    reference = choose_reference(crs, z_unit, path)
-    told = ", ".join(f"{count:,} of the kind {kind}" for kind, count in others.items())
-    if len(arrays["corners"]) == 0:
-        if others:
-            raise ReadError(
-                f"'{path}' holds no faces, but other cells ({told}): triangles and quadrilaterals "
-                "can be read.",
-                path=path,
-            )
-        return make_survey(points, path, reference=reference)
-    made = cut_into_fans(arrays["corners"], arrays["offsets"], points, path)
-    flags = _flag_edges(made.triangles.astype(np.int32), arrays["lines"], len(points))
-    notes = [*made.notes, *([f"Not read: other cells ({told})."] if others else [])]
-    return make_tin(
-        points,
-        made.triangles,
-        path,
-        constrained=flags,
-        reference=reference,
-        notes=notes,
-        faces=faces,
+    others, arrays = run_isolated(
+        f"{__package__}.gmsh_child:read_mesh", {"path": str(path.absolute())}, path=path
     )
-
-
-def _flag_edges(triangles: Int32Array, lines: Int64Array, n_points: int) -> BoolArray:
-    edges = np.stack(directed_edges(triangles), axis=-1)
-    return np.isin(edge_keys(edges, n_points), edge_keys(lines, n_points))
+    told = ", ".join(f"{count:,} of the kind {kind}" for kind, count in others.items())
+    if len(arrays["corners"]) == 0 and others:
+        raise ReadError(
+            f"{FILE} holds no faces, but other cells ({told}): triangles and quadrilaterals "
+            "can be read."
+        )
+    return Mesh(
+        arrays["points"],
+        arrays["corners"],
+        arrays["offsets"],
+        notes=[f"Not read: other cells ({told})."] * bool(others),
+        constrained_edges=arrays["lines"],
+    )
 
 
 def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN as a Gmsh file, MSH 2.2 in text."""
-    tin = require_tin(surface, path, format_name="Gmsh")
+    tin = require_tin(surface, format_name="Gmsh")
     meshio = optional.load("meshio", "Writing Gmsh files")
     edges = _gather_edges(tin)
     number_of = {name: i for i, name in enumerate(dict.fromkeys([SURFACE, *edges.names]), start=1)}

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.sentences import FILE
 from ..isolated import Answer, Refusal
 
 if TYPE_CHECKING:
@@ -34,22 +35,22 @@ def prepare() -> None:
     import_module("meshio")
 
 
-def read_mesh(path: str, shown: str) -> Answer:
+def read_mesh(path: str) -> Answer:
     """Return the ``points`` and ``lines`` of a file, and the ``corners`` and ``offsets`` of faces.
 
     The value counts the cells that are neither by their kinds.
     """
-    found = _read_with_meshio(path, shown)
+    found = _read_with_meshio(path)
     points = np.asarray(found.points, np.float64)
     if points.ndim != 2 or points.shape[1] != 3:
-        raise Refusal(f"'{shown}' is a damaged Gmsh file: its points have not three coordinates.")
+        raise Refusal(f"{FILE} is a damaged Gmsh file: its points have not three coordinates.")
     for block in found.cells:
         numbers = np.asarray(block.data)
         wrong = (numbers < 0) | (numbers >= len(points))
         if wrong.any():
             row = int(np.argmax(wrong.any(axis=1)))
             raise Refusal(
-                f"'{shown}' is a damaged Gmsh file: element {row} of its cells of the kind "
+                f"{FILE} is a damaged Gmsh file: element {row} of its cells of the kind "
                 f"{block.type} names a vertex that it does not hold."
             )
     others: Counter[str] = Counter()
@@ -64,7 +65,7 @@ def read_mesh(path: str, shown: str) -> Answer:
     return Answer(dict(others), arrays)
 
 
-def _read_with_meshio(path: str, shown: str) -> Any:
+def _read_with_meshio(path: str) -> Any:
     meshio = import_module("meshio")
     said = StringIO()
     try:
@@ -75,9 +76,9 @@ def _read_with_meshio(path: str, shown: str) -> Any:
     except Exception as error:  # meshio lets through whatever a damaged file leads to
         told = str(error).strip().rstrip(".") if isinstance(error, meshio.ReadError) else ""
         reason = told or "it ends early, or holds something else than the format asks for"
-        raise Refusal(f"'{shown}' is a damaged Gmsh file: {reason}.") from error
+        raise Refusal(f"{FILE} is a damaged Gmsh file: {reason}.") from error
     if "not closed" in said.getvalue():
-        raise Refusal(f"'{shown}' is a Gmsh file that was cut short.")
+        raise Refusal(f"{FILE} is a Gmsh file that was cut short.")
     return found
 
 

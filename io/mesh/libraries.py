@@ -11,8 +11,9 @@ import numpy as np
 from ...base import optional
 from ...base.checks import require_tin
 from ...base.errors import PointsError, ReadError
+from ...base.notes import naming_file
 from ...base.products import product
-from ...base.sentences import counted
+from ...base.sentences import counted, name_file
 from ...terrain.drawing.models import choose_origin
 from ...tin import TIN
 from ...tin.checking.overlaps import describe_oddities
@@ -265,16 +266,17 @@ def from_mesh(
     name = Path(type(mesh).__name__)
     try:
         found = _find_faces(mesh)
-        reference = choose_reference(
-            crs,
-            z_unit,
-            name,
-            found_crs=_as_text(found.about.get("crs")),
-            found_unit=_as_text(found.about.get("elevation_unit")),
-        )
+        with naming_file(name):
+            reference = choose_reference(
+                crs,
+                z_unit,
+                found_crs=_as_text(found.about.get("crs")),
+                found_unit=_as_text(found.about.get("elevation_unit")),
+            )
         points = _restore_points(found)
-        fans = cut_into_fans(found.corners, found.offsets, points, name)
+        fans = cut_into_fans(found.corners, found.offsets, points)
     except ReadError as error:
+        error.add_file(name)
         raise PointsError(str(error)) from error
     has_flags = found.flags is not None and len(found.flags) == len(fans.triangles)
 
@@ -331,9 +333,9 @@ def _find_faces(mesh: Any) -> _Found:
 
 def _read_pyvista(mesh: Any) -> _Found:
     try:
-        value, arrays = read_dataset(mesh, type(mesh).__name__)
+        value, arrays = read_dataset(mesh)
     except Exception as error:
-        raise PointsError(str(error)) from error
+        raise PointsError(name_file(str(error), type(mesh).__name__)) from error
     names = ("origin", "exaggeration", "elevation_scale")
     attributes = {name: arrays[f"attribute {k}"] for k, name in enumerate(value["attributes"])}
     attributes.pop("elevation", None)

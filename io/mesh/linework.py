@@ -6,16 +6,18 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ...base.sentences import counted
 from ...tin import TIN
 from ...tin.constraints.breaklines import Lines
 from ...tin.topology import NO_NEIGHBOR, edge_keys, ends
+from .common import add_notes, flag_edges
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
-    from ...base.arrays import BoolArray, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Int64Array
     from ...base.policies import LineKind
 
 __all__ = ["Chain", "add_lines", "chain_edges", "list_chains"]
@@ -31,20 +33,20 @@ class Chain(NamedTuple):
     name: str = ""
 
 
-def add_lines(tin: TIN, chains: Sequence[Chain]) -> tuple[TIN, int]:
+def add_lines(tin: TIN, chains: Sequence[Chain], what: str) -> TIN:
     """Return a TIN with lines along its edges, which become constrained.
 
-    Returns
-    -------
-    TIN
-    int
-        How many segments were left out, as they are no edges of the TIN; a chain is cut there.
+    Chains are cut at segments that are no edges of the TIN: a note tells how many, and ``what``
+    they are called.
     """
     pieces = [piece for chain in chains for piece in _cut_at_gaps(tin, chain)]
     lost = sum(len(one.vertices) - 1 for one in chains)
     lost -= sum(len(one.vertices) - 1 for one in pieces)
+    if lost:
+        note = f"{counted(lost, what)} of the file lie along no edge and are left out."
+        tin = add_notes(tin, [note])
     if not pieces:
-        return tin, lost
+        return tin
     vertices = np.concatenate([one.vertices for one in pieces]).astype(np.int32)
     lengths = [len(one.vertices) for one in pieces]
     lines = Lines(
@@ -54,8 +56,8 @@ def add_lines(tin: TIN, chains: Sequence[Chain]) -> tuple[TIN, int]:
         sources=np.arange(len(pieces), dtype=np.int32),
         names=tuple(one.name for one in pieces),
     )
-    flags = tin.constrained | _flag_edges(tin, lines.segments())
-    return tin.replace(lines=lines, constrained=flags), lost
+    flags = tin.constrained | flag_edges(tin.triangles, lines.segments(), len(tin.points))
+    return tin.replace(lines=lines, constrained=flags)
 
 
 def _cut_at_gaps(tin: TIN, chain: Chain) -> list[Chain]:
@@ -72,15 +74,6 @@ def _choose_kind(tin: TIN, chain: Chain) -> LineKind:
         return chain.kind
     sides = tin.edge_triangles(chain.vertices[:-1], chain.vertices[1:])
     return "boundary" if (sides == NO_NEIGHBOR).any(axis=1).all() else "hard"
-
-
-def _flag_edges(tin: TIN, segments: Int32Array) -> BoolArray:
-    """Flag the edges of all triangles that are among some pairs of vertices."""
-    count = len(tin.points)
-    edges = np.stack(
-        [np.roll(tin.triangles, -1, axis=1), np.roll(tin.triangles, -2, axis=1)], axis=2
-    )
-    return np.isin(edge_keys(edges, count), edge_keys(segments, count))
 
 
 def list_chains(tin: TIN) -> list[Int64Array]:

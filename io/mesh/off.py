@@ -7,31 +7,36 @@ Comments keep the CRS, ``# crs: EPSG:32616``, and the unit of elevations where i
 from __future__ import annotations
 
 import re
+from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ...base.atomic import replacing
 from ...base.errors import ReadError
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from . import common
-from .text_rows import TextRows, describe_row_fault, parse_integers, split_rows
-from .text_writing import BATCH, write_batches, write_reference
+from .common import Mesh, mesh_reader
+from .text_rows import (
+    TextRows,
+    find_reference,
+    format_rows,
+    parse_integers,
+    split_rows,
+    write_batches,
+    write_reference,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from ...base.arrays import Int64Array
-    from ...base.crs import CrsLike, UnitLike
-    from ...base.policies import FacePolicy
     from ...base.progress import Tell
-    from ...tin import TIN, Survey
+    from ...tin import TIN
 
 __all__ = ["read", "write"]
 
 _KEYWORD = re.compile(r"(ST)?(C)?(N)?(4)?(n)?OFF")
-_RECORD = re.compile(rb"^# (crs|elevation unit): (.*?)\s*$", re.M)
 
 
 class _Counts(NamedTuple):
@@ -39,13 +44,8 @@ class _Counts(NamedTuple):
     faces: int
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    faces: FacePolicy = "most",
-) -> TIN | Survey:
+@mesh_reader
+def read(path: Path) -> Mesh:
     """Read the vertices and faces of an OFF file in text.
 
     CRS and unit default to those in the comments ``# crs: ...`` and ``# elevation unit: ...``.
@@ -53,107 +53,83 @@ def read(
     file without faces gives a survey.
     """
     content = common.read_content(path)
-    rows = _skip_keyword(split_rows(content, path))
+    rows = _skip_keyword(split_rows(content))
     counts = _parse_counts(rows)
-    vertices, polygons = (
-        rows.cut(1, counts.vertices + 1),
-        rows.cut(counts.vertices + 1, sum(counts) + 1),
-    )
+    vertices, polygons = rows.cut(1, counts.vertices + 1), rows.cut(counts.vertices + 1)
     points = vertices.parse_floats(slice(0, 3), "a vertex needs x, y and z")
-    found = {name.decode(): text.decode("utf-8", "replace")
-             for name, text in _RECORD.findall(content)}  # fmt: skip
-    reference = common.choose_reference(
-        crs, z_unit, path, found_crs=found.get("crs"), found_unit=found.get("elevation unit")
-    )
-    if counts.faces == 0:
-        return common.make_survey(points, path, reference=reference)
-    corners, offsets = _parse_faces(polygons)
-    made = common.cut_into_fans(corners, offsets, points, path)
-    return common.make_tin(
-        points, made.triangles, path, reference=reference, notes=made.notes, faces=faces
-    )
+    crs, unit = find_reference(content)
+    mesh = Mesh(points, crs=crs, elevation_unit=unit)
+    if counts.faces:
+        mesh.corners, mesh.offsets = _parse_faces(polygons.cut(0, counts.faces))
+    return mesh
 
 
 def _skip_keyword(rows: TextRows) -> TextRows:
     """Return what stands behind the keyword, which some programs put before the counts."""
-    path = rows.path
     first = rows.texts[0].split() if rows.texts else [""]
     keyword = first[0]
     found = _KEYWORD.fullmatch(keyword)
     if "BINARY" in first:
         raise ReadError(
-            f"'{path}' is a binary OFF file, and only those in text are read: save it as that.",
-            path=path,
+            f"{FILE} is a binary OFF file, and only those in text are read: save it as that."
         )
     if found is None:
         raise ReadError(
-            f"'{path}' is no OFF file in text: it must begin with 'OFF', not '{keyword[:20]}'.",
-            path=path,
+            f"{FILE} is no OFF file in text: it must begin with 'OFF', not '{keyword[:20]}'."
         )
     if found[4] or found[5]:
         raise ReadError(
-            f"'{path}' is an OFF file of {keyword}, vertices in more than three dimensions, which "
-            "are no TIN.",
-            path=path,
+            f"{FILE} is an OFF file of {keyword}, vertices in more than three dimensions, which "
+            "are no TIN."
         )
     if len(first) > 1:
-        return TextRows(path, [" ".join(first[1:]), *rows.texts[1:]], rows.lines)
+        return TextRows([" ".join(first[1:]), *rows.texts[1:]], rows.lines)
     return rows.cut(1)
 
 
 def _parse_counts(rows: TextRows) -> _Counts:
     """Return the numbers of vertices and faces, once the file is long enough for them."""
-    path = rows.path
     if not rows.texts:
-        raise ReadError(f"'{path}' ends before the numbers of its vertices and faces.", path=path)
+        raise ReadError(f"{FILE} ends before the numbers of its vertices and faces.")
     first = rows.texts[0].split()
     if len(first) < 2:
         raise rows.describe_fault(0, "the numbers of vertices and of faces are needed")
-    counts = _Counts(*parse_integers(first[:2], rows.lines[0], path))
+    counts = _Counts(*parse_integers(first[:2], rows.lines[0]))
     if min(counts) < 0:
         raise rows.describe_fault(0, "a count is negative")
     if sum(counts) > len(rows) - 1:
         promised = counted(counts.vertices, "vertex", "vertices")
         raise ReadError(
-            f"'{path}' ends too early: it promises {promised} and "
-            f"{counted(counts.faces, 'face')}, and has {counted(len(rows) - 1, 'row')} for them.",
-            path=path,
+            f"{FILE} ends too early: it promises {promised} and "
+            f"{counted(counts.faces, 'face')}, and has {counted(len(rows) - 1, 'row')} for them."
         )
     return counts
 
 
 def _parse_faces(rows: TextRows) -> tuple[Int64Array, Int64Array]:
     """Return the vertex numbers of all faces, and the offsets of each."""
-    path, too_short = rows.path, "a face has fewer corners than it promises"
+    too_short = "a face has fewer corners than it promises"
     if all(text.startswith(("3 ", "3\t")) for text in rows.texts):
         corners = rows.parse_integers(slice(1, 4), too_short)
         return corners.ravel(), np.arange(0, corners.size + 1, 3)
     found: list[int] = []
     offsets = [0]
-    for text, line in zip(rows.texts, rows.lines, strict=True):
+    for number, (text, line) in enumerate(zip(rows.texts, rows.lines, strict=True)):
         row = text.split()
-        count = parse_integers(row[:1], line, path, what="a face begins with its number of corners")
+        count = parse_integers(row[:1], line, what="a face begins with its number of corners")
         if not 0 <= count[0] <= len(row) - 1:
-            raise describe_row_fault(row, line, too_short, path)
-        found += parse_integers(row[1 : count[0] + 1], line, path)
+            raise rows.describe_fault(number, too_short)
+        found += parse_integers(row[1 : count[0] + 1], line)
         offsets.append(len(found))
     return np.array(found, np.int64), np.array(offsets, np.int64)
 
 
 def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN as OFF; :func:`read` gives the same vertices and triangles back."""
-    tin = common.require_tin(surface, path, format_name="OFF")
+    tin = common.require_tin(surface, format_name="OFF")
     with replacing(path, binary=False) as file:
         file.write("OFF\n")
         write_reference(file, tin)
         file.write(f"{len(tin.points)} {len(tin.triangles)} 0\n")
-        write_batches(file, tin, _iterate_batches(tin), progress)
-
-
-def _iterate_batches(tin: TIN) -> Iterator[tuple[int, str]]:
-    for start in range(0, len(tin.points), BATCH):
-        rows = tin.points[start : start + BATCH]
-        yield len(rows), ("%r %r %r\n" * len(rows)) % tuple(rows.ravel().tolist())
-    for start in range(0, len(tin.triangles), BATCH):
-        faces = tin.triangles[start : start + BATCH]
-        yield len(faces), ("3 %d %d %d\n" * len(faces)) % tuple(faces.ravel().tolist())
+        faces = format_rows("3 %d %d %d\n", tin.triangles)
+        write_batches(file, tin, chain(format_rows("%r %r %r\n", tin.points), faces), progress)

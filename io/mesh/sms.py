@@ -6,28 +6,27 @@ along lines. 2DM has no place for CRS and units.
 
 from __future__ import annotations
 
-import re
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...base.atomic import replacing
 from ...base.errors import ReadError
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
+from ...tin.topology import find_offsets
 from . import common
+from .common import Mesh, mesh_reader
 from .linework import Chain, add_lines, list_chains
-from .text_rows import TextRows, parse_integers, split_rows
-from .text_writing import BATCH, write_batches
+from .text_rows import TextRows, format_rows, parse_integers, split_rows, write_batches
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
     from ...base.arrays import Float64Array, Int64Array
-    from ...base.crs import CrsLike, UnitLike
-    from ...base.policies import FacePolicy
     from ...base.progress import Tell
-    from ...tin import TIN, Survey
+    from ...tin import TIN
 
 __all__ = ["read", "write"]
 
@@ -40,17 +39,11 @@ _FACES = {
     "E8Q": (8, ((0, 1, 7), (1, 2, 3), (3, 4, 5), (5, 6, 7), (1, 3, 5, 7))),
     "E9Q": (9, ((0, 1, 8, 7), (1, 2, 3, 8), (8, 3, 4, 5), (7, 8, 5, 6))),
 }
-_COMMENT = re.compile(r"(?:^|(?<=\s))#.*")
 _EDGES = ("E2L", "E3L")
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    faces: FacePolicy = "most",
-) -> TIN | Survey:
+@mesh_reader
+def read(path: Path) -> Mesh:
     """Read a 2DM mesh: nodes in any order with gaps, elements, node strings.
 
     The file tells neither CRS nor unit. Quadrilaterals (E4Q, and those within E8Q and E9Q) are cut
@@ -64,49 +57,21 @@ def read(
     ReadError
         Also if two nodes have one number, or an element names a node that is not there.
     """
-    cards = _sort_cards(split_rows(common.read_content(path), path))
-    numbers, points = _parse_nodes(cards.get("ND", TextRows(path)))
-    reference = common.choose_reference(crs, z_unit, path)
-    if not any(card in cards for card in _FACES):
-        return common.make_survey(points, path, reference=reference)
-    found = [_parse_elements(card, cards[card], numbers) for card in _FACES if card in cards]
-    corners = np.concatenate([part[0] for part in found])
-    lengths = np.concatenate([part[1] for part in found])
-    offsets = np.concatenate([[0], np.cumsum(lengths)])
-    triangles = common.cut_into_fans(corners, offsets, points, path).triangles
-    notes = _describe_losses(cards, int((lengths == 4).sum()))
-    tin = common.make_tin(points, triangles, path, reference=reference, notes=notes, faces=faces)
-    strings = _parse_strings(cards.get("NS", TextRows(path)), numbers)
-    tin, lost = add_lines(tin, strings)
-    if not lost:
-        return tin
-    note = f"{counted(lost, 'segment')} of node strings lie along no edge and are left out."
-    return common.add_notes(tin, [note])
-
-
-def _sort_cards(rows: TextRows) -> dict[str, TextRows]:
-    """Return the rows of each card, by its name."""
-    path = rows.path
-    rows = _drop_comments(rows)
+    rows = split_rows(common.read_content(path))
     if not rows.texts or not rows.texts[0].startswith("MESH2D"):
-        raise ReadError(f"'{path}' is no 2DM mesh: it must begin with 'MESH2D'.", path=path)
-    cards: dict[str, TextRows] = {}
-    for text, line in zip(rows.texts, rows.lines, strict=True):
-        card = cards.setdefault(text.split(None, 1)[0], TextRows(path))
-        card.texts.append(text)
-        card.lines.append(line)
-    return cards
-
-
-def _drop_comments(rows: TextRows) -> TextRows:
-    """Return the rows without what stands behind a "#", unless it may be in a quoted name."""
-    kept = TextRows(rows.path)
-    for text, line in zip(rows.texts, rows.lines, strict=True):
-        bare = text if '"' in text else _COMMENT.sub("", text)
-        if bare.strip():
-            kept.texts.append(bare)
-            kept.lines.append(line)
-    return kept
+        raise ReadError(f"{FILE} is no 2DM mesh: it must begin with 'MESH2D'.")
+    cards = rows.sort_by_keyword()
+    numbers, points = _parse_nodes(cards.get("ND", TextRows()))
+    mesh = Mesh(points)
+    found = [_parse_elements(card, cards[card], numbers) for card in _FACES if card in cards]
+    if not found:
+        return mesh
+    mesh.corners = np.concatenate([corners for corners, _ in found])
+    mesh.offsets = find_offsets(np.concatenate([lengths for _, lengths in found]))
+    mesh.notes = _describe_losses(cards)
+    strings = _parse_strings(cards.get("NS", TextRows()), numbers)
+    mesh.add_lines = lambda tin: add_lines(tin, strings, "segment")
+    return mesh
 
 
 def _parse_nodes(rows: TextRows) -> tuple[Int64Array, Float64Array]:
@@ -153,7 +118,7 @@ def _parse_strings(rows: TextRows, numbers: Int64Array) -> list[Chain]:
     for i, (text, line) in enumerate(zip(rows.texts, rows.lines, strict=True)):
         row = text.split()
         for at, word in enumerate(row[1:], start=1):
-            node = parse_integers([word], line, rows.path)[0]
+            node = parse_integers([word], line)[0]
             called = np.array([[abs(node)]], np.int64)
             open_nodes.append(int(_find_nodes(called, numbers, rows.cut(i, i + 1))[0, 0]))
             if node < 0:
@@ -166,15 +131,9 @@ def _parse_strings(rows: TextRows, numbers: Int64Array) -> list[Chain]:
     return chains
 
 
-def _describe_losses(cards: dict[str, TextRows], n_quadrilaterals: int) -> list[str]:
-    """Tell what of the file the TIN does not hold, and what was chosen."""
+def _describe_losses(cards: dict[str, TextRows]) -> list[str]:
+    """Tell what of the file the TIN does not hold."""
     notes = []
-    if n_quadrilaterals:
-        notes.append(
-            f"{counted(n_quadrilaterals, 'quadrilateral')} of the file "
-            f"{'was' if n_quadrilaterals == 1 else 'were'} cut into triangles along a diagonal: "
-            "the file does not tell which of the two."
-        )
     n_edges = sum(len(cards[card]) for card in _EDGES if card in cards)
     if n_edges:
         kinds = " and ".join(card for card in _EDGES if card in cards)
@@ -199,25 +158,16 @@ def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
 
     Lines of the TIN become node strings, as do chains of its other constrained edges.
     """
-    tin = common.require_tin(surface, path, format_name="2DM")
+    tin = common.require_tin(surface, format_name="2DM")
     with replacing(path, binary=False) as file:
         file.write("MESH2D\n")
-        write_batches(file, tin, _iterate_batches(tin), progress)
-        for number, chain in enumerate(list_chains(tin), start=1):
-            file.write(_format_string(chain, number))
-
-
-def _iterate_batches(tin: TIN) -> Iterator[tuple[int, str]]:
-    for start in range(0, len(tin.triangles), BATCH):
-        faces = tin.triangles[start : start + BATCH].astype(np.int64) + 1
-        numbers = np.arange(start, start + len(faces))[:, None] + 1
-        cells = np.hstack([numbers, faces]).ravel().tolist()
-        yield len(faces), ("E3T %d %d %d %d 1\n" * len(faces)) % tuple(cells)
-    for start in range(0, len(tin.points), BATCH):
-        rows = tin.points[start : start + BATCH].tolist()
-        text = [f"ND {number} {x!r} {y!r} {z!r}\n"
-                for number, (x, y, z) in enumerate(rows, start=start + 1)]  # fmt: skip
-        yield len(rows), "".join(text)
+        triangles = np.column_stack([np.arange(len(tin.triangles)), tin.triangles]) + 1
+        faces = format_rows("E3T %d %d %d %d 1\n", triangles)
+        nodes = np.column_stack([np.arange(len(tin.points)) + 1, tin.points])
+        rows = chain(faces, format_rows("ND %d %r %r %r\n", nodes))
+        write_batches(file, tin, rows, progress)
+        for number, line in enumerate(list_chains(tin), start=1):
+            file.write(_format_string(line, number))
 
 
 def _format_string(chain: Int64Array, number: int) -> str:

@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...base.errors import WriteError
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from ...tin.topology import NO_NEIGHBOR, ends
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ...base.arrays import Float64Array, Int32Array, Int64Array
     from ...tin import TIN
 
@@ -34,7 +32,7 @@ class Solid(NamedTuple):
         return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
 
 
-def build_solid(tin: TIN, points: Float64Array, thickness: float, path: Path) -> Solid:
+def build_solid(tin: TIN, points: Float64Array, thickness: float) -> Solid:
     """Close a surface with a flat base and upright walls.
 
     Parameters
@@ -44,8 +42,6 @@ def build_solid(tin: TIN, points: Float64Array, thickness: float, path: Path) ->
         Its vertices as they are to be printed.
     thickness : float
         From the base to the lowest vertex, units of ``points``.
-    path : Path
-        For sentences.
 
     Returns
     -------
@@ -60,9 +56,7 @@ def build_solid(tin: TIN, points: Float64Array, thickness: float, path: Path) ->
     """
     triangles, neighbors = tin.triangles.astype(np.int64), tin.neighbors
     if len(triangles) == 0:
-        raise WriteError(
-            f"Cannot write '{path}': {counted(0, 'triangle')} make no solid.", path=path
-        )
+        raise WriteError(f"Cannot write {FILE}: {counted(0, 'triangle')} make no solid.")
     corners, number = _split_touching(triangles, neighbors)
     tops = points[corners]
     base = np.array(tops)

@@ -23,12 +23,13 @@ from ...base.atomic import replacing
 from ...base.checks import as_flag
 from ...base.crs import scale_elevations
 from ...base.errors import CrsError, OptionError, ReadError, WriteError
+from ...base.sentences import FILE
 from .common import (
-    choose_reference,
+    Mesh,
     describe_single_precision,
     format_unit,
-    make_tin,
     measure_rounding,
+    mesh_reader,
     read_content,
     require_factor,
     require_tin,
@@ -39,8 +40,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...base.arrays import AnyArray, Float32Array, Float64Array, Int64Array
-    from ...base.crs import CrsLike, UnitLike
-    from ...base.policies import FacePolicy
     from ...base.progress import Tell
     from ...tin import TIN
 
@@ -56,57 +55,53 @@ _BASE_SHARE = 20.0
 _RECORD = re.compile(r"origin (\S+) (\S+) (\S+)(?: crs (\S+))?(?: z (\S+))?")
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    faces: FacePolicy = "most",
-) -> TIN:
+@mesh_reader
+def read(path: Path) -> Mesh:
     """Read a binary STL file; corners at the same place become one vertex.
 
     CRS and unit default to those recorded in the header, whose origin is added back, if there is
     one; a text STL is refused.
     """
     content = read_content(path)
-    facets = _find_facets(content, path)
+    facets = _find_facets(content)
     origin, found_crs, found_unit = _read_record(content[:_HEADER_BYTES])
     if not np.isfinite(origin).all():
         raise ReadError(
-            f"'{path}' records the origin {origin.tolist()}: three finite numbers are needed.",
-            path=path,
+            f"{FILE} records the origin {origin.tolist()}: three finite numbers are needed."
         )
-    reference = choose_reference(crs, z_unit, path, found_crs=found_crs, found_unit=found_unit)
     with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
         points, triangles = _merge_corners(facets["corners"].reshape(-1, 3))
         places = points + origin
     notes = describe_single_precision(points, np.float32)
     own = measure_rounding(points, np.float32) if content.startswith(b"origin ") else 0.0
-    return make_tin(
-        places, triangles, path, reference=reference, notes=notes, faces=faces, rounding=own
+    offsets = np.arange(0, triangles.size + 1, 3)
+    return Mesh(
+        places,
+        triangles.ravel(),
+        offsets,
+        crs=found_crs,
+        elevation_unit=found_unit,
+        notes=notes,
+        rounding=own,
     )
 
 
-def _find_facets(content: bytes, path: Path) -> AnyArray:
+def _find_facets(content: bytes) -> AnyArray:
     body = _HEADER_BYTES + 4
     count = int.from_bytes(content[_HEADER_BYTES:body], "little")
     room = (len(content) - body) // _FACET.itemsize
     if room == count > 0:
         return np.frombuffer(content, _FACET, count, body)
     if content.lstrip()[:5].lower() == b"solid" and b"facet" in content[:_HEAD].lower():
-        raise ReadError(
-            f"'{path}' is a text STL, and only binary STL is read: save it as that.",
-            path=path,
-        )
+        raise ReadError(f"{FILE} is a text STL, and only binary STL is read: save it as that.")
     if len(content) < body:
-        raise ReadError(f"'{path}' is no STL file: it is shorter than a header.", path=path)
+        raise ReadError(f"{FILE} is no STL file: it is shorter than a header.")
     if count == 0:
-        raise ReadError(f"'{path}' holds no facets.", path=path)
+        raise ReadError(f"{FILE} holds no facets.")
     fault = "ends too early" if room < count else "goes on behind its last facet"
     raise ReadError(
-        f"'{path}' {fault}: its header promises {count} "
-        f"facet{'' if count == 1 else 's'}, and there is room for {room}.",
-        path=path,
+        f"{FILE} {fault}: its header promises {count} "
+        f"facet{'' if count == 1 else 's'}, and there is room for {room}."
     )
 
 
@@ -177,7 +172,7 @@ def write(
     Vertices closer together than the rounding of float32 fall together, and :func:`read` then
     finds a facet without area; PLY keeps every digit. A model does not record where it comes from.
     """
-    tin = require_tin(surface, path, format_name="STL")
+    tin = require_tin(surface, format_name="STL")
     is_solid = as_flag("solid", solid)
     _require_model_options(is_solid, thickness, scale, size, exaggeration)
     if is_solid or scale is not None or size is not None or exaggeration != 1.0:
@@ -185,14 +180,14 @@ def write(
         triangles = tin.triangles.astype(np.int64)
         if is_solid:
             side = float(np.ptp(points[:, :2], axis=0).max())
-            closed = build_solid(tin, points, thickness or side / _BASE_SHARE, path)
+            closed = build_solid(tin, points, thickness or side / _BASE_SHARE)
             points, triangles = closed
     else:
         origin = np.floor(tin.points.min(axis=0))
         points, record = tin.points - origin, _format_record(origin, tin)
         triangles = tin.triangles.astype(np.int64)
     if np.ptp(points, axis=0).max() > np.finfo(np.float32).max / 4:
-        raise WriteError(f"Cannot write '{path}': the TIN is too large for float32.", path=path)
+        raise WriteError(f"Cannot write {FILE}: the TIN is too large for float32.")
     with replacing(path) as file:
         file.write(record)
         file.write(len(triangles).to_bytes(4, "little"))

@@ -143,7 +143,7 @@ def _describe_overlap(tin: TIN) -> list[str]:
         return [overlap.sentence] * bool(overlap.sentence)
     part = _find_part(tin.points, tin.triangles)
     if part.n_left_out:
-        return [f"{overlap.sentence} faces='surface' leaves out {part.describe()}."]
+        return [f"{overlap.sentence} `faces='surface'` leaves out {part.describe()}."]
     return [overlap.sentence.replace("overlap", "overlap or touch", 1)]
 
 
@@ -172,7 +172,7 @@ def _leave_out(
     if is_few:
         tin = make(part.kept)
         return tin, [*part.describe_left_out(" to make a surface"), *_describe_overlap(tin)]
-    offer = f"To read the others, faces='surface' leaves out {part.describe()}."
+    offer = f"To read the others, `faces='surface'` leaves out {part.describe()}."
     raise PointsError(f"{error} {offer}", rows=error.rows) from error
 
 

@@ -7,11 +7,11 @@ JPEG files go as they are, placed by the world file beside them.
 from __future__ import annotations
 
 import struct
-import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ...base.errors import LossWarning, OptionError, ReadError
+from ...base.errors import OptionError, ReadError
+from ...base.notes import warn
 from ...terrain.viewer.ortho import Ortho
 from ..raster.ortho import as_picture_path, read_ortho
 from .common import read_content
@@ -53,26 +53,19 @@ class Texture:
         return ".png" if self.kind == "png" else ".jpg"
 
 
-def load_texture(source: str | os.PathLike[str], tin: TIN, *, stacklevel: int = 3) -> Texture:
+def load_texture(source: str | os.PathLike[str], tin: TIN) -> Texture:
     """Read the picture to drape over a TIN: a GeoTIFF, or PNG or JPEG with a world file beside it.
 
-    Errors and warnings are those of :func:`.read_ortho`; ``stacklevel`` is that of the caller who
-    is told of losses.
+    Errors and warnings are those of :func:`.read_ortho`.
     """
     path = as_picture_path(source, "drape")
     kind = _find_kind(path)
     if kind is None:
-        ortho = read_ortho(
-            path, [tin], most_pixels=MOST_PIXELS, beyond=_BEYOND, stacklevel=stacklevel + 1
-        )
+        ortho = read_ortho(path, [tin], most_pixels=MOST_PIXELS, beyond=_BEYOND)
     else:
         ortho = _read_plain(path, kind)
         if gap := ortho.measure_gap([tin]):
-            warnings.warn(
-                f"'{path}' does not reach over {gap:.1%} of the vertices: {_BEYOND}.",
-                LossWarning,
-                stacklevel=stacklevel,
-            )
+            warn(f"'{path}' does not reach over {gap:.1%} of the vertices: {_BEYOND}.")
     return Texture(ortho.content, ortho.kind, ortho.place(tin.points))
 
 

@@ -8,7 +8,6 @@ line.
 
 from __future__ import annotations
 
-import os
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,16 +17,15 @@ from ...base.atomic import replacing_path
 from ...base.crs import CRS, METRE, Unit
 from ...base.errors import CrsError, OptionError, ReadError, WriteError
 from ...base.policies import LineKind
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from ..isolated import run_isolated
 from .common import (
-    add_notes,
+    Mesh,
+    build_mesh,
     choose_reference,
-    cut_into_fans,
     describe_single_precision,
+    flag_edges,
     format_unit,
-    make_survey,
-    make_tin,
     read_content,
     require_tin,
 )
@@ -37,9 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
-    from ...base.arrays import AnyArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
     from ...base.crs import CrsLike, UnitLike
     from ...base.policies import FacePolicy
     from ...base.progress import Tell
@@ -85,50 +81,46 @@ def read(
     optional.require("netCDF4", "Reading UGRID files")
     if not path.is_file():
         read_content(path)  # says why it cannot be read
-    where: dict[str, Any] = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100
-    where |= {"surface": surface, "variable": variable}
-    value, arrays = run_isolated(f"{__package__}.ugrid_child:read_mesh", where, path=path)
+    wanted = {"path": str(path.absolute()), "surface": surface, "variable": variable}
+    value, arrays = run_isolated(f"{__package__}.ugrid_child:read_mesh", wanted, path=path)
     points, notes = arrays["points"], []
     if value["depth"]:
         points[:, 2] *= -1.0
         notes.append(f"Depths '{value['variable']}' grow downwards: their sign was changed.")
-    _require_elevations(points, value["variable"], path)
-    reference = _choose_reference(crs, z_unit, value, path)
+    _require_elevations(points, value["variable"])
+    reference = _choose_reference(crs, z_unit, value)
     notes += describe_single_precision(points, value["dtype"])
-    notes += _require_units(value["xy_units"], reference.crs, path)
-    if len(arrays["offsets"]) == 1:
-        return make_survey(points, path, reference=reference, notes=notes)
-    made = cut_into_fans(arrays["corners"], arrays["offsets"], points, path)
-    notes += made.notes
-    tin = make_tin(points, made.triangles, path, reference=reference, notes=notes, faces=faces)
-    return _add_edge_types(tin, arrays)
+    notes += _require_units(value["xy_units"], reference.crs)
+    mesh = Mesh(points, arrays["corners"], arrays["offsets"], notes=notes)
+    if "edges" in arrays:
+        mesh.add_lines = lambda tin: _add_edge_types(tin, arrays["edges"], arrays["types"])
+    return build_mesh(mesh, path, reference=reference, faces=faces)
 
 
-def _require_elevations(points: Float64Array, variable: str, path: Path) -> None:
+def _require_elevations(points: Float64Array, variable: str) -> None:
     lost = np.isnan(points[:, 2]) & np.isfinite(points[:, :2]).all(axis=1)
     if lost.any():
         count = int(lost.sum())
         raise ReadError(
-            f"'{path}': {counted(count, 'node')} {'has' if count == 1 else 'have'} no elevation in "
-            f"'{variable}' (first: node {int(np.argmax(lost))}).",
-            path=path,
+            f"{counted(count, 'node')} {'has' if count == 1 else 'have'} no elevation in "
+            f"'{variable}' (first: node {int(np.argmax(lost))})."
         )
 
 
 def _choose_reference(
-    crs: CrsLike | None, z_unit: UnitLike | None, value: Mapping[str, Any], path: Path
+    crs: CrsLike | None, z_unit: UnitLike | None, value: Mapping[str, Any]
 ) -> Reference:
     unit = value["unit"] if _is_unit(value["unit"]) else None
     told = [text for text in value["crs"] if text not in _NO_CRS]
     found = _find_known_crs(told)
     if found is None and told and crs is None:
         raise CrsError(
-            f"'{path}' names the CRS '{told[0][:60]}', which is unknown: declare it.", crs=told[0]
+            f"{FILE} names the CRS '{told[0][:60]}', which is unknown: declare it.", crs=told[0]
         )
-    return choose_reference(crs, z_unit, path, found_crs=found, found_unit=unit)
+    return choose_reference(crs, z_unit, found_crs=found, found_unit=unit)
 
 
-def _require_units(units: Sequence[str], crs: CRS | None, path: Path) -> list[str]:
+def _require_units(units: Sequence[str], crs: CRS | None) -> list[str]:
     """Refuse units of eastings and northings that are not those of the CRS; tell lonely ones.
 
     Raises
@@ -148,9 +140,8 @@ def _require_units(units: Sequence[str], crs: CRS | None, path: Path) -> list[st
         return []
     of_crs = "degrees" if crs.is_geographic else crs.horizontal_unit.name
     raise ReadError(
-        f"'{path}' has eastings and northings in {name}, and {crs.label} measures in {of_crs}: "
-        "its CRS is another one.",
-        path=path,
+        f"{FILE} has eastings and northings in {name}, and {crs.label} measures in {of_crs}: "
+        "its CRS is another one."
     )
 
 
@@ -172,46 +163,29 @@ def _is_unit(text: str) -> bool:
         return False
 
 
-def _add_edge_types(tin: TIN, arrays: Mapping[str, AnyArray]) -> TIN:
+def _add_edge_types(tin: TIN, edges: Int64Array, types: Int64Array) -> TIN:
     """Return the TIN with the lines and constrained edges of the file."""
-    if "edges" not in arrays:
-        return tin
-    edges, types = arrays["edges"], arrays["types"]
     chains = [
         Chain(chain, kind)
         for number, kind in _LINE_TYPES.items()
         for chain in chain_edges(edges[types == number], len(tin.points))
     ]
-    tin, lost = add_lines(tin, chains)
+    tin = add_lines(tin, chains, "typed edge")
     flagged = edges[(types > 0) & (types < len(_TYPES))]
-    known = tin.edge_triangles(flagged[:, 0], flagged[:, 1])
-    flags = tin.constrained.copy()
-    for side in known.T:
-        held = side >= 0
-        corner = _find_opposite(tin.triangles[side[held]], flagged[held])
-        flags[side[held], corner] = True
-    tin = tin.replace(constrained=flags)
-    if not lost:
-        return tin
-    return add_notes(tin, [f"{counted(lost, 'typed edge')} of the file lie along no edge."])
-
-
-def _find_opposite(triangles: Int32Array, edges: Int64Array) -> NDArray[np.intp]:
-    """Return the corner of each triangle that is no end of its edge."""
-    is_end = (triangles[:, :, None] == edges[:, None, :]).any(axis=2)
-    return np.asarray(np.argmin(is_end, axis=1))
+    flags = flag_edges(tin.triangles, flagged, len(tin.points))
+    return tin.replace(constrained=tin.constrained | flags)
 
 
 def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN as UGRID 1.0 in netCDF 4."""
-    tin = require_tin(surface, path, format_name="UGRID")
+    tin = require_tin(surface, format_name="UGRID")
     netcdf = optional.load("netCDF4", "Writing UGRID files")
     with replacing_path(path) as beside:
         try:
             with netcdf.Dataset(str(beside), "w", format="NETCDF4") as data:
                 write_content(data, tin)
         except RuntimeError as error:
-            raise WriteError(f"Cannot write '{path}': {error}.", path=path) from error
+            raise WriteError(f"Cannot write {FILE}: {error}.") from error
     if progress is not None:
         progress(1.0)
 

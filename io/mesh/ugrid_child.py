@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from ..isolated import Answer, Refusal
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def prepare() -> None:
     import_module("netCDF4")
 
 
-def read_mesh(path: str, shown: str, *, surface: str | None, variable: str | None) -> Answer:
+def read_mesh(path: str, *, surface: str | None, variable: str | None) -> Answer:
     """Return the points and faces of a mesh, of several the one that is named.
 
     The value holds the ``mesh``, the ``variable`` of elevations, by default the one that its
@@ -50,12 +50,12 @@ def read_mesh(path: str, shown: str, *, surface: str | None, variable: str | Non
     ``types``.
     """
     with import_module("netCDF4").Dataset(path) as data:
-        mesh = _find_mesh(data, surface, shown)
-        places = _find_coordinates(data, mesh, shown)
-        x, y = _read_coordinates(data, mesh, shown)
-        level = _find_elevations(data, mesh, len(x), variable, shown)
-        z = _read_numbers(level, shown)
-        corners, offsets = _read_faces(data, mesh, shown)
+        mesh = _find_mesh(data, surface)
+        places = _find_coordinates(data, mesh)
+        x, y = _read_coordinates(data, mesh)
+        level = _find_elevations(data, mesh, len(x), variable)
+        z = _read_numbers(level)
+        corners, offsets = _read_faces(data, mesh)
         value = {
             "mesh": mesh.name,
             "variable": level.name,
@@ -81,7 +81,7 @@ def _list_names(names: Iterable[str]) -> str:
     return ", ".join(f"'{name}'" for name in names)
 
 
-def _find_mesh(data: Any, surface: str | None, shown: str) -> Any:
+def _find_mesh(data: Any, surface: str | None) -> Any:
     """Return the variable of the topology of the mesh in two dimensions."""
     meshes = {
         name: one
@@ -90,38 +90,38 @@ def _find_mesh(data: Any, surface: str | None, shown: str) -> Any:
     }
     if not meshes:
         raise Refusal(
-            f"'{shown}' holds no UGRID mesh of faces: no variable has cf_role 'mesh_topology' and "
+            f"{FILE} holds no UGRID mesh of faces: no variable has cf_role 'mesh_topology' and "
             "face_node_connectivity."
         )
     if surface is None and len(meshes) > 1:
         raise Refusal(
-            f"'{shown}' holds {len(meshes)} meshes: name one as surface, {_list_names(meshes)}."
+            f"{FILE} holds {len(meshes)} meshes: name one as surface, {_list_names(meshes)}."
         )
     if surface is not None and surface not in meshes:
         raise Refusal(
-            f"'{shown}' holds no mesh '{surface}': there {'is' if len(meshes) == 1 else 'are'} "
+            f"{FILE} holds no mesh '{surface}': there {'is' if len(meshes) == 1 else 'are'} "
             f"{_list_names(meshes)}."
         )
     return meshes[next(iter(meshes)) if surface is None else surface]
 
 
-def _get_variable(data: Any, name: str, mesh: Any, role: str, shown: str) -> Any:
+def _get_variable(data: Any, name: str, mesh: Any, role: str) -> Any:
     if name not in data.variables:
         raise Refusal(
-            f"'{shown}' is a damaged UGRID file: mesh '{mesh.name}' names '{name}' as its {role}, "
+            f"{FILE} is a damaged UGRID file: mesh '{mesh.name}' names '{name}' as its {role}, "
             "and there is no such variable."
         )
     return data.variables[name]
 
 
-def _find_coordinates(data: Any, mesh: Any, shown: str) -> tuple[Any, Any]:
+def _find_coordinates(data: Any, mesh: Any) -> tuple[Any, Any]:
     """Return the variables of eastings and northings of the nodes."""
     names = _get_text(mesh, "node_coordinates").split()
     if len(names) < 2:
         raise Refusal(
-            f"'{shown}' is a damaged UGRID file: mesh '{mesh.name}' names no node_coordinates."
+            f"{FILE} is a damaged UGRID file: mesh '{mesh.name}' names no node_coordinates."
         )
-    found = [_get_variable(data, name, mesh, "node_coordinates", shown) for name in names]
+    found = [_get_variable(data, name, mesh, "node_coordinates") for name in names]
     axes = [_tell_axis(one) for one in found]
     if "x" in axes and "y" in axes:
         return found[axes.index("x")], found[axes.index("y")]
@@ -142,34 +142,34 @@ def _tell_axis(variable: Any) -> str:
     return "z" if name in _ELEVATIONS | _DEPTHS else ""
 
 
-def _read_numbers(variable: Any, shown: str) -> Float64Array:
+def _read_numbers(variable: Any) -> Float64Array:
     """Return the numbers of a variable of one dimension, NaN where it has none."""
     if variable.ndim != 1 or np.dtype(variable.dtype).kind not in "iuf":
         raise Refusal(
-            f"'{shown}': the variable '{variable.name}' has {counted(variable.ndim, 'dimension')} "
+            f"the variable '{variable.name}' has {counted(variable.ndim, 'dimension')} "
             f"and type {variable.dtype}: one row of numbers is needed, one for each node."
         )
     return np.ma.filled(np.ma.asarray(variable[:]).astype(np.float64), np.nan)
 
 
-def _read_coordinates(data: Any, mesh: Any, shown: str) -> tuple[Float64Array, Float64Array]:
-    x, y = (_read_numbers(one, shown) for one in _find_coordinates(data, mesh, shown))
+def _read_coordinates(data: Any, mesh: Any) -> tuple[Float64Array, Float64Array]:
+    x, y = (_read_numbers(one) for one in _find_coordinates(data, mesh))
     if len(x) != len(y):
         raise Refusal(
-            f"'{shown}' is a damaged UGRID file: {counted(len(x), 'easting')} and "
+            f"{FILE} is a damaged UGRID file: {counted(len(x), 'easting')} and "
             f"{counted(len(y), 'northing')}."
         )
     return x, y
 
 
-def _find_elevations(data: Any, mesh: Any, count: int, wanted: str | None, shown: str) -> Any:
+def _find_elevations(data: Any, mesh: Any, count: int, wanted: str | None) -> Any:
     """Return the variable of the nodes' elevations."""
     if wanted is not None:
         if wanted in data.variables and data.variables[wanted].shape == (count,):
             return data.variables[wanted]
         fitting = [name for name, one in data.variables.items() if one.shape == (count,)]
         raise Refusal(
-            f"'{shown}' has no variable '{wanted}' with a number for each of {count} nodes: "
+            f"{FILE} has no variable '{wanted}' with a number for each of {count} nodes: "
             f"{_list_names(fitting) or 'nothing'} has."
         )
     own = [one for one in data.variables.values()
@@ -182,7 +182,7 @@ def _find_elevations(data: Any, mesh: Any, count: int, wanted: str | None, shown
     what = "no elevations of its nodes are told" if not told else (
         f"{_list_names(one.name for one in told)} may be the elevations")  # fmt: skip
     others = _list_names(one.name for one in own) or "there is none with one number for each node"
-    raise Refusal(f"'{shown}': {what}: name the variable that they are in ({others}).")
+    raise Refusal(f"{what}: name the variable that they are in ({others}).")
 
 
 def _is_at_nodes(variable: Any, data: Any, mesh: Any) -> bool:
@@ -204,10 +204,10 @@ def _is_depth(variable: Any) -> bool:
     return told == "down" if told else _get_text(variable, "standard_name") in _DEPTHS
 
 
-def _read_faces(data: Any, mesh: Any, shown: str) -> tuple[Int64Array, Int64Array]:
+def _read_faces(data: Any, mesh: Any) -> tuple[Int64Array, Int64Array]:
     """Return the corners of all faces, from 0 on, and the offsets of each."""
     name = _get_text(mesh, "face_node_connectivity")
-    table = _read_table(_get_variable(data, name, mesh, "faces", shown), shown)
+    table = _read_table(_get_variable(data, name, mesh, "faces"))
     if _is_transposed(data, mesh, name):
         table = table.T
     held = table >= 0
@@ -222,11 +222,11 @@ def _is_transposed(data: Any, mesh: Any, name: str) -> bool:
     return bool(dimension) and data.variables[name].dimensions[1] == dimension
 
 
-def _read_table(variable: Any, shown: str) -> Int64Array:
+def _read_table(variable: Any) -> Int64Array:
     """Return a table of node numbers from 0 on; -1 where there is none."""
     if variable.ndim != 2 or np.dtype(variable.dtype).kind not in "iuf":
         raise Refusal(
-            f"'{shown}' is a damaged UGRID file: '{variable.name}' is no table of node numbers."
+            f"{FILE} is a damaged UGRID file: '{variable.name}' is no table of node numbers."
         )
     start = _find_start(variable)
     found = np.ma.filled(np.ma.asarray(variable[:]).astype(np.float64), -np.inf)
@@ -238,7 +238,7 @@ def _read_table(variable: Any, shown: str) -> Int64Array:
     if (beyond & ~fills).any():
         wrong = found[beyond & ~fills][0]
         raise Refusal(
-            f"'{shown}' is a damaged UGRID file: '{variable.name}' names the node {wrong:g}, and "
+            f"{FILE} is a damaged UGRID file: '{variable.name}' names the node {wrong:g}, and "
             f"they are whole numbers from {start} on."
         )
     return np.where(fills, -1, np.where(fills, 0, found) - start).astype(np.int64)
@@ -257,7 +257,7 @@ def _read_edges(data: Any, mesh: Any, n_nodes: int) -> dict[str, Int64Array]:
     if name not in data.variables or types is None or not _get_text(types, "flag_meanings"):
         return {}
     try:
-        edges = _read_table(data.variables[name], "")
+        edges = _read_table(data.variables[name])
     except Refusal:
         return {}
     sound = edges.shape == (*types.shape[:1], 2) and np.dtype(types.dtype).kind in "iu"

@@ -8,7 +8,6 @@ coordinates: zeros.
 
 from __future__ import annotations
 
-import os
 import re
 from typing import TYPE_CHECKING, Any
 
@@ -17,9 +16,11 @@ import numpy as np
 from ...base import optional
 from ...base.atomic import replacing_path
 from ...base.errors import ReadError, WriteError
+from ...base.sentences import FILE
 from ...terrain.relief.gradients import aspect, slope
 from ..isolated import run_isolated
 from . import common
+from .common import Mesh, mesh_reader
 from .vtk_child import catch_errors, load_vtk_class
 
 if TYPE_CHECKING:
@@ -27,10 +28,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...base.arrays import AnyArray, Float64Array
-    from ...base.crs import CrsLike, UnitLike
-    from ...base.policies import FacePolicy
     from ...base.progress import Tell
-    from ...tin import TIN, Survey
+    from ...tin import TIN
     from ..isolated import Answer
 
 __all__ = ["read", "write"]
@@ -41,13 +40,8 @@ _CLOSEST_PACKING = 1100  # zlib packs no tighter than 1032 to 1
 _COUNTS = re.compile(rb'NumberOf\w+="(\d+)"')
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    faces: FacePolicy = "most",
-) -> TIN | Survey:
+@mesh_reader
+def read(path: Path) -> Mesh:
     """Read a VTK XML file of faces.
 
     CRS and unit default to the field data ``crs`` and ``elevation_unit``. Polygons are cut into
@@ -58,27 +52,14 @@ def read(
     value, arrays = _read_in_child(path)
     notes = common.describe_single_precision(arrays["points"], value["dtype"])
     points = _restore_points(arrays)
-    reference = common.choose_reference(
-        crs, z_unit, path, found_crs=value["crs"], found_unit=value["elevation_unit"]
-    )
-    cells = arrays["cells"]
-    if len(cells) == 0:
-        attributes = {name: arrays[f"attribute {k}"] for k, name in enumerate(value["attributes"])}
-        return common.make_survey(
-            points, path, attributes=attributes, reference=reference, notes=notes
+    about = {"crs": value["crs"], "elevation_unit": value["elevation_unit"], "notes": notes}
+    if len(arrays["cells"]) == 0:
+        names = enumerate(value["attributes"])
+        return Mesh(
+            points, attributes={name: arrays[f"attribute {k}"] for k, name in names}, **about
         )
-    made = common.cut_into_fans(arrays["corners"], arrays["offsets"], points, path)
-    flags = arrays.get("flags") if len(cells) == len(made.triangles) else None
-    is_flagged = None if flags is None else flags != 0
-    return common.make_tin(
-        points,
-        made.triangles,
-        path,
-        constrained=is_flagged,
-        reference=reference,
-        notes=(*notes, *made.notes),
-        faces=faces,
-    )
+    flags = arrays["flags"] != 0 if "flags" in arrays else None
+    return Mesh(points, arrays["corners"], arrays["offsets"], flags, **about)
 
 
 def _restore_points(arrays: Mapping[str, AnyArray]) -> Float64Array:
@@ -98,22 +79,20 @@ def _read_in_child(path: Path) -> Answer:
     optional.require("pyvista", "Reading VTK files")
     content = common.read_content(path)
     if b"</VTKFile>" not in content[-200:]:
-        raise ReadError(f"'{path}' is no whole VTK XML file: '</VTKFile>' is missing.", path=path)
-    _require_likely_counts(content, path)
+        raise ReadError(f"{FILE} is no whole VTK XML file: '</VTKFile>' is missing.")
+    _require_likely_counts(content)
     kind = re.search(rb'<VTKFile\b[^>]*\btype="(\w+)"', content[:2000])
     if kind is None or kind[1].decode() not in _KINDS:
         found = "of no type" if kind is None else f"of type {kind[1].decode()}"
-        raise ReadError(
-            f"'{path}' is a VTK file {found}: PolyData and UnstructuredGrid can be read.", path=path
-        )
+        raise ReadError(f"{FILE} is a VTK file {found}: PolyData and UnstructuredGrid can be read.")
     return run_isolated(
         f"{__package__}.vtk_child:read_mesh",
-        {"path": os.path.abspath(path), "shown": str(path), "kind": kind[1].decode()},  # noqa: PTH100
+        {"path": str(path.absolute()), "kind": kind[1].decode()},
         path=path,
     )
 
 
-def _require_likely_counts(content: bytes, path: Path) -> None:
+def _require_likely_counts(content: bytes) -> None:
     """Refuse counts that no file of this size can hold, before memory is asked for."""
     most = len(content) * _CLOSEST_PACKING
     for found in _COUNTS.finditer(content):
@@ -121,14 +100,12 @@ def _require_likely_counts(content: bytes, path: Path) -> None:
         if len(digits) > len(str(most)) or int(digits or b"0") > most:
             said = found[0].decode()
             shown = said if len(said) <= _SHOWN_LETTERS else f"{said[:_SHOWN_LETTERS]}..."
-            raise ReadError(
-                f"'{path}' is a damaged VTK XML file: it cannot hold {shown}.", path=path
-            )
+            raise ReadError(f"{FILE} is a damaged VTK XML file: it cannot hold {shown}.")
 
 
 def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
     """Write a TIN as VTK XML: an UnstructuredGrid to ``.vtu``, else PolyData."""
-    tin = common.require_tin(surface, path, format_name="VTK")
+    tin = common.require_tin(surface, format_name="VTK")
     pv = optional.load("pyvista", "Writing VTK files")
     mesh, class_name = _make_poly_data(tin, pv), "vtkXMLPolyDataWriter"
     if path.suffix.lower() == ".vtu":
@@ -144,8 +121,7 @@ def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
             written = writer.Write()
         if not written or writer.GetErrorCode() or errors:
             raise WriteError(
-                f"Cannot write '{path}': VTK could not finish the file; is the disk full?",
-                path=path,
+                f"Cannot write {FILE}: VTK could not finish the file; is the disk full?"
             )
     # Not while VTK writes: it ends the program when a callback of Python meets Ctrl-C.
     if progress is not None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.sentences import FILE
 from ..isolated import Answer, Refusal
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ def prepare() -> None:
     import_module("vtkmodules.vtkIOXML")
 
 
-def read_mesh(path: str, shown: str, *, kind: str) -> Answer:
+def read_mesh(path: str, *, kind: str) -> Answer:
     """Return the points and faces of a file, a "PolyData" or an "UnstructuredGrid".
 
     The value holds ``crs``, ``elevation_unit``, the names of the ``attributes``, and the ``dtype``
@@ -42,16 +43,16 @@ def read_mesh(path: str, shown: str, *, kind: str) -> Answer:
     with catch_errors(pv) as errors:
         reader.Update()
     if errors or reader.GetErrorCode():
-        raise Refusal(f"'{shown}' is a damaged VTK XML file.")
-    return read_dataset(pv.wrap(reader.GetOutput()), shown)
+        raise Refusal(f"{FILE} is a damaged VTK XML file.")
+    return read_dataset(pv.wrap(reader.GetOutput()))
 
 
-def read_dataset(found: Any, shown: str) -> Answer:
+def read_dataset(found: Any) -> Answer:
     """Return what a PolyData or UnstructuredGrid of PyVista holds, as :func:`read_mesh` does."""
     is_poly_data = hasattr(found, "GetPolys")
     if not (is_poly_data or hasattr(found, "celltypes")):
-        raise Refusal(f"'{shown}' is neither a PolyData nor an UnstructuredGrid.")
-    faces = _read_poly_data(found, shown) if is_poly_data else _read_faces(found, shown)
+        raise Refusal(f"{FILE} is neither a PolyData nor an UnstructuredGrid.")
+    faces = _read_poly_data(found) if is_poly_data else _read_faces(found)
     attributes = _read_point_attributes(found)
     arrays: dict[str, AnyArray] = {
         "points": np.array(found.points, np.float64).reshape(-1, 3),
@@ -108,9 +109,9 @@ def _read_text_field(found: Any, name: str) -> str | None:
     return (str(values[0]).strip() or None) if len(values) else None
 
 
-def _read_poly_data(found: Any, shown: str) -> dict[str, Int64Array]:
+def _read_poly_data(found: Any) -> dict[str, Int64Array]:
     if found.n_strips:
-        raise Refusal(f"'{shown}' holds triangle strips, which are not read.")
+        raise Refusal(f"{FILE} holds triangle strips, which are not read.")
     polys = found.GetPolys()
     first = found.GetVerts().GetNumberOfCells() + found.GetLines().GetNumberOfCells()
     cells = np.arange(first, first + polys.GetNumberOfCells())
@@ -122,13 +123,13 @@ def _read_poly_data(found: Any, shown: str) -> dict[str, Int64Array]:
     return {"corners": corners, "offsets": offsets, "cells": cells}
 
 
-def _read_faces(found: Any, shown: str) -> dict[str, Int64Array]:
+def _read_faces(found: Any) -> dict[str, Int64Array]:
     types = np.asarray(found.celltypes)
     odd = ~np.isin(types, list(_NO_FACES | _FACES))
     if odd.any():
         count = int(odd.sum())
         raise Refusal(
-            f"'{shown}' holds {count} cell{'s' if count > 1 else ''} that "
+            f"{FILE} holds {count} cell{'s' if count > 1 else ''} that "
             f"{'are no faces' if count > 1 else 'is no face'} (first: cell {int(np.argmax(odd))} "
             f"of VTK type {types[np.argmax(odd)]}): triangles, quadrilaterals and polygons can be "
             "read."

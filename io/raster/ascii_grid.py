@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.errors import LossWarning, OptionError, WriteError
+from ...base.errors import OptionError, WriteError
+from ...base.notes import warn
+from ...base.sentences import FILE
 from ..registry.side_files import replacing_data_set
 
 if TYPE_CHECKING:
@@ -53,11 +54,11 @@ def write(
     """
     name = _choose_band(raster, band)
     nodata = raster.nodata if math.isfinite(raster.nodata) else _NODATA
-    _warn_of_losses(raster, path)
+    _warn_of_losses(raster)
     with replacing_data_set(path, "asc") as new:
         with new.open("w", encoding="ascii", newline="") as file:
             file.write(_format_head(raster, nodata))
-            for done, lines in _iterate_rows(raster, name, nodata, path):
+            for done, lines in _iterate_rows(raster, name, nodata):
                 file.write(lines)
                 if progress is not None:
                     progress(done)
@@ -75,14 +76,10 @@ def _choose_band(raster: Raster, band: str | None) -> str:
     return band
 
 
-def _warn_of_losses(raster: Raster, path: Path) -> None:
+def _warn_of_losses(raster: Raster) -> None:
     lost = [what for what, there in (("units", raster.units), ("notes", raster.notes)) if there]
     if lost:
-        warnings.warn(
-            f"'{path}' is a text grid, which has no place for {' and '.join(lost)}.",
-            LossWarning,
-            stacklevel=3,
-        )
+        warn(f"{FILE} is a text grid, which has no place for {' and '.join(lost)}.")
 
 
 def _format_head(raster: Raster, nodata: float) -> str:
@@ -99,7 +96,7 @@ def _format_number(value: float) -> str:
     return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(float(value))
 
 
-def _iterate_rows(raster: Raster, name: str, nodata: float, path: Path) -> Any:
+def _iterate_rows(raster: Raster, name: str, nodata: float) -> Any:
     """Yield the fraction done and the text of some rows, from the north."""
     rows, columns = raster.grid.shape
     band = raster.bands[name]
@@ -107,11 +104,11 @@ def _iterate_rows(raster: Raster, name: str, nodata: float, path: Path) -> Any:
     for start in range(0, rows, step):
         stop = min(start + step, rows)
         values = np.asarray(band[start:stop, 0:columns])
-        texts = [" ".join(line) for line in _format_values(values, raster, nodata, path)]
+        texts = [" ".join(line) for line in _format_values(values, raster, nodata)]
         yield stop / rows, "\n".join(texts) + "\n"
 
 
-def _format_values(values: AnyArray, raster: Raster, nodata: float, path: Path) -> list[list[str]]:
+def _format_values(values: AnyArray, raster: Raster, nodata: float) -> list[list[str]]:
     if values.dtype.kind == "b":
         values = values.astype(np.uint8)
     if values.dtype.kind != "f":
@@ -119,9 +116,8 @@ def _format_values(values: AnyArray, raster: Raster, nodata: float, path: Path) 
     empty = ~np.isfinite(values)
     if not math.isfinite(raster.nodata) and (values == nodata).any():
         raise WriteError(
-            f"Cannot write '{path}': a cell has the value {nodata:g}, which stands for no data "
+            f"Cannot write {FILE}: a cell has the value {nodata:g}, which stands for no data "
             "there: give the raster another nodata value.",
-            path=path,
         )
     if empty.any():
         values = np.where(empty, nodata, values)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ... import terrain
 from ...base.crs import CRS
 from ...terrain.gridding.grids import Cells, to_grid
+from ..door import names_its_file
 from ..isolated.local_files import require_local
 from ..isolated.spooling import open_ordinary_file, require_readable
 from .dem import read_georeference
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["rasterize", "read_cells"]
 
 
+@names_its_file
 def read_cells(path: str | os.PathLike[str]) -> Cells:
     """Read where the cells of a raster file lie, and their CRS, from its header.
 

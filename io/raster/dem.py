@@ -17,10 +17,11 @@ from ...base import optional
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError
 from ...base.progress import Progress
-from ...base.sentences import coordinate, counted
+from ...base.sentences import FILE, coordinate, counted
 from ...terrain.gridding.voids import trace_rings
 from ...tin import Bounds, Survey
 from ...tin.screening.nodata import describe_elevations, parse_nodata
+from ..door import names_its_file
 from ..isolated import Limits, choose_limits, run_isolated, stream_isolated
 from ..isolated.free_memory import measure_free_memory
 from ..reprojection.placement import place, settle_unit
@@ -73,7 +74,7 @@ _READ = 0.8
 _COLOURS = ("red", "green", "blue", "palette", "cyan", "magenta", "yellow", "black")
 
 _COORDINATES = "Bounds, or four finite numbers: west, south, east and north limit"
-_CELLS_ARE = "; a part in cells (column, row, width, height) is the option cells"
+_CELLS_ARE = "; a part in cells (column, row, width, height) is the option `cells`"
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,22 +202,21 @@ def make_survey(
     number, dataset, said = choose_elevations(dataset, choice.band)
     dataset, source, told = settle_axes(dataset, target)
     unit, told_unit = find_elevation_unit(dataset, number, source, Unit.of(z_unit))
-    cells = _choose_cells(dataset, choice, path)
+    cells = _choose_cells(dataset, choice)
     said = [*said, *told, *told_unit, *_describe_window(dataset, choice)]
     left_out = 0 if choice.most_cells is None else cells.width * cells.height - cells.count
     marks = parse_nodata(choice.nodata)
-    _require_few_cells(cells, path)
-    place(find_middle(dataset), source=source, target=target, path=path)
+    _require_few_cells(cells)
+    place(find_middle(dataset), source=source, target=target)
     points, valid, n_nodata = _read_points(dataset, open_strips, number, cells, marks, progress)
     if len(points) == 0:
         raise ReadError(
-            f"'{path}': of {counted(n_nodata, 'cell')} of band {number}, none has an elevation but "
+            f"{FILE}: of {counted(n_nodata, 'cell')} of band {number}, none has an elevation but "
             "nodata.",
-            path=path,
         )
-    _require_finite_centres(points, number, path)
+    _require_finite_centres(points, number)
     notes = describe_elevations(points[:, 2], "cell")
-    placed = place(points, source=source, target=target, path=path, unit=unit)
+    placed = place(points, source=source, target=target, unit=unit)
     survey = Survey(
         points=placed.points,
         crs=placed.crs,
@@ -233,6 +233,7 @@ def make_survey(
     return survey if choice.fill or valid.all() else _add_void_rings(survey, valid)
 
 
+@names_its_file
 def read_georeference(
     path: Path,
 ) -> tuple[tuple[float, ...], tuple[int, int], str | None]:
@@ -254,7 +255,7 @@ def read_georeference(
         If rasterio is not installed.
     """
     dataset = read_header(path)
-    _require_position(dataset, path)
+    _require_position(dataset)
     return tuple(dataset.transform), (dataset.height, dataset.width), dataset.crs
 
 
@@ -264,10 +265,10 @@ def _add_void_rings(survey: Survey, valid: BoolArray) -> Survey:
     if not rings:
         raise ReadError(
             f"'{survey.source}': no three cells side by side have an elevation, so there is no "
-            "surface between voids: the option fill spans them."
+            "surface between voids: the option `fill` spans them."
         )
     note = (
-        "Voids of the raster stay: the surface ends at the cells around them; the option fill "
+        "Voids of the raster stay: the surface ends at the cells around them; the option `fill` "
         "spans them."
     )
     extent = [survey.points[ring] for ring in rings]
@@ -392,50 +393,47 @@ def choose_elevations(dataset: Header, band: int | None) -> Meaning:
     OptionError
         If there is no such band.
     """
-    found = find_meaning(dataset, band, choose_band(dataset, band, dataset.path))
-    require_elevation_band(dataset, found.band, band is not None, dataset.path)
+    found = find_meaning(dataset, band, choose_band(dataset, band))
+    require_elevation_band(dataset, found.band, band is not None)
     return found
 
 
-def choose_band(dataset: Header, band: int | None, path: Path) -> int:
+def choose_band(dataset: Header, band: int | None) -> int:
     """Return the number of the band that was asked for, the first by default."""
     if dataset.count == 0:
         parts = ", ".join(dataset.subdatasets[:5])
         raise ReadError(
-            f"'{path}' holds no band of its own"
+            f"{FILE} holds no band of its own"
             + (f" but several rasters ({parts}): extract one of them first." if parts else "."),
-            path=path,
         )
     number = 1 if band is None else band
     if not isinstance(number, Integral) or not 1 <= number <= dataset.count:
         known = (
             "1, the only band" if dataset.count == 1 else f"one of the bands 1 to {dataset.count}"
         )
-        raise OptionError("band", band, f"{known} of '{path}'")
+        raise OptionError("band", band, f"{known} of {FILE}")
     return int(number)
 
 
-def require_elevation_band(dataset: Header, band: int, is_told: bool, path: Path) -> None:
+def require_elevation_band(dataset: Header, band: int, is_told: bool) -> None:
     """Refuse pictures, complex numbers and rasters whose place is unknown."""
     meaning = dataset.colours[band - 1]
     if meaning in _COLOURS and not is_told:
         raise ReadError(
-            f"'{path}' is a picture (band 1 is its {meaning}), not a raster of elevations: name "
+            f"{FILE} is a picture (band 1 is its {meaning}), not a raster of elevations: name "
             "the band if one holds them.",
-            path=path,
         )
     if dataset.dtypes[band - 1].startswith("complex"):
-        raise ReadError(f"'{path}': band {band} holds complex numbers, no elevations.", path=path)
-    _require_position(dataset, path)
+        raise ReadError(f"{FILE}: band {band} holds complex numbers, no elevations.")
+    _require_position(dataset)
 
 
-def _require_position(dataset: Header, path: Path) -> None:
+def _require_position(dataset: Header) -> None:
     """Refuse a raster whose cells have no place, or one that is no area."""
     if dataset.transform == _NOWHERE:
         raise ReadError(
-            f"'{path}' has no georeference, so the coordinates of its cells are unknown: add a "
+            f"{FILE} has no georeference, so the coordinates of its cells are unknown: add a "
             "world file or set the transform with a GIS.",
-            path=path,
         )
     a, b, _, d, e, _ = dataset.transform
     if (
@@ -443,9 +441,8 @@ def _require_position(dataset: Header, path: Path) -> None:
         or a * e == b * d
     ):
         raise ReadError(
-            f"'{path}' has the georeference {tuple(dataset.transform)}, in which a cell has no "
+            f"{FILE} has the georeference {tuple(dataset.transform)}, in which a cell has no "
             "size, or none that is finite.",
-            path=path,
         )
 
 
@@ -453,21 +450,20 @@ def find_elevation_unit(
     dataset: Header, band: int, source: CRS | None, declared: Unit | None
 ) -> tuple[Unit | None, list[str]]:
     """Return the unit that band, vertical axis or caller give, and a note on one not understood."""
-    path, word = dataset.path, str(dataset.units[band - 1] or "").strip()
+    word = str(dataset.units[band - 1] or "").strip()
     vertical = None if source is None else source.vertical_unit
     try:
         of_band = Unit.of(word or None)
     except OptionError:
         note = f"The unit of band {band}, '{word}', is no length: the elevations have none."
-        return settle_unit(declared, vertical, path), [] if declared or vertical else [note]
+        return settle_unit(declared, vertical), [] if declared or vertical else [note]
     if of_band is None or vertical is None or of_band == vertical:
-        return settle_unit(declared, of_band or vertical, path), []
+        return settle_unit(declared, of_band or vertical), []
     if declared in (of_band, vertical):
         return declared, []
     raise ReadError(
-        f"'{path}' gives its elevations two units: {of_band.name} (of band {band}) and "
+        f"{FILE} gives its elevations two units: {of_band.name} (of band {band}) and "
         f"{vertical.name} (of the vertical axis of its CRS); declare the one that is right.",
-        path=path,
     )
 
 
@@ -480,16 +476,16 @@ def find_middle(dataset: Header) -> Float64Array:
 # ------------------------------------------------------------------ which cells
 
 
-def _choose_cells(dataset: Header, choice: Choice, path: Path) -> _Cells:
+def _choose_cells(dataset: Header, choice: Choice) -> _Cells:
     stride, bounds = choice.stride, None
     part = (0, 0, dataset.width, dataset.height)
     if choice.window is not None and choice.cells is not None:
         raise OptionError("cells", choice.cells, "None where a window is given")
     if choice.window is not None:
         bounds = _parse_window(choice.window)
-        part = _cut_bounds(dataset, bounds, path)
+        part = _cut_bounds(dataset, bounds)
     elif choice.cells is not None:
-        part = _cut_cells(dataset, choice.cells, path)
+        part = _cut_cells(dataset, choice.cells)
     if choice.most_cells is not None:
         return _Cells(*part, _choose_stride(part[2], part[3], stride, choice.most_cells), bounds)
     smaller, stride = min(part[2:]), 1 if stride is None else stride
@@ -547,7 +543,7 @@ def _list_numbers(given: object, kind: type) -> tuple[Any, ...] | None:
     return numbers if len(numbers) == 4 and are_numbers else None
 
 
-def _cut_cells(dataset: Header, cells: Sequence[int], path: Path) -> tuple[int, int, int, int]:
+def _cut_cells(dataset: Header, cells: Sequence[int]) -> tuple[int, int, int, int]:
     size = f"the raster has {counted(dataset.width, 'column')} and {counted(dataset.height, 'row')}"
     numbers = _list_numbers(cells, Integral)
     if numbers is None:
@@ -558,7 +554,7 @@ def _cut_cells(dataset: Header, cells: Sequence[int], path: Path) -> tuple[int, 
         )
     column, row, width, height = (int(one) for one in numbers)
     if not _has_cells(dataset, numbers):
-        raise OptionError("cells", numbers, f"a part of '{path}': {size}")
+        raise OptionError("cells", numbers, f"a part of {FILE}: {size}")
     return column, row, width, height
 
 
@@ -576,11 +572,11 @@ def _describe_window(dataset: Header, choice: Choice) -> list[str]:
     shown = ", ".join(map(str, numbers))
     return [
         f"The window {shown} is in coordinates (west, south, east, north); cells by column, row, "
-        "width and height are the option cells."
+        "width and height are the option `cells`."
     ]
 
 
-def _cut_bounds(dataset: Header, bounds: Bounds, path: Path) -> tuple[int, int, int, int]:
+def _cut_bounds(dataset: Header, bounds: Bounds) -> tuple[int, int, int, int]:
     """Return the cells of the smallest upright window that covers the bounds."""
     x = np.array([bounds.xmin, bounds.xmin, bounds.xmax, bounds.xmax])
     y = np.array([bounds.ymin, bounds.ymax, bounds.ymin, bounds.ymax])
@@ -593,23 +589,22 @@ def _cut_bounds(dataset: Header, bounds: Bounds, path: Path) -> tuple[int, int, 
         raise OptionError(
             "window",
             (bounds.xmin, bounds.ymin, bounds.xmax, bounds.ymax),
-            f"an area that meets '{path}', which spans easting {coordinate(left)} to "
+            f"an area that meets {FILE}, which spans easting {coordinate(left)} to "
             f"{coordinate(east)} and northing {coordinate(low)} to {coordinate(high)}{_CELLS_ARE}",
         )
     return column, row, right - column, bottom - row
 
 
-def _require_few_cells(cells: _Cells, path: Path) -> None:
+def _require_few_cells(cells: _Cells) -> None:
     """Refuse more cells than can be read, before memory is asked for."""
     count = cells.count
     memory = measure_free_memory()
     most = min(LARGEST_RASTER, memory // BYTES_PER_CELL)
     if count > most:
         raise ReadError(
-            f"'{path}': {count:,} cells are to be read, and {most:,} are the most that "
+            f"{FILE}: {count:,} cells are to be read, and {most:,} are the most that "
             + ("a TIN" if most == LARGEST_RASTER else f"{memory / (1 << 30):.1f} GiB of memory")
             + " can hold: read a part of it (window) or every n-th row and column (stride).",
-            path=path,
         )
 
 
@@ -652,7 +647,7 @@ def _read_points(
             done(_READ * len(found) / len(strips))
     if not any(map(len, found)) and n_nodata == 0:
         raise OptionError(
-            "window", cells.bounds, f"an area with a cell centre of '{dataset.path}'{_CELLS_ARE}"
+            "window", cells.bounds, f"an area with a cell centre of {FILE}{_CELLS_ARE}"
         )
     return np.concatenate(found), np.concatenate(kept), n_nodata
 
@@ -697,16 +692,15 @@ def _read_strip(
     return points, keep, int(np.count_nonzero(wanted & ~keep))
 
 
-def _require_finite_centres(points: Float64Array, band: int, path: Path) -> None:
+def _require_finite_centres(points: Float64Array, band: int) -> None:
     wrong = ~np.isfinite(points[:, 2])
     if wrong.any():
         count, first = int(wrong.sum()), points[int(np.argmax(wrong))].tolist()
         raise ReadError(
-            f"'{path}': {count} {'cell' if count == 1 else 'cells'} of band {band} would have an "
+            f"{FILE}: {count} {'cell' if count == 1 else 'cells'} of band {band} would have an "
             f"elevation that is not finite (first at {coordinate(first[0])}, "
             f"{coordinate(first[1])}): its scale "
             "or offset is wrong.",
-            path=path,
         )
 
 

@@ -11,8 +11,10 @@ import numpy as np
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError
 from ...base.results import Raster
+from ...base.sentences import FILE
 from ...terrain.gridding.grids import as_parts, to_grid
 from ...tin.screening.nodata import parse_nodata
+from ..door import names_its_file
 from ..isolated.local_files import require_local
 from ..isolated.spooling import is_pipe, require_readable
 from ..reprojection.placement import place
@@ -38,6 +40,7 @@ _STRIP_CELLS = 4_000_000
 """Cells that come from the child process at a time."""
 
 
+@names_its_file
 def read_raster(
     path: str | os.PathLike[str],
     *,
@@ -103,9 +106,8 @@ def _require_file(path: Path) -> None:
     """Refuse what is missing, may not be read, or gives its bytes only once."""
     if is_pipe(path):
         raise ReadError(
-            f"'{path}' is a pipe, and rows of a raster are read as they are asked for: write it to "
+            f"{FILE} is a pipe, and rows of a raster are read as they are asked for: write it to "
             "a file, and name that.",
-            path=path,
         )
     require_readable(path)
 
@@ -123,8 +125,8 @@ def _make_raster(
     unit, notes = find_elevation_unit(header, number, source, declared)
     grid = to_grid(header.transform, (header.height, header.width), os.fspath(path))
     if source is not None and target is not None and not source.is_same(target):
-        raise OptionError("crs", target, f"that of '{path}', {source}: cells are not transformed")
-    placed = place(find_middle(header), source=source, target=target, path=path, unit=unit)
+        raise OptionError("crs", target, f"that of {FILE}, {source}: cells are not transformed")
+    placed = place(find_middle(header), source=source, target=target, unit=unit)
     bands: dict[str, Any] = {"elevation": _FileBand(header, number, marks)}
     return Raster(
         bands,
@@ -178,9 +180,8 @@ class _FileBand:
                 z = z * scale + offset
         if (valid & ~np.isfinite(z)).any():
             raise ReadError(
-                f"'{self._header.path}': cells of band {self._number} would have elevations that "
+                f"cells of band {self._number} would have elevations that "
                 "are not finite: its scale or offset is wrong.",
-                path=self._header.path,
             )
         valid &= ~np.isin(z.astype(np.float64), self._marks)
         return np.where(valid, z, self.dtype.type(np.nan))

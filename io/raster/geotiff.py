@@ -15,6 +15,7 @@ from ...base import optional
 from ...base.errors import WriteError, choice
 from ...base.policies import OverviewMethod, RasterCompression
 from ...base.results.columns import UNKNOWN_UNIT, unit_text
+from ...base.sentences import FILE
 from ..registry.side_files import replacing_data_set
 from ..reprojection.crs_kept import require_kept
 
@@ -74,12 +75,12 @@ def write(
     """
     resampling = _choose_resampling(raster, overviews)
     choice("compression", compression, RasterCompression)
-    with replacing_data_set(path, "geotiff") as new, _translate_faults(path):
-        _write_tiles(raster, new, path, compression, progress)
+    with replacing_data_set(path, "geotiff") as new, _translate_faults():
+        _write_tiles(raster, new, compression, progress)
         factors = [] if resampling == "none" else _list_factors(raster)
         _add_overviews(raster, new, resampling, factors, compression)
-        _require_complete(new, path, factors)
-        _require_crs(raster, new, path)
+        _require_complete(new, factors)
+        _require_crs(raster, new)
 
 
 def write_cog(
@@ -96,9 +97,9 @@ def write_cog(
     The driver copies a whole raster: a GeoTIFF is written beside it first, and removed.
     """
     resampling = _choose_resampling(raster, overviews)
-    with replacing_data_set(path, "cog") as new, _translate_faults(path):
+    with replacing_data_set(path, "cog") as new, _translate_faults():
         plain = new.with_name(f"plain-{new.name}")
-        _write_tiles(raster, plain, path, _choose_draft_compression(raster), progress)
+        _write_tiles(raster, plain, _choose_draft_compression(raster), progress)
         optional.load("rasterio.shutil", f"Writing '{path}'").copy(
             os.fspath(plain),
             os.fspath(new),
@@ -112,8 +113,8 @@ def write_cog(
             **({} if resampling == "none" else {"OVERVIEW_RESAMPLING": resampling.upper()}),
         )
         plain.unlink()
-        _require_complete(new, path)
-        _require_crs(raster, new, path)
+        _require_complete(new)
+        _require_crs(raster, new)
 
 
 def _choose_resampling(raster: Raster, overviews: str | None) -> str:
@@ -136,7 +137,7 @@ def _choose_dtype(raster: Raster) -> np.dtype[Any]:
     return np.dtype(np.float64) if known.kind == "f" and known.itemsize > 8 else known
 
 
-def _choose_nodata(raster: Raster, dtype: np.dtype[Any], path: Path) -> float | None:
+def _choose_nodata(raster: Raster, dtype: np.dtype[Any]) -> float | None:
     """Return the value of cells without data; None where there is none."""
     value = raster.nodata
     if dtype.kind == "f":
@@ -150,20 +151,18 @@ def _choose_nodata(raster: Raster, dtype: np.dtype[Any], path: Path) -> float | 
     if held == value or math.isnan(value):
         return value
     raise WriteError(
-        f"Cannot write '{path}': nodata {value!r} is no value that bands of {dtype.name} can have.",
-        path=path,
+        f"Cannot write {FILE}: nodata {value!r} is no value that bands of {dtype.name} can have.",
     )
 
 
 def _write_tiles(
     raster: Raster,
     new: Path,
-    path: Path,
     compression: RasterCompression,
     progress: Tell | None,
 ) -> None:
-    rasterio = optional.load("rasterio", f"Writing '{path}'")
-    with rasterio.open(new, "w", **_make_profile(raster, path, compression)) as dataset:
+    rasterio = optional.load("rasterio", f"Writing {FILE}")
+    with rasterio.open(new, "w", **_make_profile(raster, compression)) as dataset:
         for number, name in enumerate(raster.bands, 1):
             _describe(dataset, number, raster, name)
         if raster.notes:
@@ -178,9 +177,9 @@ def _write_tiles(
                 progress(done / len(blocks))
 
 
-def _make_profile(raster: Raster, path: Path, compression: RasterCompression) -> dict[str, Any]:
+def _make_profile(raster: Raster, compression: RasterCompression) -> dict[str, Any]:
     (rows, columns), bounds, dtype = raster.shape, raster.grid.bounds, _choose_dtype(raster)
-    affine = optional.load("rasterio", f"Writing '{path}'").Affine
+    affine = optional.load("rasterio", f"Writing {FILE}").Affine
     spacing = raster.grid.spacing
     tiles = {"tiled": True, "blockxsize": _TILE, "blockysize": _TILE}
     packing = {"compress": "deflate", "predictor": _choose_predictor(dtype), "zlevel": _LEVEL}
@@ -190,9 +189,9 @@ def _make_profile(raster: Raster, path: Path, compression: RasterCompression) ->
         "height": rows,
         "count": len(raster.bands),
         "dtype": dtype.name,
-        "crs": _make_gdal_crs(raster, path),
+        "crs": _make_gdal_crs(raster),
         "transform": affine(spacing, 0.0, bounds.xmin, 0.0, -spacing, bounds.ymax),
-        "nodata": _choose_nodata(raster, dtype, path),
+        "nodata": _choose_nodata(raster, dtype),
         "interleave": "band",
         "bigtiff": "IF_SAFER",
         "num_threads": _ALL,
@@ -205,9 +204,9 @@ def _choose_predictor(dtype: np.dtype[Any]) -> int:
     return 3 if dtype.kind == "f" else 2
 
 
-def _make_gdal_crs(raster: Raster, path: Path) -> Any:
+def _make_gdal_crs(raster: Raster) -> Any:
     """Return the CRS for GDAL: as a code where it knows it, whose vertical part it keeps."""
-    rasterio = optional.load("rasterio", f"Writing '{path}'")
+    rasterio = optional.load("rasterio", f"Writing {FILE}")
     if raster.crs is None:
         return None
     try:
@@ -216,46 +215,44 @@ def _make_gdal_crs(raster: Raster, path: Path) -> Any:
         return rasterio.crs.CRS.from_wkt(raster.crs.to_wkt())
 
 
-def _require_crs(raster: Raster, new: Path, path: Path) -> None:
-    rasterio = optional.load("rasterio", f"Writing '{path}'")
+def _require_crs(raster: Raster, new: Path) -> None:
+    rasterio = optional.load("rasterio", f"Writing {FILE}")
     if raster.crs is None:
         return
     with rasterio.open(new) as dataset:
         found = None if dataset.crs is None else dataset.crs.to_wkt(version="WKT2_2019")
-    require_kept(raster.crs, found, path)
+    require_kept(raster.crs, found)
 
 
-def _require_complete(new: Path, path: Path, factors: Sequence[int] | None = None) -> None:
+def _require_complete(new: Path, factors: Sequence[int] | None = None) -> None:
     """Read every block, those of overviews too.
 
     GDAL does not say when a disk is full as it closes a file, and overviews whose directory was
     not written are none.
     """
-    rasterio = optional.load("rasterio", f"Writing '{path}'")
+    rasterio = optional.load("rasterio", f"Writing {FILE}")
     with rasterio.open(new) as dataset:
         levels = len(dataset.overviews(1))
     if factors is not None and levels != len(factors):
-        raise _describe_missing("overviews", path)
+        raise _describe_missing("overviews")
     for options in ({}, *({"overview_level": level} for level in range(levels))):
         with rasterio.open(new, num_threads=_ALL, **options) as dataset:
-            _require_blocks(dataset, path)
+            _require_blocks(dataset)
             for rows, columns in _iterate_blocks(*dataset.shape):
                 dataset.read(window=rasterio.windows.Window.from_slices(rows, columns))
 
 
-def _require_blocks(dataset: Any, path: Path) -> None:
+def _require_blocks(dataset: Any) -> None:
     """Refuse a file without the place of a block, which reads as cells without data."""
     for number in dataset.indexes:
         for (row, column), _ in dataset.block_windows(number):
             place = dataset.get_tag_item(f"BLOCK_OFFSET_{column}_{row}", "TIFF", bidx=number)
             if place is None:
-                raise _describe_missing("cells", path)
+                raise _describe_missing("cells")
 
 
-def _describe_missing(what: str, path: Path) -> WriteError:
-    return WriteError(
-        f"Cannot write '{path}': {what} are missing in the file; is the disk full?", path=path
-    )
+def _describe_missing(what: str) -> WriteError:
+    return WriteError(f"Cannot write {FILE}: {what} are missing in the file; is the disk full?")
 
 
 def _describe(dataset: Any, number: int, raster: Raster, name: str) -> None:
@@ -309,12 +306,12 @@ def _add_overviews(
 
 
 @contextmanager
-def _translate_faults(path: Path) -> Iterator[None]:
-    rasterio = optional.load("rasterio", f"Writing '{path}'")
+def _translate_faults() -> Iterator[None]:
+    rasterio = optional.load("rasterio", f"Writing {FILE}")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
             yield
     except (rasterio.errors.RasterioError, rasterio._err.CPLE_BaseError) as error:
         reason = " ".join(str(error.__cause__ or error).split()).rstrip(".")
-        raise WriteError(f"Cannot write '{path}': {reason}.", path=path) from error
+        raise WriteError(f"Cannot write {FILE}: {reason}.") from error

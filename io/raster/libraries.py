@@ -15,6 +15,7 @@ from ...base import optional
 from ...base.checks import require_type
 from ...base.errors import OptionError
 from ...base.results import Raster
+from ..door import naming_file
 from .dem import Affine, Choice, Header, make_survey
 from .gdal_child import cut_strips, describe
 
@@ -104,7 +105,8 @@ def from_raster(
         **{**(about := describe(dataset)), "transform": Affine(*about["transform"])},
     )
     choice = Choice(number, window, cells, stride, nodata, fill)
-    return make_survey(header, partial(_cut, dataset), choice, crs=crs, z_unit=z_unit)
+    with naming_file(header.path):
+        return make_survey(header, partial(_cut, dataset), choice, crs=crs, z_unit=z_unit)
 
 
 @contextmanager
@@ -121,7 +123,7 @@ def _open(raster: Any, band: int | str | None) -> tuple[Any, int | None]:
         names = [str(name) for name, one in raster.data_vars.items() if one.ndim >= 2]
         raster, band = raster[_choose_name(names, band)], None
     if isinstance(band, str):
-        raise OptionError("band", band, "a number from 1, or None")
+        raise OptionError("band", band, "a number from 1", or_none=True)
     if hasattr(raster, "dims") and hasattr(raster, "coords"):
         return _describe_array(raster, band), None
     if all(hasattr(raster, name) for name in ("read_masks", "transform", "nodatavals")):

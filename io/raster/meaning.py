@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from ...tin.screening.area_of_use import AreaOfUse
 
 if TYPE_CHECKING:
@@ -74,21 +74,20 @@ def _choose_by_words(header: Header, first: int) -> tuple[int, list[str]]:
     numbers = range(1, len(header.meanings) + 1)
     levels = [one for one in numbers if _words(header, one) & _ELEVATION]
     levels = [one for one in levels if not _words(header, one) & _ERROR]
-    path, count = header.path, header.count
+    count = header.count
     _require_one_time(header)
     if first in levels or (not levels and not _words(header, first) & _ERROR):
         if count == 1:
             return first, []
-        others = f"Band {first} of {count} is read; the option band chooses another one."
+        others = f"Band {first} of {count} is read; the option `band` chooses another one."
         return first, [others]
     if len(levels) == 1:
         label = _label(header, levels[0])
         return levels[0], [f"Band {levels[0]} of {count} is read, by its description '{label}'."]
     raise ReadError(
-        f"'{path}': band {first} of {counted(count, 'band')} is described as "
-        f"'{_label(header, first)}', which is no elevation: the option band chooses the one to "
+        f"{FILE}: band {first} of {counted(count, 'band')} is described as "
+        f"'{_label(header, first)}', which is no elevation: the option `band` chooses the one to "
         "read.",
-        path=path,
     )
 
 
@@ -97,9 +96,8 @@ def _require_one_time(header: Header) -> None:
     extra = re.findall(r"[^{},]+", header.tags.get("NETCDF_DIM_EXTRA", ""))
     if header.count > 1 and extra:
         raise ReadError(
-            f"'{header.path}' has {header.count} bands, one for each {' and '.join(extra)}: the "
+            f"{FILE} has {header.count} bands, one for each {' and '.join(extra)}: the "
             "option band chooses the one to read.",
-            path=header.path,
         )
 
 
@@ -177,9 +175,7 @@ def _find_axis_unit(header: Header) -> str | None:
     found = {"degrees" if _DEGREES.fullmatch(one.lower()) else one for one in found if one}
     if len(found) > 1:
         raise ReadError(
-            f"'{header.path}': its axes have the units {' and '.join(sorted(found))}: one for both "
-            "is needed.",
-            path=header.path,
+            f"its axes have the units {' and '.join(sorted(found))}: one for both is needed.",
         )
     return next(iter(found), None)
 

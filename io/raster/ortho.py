@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,9 @@ import numpy as np
 
 from ...base import optional
 from ...base.crs import CRS
-from ...base.errors import LossWarning, OptionError, ReadError
+from ...base.errors import OptionError, ReadError
+from ...base.notes import warn
+from ...base.sentences import FILE
 from ...terrain.viewer.ortho import Ortho
 from ..isolated import Limits, choose_limits, run_isolated
 from ..isolated.local_files import require_local
@@ -38,7 +39,6 @@ def read_ortho(
     most_pixels: int,
     transparent: str = "png",
     beyond: str = "the tints by elevation stay there",
-    stacklevel: int = 2,
 ) -> Ortho:
     """Read the picture to drape over surfaces of one CRS.
 
@@ -54,8 +54,6 @@ def read_ortho(
         Kind of picture where a part is transparent.
     beyond : str
         What becomes of the surface beyond the picture, for the sentence that tells of it.
-    stacklevel : int
-        Of the caller who is told.
 
     Raises
     ------
@@ -91,13 +89,13 @@ def read_ortho(
     gap = ortho.measure_gap(tins)
     told = [
         *value["told"],
-        *_tell_placement(path, value, tins, crs),
-        *_tell_size(path, value, most_pixels),
+        *_tell_placement(value, tins, crs),
+        *_tell_size(value, most_pixels),
     ]
     if gap > 0.0:
         told.append(f"'{path}' does not reach over {gap:.1%} of the vertices: {beyond}.")
     for sentence in told:
-        warnings.warn(sentence, LossWarning, stacklevel=stacklevel)
+        warn(sentence)
     return replace(ortho, gap=gap, told=tuple(told))
 
 
@@ -149,30 +147,28 @@ def _ask_child(
     return value, arrays
 
 
-def _tell_placement(
-    path: Path, value: dict[str, Any], tins: Sequence[TIN], crs: CRS | None
-) -> Iterator[str]:
+def _tell_placement(value: dict[str, Any], tins: Sequence[TIN], crs: CRS | None) -> Iterator[str]:
     """Yield what was done, or taken for granted, to place a picture."""
     known = CRS.of(value["crs"])
     if value["is_warped"]:
         assert known is not None
         assert crs is not None
-        yield f"'{path}' was warped from {known.label} to {crs.label}."
+        yield f"{FILE} was warped from {known.label} to {crs.label}."
         quality = reproject(tins[0].points[tins[0].triangles[0]], crs, known, unit=None).quality
         if quality.note:
             yield quality.note
     elif known is None and crs is not None:
-        yield f"'{path}' names no CRS: it is taken to be in that of the surface, {crs.label}."
+        yield f"{FILE} names no CRS: it is taken to be in that of the surface, {crs.label}."
     elif known is not None and crs is None:
-        yield f"The surface has no CRS: it is taken to be in that of '{path}', {known.label}."
+        yield f"The surface has no CRS: it is taken to be in that of {FILE}, {known.label}."
 
 
-def _tell_size(path: Path, value: dict[str, Any], most_pixels: int) -> Iterator[str]:
+def _tell_size(value: dict[str, Any], most_pixels: int) -> Iterator[str]:
     """Yield the loss of detail, where pixels were averaged."""
     width, height = value["part"]
     rows, columns = value["shape"]
     if value["is_reduced"]:
         yield (
-            f"'{path}' was made smaller, from {width} x {height} to {columns} x {rows} pixels: "
+            f"{FILE} was made smaller, from {width} x {height} to {columns} x {rows} pixels: "
             f"{most_pixels:,} in a row are the most that is drawn."
         )

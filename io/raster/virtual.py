@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...base.errors import ReadError
+from ...base.sentences import FILE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -60,13 +61,13 @@ def require_plain_sources(path: Path) -> list[Path]:
     """
     root = _parse_text(path)
     for element in root.iter():
-        _require_mosaic(element, path)
+        _require_mosaic(element)
     names = [
         (one.text or "", one.get("relativeToVRT") == "1") for one in root.iter("SourceFilename")
     ]
     sources = [_find_source(name, relative, path) for name, relative in dict.fromkeys(names)]
     for file in [path, *sources]:
-        _require_nothing_beside(file, path)
+        _require_nothing_beside(file)
     return sources
 
 
@@ -75,12 +76,12 @@ def _parse_text(path: Path) -> ET.Element:
 
     try:
         if path.stat().st_size > LARGEST_TEXT:
-            raise _describe_refused_mosaic(path, f"is larger than {LARGEST_TEXT:,} bytes")
+            raise _describe_refused_mosaic(f"is larger than {LARGEST_TEXT:,} bytes")
         content = path.read_bytes()
     except OSError as error:
         raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
     if b"<!DOCTYPE" in content or b"<!ENTITY" in content:
-        raise _describe_refused_mosaic(path, "declares entities")
+        raise _describe_refused_mosaic("declares entities")
     try:
         root = ET.fromstring(content)
     except (ET.ParseError, ValueError, LookupError) as error:
@@ -92,15 +93,13 @@ def _parse_text(path: Path) -> ET.Element:
     return root
 
 
-def _require_mosaic(element: ET.Element, path: Path) -> None:
+def _require_mosaic(element: ET.Element) -> None:
     if element.tag not in _MOSAIC:
-        raise _describe_refused_mosaic(path, f"has the element '{str(element.tag)[:60]}'")
+        raise _describe_refused_mosaic(f"has the element '{str(element.tag)[:60]}'")
     if element.get("subClass") not in _CLASSES:
-        raise _describe_refused_mosaic(
-            path, f"is of the class '{str(element.get('subClass'))[:60]}'"
-        )
+        raise _describe_refused_mosaic(f"is of the class '{str(element.get('subClass'))[:60]}'")
     if element.tag == "MDI" and element.get("key") == "OVERVIEW_FILE":
-        raise _describe_refused_mosaic(path, "names a file of overviews")
+        raise _describe_refused_mosaic("names a file of overviews")
 
 
 def _find_source(name: str, is_relative: bool, path: Path) -> Path:
@@ -111,30 +110,28 @@ def _find_source(name: str, is_relative: bool, path: Path) -> Path:
         inside = file.resolve().is_relative_to(folder.resolve())
         is_file = inside and file.is_file()
     except (OSError, ValueError):
-        raise _describe_refused_mosaic(path, f"names '{name[:200]}', no path of a file") from None
+        raise _describe_refused_mosaic(f"names '{name[:200]}', no path of a file") from None
     if not inside:
-        raise _describe_refused_mosaic(
-            path, f"names '{name[:200]}', which is not in its folder or below"
-        )
+        raise _describe_refused_mosaic(f"names '{name[:200]}', which is not in its folder or below")
     if not is_file:
         raise ReadError(
             f"'{path}' is made of '{name[:200]}', and there is no such file.", path=path
         )
     if is_virtual(file) or _read_start(file).lstrip().startswith((b"<", b"{", b"\xef\xbb\xbf<")):
         raise _describe_refused_mosaic(
-            path, f"names '{name[:200]}', which is itself a text of references"
+            f"names '{name[:200]}', which is itself a text of references"
         )
     return file
 
 
-def _require_nothing_beside(file: Path, path: Path) -> None:
+def _require_nothing_beside(file: Path) -> None:
     """Refuse files beside a raster (overviews, masks, metadata) that name other files."""
     for beside in _find_files_beside(file):
         head = _read_start(beside)
         is_text = beside.suffix != ".xml" and head.lstrip().startswith(b"<")
         if is_text or any(reference in head for reference in _REFERENCES):
             raise _describe_refused_mosaic(
-                path, f"has the file '{beside.name}' beside it, which names other files"
+                f"has the file '{beside.name}' beside it, which names other files"
             )
 
 
@@ -150,9 +147,8 @@ def _read_start(file: Path) -> bytes:
         return opened.read(_HEAD)
 
 
-def _describe_refused_mosaic(path: Path, what: str) -> ReadError:
+def _describe_refused_mosaic(what: str) -> ReadError:
     return ReadError(
-        f"'{path}' {what}: a virtual raster is read if it is a mosaic of plain rasters in its own "
+        f"{FILE} {what}: a virtual raster is read if it is a mosaic of plain rasters in its own "
         "folder or below; make a GeoTIFF of any other.",
-        path=path,
     )

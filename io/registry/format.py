@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
 from ...base import optional
-from ...base.errors import FormatError
+from ...base.errors import FormatError, UnknownOptionError
 from ...base.plug_ins import describe_failure
 
 if TYPE_CHECKING:
@@ -248,8 +248,4 @@ def require_options(
     unknown = [name for name in options if name not in accepted]
     if not unknown:
         return
-    there_are = f"its options are {', '.join(allowed)}" if allowed else "it has no options"
-    raise FormatError(
-        f"Unknown option '{unknown[0]}' to {action} the format {chosen.name}: {there_are}.",
-        known=allowed,
-    )
+    raise UnknownOptionError(unknown[0], action, chosen.name, allowed)

@@ -144,7 +144,7 @@ def _is_clear(claims: Sequence[Format]) -> bool:
 def _describe_clash(claims: Sequence[Format], what: str) -> FormatError:
     listed = ", ".join(f"{one.name} ({one.distribution})" for one in claims)
     return FormatError(
-        f"{what} is claimed by {len(claims)} formats: {listed}; the option format names one.",
+        f"{what} is claimed by {len(claims)} formats: {listed}; the option `format` names one.",
         known=tuple(one.name for one in claims),
     )
 
@@ -180,7 +180,7 @@ def _describe_unknown_suffix(path: Path, action: str) -> FormatError:
     return FormatError(
         f"'{path}' {suffix}: {list_suffixes(action)} can be "
         f"{'read' if action == 'read' else 'written'}; "
-        "the option format names one whatever the suffix.",
+        "the option `format` names one whatever the suffix.",
         known=find_suffixes(action),
     )
 

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import re
-import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.errors import LossWarning
+from ...base.notes import warn
 from ...base.results import Features
-from ...base.sentences import counted, shown
+from ...base.sentences import FILE, counted, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-    from pathlib import Path
 
     from ...base.arrays import AnyArray
     from ...tin import Survey
@@ -34,25 +32,23 @@ _BREAKS = re.compile("[\r\n\x00]+")
 _PLURALS = {"boundary": "boundaries", "water body": "water bodies"}
 
 
-def tell_lost_attributes(names: Iterable[str], path: Path, reason: str) -> None:
+def tell_lost_attributes(names: Iterable[str], reason: str) -> None:
     """Warn of attributes of points that a file does not hold, and why, if there are any."""
     lost = ", ".join(names)
     if lost:
-        warnings.warn(
-            f"'{path}' does not hold the attributes {lost}: {reason}.", LossWarning, stacklevel=4
-        )
+        warn(f"{FILE} does not hold the attributes {lost}: {reason}.")
 
 
 def select_attributes(
-    attributes: Mapping[str, Any], names: tuple[str, ...], path: Path, reason: str
+    attributes: Mapping[str, Any], names: tuple[str, ...], reason: str
 ) -> dict[str, AnyArray]:
     """Return the attributes of points that a format holds, on one line each; tell of the others."""
-    tell_lost_attributes((name for name in attributes if name not in names), path, reason)
+    tell_lost_attributes((name for name in attributes if name not in names), reason)
     held = {name: attributes[name] for name in names if name in attributes}
-    return keep_on_one_line(held, path)
+    return keep_on_one_line(held)
 
 
-def keep_on_one_line(columns: Mapping[str, Any], path: Path) -> dict[str, AnyArray]:
+def keep_on_one_line(columns: Mapping[str, Any]) -> dict[str, AnyArray]:
     """Return columns with blanks in the place of line breaks within texts, and tell of them."""
     kept: dict[str, AnyArray] = {}
     broken = []
@@ -65,15 +61,11 @@ def keep_on_one_line(columns: Mapping[str, Any], path: Path) -> dict[str, AnyArr
             broken.append(name)
         kept[name] = values
     if broken:
-        warnings.warn(
-            f"'{path}': line breaks within the texts of {', '.join(broken)} became blanks.",
-            LossWarning,
-            stacklevel=4,
-        )
+        warn(f"{FILE}: line breaks within the texts of {', '.join(broken)} became blanks.")
     return kept
 
 
-def tell_formulas(columns: Mapping[str, Any], path: Path) -> None:
+def tell_formulas(columns: Mapping[str, Any]) -> None:
     """Warn of texts that spreadsheets compute as formulas; numbers written as texts are none."""
     found = [
         text
@@ -83,11 +75,9 @@ def tell_formulas(columns: Mapping[str, Any], path: Path) -> None:
         if isinstance(text, str) and _FORMULA.match(text) and not _is_number(text)
     ]
     if found:
-        warnings.warn(
-            f"'{path}': {counted(len(found), 'text')} begin with =, +, - or @, which spreadsheets "
-            f"compute as formulas (first: {shown(found[0])}): import these columns as text.",
-            LossWarning,
-            stacklevel=4,
+        warn(
+            f"{FILE}: {counted(len(found), 'text')} begin with =, +, - or @, which spreadsheets "
+            f"compute as formulas (first: {shown(found[0])}): import these columns as text."
         )
 
 
@@ -99,7 +89,7 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def tell_lost_lines(survey: Survey, chosen: Format, file: Path) -> None:
+def tell_lost_lines(survey: Survey, chosen: Format) -> None:
     """Warn of lines of a survey that the format does not hold."""
     counts = {
         "breakline": len(survey.breaklines),
@@ -112,15 +102,13 @@ def tell_lost_lines(survey: Survey, chosen: Format, file: Path) -> None:
     names = counts if all_lost else ("erased area",) if "erased areas" in chosen.loses else ()
     lost = [counted(counts[name], name, _PLURALS.get(name, "")) for name in names if counts[name]]
     if lost:
-        warnings.warn(
-            f"'{file}' does not hold the lines of the survey ({', '.join(lost)}): the format "
-            f"{chosen.name} has no place for them.",
-            LossWarning,
-            stacklevel=3,
+        warn(
+            f"{FILE} does not hold the lines of the survey ({', '.join(lost)}): the format "
+            f"{chosen.name} has no place for them."
         )
 
 
-def tell_unknown_elevations(obj: object, path: Path) -> None:
+def tell_unknown_elevations(obj: object) -> None:
     """Warn of features with vertices of unknown elevation, where a file has all or none of them."""
     if not isinstance(obj, Features) or not obj.has_elevations:
         return
@@ -132,4 +120,4 @@ def tell_unknown_elevations(obj: object, path: Path) -> None:
             else f"lines with {counted(count, 'vertex', 'vertices')} of unknown elevation lost "
             "all their elevations"
         )
-        warnings.warn(f"'{path}': {what}.", LossWarning, stacklevel=4)
+        warn(f"{FILE}: {what}.")

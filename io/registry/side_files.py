@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from ...base.atomic import replacing_files
 from ...base.crs import CRS
 from ...base.errors import CrsError, ReadError, WriteError
+from ...base.sentences import FILE
 from .lookup import find_format, known_formats, list_claims
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ def replacing_data_set(path: Path, name: str) -> Iterator[Path]:
             there = target.with_name(target.stem + part)
             owner = _find_owner(there, target) if there.exists() else None
             if owner is not None:
-                _require_same(new.with_name(new.stem + part), there, owner, path)
+                _require_same(new.with_name(new.stem + part), there, owner)
                 parts.remove(part)
 
 
@@ -113,15 +114,14 @@ def _list_readers(path: Path) -> list[Format]:
     return list_claims([one for one in known_formats() if one.read is not None], path)
 
 
-def _require_same(made: Path, there: Path, owner: Path, path: Path) -> None:
+def _require_same(made: Path, there: Path, owner: Path) -> None:
     """Refuse to replace a side file of another data set; one that says the same is not written."""
     if made.exists() and _are_same(made, there):
         made.unlink()
         return
     raise WriteError(
-        f"Cannot write '{path}': '{there.name}' beside it would be replaced, which belongs to "
+        f"Cannot write {FILE}: '{there.name}' beside it would be replaced, which belongs to "
         f"'{owner.name}'; give the output another name.",
-        path=path,
     )
 
 

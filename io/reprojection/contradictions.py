@@ -19,7 +19,6 @@ from ...tin.screening.area_of_use import AreaOfUse
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
     from ...base.arrays import Float64Array
     from ...base.crs import CRS
@@ -59,7 +58,7 @@ def checking_crs(is_checked: bool) -> Iterator[None]:
         _IS_CHECKED.reset(token)
 
 
-def refuse(sentence: str, path: Path, crs: CRS | None = None) -> str:
+def refuse(sentence: str, crs: CRS | None = None) -> str:
     """Refuse a contradiction; return it as a note where the caller wants no refusal.
 
     Raises
@@ -68,11 +67,11 @@ def refuse(sentence: str, path: Path, crs: CRS | None = None) -> str:
     """
     if not _IS_CHECKED.get():
         return f"{sentence}."
-    raise CrsError(f"'{path}': {sentence}; check_crs=False takes them as they are.", crs=crs)
+    raise CrsError(f"{sentence}; `check_crs=False` takes them as they are.", crs=crs)
 
 
 def look_at_crs(
-    points: Float64Array, crs: CRS | None, path: Path, *, is_declared: bool = False
+    points: Float64Array, crs: CRS | None, *, is_declared: bool = False
 ) -> tuple[str, ...]:
     """Compare points, (n, 3), that stay where they are with their CRS.
 
@@ -84,7 +83,7 @@ def look_at_crs(
         As :func:`look_at_degrees` and :func:`look_at_place`.
     """
     order = look_at_order(points, crs) if is_declared else ()
-    return (*look_at_degrees(points, crs, path), *look_at_place(points, crs, None, path), *order)
+    return (*look_at_degrees(points, crs), *look_at_place(points, crs, None), *order)
 
 
 def look_at_order(points: Float64Array, crs: CRS | None) -> tuple[str, ...]:
@@ -105,9 +104,7 @@ def look_at_order(points: Float64Array, crs: CRS | None) -> tuple[str, ...]:
     )
 
 
-def look_at_place(
-    points: Float64Array, source: CRS | None, target: CRS | None, path: Path
-) -> tuple[str, ...]:
+def look_at_place(points: Float64Array, source: CRS | None, target: CRS | None) -> tuple[str, ...]:
     """Tell how many points lie outside the areas of use.
 
     Parameters
@@ -116,7 +113,6 @@ def look_at_place(
         As they are in the file.
     source, target : CRS or None
         Of the file, and the one that is wanted.
-    path : Path
 
     Raises
     ------
@@ -139,7 +135,7 @@ def look_at_place(
         return (f"{told}: check that the CRS is the right one.",)
     exchanged = f"{told} and, with easting and northing exchanged, inside"
     if 2 * len(outside) > len(points):
-        return (refuse(f"{exchanged}: the coordinates are in the other order", path, area.source),)
+        return (refuse(f"{exchanged}: the coordinates are in the other order", area.source),)
     return (f"{exchanged}: check the order of the coordinates.",)
 
 
@@ -157,7 +153,7 @@ def are_small_degrees(points: Float64Array, crs: CRS) -> bool:
     return area is not None and area.is_local(xy) and area.covers_as_degrees(xy)
 
 
-def look_at_degrees(points: Float64Array, crs: CRS | None, path: Path) -> tuple[str, ...]:
+def look_at_degrees(points: Float64Array, crs: CRS | None) -> tuple[str, ...]:
     """Look for longitudes and latitudes under a CRS that measures in lengths.
 
     Parameters
@@ -166,7 +162,6 @@ def look_at_degrees(points: Float64Array, crs: CRS | None, path: Path) -> tuple[
         As they are in the file.
     crs : CRS or None
         Of the coordinates, as the file or the caller says.
-    path : Path
 
     Raises
     ------
@@ -187,13 +182,13 @@ def look_at_degrees(points: Float64Array, crs: CRS | None, path: Path) -> tuple[
             f"the points lie outside the area of use of {area.label} and, as longitude and "
             f"latitude in degrees, inside ({first}): the CRS of the file is to be one in degrees"
         )
-        return (refuse(told, path, crs),)
+        return (refuse(told, crs),)
     if area.covers_as_degrees(points[:, [1, 0]]):
         told = (
             f"the points lie outside the area of use of {area.label} and, as latitude and "
             f"longitude in degrees, inside ({first}): the coordinates are in the other order"
         )
-        return (refuse(told, path, crs),)
+        return (refuse(told, crs),)
     return (_describe_local(crs, first),)
 
 

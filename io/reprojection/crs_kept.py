@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import TYPE_CHECKING
 
 from ...base.crs import CRS
-from ...base.errors import CrsError, LossWarning, WriteError
+from ...base.errors import CrsError, WriteError
+from ...base.notes import warn
+from ...base.sentences import FILE
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    pass
 
 __all__ = ["require_kept"]
 
 
-def require_kept(crs: CRS | None, found: str | None, path: Path) -> None:
+def require_kept(crs: CRS | None, found: str | None) -> None:
     """Compare a CRS with the one that was read back.
 
     Parameters
@@ -23,7 +24,6 @@ def require_kept(crs: CRS | None, found: str | None, path: Path) -> None:
         As it was written.
     found : str or None
         WKT as GDAL reads it back.
-    path : Path
 
     Raises
     ------
@@ -40,16 +40,13 @@ def require_kept(crs: CRS | None, found: str | None, path: Path) -> None:
     kept = _parse(found)
     if kept is None or _find_units(kept) != _find_units(crs):
         raise WriteError(
-            f"Cannot write '{path}': the format does not keep the CRS {crs.label}, it would be "
+            f"Cannot write {FILE}: the format does not keep the CRS {crs.label}, it would be "
             f"{'none' if kept is None else kept.name}; name its horizontal part alone.",
-            path=path,
         )
     if not kept.to_pyproj().equals(crs.to_pyproj(), ignore_axis_order=True):
-        warnings.warn(
-            f"'{path}' has the CRS as the format can describe it, '{kept.name}', which PROJ does "
-            f"not take for the same as {crs.label}.",
-            LossWarning,
-            stacklevel=4,
+        warn(
+            f"{FILE} has the CRS as the format can describe it, '{kept.name}', which PROJ does "
+            f"not take for the same as {crs.label}."
         )
 
 

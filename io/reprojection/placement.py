@@ -8,13 +8,11 @@ import numpy as np
 
 from ...base.crs import CRS, require_same_unit
 from ...base.errors import CrsError, ReadError
-from ...base.sentences import coordinate
+from ...base.sentences import FILE, coordinate
 from .contradictions import are_small_degrees, look_at_degrees, look_at_order, look_at_place
 from .transformation import convert_elevations, find_utm_zone, reproject, transform_points
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ...base.arrays import Float64Array
     from ...base.crs import Unit
 
@@ -48,7 +46,6 @@ def place(
     *,
     source: CRS | None,
     target: CRS | None,
-    path: Path,
     unit: Unit | None = None,
     looks_at_area: bool = True,
     looks_at_order: bool | None = None,
@@ -77,18 +74,15 @@ def place(
         )
     wanted = target if target is not None else source
     if wanted is not None and wanted.is_geographic:
-        _refuse_degrees(points, wanted, source or wanted, path)
-    outside = look_at_place(points, source, target, path) if looks_at_area else ()
+        _refuse_degrees(points, wanted, source or wanted)
+    outside = look_at_place(points, source, target) if looks_at_area else ()
     is_open = source is None and (looks_at_area if looks_at_order is None else looks_at_order)
     order = look_at_order(points, target) if is_open else ()
-    told = (*notes, *(outside or look_at_degrees(points, source or target, path)), *order)
+    told = (*notes, *(outside or look_at_degrees(points, source or target)), *order)
     if source is None or wanted is None or source.is_same(wanted):
         placed = _keep_in_place(points, wanted, unit)
         return placed._replace(notes=(*told, *placed.notes), told=told)
-    try:
-        moved = reproject(points, source, wanted, unit=unit)
-    except CrsError as error:
-        raise CrsError(f"'{path}': {error}", crs=wanted) from error
+    moved = reproject(points, source, wanted, unit=unit)
     return Placed(moved.points, wanted, moved.unit, (*told, *moved.notes), told)
 
 
@@ -101,7 +95,7 @@ def _keep_in_place(points: Float64Array, crs: CRS | None, unit: Unit | None) -> 
     return Placed(convert_elevations(points, unit, vertical), crs, vertical, (note,))
 
 
-def settle_unit(declared: Unit | None, found: Unit | None, path: Path) -> Unit | None:
+def settle_unit(declared: Unit | None, found: Unit | None) -> Unit | None:
     """Return the unit of a file's elevations: what the file says, else what the caller declares.
 
     Raises
@@ -110,22 +104,21 @@ def settle_unit(declared: Unit | None, found: Unit | None, path: Path) -> Unit |
         If the two differ.
     """
     if declared is not None and found is not None:
-        require_same_unit(found, declared, f"as '{path}' itself says")
+        require_same_unit(found, declared, f"as {FILE} itself says")
     return declared if found is None else found
 
 
-def _refuse_degrees(points: Float64Array, wanted: CRS, source: CRS, path: Path) -> NoReturn:
-    _require_degrees(points, source, path)
+def _refuse_degrees(points: Float64Array, wanted: CRS, source: CRS) -> NoReturn:
+    _require_degrees(points, source)
     suggestion = _suggest_zone(points, source)
-    fitting = f"crs='{suggestion}'" if suggestion else "the option crs"
+    fitting = f"`crs='{suggestion}'`" if suggestion else "the option `crs`"
     raise DegreesError(
-        f"'{path}': {wanted.label} measures in degrees, and a TIN needs a projected CRS: "
+        f"{wanted.label} measures in degrees, and a TIN needs a projected CRS: "
         f"give {fitting} to reproject from longitude and latitude.",
-        path=path,
     )
 
 
-def _require_degrees(points: Float64Array, source: CRS, path: Path) -> None:
+def _require_degrees(points: Float64Array, source: CRS) -> None:
     """Refuse coordinates that are in degrees by their CRS, and cannot be."""
     if not source.is_geographic or len(points) == 0:
         return
@@ -133,7 +126,7 @@ def _require_degrees(points: Float64Array, source: CRS, path: Path) -> None:
     if (np.abs(middle) > _MOST_DEGREES).any():
         x, y = middle.tolist()
         raise CrsError(
-            f"'{path}' is in {source.label}, in degrees, by what it says, and its coordinates, "
+            f"{FILE} is in {source.label}, in degrees, by what it says, and its coordinates, "
             f"about ({coordinate(x)}, {coordinate(y)}), are none: the CRS of the file is "
             "another one.",
             crs=source,

@@ -101,7 +101,9 @@ def reproject(
 def _settle_unit(surface: TIN | Survey, declared: Unit | None) -> Unit | None:
     own = surface.elevation_unit
     if own is not None and declared is not None and own != declared:
-        raise OptionError("unit of elevations", declared.name, f"{own.name}, as the points have")
+        raise OptionError(
+            "z_unit", declared.name, f"{own.name}, as the points have", what="unit of elevations"
+        )
     return own or declared
 
 

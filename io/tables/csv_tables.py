@@ -12,6 +12,7 @@ from ...base.atomic import replacing
 from ...base.errors import FormatError
 from ...base.results import Features, Table
 from ...base.results.columns import unit_text
+from ...base.sentences import FILE
 from ..registry.losses import tell_formulas
 
 if TYPE_CHECKING:
@@ -41,10 +42,10 @@ def write(obj: Table | Features, path: Path, *, progress: Tell | None = None) ->
     as the same float64; NaN and missing texts are empty. Lines end with CR LF, as RFC 4180 has it.
     Notes and the CRS have no place in a CSV.
     """
-    table = obj if isinstance(obj, Table) else _require_points(obj, path)
+    table = obj if isinstance(obj, Table) else _require_points(obj)
     names = [header_text(name, table.units) for name in table.columns]
     columns = list(table.columns.values())
-    tell_formulas(table.columns, path)
+    tell_formulas(table.columns)
     delimiter = "\t" if path.suffix.lower() == ".tsv" else ","
     with replacing(path, binary=False) as file:
         writer = csv.writer(file, delimiter=delimiter, lineterminator="\r\n")
@@ -63,18 +64,18 @@ def header_text(name: str, units: Units) -> str:
     return f"{name} ({unit})" if unit else name
 
 
-def _require_points(features: Features, path: Path) -> Table:
+def _require_points(features: Features) -> Table:
     """Return points as a table, or refuse features that cannot be one."""
     if features.kind != "points":
         raise FormatError(
-            f"Cannot write '{path}': CSV holds points, not {features.kind}; GeoJSON and GeoPackage "
+            f"Cannot write {FILE}: CSV holds points, not {features.kind}; GeoJSON and GeoPackage "
             "hold them."
         )
     axes = _AXES[: features.coordinates.shape[1]]
     taken = [name for name in axes if name in features.columns]
     if taken:
         raise FormatError(
-            f"Cannot write '{path}': the points have a coordinate and a column that are both "
+            f"Cannot write {FILE}: the points have a coordinate and a column that are both "
             f"called '{taken[0]}': rename the column."
         )
     return tabulate_points(features)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base import optional
 from ...base.errors import OptionError, ReadError
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from ..cad.dxf.drawing import Drawing, read_drawing
 from ..cad.dxf.names import ELEVATION_PROPERTY, UNKNOWN
 
@@ -71,14 +71,14 @@ def read_drawing_features(
         drawing = read_drawing(path, layer=None if layer == _WHOLE else layer)
     except OptionError as error:
         raise ReadError(
-            f"'{path}' has no layer '{layer}' with lines: there must be {error.allowed}.", path=path
+            f"{FILE} has no layer '{layer}' with lines: there must be {error.allowed}."
         ) from error
     shapes, columns = _gather_shapes(drawing, lines_only=lines_only)
     notes = _describe_rest(drawing, lines_only=lines_only)
-    kept = np.arange(len(shapes)) if where is None else _select_rows(columns, where, path)
+    kept = np.arange(len(shapes)) if where is None else _select_rows(columns, where)
     if len(kept) == 0:
         part = f" where {where}" if where is not None else " that are lines" * lines_only
-        raise ReadError(f"'{path}' has no features{part}.", path=path)
+        raise ReadError(f"{FILE} has no features{part}.")
     return DrawnFeatures(
         kept,
         shapes[kept],
@@ -132,7 +132,7 @@ def _describe_rest(drawing: Drawing, *, lines_only: bool) -> list[str]:
     return notes
 
 
-def _select_rows(columns: dict[str, AnyArray], where: str, path: Path) -> Int64Array:
+def _select_rows(columns: dict[str, AnyArray], where: str) -> Int64Array:
     """Return the rows that a condition chooses, by SQLite on a table in memory."""
     names = ", ".join(columns)
     rows = zip(*(column.tolist() for column in columns.values()), strict=True)
@@ -146,6 +146,5 @@ def _select_rows(columns: dict[str, AnyArray], where: str, path: Path) -> Int64A
             return np.array([row[0] - 1 for row in found], np.int64)
         except (sqlite3.Error, sqlite3.Warning) as error:
             raise ReadError(
-                f"'{path}': the condition {where!r} is none on the columns {names}: {error}.",
-                path=path,
+                f"the condition {where!r} is none on the columns {names}: {error}."
             ) from error

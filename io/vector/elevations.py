@@ -8,7 +8,7 @@ import numpy as np
 
 from ...base.crs import FOOT, US_SURVEY_FOOT, Unit
 from ...base.errors import OptionError, ReadError
-from ...base.sentences import counted, height
+from ...base.sentences import FILE, counted, height
 from ..delimited.columns import find_role, find_unit_word
 from ..reprojection.placement import settle_unit
 
@@ -59,7 +59,7 @@ def find_elevation_unit(features: Features, declared: Unit | None) -> Unit | Non
     except OptionError:  # such as "unknown", which is what we write
         told = None
     vertical = None if features.crs is None else features.crs.vertical_unit
-    return settle_unit(declared, told or vertical, features.path)
+    return settle_unit(declared, told or vertical)
 
 
 def list_elevation_columns(features: Features) -> list[str]:
@@ -151,21 +151,16 @@ def _take_asked(
     column = features.find_column(name)
     if column is None and name.lower() == GEOMETRY:
         if not has_z.any():
-            raise ReadError(
-                f"'{features.path}' has no elevations in its geometry.", path=features.path
-            )
+            raise ReadError(f"{FILE} has no elevations in its geometry.")
         return Elevations(_require_all(features, z, has_z, rows))
     if column is None:
         known = ", ".join(features.names) or "none"
-        raise OptionError("z_field", name, f"a column of '{features.path}' ({known}) or geometry")
+        raise OptionError("z_field", name, f"a column of {FILE} ({known}) or geometry")
     values = _as_numbers(column)
     if values is None:
-        raise OptionError("z_field", name, f"a column of numbers in '{features.path}'")
+        raise OptionError("z_field", name, f"a column of numbers in {FILE}")
     if np.isnan(values).all():
-        raise ReadError(
-            f"'{features.path}': the column '{name}' has no value that is a number.",
-            path=features.path,
-        )
+        raise ReadError(f"the column '{name}' has no value that is a number.")
     return Elevations(values[rows], find_named_unit(name, features))
 
 
@@ -180,11 +175,10 @@ def _require_all(
     if missing.any():
         row = int(rows[np.argmax(missing)])
         raise ReadError(
-            f"'{features.path}': {counted(int(missing.sum()), 'vertex', 'vertices')} of "
+            f"{counted(int(missing.sum()), 'vertex', 'vertices')} of "
             f"{len(z):,} without an elevation (first: feature {features.numbers[row]}), while "
-            "others have one in the geometry: the option where leaves features out, z_field names "
-            "a column.",
-            path=features.path,
+            "others have one in the geometry: the option `where` leaves features out, `z_field` "
+            "names a column."
         )
     return z
 
@@ -223,18 +217,16 @@ def _take_column(
     if not columns:
         known = ", ".join(features.names)
         raise ReadError(
-            f"'{features.path}' has no elevations: none in the geometry, and "
+            f"{FILE} has no elevations: none in the geometry, and "
             + (f"no column of numbers with such a name ({known}): " if known else "no column: ")
-            + " ".join(("the option z_field names the column that holds them.", *features.notes)),
-            path=features.path,
+            + " ".join(("the option `z_field` names the column that holds them.", *features.notes))
         )
     name, values = next(iter(columns.items()))
     for other, others in columns.items():
         if not np.array_equal(values, others, equal_nan=True):
             raise ReadError(
-                f"'{features.path}' has several columns that may hold elevations, and they "
-                f"differ: {', '.join(columns)}; the option z_field chooses ({name} or {other}).",
-                path=features.path,
+                f"{FILE} has several columns that may hold elevations, and they "
+                f"differ: {', '.join(columns)}; the option `z_field` chooses ({name} or {other})."
             )
     unit = find_named_unit(name, features)
     told = "" if unit is None else f", in {unit.name} as its name says"
@@ -255,10 +247,9 @@ def _require_same(
     if differs.any():
         first = int(np.argmax(differs))
         raise ReadError(
-            f"'{features.path}' has two elevations for each point that differ: "
+            f"{FILE} has two elevations for each point that differ: "
             f"{height(z[first])} in "
             f"the geometry and {height(values[first])} in the column '{name}' (feature "
-            f"{features.numbers[rows[first]]}): the option z_field chooses, '{GEOMETRY}' or "
-            f"'{name}'.",
-            path=features.path,
+            f"{features.numbers[rows[first]]}): the option `z_field` chooses, '{GEOMETRY}' or "
+            f"'{name}'."
         )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import struct
 from typing import TYPE_CHECKING, Any
 
@@ -10,8 +9,8 @@ import numpy as np
 
 from ...base import optional
 from ...base.crs import CRS
-from ...base.errors import CrsError, OptionError, ReadError
-from ...base.sentences import counted
+from ...base.errors import OptionError, ReadError
+from ...base.sentences import FILE, counted
 from ...tin import TIN
 from ..cad.signatures import is_dxf, is_landxml
 from ..isolated import choose_limits, run_isolated
@@ -83,25 +82,22 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
     library = "pyarrow" if is_parquet(content) else "pyogrio"
     optional.require(library, "Reading vector files")
     head = read_json_members(content, path)
-    where_it_is = {"path": os.path.abspath(path), "shown": str(path)}  # noqa: PTH100 - links stay
     child = "parquet_child" if is_parquet(content) else "gdal_child"
     value, arrays = run_isolated(
         f"{__package__}.{child}:read_features",
-        {**where_it_is, "layer": layer, "where": where},
+        {"path": str(path.absolute()), "layer": layer, "where": where},
         path=path,
         limits=choose_limits(_measure_folder(path)),
     )
     if len(arrays["numbers"]) == 0:
-        raise ReadError(
-            f"'{path}' has no features{_describe_part(value['layer'], where)}.", path=path
-        )
-    crs = None if head.names_no_crs else _find_file_crs(value["crs"], path)
+        raise ReadError(f"{FILE} has no features{_describe_part(value['layer'], where)}.")
+    crs = None if head.names_no_crs else CRS.of(value["crs"])
     in_metres = head.is_json and crs is not None and crs.is_geographic  # by RFC 7946
     unit = value["elevation_unit"] or head.elevation_unit or ("metre" if in_metres else "")
     found = Features(
         path,
         arrays["numbers"],
-        _parse_shapes(arrays, path, has_surfaces=not lines_only),
+        _parse_shapes(arrays, has_surfaces=not lines_only),
         _decode_columns(value, arrays),
         crs,
         tuple(value.get("notes", ())),
@@ -121,7 +117,7 @@ def _read_design(path: Path, layer: str | None, where: str | None) -> Features:
     lines = [] if isinstance(found, TIN) else [*found.breaklines]
     if isinstance(found, TIN) or not lines:
         what = "a surface" if isinstance(found, TIN) else "points"
-        raise ReadError(f"'{path}' holds {what}, and no contours or breaklines.", path=path)
+        raise ReadError(f"{FILE} holds {what}, and no contours or breaklines.")
     shapely = optional.load("shapely")
     coords = [np.asarray(getattr(line, "coords", line)) for line in lines]
     shapes = np.empty(len(coords), object)
@@ -162,13 +158,6 @@ def _drop_heights_above_ground(features: Features) -> Features:
     return features._replace(geometries=shapes, notes=(*features.notes, note))
 
 
-def _find_file_crs(text: str | None, path: Path) -> CRS | None:
-    try:
-        return CRS.of(text)
-    except CrsError as error:
-        raise CrsError(f"'{path}': {error}", crs=text) from error
-
-
 def _decode_columns(value: dict[str, Any], arrays: dict[str, AnyArray]) -> dict[str, AnyArray]:
     """Return the columns by their names in lower case, see :func:`name_columns`."""
     columns = {}
@@ -192,21 +181,19 @@ def _require_whole_file(path: Path) -> bytes:
         if path.is_dir():
             if path.suffix.lower() in _FOLDERS:
                 return b""
-            raise ReadError(f"'{path}' is a folder: name a file in it.", path=path)
+            raise ReadError(f"{FILE} is a folder: name a file in it.")
         size = path.stat().st_size
         with path.open("rb") as file:
             head = file.read(HEAD_BYTES)
     if size == 0:
-        raise ReadError(f"'{path}' is empty: there are no lines in it.", path=path)
+        raise ReadError(f"{FILE} is empty: there are no lines in it.")
     kind = find_reference_kind(head)
     if kind is not None:
-        raise ReadError(f"'{path}' is {kind}: only files of lines themselves are read.", path=path)
+        raise ReadError(f"{FILE} is {kind}: only files of lines themselves are read.")
     if head.startswith(_SHAPEFILE) and len(head) >= 28:
         (words,) = struct.unpack(">i", head[24:28])  # the length is counted in 16-bit words
         if size < 2 * words:
-            raise ReadError(
-                f"'{path}' is cut short: it has {size} of {2 * words} bytes.", path=path
-            )
+            raise ReadError(f"{FILE} is cut short: it has {size} of {2 * words} bytes.")
     if head.startswith(_SHAPEFILE):
         _require_index(path)
     return head
@@ -218,9 +205,8 @@ def _require_index(path: Path) -> None:
         path.with_suffix(one).exists() for one in (".shx", ".SHX")
     ):
         raise ReadError(
-            f"'{path}' lacks its part '{path.with_suffix('.shx').name}', without which GDAL does "
-            "not read it: put it beside, or let QGIS repair the file.",
-            path=path,
+            f"{FILE} lacks its part '{path.with_suffix('.shx').name}', without which GDAL does "
+            "not read it: put it beside, or let QGIS repair the file."
         )
 
 
@@ -228,7 +214,7 @@ def _describe_part(layer: str, where: str | None) -> str:
     return f" in layer '{layer}'" if where is None else f" where {where}"
 
 
-def _parse_shapes(arrays: dict[str, AnyArray], path: Path, *, has_surfaces: bool) -> ObjectArray:
+def _parse_shapes(arrays: dict[str, AnyArray], *, has_surfaces: bool) -> ObjectArray:
     """Return geometries of shapely; TINs and the like as polygons where surfaces may be."""
     shapely = optional.load("shapely")
     wkb, lengths = arrays["wkb"].tobytes(), arrays["lengths"]
@@ -244,9 +230,8 @@ def _parse_shapes(arrays: dict[str, AnyArray], path: Path, *, has_surfaces: bool
             wrong = shapely.is_missing(shapes) & (lengths >= 0)
     if wrong.any():
         raise ReadError(
-            f"'{path}': feature {arrays['numbers'][np.argmax(wrong)]} has a geometry of another "
-            "kind: lines or polygons are needed.",
-            path=path,
+            f"feature {arrays['numbers'][np.argmax(wrong)]} has a geometry of another "
+            "kind: lines or polygons are needed."
         )
     return shapes
 
@@ -258,10 +243,7 @@ def _drop_without_geometry(features: Features) -> Features:
     if not is_empty.any():
         return features
     if is_empty.all():
-        raise ReadError(
-            f"'{features.path}': of {counted(len(is_empty), 'feature')}, none has a geometry.",
-            path=features.path,
-        )
+        raise ReadError(f"of {counted(len(is_empty), 'feature')}, none has a geometry.")
     count, first = int(is_empty.sum()), features.numbers[np.argmax(is_empty)]
     have = "feature has" if count == 1 else "features have"
     return features._replace(

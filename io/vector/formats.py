@@ -63,7 +63,7 @@ FORMATS = (
         "geojsonseq",
         "Sequence of GeoJSON features, one per line (RFC 8142 without its separators)",
         *(".geojsonl", ".geojsons", ".ndjson"),
-        writer="surface_layers:write_geojson_sequence",
+        writer="geojson.features:write_feature_lines",
         precision="Longitude and latitude with 9 decimals, elevations in metres with 6.",
         rounding=2e-4,
         losses="CRS, units and notes: name the CRS when reading. " + _LOSSES,
@@ -71,7 +71,7 @@ FORMATS = (
     ),
     _make(
         *("gpkg", "GeoPackage", ".gpkg"),
-        writer="surface_layers:write_geopackage",
+        writer="geopackage:write",
         writes=("Features", "Survey"),
         losses="Of a survey its lines.",
         loses=("survey lines",),
@@ -81,13 +81,13 @@ FORMATS = (
     ),
     _make(
         *("flatgeobuf", "FlatGeobuf", ".fgb"),
-        writer="surface_layers:write_flatgeobuf",
+        writer="flatgeobuf:write",
         extra="vector",
         sniff=is_flatgeobuf,
     ),
     _make(
         *("shapefile", "Shapefile (with its parts .shx, .dbf, .prj, .cpg)", ".shp"),
-        writer="surface_layers:write_shapefile",
+        writer="shapefile:write",
         precision="Coordinates are kept bit for bit; other numbers have at most 15 decimals.",
         losses="Names beyond 10 bytes, texts beyond 254, units and notes. As a MultiPatch (on "
         "request) slope, aspect and area too. " + _LOSSES,
@@ -98,7 +98,7 @@ FORMATS = (
     ),
     _make(
         *("geoparquet", "GeoParquet", ".parquet", ".geoparquet"),
-        writer="surface_layers:write_geoparquet",
+        writer="geoparquet:write",
         extra="interop",
         sniff=is_parquet,
     ),

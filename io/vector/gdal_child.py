@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ...base.sentences import FILE
 from ..isolated import Answer, Refusal
 from ..isolated.gdal import REFERRING_DRIVERS, VECTOR_DRIVERS, make_environment
 
@@ -66,7 +67,7 @@ def _name_further_kinds() -> None:
         names.setdefault(number, "Unknown")
 
 
-def read_features(path: str, shown: str, *, layer: str | None, where: str | None) -> Answer:
+def read_features(path: str, *, layer: str | None, where: str | None) -> Answer:
     """Return the features of one layer.
 
     The value holds ``layer``, ``crs``, ``elevation_unit`` if the layer tells it, ``names`` of the
@@ -80,14 +81,14 @@ def read_features(path: str, shown: str, *, layer: str | None, where: str | None
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            chosen = _choose_layer(path, shown, layer)
+            chosen = _choose_layer(path, layer)
             (meta, numbers, geometries, values), notes = _read_texts_right(
-                path, shown, layer=chosen, where=where, return_fids=True
+                path, layer=chosen, where=where, return_fids=True
             )
             metadata = pyogrio.read_info(path, layer=chosen)["layer_metadata"] or {}
     except (RuntimeError, ValueError, IndexError) as error:
         if isinstance(error, DataSourceError) and "not recognized" in str(error):
-            raise Refusal(f"'{shown}' is no vector file that GDAL knows.") from error
+            raise Refusal(f"{FILE} is no vector file that GDAL knows.") from error
         raise RuntimeError(_shorten_reason(error)) from error
     arrays = {"numbers": np.asarray(numbers, np.int64), **pack_geometries(geometries)}
     arrays |= {f"column {k}": column for k, column in enumerate(values) if is_numeric(column)}
@@ -98,12 +99,12 @@ def read_features(path: str, shown: str, *, layer: str | None, where: str | None
     }
     names = [str(name) for name in meta["fields"]]
     crs = _take_crs(meta["crs"])
-    notes += _describe_missing_crs(path, shown, crs)
+    notes += _describe_missing_crs(path, crs)
     value = {"layer": chosen, "crs": crs, "names": names, "texts": texts, "notes": notes}
     return Answer(value | {"elevation_unit": metadata.get("elevation_unit")}, arrays)
 
 
-def _read_texts_right(path: str, shown: str, **how: Any) -> tuple[Any, list[str]]:
+def _read_texts_right(path: str, **how: Any) -> tuple[Any, list[str]]:
     """Read a layer; texts of a shapefile that are in another encoding than it says, as they are.
 
     Bytes of another encoding are hardly ever UTF-8 by chance, so texts of which all are, are it.
@@ -113,7 +114,7 @@ def _read_texts_right(path: str, shown: str, **how: Any) -> tuple[Any, list[str]
     try:
         read = raw.read(path, **how)
     except UnicodeDecodeError:
-        note = f"'{_find_name(shown)}': texts are no UTF-8, which they are said to be: taken to be "
+        note = f"'{Path(path).name}': texts are no UTF-8, which they are said to be: taken to be "
         return raw.read(path, encoding=_WESTERN, **how), [f"{note}Windows-1252."]
     if not path.lower().endswith(".shp"):
         return read, []
@@ -126,7 +127,7 @@ def _read_texts_right(path: str, shown: str, **how: Any) -> tuple[Any, list[str]
     ]
     if not texts or not all(map(_is_misread, texts)):
         return read, []
-    note = f"'{_find_name(shown)}': texts are UTF-8, though the file does not say so."
+    note = f"'{Path(path).name}': texts are UTF-8, though the file does not say so."
     return raw.read(path, encoding="UTF-8", **how), [note]
 
 
@@ -147,37 +148,31 @@ def _take_crs(crs: str | None) -> str | None:
     return None if crs is not None and _UNDEFINED_CARTESIAN.match(crs) else crs
 
 
-def _describe_missing_crs(path: str, shown: str, crs: str | None) -> list[str]:
+def _describe_missing_crs(path: str, crs: str | None) -> list[str]:
     """Tell of a CRS beside a shapefile that GDAL does not understand."""
     if crs is not None or not path.lower().endswith(".shp"):
         return []
     for suffix in (".prj", ".PRJ"):
         file = Path(path).with_suffix(suffix)
         if file.is_file() and file.stat().st_size:
-            name = _find_name(shown).rpartition(".")[0] + suffix
+            name = Path(path).name.rpartition(".")[0] + suffix
             return [f"'{name}' names a CRS that is not understood: it was left aside."]
     return []
 
 
-def _find_name(shown: str) -> str:
-    return Path(shown).name
-
-
-def _choose_layer(path: str, shown: str, layer: str | None) -> str:
+def _choose_layer(path: str, layer: str | None) -> str:
     import pyogrio
 
     layers = [str(name) for name, kind in pyogrio.list_layers(path) if kind is not None]
     if not layers:
-        raise Refusal(f"'{shown}' has no layer with geometry, or is damaged.")
+        raise Refusal(f"{FILE} has no layer with geometry, or is damaged.")
     if layer is None and len(layers) > 1:
         raise Refusal(
-            f"'{shown}' has {len(layers)} layers: name one of {', '.join(layers)} "
-            f"(layer={layers[0]!r}, or of a file of lines '{shown}:{layers[0]}')."
+            f"{FILE} has {len(layers)} layers: name one of {', '.join(layers)} "
+            f"(`layer={layers[0]!r}`, or of a file of lines '{Path(path).name}:{layers[0]}')."
         )
     if layer is not None and layer not in layers:
-        raise Refusal(
-            f"'{shown}' has no layer '{layer}' with geometry: there is {', '.join(layers)}."
-        )
+        raise Refusal(f"{FILE} has no layer '{layer}' with geometry: there is {', '.join(layers)}.")
     return layers[0] if layer is None else layer
 
 

@@ -10,8 +10,9 @@ from ...base import optional
 from ...base.atomic import as_path
 from ...base.crs import CRS
 from ...base.errors import ReadError
+from ...base.notes import naming_file
 from ...base.results import Features
-from ...base.sentences import counted, inflect
+from ...base.sentences import FILE, counted, inflect
 from .features import read_features
 from .parts import Wanted, crs_notes, move_to_crs
 
@@ -64,26 +65,28 @@ def read_geometries(
     CrsError
         If they cannot be brought into the CRS.
     """
-    shapely = optional.load("shapely")
-    read = read_features(as_path(path), layer=layer)
-    wanted = Wanted(CRS.of(crs))
-    shapes = shapely.orient_polygons(shapely.force_2d(read.geometries))
-    kind = _find_kind(shapes, read)
-    columns = read.columns
-    if kind == "points":
-        shapes, rows = shapely.get_parts(shapes, return_index=True)
-        columns = {name: column[rows] for name, column in columns.items()}
-    _, coordinates, levels = shapely.to_ragged_array(shapes)
-    _require_finite(coordinates, read)
-    notes = [*read.notes, *crs_notes(read, wanted)]
-    return Features(
-        kind=kind,
-        coordinates=move_to_crs(coordinates, read, wanted.crs, notes=notes),
-        offsets=tuple(levels),
-        columns=columns,
-        crs=read.crs if wanted.crs is None else wanted.crs,
-        notes=notes,
-    )
+    file = as_path(path)
+    with naming_file(file):
+        shapely = optional.load("shapely")
+        read = read_features(file, layer=layer)
+        wanted = Wanted(CRS.of(crs))
+        shapes = shapely.orient_polygons(shapely.force_2d(read.geometries))
+        kind = _find_kind(shapes, read)
+        columns = read.columns
+        if kind == "points":
+            shapes, rows = shapely.get_parts(shapes, return_index=True)
+            columns = {name: column[rows] for name, column in columns.items()}
+        _, coordinates, levels = shapely.to_ragged_array(shapes)
+        _require_finite(coordinates)
+        notes = [*read.notes, *crs_notes(read, wanted)]
+        return Features(
+            kind=kind,
+            coordinates=move_to_crs(coordinates, read, wanted.crs, notes=notes),
+            offsets=tuple(levels),
+            columns=columns,
+            crs=read.crs if wanted.crs is None else wanted.crs,
+            notes=notes,
+        )
 
 
 def _find_kind(shapes: ObjectArray, read: Layer) -> Any:
@@ -95,19 +98,17 @@ def _find_kind(shapes: ObjectArray, read: Layer) -> Any:
         row = kinds.index("collections") if "collections" in kinds else other
         raise ReadError(
             f"{read.label(row or 0)} is one of {kinds[row or 0]}, and the first one of {kinds[0]}: "
-            "a layer of points, of lines or of polygons is needed.",
-            path=read.path,
+            "a layer of points, of lines or of polygons is needed."
         )
     return kinds[0]
 
 
-def _require_finite(coordinates: Float64Array, read: Layer) -> None:
+def _require_finite(coordinates: Float64Array) -> None:
     wrong = ~np.isfinite(coordinates).all(axis=1)
     if wrong.any():
         row = int(np.argmax(wrong))
         are = inflect(f"{counted(int(wrong.sum()), 'coordinate')} that [is|are]", int(wrong.sum()))
         raise ReadError(
-            f"'{read.path}' has {are} not finite (first: "
-            f"{tuple(coordinates[row].tolist())}): every coordinate must be a finite number.",
-            path=read.path,
+            f"{FILE} has {are} not finite (first: "
+            f"{tuple(coordinates[row].tolist())}): every coordinate must be a finite number."
         )

@@ -10,11 +10,14 @@ from typing import TYPE_CHECKING, Any
 from ...base.atomic import folder_beside
 from ...base.checks import as_flag
 from ...base.errors import OptionError, WriteError
+from ...base.sentences import FILE
 from ..mesh.geopackage.containers import MARK, Placing, adding_layers
 from .ogr import describe, write_layer
+from .surface_features import make_features
 
 if TYPE_CHECKING:
     from ...base.results import Features
+    from ...tin import Survey
 
 __all__ = ["write"]
 
@@ -26,14 +29,14 @@ _RESERVED = re.compile(r"(gpkg|rtree|sqlite)_", re.IGNORECASE)
 
 
 def write(
-    features: Features,
+    surface: Features | Survey,
     path: Path,
     *,
     layer: str | None = None,
     append: bool = False,
     overwrite: bool = False,
 ) -> None:
-    """Write features as a layer of a GeoPackage; its other layers stay as they are.
+    """Write features, or points of a survey, as a layer of a GeoPackage; other layers stay.
 
     Parameters
     ----------
@@ -59,7 +62,8 @@ def write(
     elevations, and notes, are metadata of the layer, a unit that is not known ``"unknown"``. NaN
     and missing texts are NULL.
     """
-    _require_free(features, path)
+    features = make_features(surface, None)
+    _require_free(features)
     placing = Placing(as_flag("overwrite", overwrite), as_flag("append", append))
     if placing.append and placing.overwrite:
         raise OptionError("append", append, "False where overwrite is True")
@@ -84,13 +88,12 @@ def _as_layer(layer: Any) -> str:
     return layer
 
 
-def _require_free(features: Features, path: Path) -> None:
+def _require_free(features: Features) -> None:
     """Refuse names that are taken."""
     names = [name.casefold() for name in features.columns]
     for name in features.columns:
         if name.casefold() in _OWN_COLUMNS or names.count(name.casefold()) > 1:
             why = "GeoPackage's own" if name.casefold() in _OWN_COLUMNS else "there twice"
             raise WriteError(
-                f"Cannot write '{path}': a column '{name}' is {why}, capitals aside: rename it.",
-                path=path,
+                f"Cannot write {FILE}: a column '{name}' is {why}, capitals aside: rename it."
             )

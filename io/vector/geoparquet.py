@@ -15,14 +15,18 @@ import numpy as np
 from ...base import optional
 from ...base.atomic import replacing_path
 from ...base.errors import WriteError
+from ...base.sentences import FILE
 from .ogr import describe, encode_geometries
+from .surface_features import make_features
 from .well_known_binary import encode_equal_shapes
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...base.arrays import AnyArray
+    from ...base.policies import FeatureKind
     from ...base.results import Features
+    from .surface_features import Writable
 
 __all__ = ["write"]
 
@@ -32,8 +36,13 @@ _MOST_BYTES = 2**31 - 1
 """What the offsets of one column of Arrow reach."""
 
 
-def write(features: Features, path: Path) -> None:
-    """Write features as GeoParquet, geometries as well-known binary.
+def write(surface: Writable, path: Path, *, kind: FeatureKind | None = None) -> None:
+    """Write a kind of parts of a surface, or features, as GeoParquet, as well-known binary.
+
+    Parameters
+    ----------
+    kind : {"triangles", "points", "edges", "lines", "hull"}, optional
+        Of a TIN; default triangles.
 
     Raises
     ------
@@ -47,12 +56,12 @@ def write(features: Features, path: Path) -> None:
     Coordinates and numbers are the same. The CRS is PROJJSON, ``null`` if it is not known; units
     and notes are metadata of the file.
     """
-    pyarrow = optional.load("pyarrow", f"Writing '{path}'")
-    parquet = optional.load("pyarrow.parquet", f"Writing '{path}'")
+    features = make_features(surface, kind)
+    pyarrow = optional.load("pyarrow", f"Writing {FILE}")
+    parquet = optional.load("pyarrow.parquet", f"Writing {FILE}")
     if _GEOMETRY in features.columns:
         raise WriteError(
-            f"Cannot write '{path}': a column '{_GEOMETRY}' is GeoParquet's own: rename it.",
-            path=path,
+            f"Cannot write {FILE}: a column '{_GEOMETRY}' is GeoParquet's own: rename it."
         )
     columns = {name: _make_column(pyarrow, values) for name, values in features.columns.items()}
     columns[_GEOMETRY] = _encode_column(pyarrow, features)

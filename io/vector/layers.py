@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
+from ...base.sentences import FILE
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
@@ -35,7 +37,7 @@ class Features(NamedTuple):
 
     def label(self, row: int) -> str:
         """Return what a feature is called in sentences."""
-        return f"'{self.path}': feature {self.numbers[row]}"
+        return f"{FILE}: feature {self.numbers[row]}"
 
     def find_column(self, name: str) -> AnyArray | None:
         """Return the column of a name, whatever its capitals unless they keep two apart."""

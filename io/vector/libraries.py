@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -69,7 +68,7 @@ def to_features(surface: TIN | Survey | Voronoi, kind: FeatureKind | None = None
         raise OptionError("surface", surface, "a TIN, a Survey or a Voronoi diagram")
     if kind == "lines" and isinstance(surface, Surface) and not _has_lines(surface):
         return _make_no_lines(surface)
-    return make_features(surface, Path("features"), kind)
+    return make_features(surface, kind)
 
 
 def _has_lines(tin: TIN) -> bool:

@@ -52,9 +52,8 @@ def note_nesting(polygons: Sequence[Sequence[Float64Array]], path: Path) -> list
         count = int(wrong.sum())
         pairs = inflect(f"{counted(count, 'pair')} of boundary polygons [overlaps|overlap]", count)
         raise ReadError(
-            f"'{path}': {pairs} (first: number {a} and {b}, counted from 0): unite "
-            "them, or cut one along the other.",
-            path=path,
+            f"{pairs} (first: number {a} and {b}, counted from 0): unite "
+            "them, or cut one along the other."
         )
     return _describe_nesting(int(is_within.sum()), path)
 

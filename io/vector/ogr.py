@@ -13,6 +13,7 @@ from ...base import optional
 from ...base.errors import WriteError
 from ...base.results.columns import UNKNOWN_UNIT, unit_text
 from ...base.results.geometries import build_geometries
+from ...base.sentences import FILE
 from ..reprojection.crs_kept import require_kept
 from .well_known_binary import encode_equal_shapes
 
@@ -58,8 +59,8 @@ def write_layer(
     pyogrio = optional.load("pyogrio", f"Writing '{shown}'")
     if geometry_type is None:
         geometry_type = features.geometry_type + (" Z" if features.has_elevations else "")
-    columns = [_as_field(name, values, shown) for name, values in features.columns.items()]
-    with _translate_faults(shown), _without_clock():
+    columns = [_as_field(name, values) for name, values in features.columns.items()]
+    with _translate_faults(), _without_clock():
         pyogrio.raw.write(
             os.fspath(path),
             encode_geometries(features) if geometries is None else geometries,
@@ -78,7 +79,7 @@ def write_layer(
         )
         _require_last(pyogrio, path, len(features))
         found = pyogrio.read_info(path)["crs"] if features.crs is not None else None
-    require_kept(features.crs, found, shown)
+    require_kept(features.crs, found)
 
 
 def _require_last(pyogrio: Any, path: Path, count: int) -> None:
@@ -109,13 +110,12 @@ def describe(features: Features) -> dict[str, str]:
     return told
 
 
-def require_int64(name: str, values: AnyArray, path: Path) -> None:
+def require_int64(name: str, values: AnyArray) -> None:
     """Refuse whole numbers that GDAL would wrap around."""
     if values.dtype == np.uint64 and len(values) and values.max() > np.iinfo(np.int64).max:
         raise WriteError(
-            f"Cannot write '{path}': column '{name}' holds {values.max()}, and "
-            f"{np.iinfo(np.int64).max} is the largest whole number of the format.",
-            path=path,
+            f"Cannot write {FILE}: column '{name}' holds {values.max()}, and "
+            f"{np.iinfo(np.int64).max} is the largest whole number of the format."
         )
 
 
@@ -131,9 +131,9 @@ def encode_geometries(features: Features) -> ObjectArray:
     return np.asarray(written, object)
 
 
-def _as_field(name: str, values: AnyArray, path: Path) -> AnyArray:
+def _as_field(name: str, values: AnyArray) -> AnyArray:
     """Return a column as a type that pyogrio writes."""
-    require_int64(name, values, path)
+    require_int64(name, values)
     if values.dtype.kind == "U":
         return values.astype(object)
     if values.dtype.kind == "f" and values.dtype.itemsize not in (4, 8):
@@ -151,7 +151,7 @@ def _find_missing(values: AnyArray) -> BoolArray | None:
 
 
 @contextmanager
-def _translate_faults(path: Path) -> Iterator[None]:
+def _translate_faults() -> Iterator[None]:
     """Turn what GDAL says into a sentence, also where it only warns that a value was changed."""
     try:
         with warnings.catch_warnings():
@@ -161,7 +161,7 @@ def _translate_faults(path: Path) -> Iterator[None]:
             yield
     except (RuntimeError, RuntimeWarning, ValueError, OSError) as error:
         reason = " ".join(str(error).split()).rstrip(".") or type(error).__name__
-        raise WriteError(f"Cannot write '{path}': {reason}.", path=path) from error
+        raise WriteError(f"Cannot write {FILE}: {reason}.") from error
 
 
 @contextmanager

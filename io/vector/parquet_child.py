@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...base import optional
+from ...base.sentences import FILE
 from ..isolated import Answer, Refusal
 from .gdal_child import convert_to_texts, is_numeric, pack_geometries
 
@@ -27,19 +28,19 @@ def prepare() -> None:
     import pyarrow.parquet  # noqa: F401 - loaded here, before memory is limited
 
 
-def read_features(path: str, shown: str, *, layer: str | None, where: str | None) -> Answer:
+def read_features(path: str, *, layer: str | None, where: str | None) -> Answer:
     """Return the features of a file, as :func:`gdal_child.read_features` does."""
     from pyarrow import parquet
 
     if where is not None:
-        raise Refusal(f"'{shown}' is GeoParquet, which the option where does not choose from.")
+        raise Refusal(f"{FILE} is GeoParquet, which the option `where` does not choose from.")
     file = parquet.ParquetFile(path, memory_map=False, pre_buffer=False)
     metadata = file.schema_arrow.metadata or {}
-    name, column = _find_geometry(metadata, shown)
+    name, column = _find_geometry(metadata)
     if layer not in (None, name):
-        raise Refusal(f"'{shown}' has no layer '{layer}': there is {name}.")
+        raise Refusal(f"{FILE} has no layer '{layer}': there is {name}.")
     table = file.read(use_threads=False)
-    geometries = _encode(table.column(name), column, shown)
+    geometries = _encode(table.column(name), column)
     names = [one for one in table.column_names if one != name and _is_flat(table, one)]
     values = [_as_array(table.column(one)) for one in names]
     arrays = {"numbers": np.arange(len(geometries)), **pack_geometries(geometries)}
@@ -50,7 +51,7 @@ def read_features(path: str, shown: str, *, layer: str | None, where: str | None
     return Answer(value | {"elevation_unit": unit or None}, arrays)
 
 
-def _find_geometry(metadata: dict[bytes, bytes], shown: str) -> tuple[str, dict[str, Any]]:
+def _find_geometry(metadata: dict[bytes, bytes]) -> tuple[str, dict[str, Any]]:
     """Return the name of the column of geometries and what is said of it."""
     try:
         geo = json.loads(metadata[b"geo"])
@@ -58,7 +59,7 @@ def _find_geometry(metadata: dict[bytes, bytes], shown: str) -> tuple[str, dict[
         return name, dict(geo["columns"][name])
     except (KeyError, ValueError, TypeError) as error:
         raise Refusal(
-            f"'{shown}' is Parquet without a column of geometries that its metadata tell of."
+            f"{FILE} is Parquet without a column of geometries that its metadata tell of."
         ) from error
 
 
@@ -69,7 +70,7 @@ def _find_crs(column: dict[str, Any]) -> str | None:
     return None if crs is None else crs if isinstance(crs, str) else json.dumps(crs)
 
 
-def _encode(values: Any, column: dict[str, Any], shown: str) -> list[bytes | None]:
+def _encode(values: Any, column: dict[str, Any]) -> list[bytes | None]:
     """Return geometries as well-known binary."""
     encoding = str(column.get("encoding", "")).lower()
     if encoding == "wkb":
@@ -79,7 +80,7 @@ def _encode(values: Any, column: dict[str, Any], shown: str) -> list[bytes | Non
     if encoding == "point":
         return _encode_points(values.combine_chunks())
     raise Refusal(
-        f"'{shown}' has geometries of the encoding '{encoding[:_WIDEST]}': WKB and point are read."
+        f"{FILE} has geometries of the encoding '{encoding[:_WIDEST]}': WKB and point are read."
     )
 
 

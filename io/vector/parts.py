@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ...base import optional
 from ...base.crs import assume_elevation_unit
 from ...base.errors import ReadError
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from ...tin.topology import find_offsets
 from ..reprojection.placement import place
 from ..reprojection.transformation import find_conversion_factor
@@ -135,9 +135,8 @@ def _require_lines(types: Int32Array, rows: Int64Array, features: Features) -> N
     points = np.flatnonzero(types == 0)
     if len(points):
         raise ReadError(
-            f"'{features.path}' has {counted(len(points), 'point')} (first: feature "
-            f"{features.numbers[rows[points[0]]]}): lines or polygons are needed.",
-            path=features.path,
+            f"{FILE} has {counted(len(points), 'point')} (first: feature "
+            f"{features.numbers[rows[points[0]]]}): lines or polygons are needed."
         )
 
 
@@ -154,10 +153,9 @@ def _require_finite_vertices(
     first = int(np.argmax(wrong))
     line = int(np.searchsorted(bounds, first, side="right")) - 1
     raise ReadError(
-        f"'{features.path}' has {_describe_not_finite(int(wrong.sum()))} (first: vertex "
+        f"{FILE} has {_describe_not_finite(int(wrong.sum()))} (first: vertex "
         f"{first - int(bounds[line])} of feature {features.numbers[rows[line]]}, "
-        f"{xyz[first].tolist()}): every coordinate must be a finite number.",
-        path=features.path,
+        f"{xyz[first].tolist()}): every coordinate must be a finite number."
     )
 
 
@@ -178,7 +176,7 @@ def move_to_crs(
     """
     level = np.column_stack([xy, np.zeros(len(xy))])
     source, target = _drop_vertical_axis(features.crs), _drop_vertical_axis(crs)
-    placed = place(level, source=source, target=target, path=features.path)
+    placed = place(level, source=source, target=target)
     notes.extend(f"'{features.path.name}': {note}" for note in placed.told)
     return placed.points[:, :2]
 
@@ -229,18 +227,13 @@ def find_elevation_factor(features: Features, wanted: Wanted, *, notes: list[str
     factor = find_conversion_factor(from_unit, to_unit)
     if factor != 1.0 and from_unit is not None and to_unit is not None:
         if theirs is None and ours is not None:
-            _refuse_unknown(features, from_unit, ours)
+            raise ReadError(
+                f"{FILE} does not tell the unit of its elevations: the points have theirs in "
+                f"{ours.name}, and {from_unit.name} is usual in the CRS of the file; declare the "
+                "unit of the lines' elevations."
+            )
         notes.append(_describe_conversion(features, theirs, ours, (from_unit, to_unit)))
     return factor
-
-
-def _refuse_unknown(features: Features, usual: Unit, ours: Unit) -> NoReturn:
-    raise ReadError(
-        f"'{features.path}' does not tell the unit of its elevations: the points have theirs in "
-        f"{ours.name}, and {usual.name} is usual in the CRS of the file; declare the unit of the "
-        "lines' elevations.",
-        path=features.path,
-    )
 
 
 def _describe_conversion(

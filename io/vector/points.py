@@ -14,11 +14,11 @@ from ...base import optional
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError, choice
 from ...base.policies import LineReading
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from ...tin import TIN, Breakline, Survey
 from ...tin.screening.nodata import describe_elevations, parse_nodata
 from ...tin.topology import find_offsets
-from ..mesh.common import Reference, make_tin
+from ..mesh.common import Reference, join_places, make_tin
 from ..reprojection.placement import place, settle_unit
 from .elevations import find_elevation_unit, find_elevations
 from .features import Features, read_features
@@ -98,16 +98,14 @@ def read(
         return _make_triangles(features, asked, faces)
     if _POINT in kinds:
         raise ReadError(
-            f"'{path}' holds both points and lines or polygons: one kind is needed; the option "
-            "where chooses some features.",
-            path=path,
+            f"{FILE} holds both points and lines or polygons: one kind is needed; the option "
+            "where chooses some features."
         )
     if role is None:
         what = "lines" if kinds == {_LINE} else "polygons"
         raise ReadError(
-            f"'{path}' holds {what}, no points: the option lines_as takes their vertices as "
-            "points, or them as breaklines.",
-            path=path,
+            f"{FILE} holds {what}, no points: the option `lines_as` takes their vertices as "
+            "points, or them as breaklines."
         )
     return _make_line_survey(_gather_lines(features), features, asked, role)
 
@@ -182,8 +180,7 @@ def _require_finite(vertices: _Vertices, features: Features) -> None:
         row = int(np.argmax(wrong))
         raise ReadError(
             f"{features.label(int(vertices.rows[row]))} has a coordinate that is not finite, "
-            f"{vertices.xyz[row, :2].tolist()}: every coordinate must be a finite number.",
-            path=features.path,
+            f"{vertices.xyz[row, :2].tolist()}: every coordinate must be a finite number."
         )
 
 
@@ -198,13 +195,10 @@ def _make_survey(vertices: _Vertices, features: Features, asked: _Asked) -> Surv
     is_nodata = np.isin(found.z, asked.nodata)
     keep = np.isfinite(found.z) & ~is_nodata
     if not keep.any():
-        raise ReadError(
-            f"'{features.path}' has no elevation but nodata ({asked.nodata.tolist()}).",
-            path=features.path,
-        )
+        raise ReadError(f"{FILE} has no elevation but nodata ({asked.nodata.tolist()}).")
     points = np.column_stack([vertices.xyz[keep, :2], found.z[keep]])
-    unit = settle_unit(asked.declared, found.unit, features.path) if found.unit else asked.unit
-    placed = place(points, source=features.crs, target=asked.crs, path=features.path, unit=unit)
+    unit = settle_unit(asked.declared, found.unit) if found.unit else asked.unit
+    placed = place(points, source=features.crs, target=asked.crs, unit=unit)
     rows = vertices.rows[keep]
     skipped = {
         "features without an elevation": len(np.unique(vertices.rows[np.isnan(found.z)])),
@@ -246,9 +240,8 @@ def _make_line_survey(
     survey = _make_survey(vertices, features, asked)
     if survey.skipped:
         raise ReadError(
-            f"'{features.path}': {counted(sum(survey.skipped.values()), 'feature')} without an "
-            "elevation cannot be breaklines: the option where leaves them out.",
-            path=features.path,
+            f"{counted(sum(survey.skipped.values()), 'feature')} without an "
+            "elevation cannot be breaklines: the option `where` leaves them out."
         )
     breaklines = _make_breaklines(survey.points, vertices, features)
     return replace(_take_rows(survey, is_open), breaklines=breaklines)
@@ -305,16 +298,13 @@ def _make_triangles(features: Features, asked: _Asked, faces: FacePolicy) -> TIN
     xyz = shapely.get_coordinates(features.geometries, include_z=True)
     corners = np.delete(xyz.reshape(-1, _TRIANGLE_CORNERS, 3), 3, axis=1).reshape(-1, 3)
     if not np.isfinite(corners).all():
-        raise ReadError(f"'{features.path}': a corner of a triangle is not finite.",
-                        path=features.path)  # fmt: skip
-    points, triangles = _join_corners(corners)
-    placed = place(
-        points, source=features.crs, target=asked.crs, path=features.path, unit=asked.unit
-    )
+        raise ReadError("a corner of a triangle is not finite.")
+    points, numbers = join_places(corners)
+    triangles = numbers.reshape(-1, 3)
+    placed = place(points, source=features.crs, target=asked.crs, unit=asked.unit)
     tin = make_tin(
         placed.points,
         triangles,
-        features.path,
         reference=Reference(placed.crs, placed.elevation_unit),
         faces=faces,
         looks_at_crs=False,
@@ -323,22 +313,3 @@ def _make_triangles(features: Features, asked: _Asked, faces: FacePolicy) -> TIN
     if placed.points is not points:
         notes.append(f"Vertices were reprojected to {placed.crs}; the triangles are the file's.")
     return tin.replace(report=replace(tin.report, notes=[*tin.report.notes, *notes]))
-
-
-def _join_corners(
-    corners: Float64Array,
-) -> tuple[Float64Array, Int64Array]:
-    """Return distinct corners, in the order in which they come, and triangles of their numbers."""
-    corners = corners + 0.0  # -0.0 is the same place
-    order = np.lexsort(corners.T[::-1])
-    near = corners[order]
-    is_new = np.ones(len(near), np.bool_)
-    is_new[1:] = (near[1:] != near[:-1]).any(axis=1)
-    group = np.empty(len(near), np.int64)
-    group[order] = np.cumsum(is_new) - 1
-    first = np.full(int(is_new.sum()), len(near))
-    np.minimum.at(first, group, np.arange(len(near)))
-    ranks = np.empty(len(first), np.int64)
-    by_place = np.argsort(first)
-    ranks[by_place] = np.arange(len(first))
-    return corners[first[by_place]], ranks[group].reshape(-1, 3)

@@ -6,15 +6,17 @@ heights keeps them; without, it is draped on the surface.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, get_args
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, NamedTuple, TypedDict, Unpack, get_args
 
 import numpy as np
 
 from ...base.atomic import as_path
 from ...base.crs import CRS, Unit
 from ...base.errors import ReadError
+from ...base.notes import naming_file
 from ...base.policies import BreaklineKind
-from ...base.sentences import height, inflect
+from ...base.sentences import FILE, height, inflect
 from ...tin import Breakline, Water
 from ...tin.constraints.breaklines import as_ring
 from ..reprojection.placement import settle_unit
@@ -24,7 +26,7 @@ from .parts import Part, Wanted, find_elevation_factor, split_into_parts
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from ...base.arrays import Float64Array
     from ...base.crs import CrsLike, UnitLike
@@ -38,7 +40,28 @@ _SHOWN_LETTERS = 60
 _WATER_COLUMNS = ("z", "level", "elevation", "height")
 
 
-def read_lines(
+class LineOptions(TypedDict, total=False):
+    """How lines are read, as :func:`read_lines` describes."""
+
+    crs: CrsLike | None
+    elevation_unit: UnitLike | None
+    z_unit: UnitLike | None
+    layer: str | None
+    where: str | None
+    drape: bool
+    notes: list[str] | None
+
+
+class _Lines(NamedTuple):
+    """Lines and rings of a file."""
+
+    features: Features
+    parts: list[Part]
+    wanted: Wanted
+
+
+@contextmanager
+def _reading(
     path: str | os.PathLike[str],
     *,
     crs: CrsLike | None = None,
@@ -46,9 +69,22 @@ def read_lines(
     z_unit: UnitLike | None = None,
     layer: str | None = None,
     where: str | None = None,
-    kind: BreaklineKind | None = None,
     drape: bool = False,
     notes: list[str] | None = None,
+) -> Iterator[_Lines]:
+    """Yield the lines of a file, of which errors speak."""
+    file, wanted = as_path(path), Wanted(CRS.of(crs), Unit.of(elevation_unit), Unit.of(z_unit))
+    with naming_file(file):
+        features = read_features(file, layer=layer, where=where, lines_only=True)
+        parts = split_into_parts(features, wanted, drape=drape, notes=notes)
+        yield _Lines(features, parts, wanted)
+
+
+def read_lines(
+    path: str | os.PathLike[str],
+    *,
+    kind: BreaklineKind | None = None,
+    **options: Unpack[LineOptions],
 ) -> list[Breakline]:
     """Read breaklines.
 
@@ -106,20 +142,17 @@ def read_lines(
     ...     [line.coords.tolist() for line in ts.read_lines(path)]
     [[[0.0, 0.0, 5.0], [4.0, 3.0, 6.0]]]
     """
-    features = read_features(as_path(path), layer=layer, where=where, lines_only=True)
-    parts = split_into_parts(
-        features, _parse_wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes
-    )
-    if notes is not None and not drape:
-        notes.extend(_describe_unused(features, parts))
-    kinds = _parse_kinds(features) if kind is None else [kind] * len(features.numbers)
-    priorities, names = _parse_priorities(features), _find_texts(features, "name")
-    return [
-        Breakline(
-            part.coords, kind=kinds[part.row], priority=priorities[part.row], name=names[part.row]
-        )
-        for part in parts
-    ]
+    with _reading(path, **options) as (features, parts, _):
+        notes = options.get("notes")
+        if notes is not None and not options.get("drape"):
+            notes.extend(_describe_unused(features, parts))
+        kinds = _parse_kinds(features) if kind is None else [kind] * len(features.numbers)
+        priorities, names = _parse_priorities(features), _find_texts(features, "name")
+        return [
+            Breakline(part.coords, kind=kinds[row], priority=priorities[row], name=names[row])
+            for part in parts
+            for row in [part.row]
+        ]
 
 
 def _describe_unused(features: Features, parts: Sequence[Part]) -> list[str]:
@@ -135,23 +168,14 @@ def _describe_unused(features: Features, parts: Sequence[Part]) -> list[str]:
     ]
 
 
-def read_rings(
-    path: str | os.PathLike[str],
-    *,
-    crs: CrsLike | None = None,
-    elevation_unit: UnitLike | None = None,
-    z_unit: UnitLike | None = None,
-    layer: str | None = None,
-    where: str | None = None,
-    drape: bool = False,
-    notes: list[str] | None = None,
-) -> list[Float64Array]:
+def read_rings(path: str | os.PathLike[str], **options: Unpack[LineOptions]) -> list[Float64Array]:
     """Read rings: polygons, all their rings, and closed lines.
 
     Parameters
     ----------
-    path, crs, elevation_unit, z_unit, layer, where, drape, notes
-        As in :func:`read_lines`.
+    path : path-like
+    **options
+        As of :func:`read_lines`, but ``kind``.
 
     Returns
     -------
@@ -177,30 +201,20 @@ def read_rings(
     ...     [len(ring) for ring in ts.read_rings(path)]
     [3]
     """
-    features = read_features(as_path(path), layer=layer, where=where, lines_only=True)
-    parts = split_into_parts(
-        features, _parse_wanted(crs, elevation_unit, z_unit), drape=drape, notes=notes
-    )
-    return [_require_ring(part, features) for part in parts]
+    with _reading(path, **options) as (features, parts, _):
+        return [_require_ring(part, features) for part in parts]
 
 
 def read_polygons(
-    path: str | os.PathLike[str],
-    *,
-    crs: CrsLike | None = None,
-    elevation_unit: UnitLike | None = None,
-    z_unit: UnitLike | None = None,
-    layer: str | None = None,
-    where: str | None = None,
-    drape: bool = False,
-    notes: list[str] | None = None,
+    path: str | os.PathLike[str], **options: Unpack[LineOptions]
 ) -> list[list[Float64Array]]:
     """Read polygons with their islands, as ``holes`` and ``erase`` of a survey take them.
 
     Parameters
     ----------
-    path, crs, elevation_unit, z_unit, layer, where, drape, notes
-        As in :func:`read_lines`.
+    path : path-like
+    **options
+        As of :func:`read_lines`, but ``kind``.
 
     Returns
     -------
@@ -224,13 +238,12 @@ def read_polygons(
     ...     [[len(ring) for ring in rings] for rings in ts.read_polygons(path)]
     [[3]]
     """
-    features = read_features(as_path(path), layer=layer, where=where, lines_only=True)
     polygons: list[list[Float64Array]] = []
-    wanted = _parse_wanted(crs, elevation_unit, z_unit)
-    for part in split_into_parts(features, wanted, drape=drape, notes=notes):
-        if part.ring == 0:
-            polygons.append([])
-        polygons[-1].append(_require_ring(part, features))
+    with _reading(path, **options) as (features, parts, _):
+        for part in parts:
+            if part.ring == 0:
+                polygons.append([])
+            polygons[-1].append(_require_ring(part, features))
     return polygons
 
 
@@ -238,23 +251,19 @@ def read_water(
     path: str | os.PathLike[str],
     *,
     z: float | str | None = None,
-    crs: CrsLike | None = None,
-    elevation_unit: UnitLike | None = None,
-    z_unit: UnitLike | None = None,
-    layer: str | None = None,
-    where: str | None = None,
-    notes: list[str] | None = None,
+    **options: Unpack[LineOptions],
 ) -> list[Water]:
     """Read flat polygons; a column ``name`` is honoured.
 
     Parameters
     ----------
-    path, crs, elevation_unit, z_unit, layer, where, notes
-        As in :func:`read_lines`.
+    path : path-like
     z : float or str, optional
         Height of all of them, in the unit of the points, or the column that holds it. Default the
         column ``z``, ``level``, ``elevation`` or ``height``; without one the heights of the
         corners, if all are equal.
+    **options
+        As of :func:`read_lines`, but ``kind`` and ``drape``.
 
     Returns
     -------
@@ -277,37 +286,27 @@ def read_water(
     ...     [pond.z for pond in ts.read_water(path)]
     [5.0]
     """
-    features = read_features(as_path(path), layer=layer, where=where, lines_only=True)
-    wanted = _parse_wanted(crs, elevation_unit, z_unit)
-    parts = split_into_parts(features, wanted, drape=False, notes=notes)
-    island = next((part for part in parts if part.ring > 0), None)
-    if island is not None:
-        raise ReadError(
-            f"{features.label(island.row)} has an island, and a water polygon has one ring: "
-            "cut the polygon in two along the island.",
-            path=features.path,
-        )
-    rings = [_require_ring(part, features) for part in parts]
-    names, levels = _find_texts(features, "name"), _find_levels(features, wanted, z)
-    return [
-        Water(ring, _require_level(ring, levels, part.row, features), name=names[part.row])
-        for ring, part in zip(rings, parts, strict=True)
-    ]
+    with _reading(path, **options) as (features, parts, wanted):
+        island = next((part for part in parts if part.ring > 0), None)
+        if island is not None:
+            raise ReadError(
+                f"{features.label(island.row)} has an island, and a water polygon has one ring: "
+                "cut the polygon in two along the island."
+            )
+        rings = [_require_ring(part, features) for part in parts]
+        names, levels = _find_texts(features, "name"), _find_levels(features, wanted, z)
+        return [
+            Water(ring, _require_level(ring, levels, part.row, features), name=names[part.row])
+            for ring, part in zip(rings, parts, strict=True)
+        ]
 
 
 def _require_ring(part: Part, features: Features) -> Float64Array:
     if not part.is_closed:
         raise ReadError(
-            f"{features.label(part.row)} is an open line: a polygon or a closed line is needed.",
-            path=features.path,
+            f"{features.label(part.row)} is an open line: a polygon or a closed line is needed."
         )
     return as_ring(part.coords, f"the ring of feature {features.numbers[part.row]}")
-
-
-def _parse_wanted(
-    crs: CrsLike | None, elevation_unit: UnitLike | None, z_unit: UnitLike | None
-) -> Wanted:
-    return Wanted(CRS.of(crs), Unit.of(elevation_unit), Unit.of(z_unit))
 
 
 # ----------------------------------------------------------------------- columns
@@ -321,8 +320,7 @@ def _parse_kinds(features: Features) -> list[BreaklineKind]:
         if chosen is None:
             raise ReadError(
                 f"{features.label(row)} has the kind '{_shorten_text(text)}': "
-                f"{' or '.join(allowed)}, or none, is allowed.",
-                path=features.path,
+                f"{' or '.join(allowed)}, or none, is allowed."
             )
         kinds.append(chosen)
     return kinds
@@ -335,8 +333,7 @@ def _parse_priorities(features: Features) -> list[int]:
         if value is None or value != round(value) or abs(value) > LARGEST_PRIORITY:
             raise ReadError(
                 f"{features.label(row)} has the priority '{_shorten_text(text)}': a whole number "
-                f"from -{LARGEST_PRIORITY} to {LARGEST_PRIORITY} is needed.",
-                path=features.path,
+                f"from -{LARGEST_PRIORITY} to {LARGEST_PRIORITY} is needed."
             )
         priorities.append(int(value))
     return priorities
@@ -372,9 +369,7 @@ def _find_levels(features: Features, wanted: Wanted, z: float | str | None) -> l
         return [float(z)] * len(features.numbers)
     if z is not None and features.find_column(z) is None:
         raise ReadError(
-            f"'{features.path}' has no column '{z}': there is "
-            f"{', '.join(features.columns) or 'none at all'}.",
-            path=features.path,
+            f"{FILE} has no column '{z}': there is {', '.join(features.columns) or 'none at all'}."
         )
     names = [z] if z is not None else [n for n in _WATER_COLUMNS if n in features.columns]
     levels = {name: list(map(_parse_finite, _find_texts(features, name))) for name in names}
@@ -384,13 +379,12 @@ def _find_levels(features: Features, wanted: Wanted, z: float | str | None) -> l
     name, found = next(iter(levels.items()))
     if any(others != found for others in levels.values()):
         raise ReadError(
-            f"'{features.path}' has several columns that may hold the height of the water, and "
-            f"they differ: {', '.join(levels)}; the option z names one.",
-            path=features.path,
+            f"{FILE} has several columns that may hold the height of the water, and "
+            f"they differ: {', '.join(levels)}; the option `z` names one."
         )
     unit = find_named_unit(name, features)
     if unit is not None:
-        wanted = wanted._replace(z_unit=settle_unit(wanted.z_unit, unit, features.path))
+        wanted = wanted._replace(z_unit=settle_unit(wanted.z_unit, unit))
         features = features._replace(elevation_unit="")  # is that of the geometries
     factor = find_elevation_factor(features, wanted, notes=[])
     return [None if level is None else level * factor for level in found]
@@ -413,6 +407,5 @@ def _require_level(
     raise ReadError(
         f"{features.label(row)} needs one height and has {found}: water gets it from a column "
         f"({', '.join(_WATER_COLUMNS)}), from corners of one height, or for all from the option "
-        "water_z.",
-        path=features.path,
+        "`water_z`."
     )

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.errors import LossWarning, WriteError
-from ...base.sentences import counted
+from ...base.errors import FormatError, WriteError
+from ...base.notes import warn
+from ...base.results import Features
+from ...base.sentences import FILE, counted
+from ..mesh.common import require_tin
 from ..registry.side_files import replacing_data_set
 from .ogr import write_layer
+from .surface_features import make_features, make_whole_surface
 from .well_known_binary import encode_tin
 
 if TYPE_CHECKING:
@@ -18,9 +21,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...base.arrays import AnyArray
-    from ...base.results import Features
+    from ...base.policies import FeatureKind
+    from .surface_features import Writable
 
-__all__ = ["short_names", "write", "write_multipatch"]
+__all__ = ["short_names", "write"]
 
 _NAME_BYTES = 10
 _TEXT_BYTES = 254
@@ -31,15 +35,28 @@ _LARGEST = 1e22
 _LARGEST_WHOLE = 10**18
 
 
-def write(features: Features, path: Path) -> None:
-    """Write features as a shapefile: PointZ, PolyLineZ or PolygonZ where there are elevations.
+def write(
+    surface: Writable, path: Path, *, kind: FeatureKind | None = None, multipatch: bool = False
+) -> None:
+    """Write a kind of parts of a surface, or features, as a shapefile.
 
-    Its parts are written beside it: ``.shx``, ``.dbf``, ``.cpg``, with a CRS ``.prj``.
+    They are PointZ, PolyLineZ or PolygonZ where there are elevations. Its parts are written beside
+    it: ``.shx``, ``.dbf``, ``.cpg``, with a CRS ``.prj``.
+
+    Parameters
+    ----------
+    kind : {"triangles", "points", "edges", "lines", "hull"}, optional
+        Of a TIN; default triangles.
+    multipatch : bool
+        Write all triangles of a TIN as one MultiPatch, the surface that ArcGIS knows, without
+        slope, aspect and area: each is an outer ring. GDAL reads it as a TIN, QGIS as polygons.
 
     Raises
     ------
     MissingExtraError
         If pyogrio is not installed.
+    FormatError
+        If a MultiPatch is asked for of something else than the triangles of a TIN.
     WriteError
         If the file cannot be written, would be larger than 2 GiB, or a value has no room: texts of
         more than 254 bytes, numbers of 1e22 and more, elevations that are not known.
@@ -54,26 +71,21 @@ def write(features: Features, path: Path) -> None:
     Coordinates are the same float64; numbers have 15 decimals at most. All parts take their places
     after all of them are written, the ``.shp`` last.
     """
-    _write(features, path)
-
-
-def write_multipatch(features: Features, path: Path) -> None:
-    """Write one feature of triangles as a MultiPatch, the surface that ArcGIS knows.
-
-    Parameters, errors and warnings are those of :func:`write`.
-
-    Notes
-    -----
-    Each triangle is an outer ring. GDAL reads it as a TIN, QGIS as polygons.
-    """
-    tin = np.array([encode_tin(features.coordinates.reshape(-1, 4, 3))], object)
-    _write(features, path, geometries=tin, geometry_type="Unknown", SHPT="MULTIPATCH")
-
-
-def _write(features: Features, path: Path, **how: Any) -> None:
-    _require_room(features, path)
+    how: dict[str, Any] = {}
+    if not multipatch:
+        features = make_features(surface, kind)
+    elif kind in (None, "triangles") and not isinstance(surface, Features):
+        features = make_whole_surface(require_tin(surface, format_name="a MultiPatch"))
+        tin = np.array([encode_tin(features.coordinates.reshape(-1, 4, 3))], object)
+        how = {"geometries": tin, "geometry_type": "Unknown", "SHPT": "MULTIPATCH"}
+    else:
+        raise FormatError(
+            f"Cannot write {FILE}: a MultiPatch holds the triangles of a TIN, no "
+            f"{'features' if isinstance(surface, Features) else kind}."
+        )
+    _require_room(features)
     names = short_names(features.columns)
-    _warn_of_losses(features, names, path)
+    _warn_of_losses(features, names)
     with replacing_data_set(path, "shapefile") as new:
         write_layer(
             features,
@@ -112,7 +124,7 @@ def _cut(name: str, most: int) -> str:
     return name.encode()[:most].decode(errors="ignore")
 
 
-def _warn_of_losses(features: Features, names: list[str], path: Path) -> None:
+def _warn_of_losses(features: Features, names: list[str]) -> None:
     renamed = [
         f"'{name}' is '{short}'"
         for name, short in zip(features.columns, names, strict=True)
@@ -127,43 +139,40 @@ def _warn_of_losses(features: Features, names: list[str], path: Path) -> None:
     if features.notes:
         lost.append("notes have no place")
     if lost:
-        warnings.warn(f"'{path}' is a shapefile: {', and '.join(lost)}.", LossWarning, stacklevel=4)
+        warn(f"{FILE} is a shapefile: {', and '.join(lost)}.")
 
 
-def _require_room(features: Features, path: Path) -> None:
+def _require_room(features: Features) -> None:
     """Refuse what a shapefile would cut, round away or leave out."""
     size = features.coordinates.nbytes + 100 * len(features)
     if size > _MOST_BYTES:
-        raise _describe_excess(
-            path, f"{counted(len(features.coordinates), 'point')} take {size:,} bytes"
-        )
+        raise _describe_excess(f"{counted(len(features.coordinates), 'point')} take {size:,} bytes")
     if len(features.columns) > _MOST_COLUMNS:
-        raise _describe_excess(path, f"{counted(len(features.columns), 'column')} are there")
+        raise _describe_excess(f"{counted(len(features.columns), 'column')} are there")
     if np.isnan(features.coordinates).any():
-        raise _describe_excess(path, "some elevations are not known")
+        raise _describe_excess("some elevations are not known")
     for name, values in features.columns.items():
-        _require_values(name, values, path)
+        _require_values(name, values)
 
 
-def _require_values(name: str, values: AnyArray, path: Path) -> None:
+def _require_values(name: str, values: AnyArray) -> None:
     if values.dtype.kind in "OU":
         longest = max((len(value.encode()) for value in values if value is not None), default=0)
         if longest > _TEXT_BYTES:
-            raise _describe_excess(path, f"column '{name}' has a text of {longest} bytes")
+            raise _describe_excess(f"column '{name}' has a text of {longest} bytes")
         return
     numbers = values[np.isfinite(values)] if values.dtype.kind == "f" else values
     most = _LARGEST if values.dtype.kind == "f" else _LARGEST_WHOLE
     is_large = (numbers >= most) | (numbers <= -most) if values.dtype.kind != "b" else np.False_
     if np.isinf(values).any() if values.dtype.kind == "f" else False:
-        raise _describe_excess(path, f"column '{name}' has a number that is not finite")
+        raise _describe_excess(f"column '{name}' has a number that is not finite")
     if np.any(is_large):
-        raise _describe_excess(path, f"column '{name}' has the number {numbers[is_large][0]}")
+        raise _describe_excess(f"column '{name}' has the number {numbers[is_large][0]}")
 
 
-def _describe_excess(path: Path, what: str) -> WriteError:
+def _describe_excess(what: str) -> WriteError:
     return WriteError(
-        f"Cannot write '{path}': {what}, and a shapefile holds 2 GiB, 255 columns, texts of 254 "
+        f"Cannot write {FILE}: {what}, and a shapefile holds 2 GiB, 255 columns, texts of 254 "
         "bytes, numbers below 1e22 (whole ones 1e18) and elevations that are known; a GeoPackage "
-        "(.gpkg) holds them.",
-        path=path,
+        "(.gpkg) holds them."
     )

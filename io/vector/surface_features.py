@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -13,36 +13,31 @@ from ...terrain.drawing.linework import EDGE_KINDS
 from ...terrain.relief.gradients import aspect, measure_areas, measure_ring_area, slope
 from ...tin import TIN, Survey
 from ..mesh.common import require_writable
-from .geojson.lines import find_edge_kinds, list_line_vertices, require_lines
-from .geojson.writing import gather_edge_flags, group_rings
+from .geojson.lines import (
+    find_edge_kinds,
+    gather_edge_flags,
+    group_rings,
+    list_line_vertices,
+    require_lines,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from ...base.arrays import AnyArray, Float64Array
 
-__all__ = ["make_features", "make_whole_surface"]
+__all__ = ["Writable", "choose_kind", "make_features", "make_whole_surface"]
+
+Writable: TypeAlias = TIN | Survey | Features
 
 
-def make_features(
-    surface: TIN | Survey | Features, path: Path, kind: FeatureKind | None
-) -> Features:
-    """Return what is to be written as features.
-
-    Parameters
-    ----------
-    surface : TIN, Survey or Features
-    path : Path
-        For sentences.
-    kind : {"triangles", "points", "edges", "lines", "hull"}, optional
-        Default triangles, of a survey points.
+def choose_kind(surface: Writable, kind: str | None) -> str:
+    """Return the kind of parts of a surface that is to be written; "" for features.
 
     Raises
     ------
     FormatError
-        If features are asked for a kind, a survey for another than points, or a TIN without lines
-        for lines.
+        If features are asked for a kind, or a survey for another than points; if it is neither.
     OptionError
         If there is no such kind.
     """
@@ -51,17 +46,40 @@ def make_features(
             raise FormatError(
                 f"Invalid kind '{kind}': features are written as they are, without one."
             )
+        return ""
+    is_survey = isinstance(require_writable(surface), Survey)
+    if kind is None:
+        return "points" if is_survey else "triangles"
+    choice("kind", kind, FeatureKind)
+    if is_survey and kind != "points":
+        raise FormatError(
+            f"A survey has no {kind}, only points: triangulate it first.", known=("points",)
+        )
+    return kind
+
+
+def make_features(surface: Writable, kind: FeatureKind | None) -> Features:
+    """Return what is to be written as features.
+
+    Parameters
+    ----------
+    surface : TIN, Survey or Features
+    kind : {"triangles", "points", "edges", "lines", "hull"}, optional
+        Default triangles, of a survey points.
+
+    Raises
+    ------
+    FormatError, OptionError
+        As :func:`choose_kind`; also if a TIN without lines is asked for lines.
+    """
+    chosen = choose_kind(surface, kind)
+    if isinstance(surface, Features):
         return surface
-    writable = require_writable(surface, path)
-    if kind is not None:
-        choice("kind", kind, FeatureKind)
-    if isinstance(writable, Survey):
-        if kind not in (None, "points"):
-            raise FormatError(
-                f"A survey has no {kind}, only points: triangulate it first.", known=("points",)
-            )
-        return _make_survey_points(writable)
-    return _MAKERS[kind or "triangles"](writable)
+    if isinstance(surface, Survey):
+        return Features.of_points(
+            surface.points, columns=_list_columns(surface), **_describe_reference(surface, "points")
+        )
+    return _MAKERS[chosen](surface)
 
 
 def _describe_reference(surface: TIN | Survey, name: str) -> dict[str, Any]:
@@ -72,13 +90,6 @@ def _describe_reference(surface: TIN | Survey, name: str) -> dict[str, Any]:
         "name": name,
         "notes": tuple(notes),
     }
-
-
-def _make_survey_points(survey: Survey) -> Features:
-    columns = _list_columns(survey)
-    return Features.of_points(
-        survey.points, columns=columns, **_describe_reference(survey, "points")
-    )
 
 
 def _list_columns(surface: TIN | Survey) -> dict[str, AnyArray]:

@@ -13,6 +13,7 @@ import numpy as np
 from ...base.atomic import as_path
 from ...base.checks import require_type
 from ...base.errors import OptionError, ReadError
+from ...base.notes import naming_file
 from ...base.sentences import coordinate
 from ...tin import Bounds, Breakline, Survey, Water
 from .nesting import note_nesting
@@ -92,10 +93,11 @@ def with_lines(
         found = []
         for source in _as_sources(sources):
             path, layer = split_layer(source)
-            lines = reader(path, layer=layer, notes=notes, **units, **how)
-            _require_near(survey, [xy for line in lines for xy in _list_coords(line)], path)
-            if reader is read_polygons and sources is boundary:
-                notes.extend(note_nesting(lines, path))
+            with naming_file(path):
+                lines = reader(path, layer=layer, notes=notes, **units, **how)
+                _require_near(survey, [xy for line in lines for xy in _list_coords(line)])
+                if reader is read_polygons and sources is boundary:
+                    notes.extend(note_nesting(lines, path))
             found += lines
         return found
 
@@ -143,7 +145,7 @@ def _list_coords(line: Breakline | Water | list[Float64Array]) -> list[Float64Ar
     return [line.coords if isinstance(line, Breakline) else line.ring]
 
 
-def _require_near(survey: Survey, coords: Sequence[Float64Array], path: Path) -> None:
+def _require_near(survey: Survey, coords: Sequence[Float64Array]) -> None:
     """Refuse lines that lie so far away that their CRS must be wrong."""
     if len(survey) == 0:
         return
@@ -159,9 +161,8 @@ def _require_near(survey: Survey, coords: Sequence[Float64Array], path: Path) ->
     )
     if apart > reach:
         raise ReadError(
-            f"'{path}': its lines are nowhere near the points (lines: {_format_extent(theirs)}; "
-            f"points: {_format_extent(ours)}): check the CRS of both.",
-            path=path,
+            f"its lines are nowhere near the points (lines: {_format_extent(theirs)}; "
+            f"points: {_format_extent(ours)}): check the CRS of both."
         )
 
 

@@ -55,4 +55,4 @@ def require_features(
         return
     is_features = isinstance(features, Features) and features.kind == kind
     if not is_features or not set(columns) <= set(features.columns):
-        raise OptionError(option, features, f"features that {source} returned, or None")
+        raise OptionError(option, features, f"features that {source} returned", or_none=True)

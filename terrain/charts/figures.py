@@ -7,7 +7,7 @@ from functools import wraps
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from ...base import optional
-from ...base.products import join_notes, product
+from ...base.products import notes_of_surfaces, product
 from ...tin.surface import Surface
 from ..drawing.north_up import draw_north_up
 
@@ -73,7 +73,7 @@ def picture(function: F) -> F:
         surfaces = [one for one in shown if isinstance(one, Surface)]
         results = [one for one in shown if not isinstance(one, Surface)]
         told = [note for one in results for note in getattr(one, "notes", ())]
-        of_surfaces = join_notes(surfaces) if surfaces else ()
+        of_surfaces = notes_of_surfaces(surfaces) if surfaces else ()
         lacking = [note for note in of_surfaces if not any(one.endswith(note) for one in told)]
         write_notes(figure, list(dict.fromkeys([*lacking, *told])))
         return figure

@@ -147,7 +147,8 @@ def _choose_sections(table: Any, line: Any) -> list[_Section]:
         raise OptionError("sections", table, allowed="a table that cross_sections returned")
     numbers = np.unique(table["section"][curves.find_rows(table, line)])
     if len(numbers) > _MOST:
-        raise OptionError("number of sections", len(numbers), allowed=f"at most {_MOST} on a sheet")
+        allowed = f"at most {_MOST} on a sheet"
+        raise OptionError("sections", len(numbers), allowed=allowed, what="number of sections")
     found = [_find_section(table, table["section"] == number) for number in numbers]
     if not any(np.isfinite(one.range[0]) for one in found):
         raise OptionError("line", int(line), allowed="one whose sections meet a surface")

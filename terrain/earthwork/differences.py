@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.errors import OptionError
+from ...base.notes import join_notes
 from ...base.products import product
 from ...base.progress import Progress
 from ...base.results import Features, Table
-from ...base.results.columns import join_notes
 from .. import _kernel
 from . import zones as parts
 from .planes import level_surface

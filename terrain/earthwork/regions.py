@@ -41,7 +41,7 @@ def as_regions(regions: Any, crs: CRS | None) -> tuple[list[str], Pieces, tuple[
     notes += tuple(regions.notes) if isinstance(regions, Features) else ()
     named = list(_name_regions(regions))
     if not named:
-        raise OptionError("number of regions", 0, allowed="1 or more")
+        raise OptionError("regions", 0, allowed="1 or more", what="number of regions")
     parts = [_triangulate(name, shape) for name, shape in named]
     first = np.cumsum([0, *(len(points) for points, _ in parts)])[:-1]
     triangles = [corners + start for (_, corners), start in zip(parts, first, strict=True)]

@@ -158,10 +158,11 @@ def _as_given_levels(levels: Sequence[float]) -> Float64Array:
     except (TypeError, ValueError):
         raise OptionError("levels", type(levels).__name__, allowed="numbers") from None
     if array.ndim != 1 or not 0 < len(array) <= _MOST_LEVELS:
-        raise OptionError("number of levels", array.size, allowed=f"from 1 to {_MOST_LEVELS:,}")
+        allowed = f"from 1 to {_MOST_LEVELS:,}"
+        raise OptionError("levels", array.size, allowed=allowed, what="number of levels")
     if not np.isfinite(array).all():
         bad = float(array[~np.isfinite(array)][0])
-        raise OptionError("level", bad, allowed="finite")
+        raise OptionError("levels", bad, allowed="finite")
     return array
 
 

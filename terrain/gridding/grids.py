@@ -139,7 +139,8 @@ def _require_cells(grid: Grid, in_memory: bool) -> None:
     most = MOST_CELLS_IN_MEMORY if in_memory else MOST_CELLS
     if rows * columns > most or max(rows, columns) > _MOST_PER_SIDE:
         size = f"{counted(rows, 'row')} by {counted(columns, 'column')}"
-        raise OptionError("number of cells", rows * columns, f"at most {most:,}, not {size}")
+        allowed = f"at most {most:,}, not {size}"
+        raise OptionError("spacing", rows * columns, allowed, what="number of cells")
 
 
 def _require_overlap(cells: Bounds, bounds: Bounds) -> None:

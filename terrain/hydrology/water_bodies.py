@@ -236,7 +236,7 @@ def _list_waters(tin: TIN, found: Hierarchy, chosen: Int64Array) -> Waters:
         waters.append(numbers[around[is_wet]])
         count += len(vertices)
         if count > _MOST_VERTICES + len(z):
-            allowed = "False here, or a larger min_depth with it, for there is too much to draw"
+            allowed = "False here, or a larger `min_depth` with it, for there is too much to draw"
             raise OptionError("nested", True, allowed=allowed)
         around = outward[found.parents[around]]
         vertices, around = vertices[around != NOWHERE], around[around != NOWHERE]

@@ -89,7 +89,8 @@ class LevelOptions:
         most = f"that there are at most {MOST_CROSSINGS:,} {what}, and here there would be"
         if self.interval is None:
             allowed = f"so small {most} {count:,}"
-            return OptionError("number of levels", len(as_levels(self.levels)), allowed=allowed)
+            count = len(as_levels(self.levels))
+            return OptionError("levels", count, allowed=allowed, what="number of levels")
         return OptionError("interval", self.interval, allowed=f"so large {most} {count:,}")
 
     def _at_interval(self, lowest: float, highest: float) -> tuple[AnyArray, Float64Array]:
@@ -172,9 +173,10 @@ def as_levels(given: Any) -> Float64Array:
     values = np.unique(values)
     if not np.isfinite(values).all():
         bad = float(values[~np.isfinite(values)][0])
-        raise OptionError("level", bad, allowed="finite")
+        raise OptionError("levels", bad, allowed="finite")
     if len(values) > MOST_LEVELS:
-        raise OptionError("number of levels", len(values), allowed=f"at most {MOST_LEVELS:,}")
+        allowed = f"at most {MOST_LEVELS:,}"
+        raise OptionError("levels", len(values), allowed=allowed, what="number of levels")
     return seal(values)
 
 

@@ -49,8 +49,8 @@ def require_tolerance(option: str, value: Any) -> float:
     if value is None:
         return 0.0
     if not (is_finite_number(value) and value > 0):
-        allowed = "a finite number above 0 in the unit of elevations, or None"
-        raise OptionError(option, value, allowed=allowed)
+        allowed = "a finite number above 0 in the unit of elevations"
+        raise OptionError(option, value, allowed=allowed, or_none=True)
     return float(value)
 
 

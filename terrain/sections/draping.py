@@ -141,8 +141,8 @@ def _note_outside(
         f"{tuple(place.tolist())})"
     )
     if outside == "error":
-        ways = "outside='nan' keeps such parts without elevations"
-        cut = "" if given.kind == "polygons" else ", outside='cut' leaves them out"
+        ways = "`outside='nan'` keeps such parts without elevations"
+        cut = "" if given.kind == "polygons" else ", `outside='cut'` leaves them out"
         raise LinesError(f"{text}: {ways}{cut}.", lines=np.flatnonzero(is_outside)[:5])
     became = "have no elevation there" if outside == "nan" else "were cut there"
     return replace(given, notes=(*given.notes, f"{text}: they {became}."))

@@ -14,9 +14,9 @@ from ...base.crs import assume_elevation_unit
 from ...base.errors import LinesError, OptionError, PointsError, choice
 from ...base.georeference import require_same_crs
 from ...base.georeference.axes import find_axes, undo_north_up
+from ...base.notes import join_notes
 from ...base.policies import ContourLabeling, GridStyle, PointMarking, SheetLayout
 from ...base.products import product
-from ...base.results.columns import join_notes
 from ...base.sentences import counted
 from ...tin import Bounds, Survey
 from ..charts.arguments import parse_text

@@ -33,7 +33,7 @@ def as_view(
     """Return how an eye sees, from what a caller gives, and what is to be told about it."""
     above = as_height("eye_height", heights[0]), as_height("target_height", heights[1])
     if radius is not None and (not is_finite_number(radius) or not radius > 0):
-        raise OptionError("radius", radius, allowed="a finite number above 0, or None")
+        raise OptionError("radius", radius, allowed="a finite number above 0", or_none=True)
     xy, notes = as_places(tin, eye, "the eye")
     if len(xy) != 1:
         raise PointsError(f"There are {len(xy)} eyes: a viewshed has one.")

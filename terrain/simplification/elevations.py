@@ -160,7 +160,8 @@ def cut_blocks(shape: tuple[int, int], side: int | None) -> Iterator[Block]:
     """
     height, width = shape
     if side is None and height * width > _LARGEST:
-        raise OptionError("number of cells", height * width, f"at most {_LARGEST:,}")
+        allowed = f"at most {_LARGEST:,}"
+        raise OptionError("side", height * width, allowed, what="number of cells")
     for rows in _cut(height, side):
         for columns in _cut(width, side):
             yield Block(rows, columns)

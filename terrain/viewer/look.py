@@ -105,7 +105,7 @@ def make_look(
     if not isinstance(view, str) or view not in VIEWS:
         raise OptionError("view", view, " or ".join(map(repr, VIEWS)))
     if title is not None and not isinstance(title, str):
-        raise OptionError("title", title, "text, or None")
+        raise OptionError("title", title, "text", or_none=True)
     return Look(
         exaggeration=None if exaggeration is None else parse_exaggeration(exaggeration),
         edges=as_flag("edges", edges),

@@ -134,16 +134,11 @@ def _cross(a: Float64Array, b: Float64Array) -> Float64Array:
     return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
-def read_ortho(
-    source: str | os.PathLike[str], tins: Sequence[TIN], *, stacklevel: int = 3
-) -> Ortho:
+def read_ortho(source: str | os.PathLike[str], tins: Sequence[TIN]) -> Ortho:
     """Read the picture to drape over surfaces of one CRS: any that GDAL places, as a GeoTIFF.
 
-    ``stacklevel`` is that of the caller who is told of what was done to it. Raises what
-    :func:`tinsmith.io.raster.ortho.read_ortho` does.
+    Raises and warns of what :func:`tinsmith.io.raster.ortho.read_ortho` does.
     """
     reader = import_module(_READER)
-    ortho: Ortho = reader.read_ortho(
-        source, tins, most_pixels=MOST_PIXELS, transparent="webp", stacklevel=stacklevel + 1
-    )
+    ortho: Ortho = reader.read_ortho(source, tins, most_pixels=MOST_PIXELS, transparent="webp")
     return ortho

@@ -14,8 +14,8 @@ from ...base.atomic import as_path, replacing
 from ...base.checks import require_type
 from ...base.errors import RenderError
 from ...base.georeference.units import find_ground
+from ...base.notes import join_notes
 from ...base.products import product
-from ...base.results.columns import join_notes
 from ...tin import TIN, Survey
 from ..earthwork import difference
 from .alignment import Aligned, align

@@ -224,7 +224,8 @@ def test_a_declared_unit_that_is_none_is_refused_before_any_work(tmp_path):
     with pytest.raises(OptionError, match="parsec"):
         ts.triangulate([[0, 0, 0]], z_unit="parsec")
     said = invoke("info", "missing.csv", "--z-unit", "parsec", code=2).stderr
-    assert "Invalid --z-unit 'parsec'" in said
+    assert "Invalid unit of elevations 'parsec'" in said
+    assert "(--z-unit)" in said
 
 
 # ------------------------------------------------------------------ reading

@@ -426,6 +426,12 @@ def test_sentences_name_flags_and_no_python(folder, arguments, code, words):
     assert not re.search(r"\w=", result.stderr)
 
 
+def test_names_of_files_are_no_options(folder):
+    """Only what a sentence marks as an option becomes a flag."""
+    result = CliRunner().invoke(main, ["info", "crs=EPSG.csv"])
+    assert result.stderr == "Error: There is no file 'crs=EPSG.csv'.\n"
+
+
 def test_numbers_in_sentences_are_plain(folder):
     code, _, stderr = build("x,y,z\n0,0,1\n1e200,0,2\n4,1,3\n")
     assert code == 1

@@ -211,7 +211,7 @@ def test_faults_of_a_pipe_speak_of_the_pipe(folder):
     with pytest.raises(ts.ReadError, match=r"^'pipe\.csv'.*line 2") as caught:
         ts.read("pipe.csv")
     writer.join()
-    assert caught.value.path == Path("pipe.csv")
+    assert caught.value.file == Path("pipe.csv")
 
 
 @pytest.mark.parametrize("name", ["/dev/null", "/dev/zero", "/dev/full"])

@@ -21,7 +21,7 @@ def local(tmp_path, monkeypatch):
 
 def test_the_unit_that_a_warning_advises_is_taken(local):
     bare = ts.triangulate(ts.read(local, columns="PNEZD"))
-    with pytest.warns(ts.LossWarning, match="option unit names one"):
+    with pytest.warns(ts.LossWarning, match="option `unit` names one"):
         ts.write(bare, "bare.xml")
     told = run_command("build", local, "--columns", "PNEZD", "--unit", "ft", "-o", "ft.xml")
     assert "no units" not in told.stderr

@@ -15,7 +15,7 @@ import tinsmith as ts
 from .campaign import Campaign, Case
 
 _KINDS = tuple(FACE_WRITERS)
-_OFFER = re.compile(r"faces='surface' leaves out ([\d,]+) of ([\d,]+) triangles")
+_OFFER = re.compile(r"`faces='surface'` leaves out ([\d,]+) of ([\d,]+) triangles")
 _LEFT_OUT = re.compile(
     r"Left out(?:, without area or turned over by rounding| to make a surface): ([\d,]+) of"
 )

@@ -70,7 +70,7 @@ RFC = Reason("longitude and latitude by its definition")
 
 
 def each(names, entry):
-    return dict.fromkeys(names, entry)
+    return dict.fromkeys(sorted(names), entry)
 
 
 # ------------------------------------------------------- places that contradict the CRS named
@@ -156,7 +156,7 @@ SAID = {
         **each(
             ("ply", "obj", "off", "vtk", "gmsh", "ugrid", "cityjson"), Noted("1 polygon of the")
         ),
-        "2dm": Noted("1 quadrilateral of the file was cut"),
+        "2dm": Noted("1 polygon of the"),
         "dxf": Noted("1 face of four corners cut in two"),
         "landxml": Refused("a face has 4 numbers"),
         **each((*LAYERS, *IN_DEGREES), Refused("holds polygons, no points")),

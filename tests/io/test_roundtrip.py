@@ -196,8 +196,8 @@ def old(tmp_path):
 def test_a_full_disk(old, suffix, capfd):
     path = old(suffix)
     with largest_file(30_000), pytest.raises(WriteError, match="Cannot write") as caught:
-        write(suffix, hills(), path)
-    assert caught.value.path == path
+        ts.write(hills(), path)
+    assert caught.value.file == path
     assert str(path) in str(caught.value)
     assert "\n" not in str(caught.value)
     assert capfd.readouterr() == ("", "")

@@ -137,6 +137,6 @@ def _refuse(
     raise PointsError(
         f"{repeat} the place of another "
         f"(first: rows {shown} at x {x}, y {y} with "
-        f'elevations {elevations}): duplicates="error" allows none.',
+        f'elevations {elevations}): `duplicates="error"` allows none.',
         rows=numbers[:SHOWN],
     )

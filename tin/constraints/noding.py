@@ -291,7 +291,7 @@ def _explain_crossing(
     whom = "itself" if a == b else label_b
     return LinesError(
         f"{label_a[0].upper()}{label_a[1:]} crosses {whom} at ({coordinate(x)}, {coordinate(y)}), "
-        f"{_describe_elevations(elevations)}: crossing='split' makes a vertex there.",
+        f"{_describe_elevations(elevations)}: `crossing='split'` makes a vertex there.",
         lines=sorted({a, b}),
     )
 

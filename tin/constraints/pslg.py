@@ -73,7 +73,7 @@ class Clip:
         if np.isfinite(self.max_edge):
             everywhere = self.is_trimmed_everywhere
             keep = trim(surface, keep, self.max_edge, everywhere=everywhere)
-            _require_triangles(keep, f"No triangle is left with max_edge {self.max_edge:g}")
+            _require_triangles(keep, f"No triangle is left with `max_edge` {self.max_edge:g}")
         return keep
 
 

@@ -476,7 +476,7 @@ def merge_elevations(old: float, new: float, policy: DuplicatePolicy) -> float:
         raise PointsError(
             f"A vertex with elevation {height(old)} stands where one with {height(new)} is "
             "to be inserted: "
-            'duplicates="error" allows none.'
+            '`duplicates="error"` allows none.'
         )
     return {
         "first": old,

@@ -298,7 +298,7 @@ class AddBreakline(Operation):
         number = count_breaklines(inputs.build_inputs.lines) - 1
         crossings = found.report.describe_crossings(inputs.build_inputs.lines.label(number))
         if crossings and self.crossing == "error":
-            raise LinesError(f'{crossings[0][:-1]}: crossing="error" allows none.')
+            raise LinesError(f'{crossings[0][:-1]}: `crossing="error"` allows none.')
         if line.is_draped and not found.lines.has_breakline(number):
             raise LinesError("The draped line lies outside the surface.")
         return Done(change, found, notes=tuple(crossings))

@@ -186,8 +186,8 @@ def _require_room(tin: TIN, max_area: float | None, max_vertices: int) -> None:
 
 def _explain_too_many(max_vertices: int) -> str:
     return (
-        f"The mesh would have more than {max_vertices:,} vertices: allow a larger max_area or "
-        "max_edge, a smaller min_angle, or more by max_vertices."
+        f"The mesh would have more than {max_vertices:,} vertices: allow a larger `max_area` or "
+        "`max_edge`, a smaller `min_angle`, or more by `max_vertices`."
     )
 
 

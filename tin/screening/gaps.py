@@ -109,12 +109,12 @@ def _describe_gaps(tin: TIN, surface: Surface, *, slivers: bool) -> list[str]:
     unit = "units" if tin.crs is None else tin.crs.horizontal_unit.symbol
     told = []
     if _matter(surface, outside, limit, is_bay=True):
-        what = f"as across a bay: max_edge={limit.length:g} trims them"
+        what = f"as across a bay: `max_edge={limit.length:g}` trims them"
         told.append(_describe(surface, outside, unit, "along the boundary", what, limit))
     else:
         stays[:] = True  # slivers with long edges are told if they are steep
     if _matter(surface, inside, limit, is_bay=False):
-        option = f"max_edge={limit.inside:g} with trim='everywhere'"
+        option = f"`max_edge={limit.inside:g}` with `trim='everywhere'`"
         what = f"as over a void: {option} leaves them out"
         told.append(_describe(surface, inside, unit, "inside", what, limit))
     return [*told, *(_describe_slivers(tin, surface, stays) if slivers else ())]
@@ -228,7 +228,7 @@ def _describe_slivers(tin: TIN, surface: Surface, stays: BoolArray) -> list[str]
     shortest = float(np.sqrt(_square_lengths(surface, slivers).max(axis=1).min()))
     return [
         f"{_count_triangles(len(slivers))} along the hull as steep as {degrees.max():.1f} "
-        f"degrees, where the ground is not: a max_edge below {shortest:.4g} trims them."
+        f"degrees, where the ground is not: a `max_edge` below {shortest:.4g} trims them."
     ]
 
 

@@ -182,7 +182,7 @@ def describe_suspects(suspects: Iterable[SuspectElevation], what: str = "point")
         f"{one.count:,} {what}{' has' if one.count == 1 else 's have'} the elevation "
         f"{one.value:g}, far from the others ({height(one.lowest)} to "
         f"{height(one.highest)}): if it stands for "
-        f"no data, nodata={one.value:g} leaves {'it' if one.count == 1 else 'them'} out."
+        f"no data, `nodata={one.value:g}` leaves {'it' if one.count == 1 else 'them'} out."
         for one in suspects
     ]
 

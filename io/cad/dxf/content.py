@@ -15,8 +15,6 @@ from ...registry.losses import select_attributes
 from .names import CONSTRAINED
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ....base.arrays import AnyArray, Float64Array, Int64Array
     from .entities import EntityWriter
 
@@ -53,13 +51,13 @@ def _find_other_edges(tin: TIN) -> Int64Array:
     return others
 
 
-def select_texts(obj: TIN | Survey | Features, path: Path) -> dict[str, AnyArray]:
+def select_texts(obj: TIN | Survey | Features) -> dict[str, AnyArray]:
     """Return the texts of points that a drawing holds, and tell of other attributes."""
     if isinstance(obj, Surface) or (isinstance(obj, Features) and obj.kind != "points"):
         return {}
     attributes = obj.attributes if isinstance(obj, Survey) else obj.columns
     reason = "a drawing has the number and the description of a point"
-    return select_attributes(attributes, ("number", "description"), path, reason)
+    return select_attributes(attributes, ("number", "description"), reason)
 
 
 def add_survey(

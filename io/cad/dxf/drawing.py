@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -10,7 +9,7 @@ import numpy as np
 from ....base import optional
 from ....base.crs import CRS
 from ....base.errors import CrsError, OptionError, ReadError
-from ....base.sentences import counted
+from ....base.sentences import FILE, counted
 from ...isolated import Limits, choose_limits, run_isolated
 from ...isolated.spooling import translate_system_errors
 from ..reference import Stated
@@ -117,13 +116,7 @@ def read_drawing(
     usual = choose_limits(size)
     answer = run_isolated(
         f"{__package__}.dxf_child:read_drawing",
-        {
-            "path": os.path.abspath(path),  # noqa: PTH100 - links stay
-            "shown": str(path),
-            "layer": layer,
-            "texts": texts,
-            "tolerance": tolerance,
-        },
+        {"path": str(path.absolute()), "layer": layer, "texts": texts, "tolerance": tolerance},
         path=path,
         limits=Limits(usual.seconds + (_SLOWNESS - 1) * size / 1e6, usual.memory),
     )
@@ -147,9 +140,7 @@ def _require_layer(drawing: Drawing, layer: str | None) -> None:
         names = drawing.value["all_layers"]
         shown = ", ".join(f"'{name[:60]}'" for name in names[:20])
         more = ", ..." if len(names) > 20 else ""
-        raise OptionError(
-            "layer", layer, f"a layer with something in it; '{drawing.path}' has {shown}{more}"
-        )
+        raise OptionError("layer", layer, f"a layer with something in it; {FILE} has {shown}{more}")
 
 
 def _require_finite(drawing: Drawing) -> None:
@@ -158,7 +149,4 @@ def _require_finite(drawing: Drawing) -> None:
         wrong = ~np.isfinite(rows).all(axis=1)
         if wrong.any():
             row = rows[int(np.argmax(wrong))].tolist()
-            raise ReadError(
-                f"'{drawing.path}' has coordinates that are not finite (first: {row}).",
-                path=drawing.path,
-            )
+            raise ReadError(f"{FILE} has coordinates that are not finite (first: {row}).")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ....base.sentences import FILE
 from ...isolated import Answer, Refusal
 from .curves import FRAME_POINT, follow_bulges
 from .names import APPLICATION
@@ -46,15 +47,13 @@ def prepare() -> None:
     import_module("ezdxf.render")
 
 
-def read_drawing(
-    path: str, shown: str, *, layer: str | None, texts: bool, tolerance: float | None
-) -> Answer:
+def read_drawing(path: str, *, layer: str | None, texts: bool, tolerance: float | None) -> Answer:
     """Return the points, faces and lines of the model space, and its texts if they are asked for.
 
     ``layer`` is names or patterns of layers, with commas between; ``tolerance`` is how far a curve
     may lie from its chords, in the unit of the drawing.
     """
-    document = _load(path, shown)
+    document = _load(path)
     try:
         gathered = _Gathered(document, layer, texts=texts, tolerance=tolerance)
         for entity, own_layer, is_nested in _iterate_entities(document, gathered):
@@ -62,29 +61,29 @@ def read_drawing(
         return gathered.answer()
     except _DEEP as error:
         raise Refusal(
-            f"The blocks of '{shown}' are inserted in one another more than {_DEEPEST} deep."
+            f"The blocks of {FILE} are inserted in one another more than {_DEEPEST} deep."
         ) from error
     except _FAULTS as error:
-        raise _describe_damage(shown) from error
+        raise _describe_damage() from error
 
 
-def _load(path: str, shown: str) -> Any:
+def _load(path: str) -> Any:
     ezdxf = import_module("ezdxf")
     try:
         return ezdxf.readfile(path)
     except ezdxf.DXFError as error:
         reason = " ".join(str(error).split())[:160].rstrip(" .")
-        raise Refusal(f"'{shown}' is a damaged DXF drawing: {reason}.") from error
+        raise Refusal(f"{FILE} is a damaged DXF drawing: {reason}.") from error
     except OSError as error:
         if "DXF" not in str(error):
             raise
-        raise Refusal(f"'{shown}' is no DXF drawing, or a damaged one.") from error
+        raise Refusal(f"{FILE} is no DXF drawing, or a damaged one.") from error
     except _FAULTS as error:
-        raise _describe_damage(shown) from error
+        raise _describe_damage() from error
 
 
-def _describe_damage(shown: str) -> Refusal:
-    return Refusal(f"'{shown}' is a damaged DXF drawing: its parts do not fit together.")
+def _describe_damage() -> Refusal:
+    return Refusal(f"{FILE} is a damaged DXF drawing: its parts do not fit together.")
 
 
 def _iterate_entities(document: Any, gathered: _Gathered) -> Iterator[tuple[Any, str, bool]]:

@@ -9,13 +9,11 @@ import numpy as np
 from ....base.errors import ReadError
 from ....base.sentences import counted
 from ....tin.topology import find_offsets
-from ...mesh.common import cut_into_fans
+from ...mesh.common import cut_into_fans, join_places
 from ..surfaces import Mesh
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    from ....base.arrays import BoolArray, Float64Array, Int64Array
+    from ....base.arrays import BoolArray, Float64Array
 
 __all__ = ["make_mesh"]
 
@@ -23,35 +21,35 @@ _NO_AREA = 1e-12
 """Share of the squared length of a triangle that is no area, but the rounding of its corners."""
 
 
-def make_mesh(faces: Float64Array, path: Path) -> Mesh:
+def make_mesh(faces: Float64Array) -> Mesh:
     """Return points in the order in which faces name them, and triangles.
 
     Parameters
     ----------
     faces : (m, 4, 3) float64 array
         Corners; a triangle repeats one.
-    path : Path
 
     Raises
     ------
     ReadError
         If no face has three corners.
     """
-    points, corners = _join_corners(faces)
+    points, numbers = join_places(faces.reshape(-1, 3))
+    corners = numbers.reshape(-1, 4)
     is_new = corners != np.roll(corners, 1, axis=1)
     is_new[:, 2] &= corners[:, 2] != corners[:, 0]
     is_new[:, 3] &= corners[:, 3] != corners[:, 1]
     counts = is_new.sum(axis=1)
     kept = counts > 2
     if not kept.any():
-        raise ReadError(f"'{path}': none of its faces has three corners.", path=path)
+        raise ReadError("none of its faces has three corners.")
     notes: list[str] = []
     if not kept.all():
         lines = counted(int((~kept).sum()), "face")
         notes.append(f"Left out: {lines} with fewer than three different corners.")
     used = corners[kept][is_new[kept]]
     quads = corners[kept & (counts == 4)]
-    triangles = cut_into_fans(used, find_offsets(counts[kept]), points, path).triangles
+    triangles = cut_into_fans(used, find_offsets(counts[kept]), points).triangles
     with np.errstate(over="ignore", invalid="ignore"):  # what is too large is refused later
         if len(quads):
             notes.append(_describe_quads(points[quads]))
@@ -69,20 +67,6 @@ def _find_lines(corners: Float64Array) -> BoolArray:
     longest = np.maximum((u * u).sum(axis=1), (v * v).sum(axis=1))
     is_line: BoolArray = area <= _NO_AREA * longest
     return is_line
-
-
-def _join_corners(
-    faces: Float64Array,
-) -> tuple[Float64Array, Int64Array]:
-    """Return each place once, in the order of first use, and the corners by number."""
-    rows = faces.reshape(-1, 3) + 0.0
-    order = np.lexsort(rows.T[::-1])
-    is_first = np.ones(len(order), np.bool_)
-    is_first[1:] = (rows[order[1:]] != rows[order[:-1]]).any(axis=1)
-    stands_for = np.empty(len(order), np.int64)
-    stands_for[order] = order[is_first][np.cumsum(is_first) - 1]
-    firsts, corners = np.unique(stands_for, return_inverse=True)
-    return rows[firsts], corners.reshape(faces.shape[:2])
 
 
 def _describe_quads(corners: Float64Array) -> str:

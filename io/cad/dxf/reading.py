@@ -10,7 +10,7 @@ import numpy as np
 
 from ....base.errors import LinesError, ReadError, choice
 from ....base.policies import BreaklineKind, DrawingContent, FacePolicy, LineKind
-from ....base.sentences import counted
+from ....base.sentences import FILE, counted
 from ....tin import Breakline, Survey, Water
 from ....tin.constraints.breaklines import as_ring
 from ....tin.screening.nodata import describe_elevations
@@ -108,10 +108,9 @@ def _choose_content(drawing: Drawing) -> str:
     n_other = len(together) - len(np.unique(corners, axis=0))
     if n_other:
         raise ReadError(
-            f"'{drawing.path}' has {counted(len(faces), 'face')} and {counted(n_other, 'point')} "
-            "that are no corners of them: choose content='surface' or content='source', or name "
-            "layers by the option layer.",
-            path=drawing.path,
+            f"{FILE} has {counted(len(faces), 'face')} and {counted(n_other, 'point')} "
+            "that are no corners of them: choose `content='surface'` or `content='source'`, or "
+            "name layers by the option `layer`."
         )
     return "surface"
 
@@ -121,7 +120,7 @@ def _choose_measures(drawing: Drawing, declared: Declared) -> Measures:
     rows = np.concatenate([arrays[name].reshape(-1, 3) for name in ("points", "faces", "lines")])
     stated = drawing.stated
     sample = rows[:: max(1, len(rows) // _SAMPLE), :2]
-    measures = choose_measures(stated, declared, drawing.path, sample=sample)
+    measures = choose_measures(stated, declared, sample=sample)
     if stated.unit is not None and declared.unit is None:
         return measures.tell(f"Lengths are in {stated.unit.name}, by $INSUNITS.", first=True)
     if stated.unit is None and declared.unit is None and measures.elevation_unit is None:
@@ -133,20 +132,16 @@ def _choose_measures(drawing: Drawing, declared: Declared) -> Measures:
 
 
 def _read_tin(drawing: Drawing, measures: Measures, declared: Declared, policy: FacePolicy) -> TIN:
-    require_own_crs(measures.source, declared.crs, drawing.path)
+    require_own_crs(measures.source, declared.crs)
     faces = drawing.arrays["faces"]
     if len(faces) == 0:
-        raise ReadError(
-            f"'{drawing.path}' has no faces (3DFACE, polyface or MESH) in the layers read.",
-            path=drawing.path,
-        )
-    mesh = make_mesh(measures.apply(faces.reshape(-1, 3)).reshape(-1, 4, 3), drawing.path)
+        raise ReadError(f"{FILE} has no faces (3DFACE, polyface or MESH) in the layers read.")
+    mesh = make_mesh(measures.apply(faces.reshape(-1, 3)).reshape(-1, 4, 3))
     mesh = merge_equal_points(mesh)
     notes = [*measures.notes, *mesh.notes, *drawing.describe_left_out()]
     return make_tin_with_lines(
         mesh._replace(notes=notes),
         _select_edge_lines(drawing, measures),
-        drawing.path,
         reference=Reference(
             measures.source, measures.elevation_unit, is_declared=drawing.stated.crs is None
         ),
@@ -188,9 +183,8 @@ def _read_survey(
     lines = drawing.lines if with_lines else []
     if not len(points) and not lines:
         raise ReadError(
-            f"'{drawing.path}' has {'neither points nor lines' if with_lines else 'no points'} in "
-            "the layers read.",
-            path=drawing.path,
+            f"{FILE} has {'neither points nor lines' if with_lines else 'no points'} in "
+            "the layers read."
         )
     told = _name_lines(drawing) if with_lines else []
     n_draped = sum(
@@ -203,7 +197,7 @@ def _read_survey(
         )
     if len(drawing.arrays["faces"]):
         notes.append(f"Not read: {counted(len(drawing.arrays['faces']), 'face')}.")
-    placing = place_rows([points, *lines], measures, declared, drawing.path)
+    placing = place_rows([points, *lines], measures, declared)
     survey = Survey(
         points=placing.rows[0],
         attributes=attributes,
@@ -220,7 +214,7 @@ def _read_survey(
     try:
         return _add_lines(survey, placing.rows[1:], told)
     except LinesError as error:
-        raise ReadError(f"'{drawing.path}': {error}", path=drawing.path) from error
+        raise ReadError(f"{error}") from error
 
 
 def _add_lines(

@@ -8,7 +8,6 @@ data.
 from __future__ import annotations
 
 import io
-import warnings
 from contextlib import contextmanager
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -17,9 +16,11 @@ import numpy as np
 
 from ....base import optional
 from ....base.atomic import replacing
-from ....base.errors import FormatError, LossWarning, OptionError, choice
+from ....base.errors import FormatError, OptionError, choice
+from ....base.notes import warn
 from ....base.policies import DrawingVersion
 from ....base.results import Features
+from ....base.sentences import FILE
 from ....tin import TIN, Surface, Survey
 from ...registry.losses import tell_unknown_elevations
 from ..lengths import choose_length_unit
@@ -83,25 +84,21 @@ def write(
         if attributes are left out, or line breaks in texts.
     """
     if not isinstance(obj, Surface | Survey | Features):
-        raise FormatError(f"Cannot write '{path}': a {type(obj).__name__} is no surface or survey.")
+        raise FormatError(f"Cannot write {FILE}: a {type(obj).__name__} is no surface or survey.")
     choice("version", version, DrawingVersion)
     if not isinstance(labels, bool):
         raise OptionError("labels", labels, "True or False")
     ezdxf = optional.load("ezdxf", "Writing DXF drawings")
     along, factor = choose_length_unit(
-        obj, unit, path, is_known=lambda one: find_code(one) > 0, format_name="DXF"
+        obj, unit, is_known=lambda one: find_code(one) > 0, format_name="DXF"
     )
     if version == "R12" and obj.crs is not None:
-        warnings.warn(
-            f"'{path}' keeps no CRS and no unit: R12 has no place for them.",
-            LossWarning,
-            stacklevel=3,
-        )
+        warn(f"{FILE} keeps no CRS and no unit: R12 has no place for them.")
     with _fix_dates():
         document = _make_document(ezdxf, obj, version, along, factor)
         head, tail, encoding, writer = _split(document, version)
-    _add_content(writer, obj, select_texts(obj, path), factor, labels=labels)
-    tell_unknown_elevations(obj, path)
+    _add_content(writer, obj, select_texts(obj), factor, labels=labels)
+    tell_unknown_elevations(obj)
     with replacing(path) as file:
         file.write(_encode(_count_handles(head, writer), encoding))
         for start in range(0, len(writer.parts), _CHUNK):

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ....base.errors import ReadError
-from ....base.sentences import counted
+from ....base.sentences import FILE, counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from ....base.arrays import AnyArray, Float64Array
 
@@ -35,13 +34,7 @@ _NAMES = {"f": "numbers", "i": "whole numbers of at most 18 digits"}
 
 
 def parse_rows(
-    texts: Sequence[str],
-    lines: Sequence[int],
-    *,
-    width: int,
-    kind: type[np.generic],
-    what: str,
-    path: Path,
+    texts: Sequence[str], lines: Sequence[int], *, width: int, kind: type[np.generic], what: str
 ) -> AnyArray:
     """Return the numbers of elements, a row each.
 
@@ -56,7 +49,6 @@ def parse_rows(
         ``numpy.float64`` or ``numpy.int64``.
     what : str
         Name of the elements, for sentences.
-    path : Path
 
     Raises
     ------
@@ -65,18 +57,18 @@ def parse_rows(
     """
     letter = np.dtype(kind).kind
     if len(texts) != len(lines):
-        raise fault(path, lines[-1], f"{what} holds another one")
+        raise fault(lines[-1], f"{what} holds another one")
     joined = " ".join(texts)
     if _PLAIN[letter].fullmatch(joined) and all(len(text.split()) == width for text in texts):
         found = _parse_plain(joined, kind)
         if found is not None and found.size == width * len(texts) and _is_in_range(found):
             return found.reshape(-1, width)
     for text, line in zip(texts, lines, strict=True):
-        _require_row(text, line, width, letter, what, path)
-    raise fault(path, lines[0], f"{what} cannot be read as {_NAMES[letter]}")
+        _require_row(text, line, width, letter, what)
+    raise fault(lines[0], f"{what} cannot be read as {_NAMES[letter]}")
 
 
-def parse_list(text: str, line: int, *, width: int, what: str, path: Path) -> Float64Array:
+def parse_list(text: str, line: int, *, width: int, what: str) -> Float64Array:
     """Return the points of a list as rows.
 
     Raises
@@ -88,15 +80,15 @@ def parse_list(text: str, line: int, *, width: int, what: str, path: Path) -> Fl
     count = len(text.split())
     if found is None or found.size != count:
         for word in text.split():
-            _require_word(word, line, "f", what, path)
-        raise fault(path, line, f"{what} cannot be read as numbers")
+            _require_word(word, line, "f", what)
+        raise fault(line, f"{what} cannot be read as numbers")
     if count % width:
         has = counted(count, "number")
-        raise fault(path, line, f"{what} has {has}, and {width} for each point are needed")
+        raise fault(line, f"{what} has {has}, and {width} for each point are needed")
     return found.reshape(-1, width)
 
 
-def parse_words(text: str, line: int, *, what: str, path: Path) -> list[float]:
+def parse_words(text: str, line: int, *, what: str) -> list[float]:
     """Return the few numbers of one element.
 
     Raises
@@ -106,13 +98,13 @@ def parse_words(text: str, line: int, *, what: str, path: Path) -> list[float]:
     """
     words = text.split()
     for word in words:
-        _require_word(word, line, "f", what, path)
+        _require_word(word, line, "f", what)
     return [float(word) for word in words]
 
 
-def fault(path: Path, line: int, what: str) -> ReadError:
+def fault(line: int, what: str) -> ReadError:
     """Return the error that names a line."""
-    return ReadError(f"'{path}', line {line}: {what}.", path=path, lines=[line])
+    return ReadError(f"{FILE}, line {line}: {what}.", lines=[line])
 
 
 def _parse_plain(text: str, kind: type[np.generic]) -> AnyArray | None:
@@ -131,19 +123,19 @@ def _is_in_range(found: AnyArray) -> bool:
     return found.dtype.kind == "f" or not len(found) or int(np.abs(found).max()) <= LARGEST_ID
 
 
-def _require_row(text: str, line: int, width: int, letter: str, what: str, path: Path) -> None:
+def _require_row(text: str, line: int, width: int, letter: str, what: str) -> None:
     words = text.split()
     for word in words:
-        _require_word(word, line, letter, what, path)
+        _require_word(word, line, letter, what)
     if len(words) != width:
         shown = _shorten(" ".join(words))
         has = counted(len(words), "number")
-        raise fault(path, line, f"{what} has {has} ('{shown}'), not {width}")
+        raise fault(line, f"{what} has {has} ('{shown}'), not {width}")
 
 
-def _require_word(word: str, line: int, letter: str, what: str, path: Path) -> None:
+def _require_word(word: str, line: int, letter: str, what: str) -> None:
     if not _WORD[letter].fullmatch(word):
-        raise fault(path, line, f"{what} has '{_shorten(word)}', not {_NAMES[letter]}")
+        raise fault(line, f"{what} has '{_shorten(word)}', not {_NAMES[letter]}")
 
 
 def _shorten(text: str) -> str:

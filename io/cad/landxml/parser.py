@@ -14,7 +14,7 @@ from xml.parsers import expat
 import numpy as np
 
 from ....base.errors import ReadError
-from ....base.sentences import counted
+from ....base.sentences import FILE, counted
 from ...isolated.spooling import translate_system_errors
 from .content import Content, Line, Surface
 from .numbers import fault, parse_list, parse_rows, parse_words
@@ -57,7 +57,7 @@ def parse(path: Path, *, surface: str | int | None = None, points_only: bool = F
     ReadError
         If it is no well-formed XML, no LandXML, or what an element holds is not what it should.
     """
-    parser = _Parser(path, surface, points_only)
+    parser = _Parser(surface, points_only)
     with translate_system_errors(path), path.open("rb") as file:
         while chunk := file.read(_CHUNK):
             parser.feed(chunk)
@@ -68,9 +68,8 @@ def parse(path: Path, *, surface: str | int | None = None, points_only: bool = F
 class _Parser:
     """Handlers of expat, and the element that is open."""
 
-    def __init__(self, path: Path, surface: str | int | None, points_only: bool) -> None:
+    def __init__(self, surface: str | int | None, points_only: bool) -> None:
         self.content = Content()
-        self.path = path
         self._wanted = surface
         self._points_only = points_only
         self._stack: list[str] = []
@@ -140,7 +139,7 @@ class _Parser:
         self._parse(chunk, is_last=False)
         self._fed += len(chunk)
         if self._fed - self._expat.CurrentByteIndex > _LONGEST_MARKUP:
-            raise fault(self.path, self._now, "a tag has no end for more than 64 MB")
+            raise fault(self._now, "a tag has no end for more than 64 MB")
 
     def close(self) -> None:
         """Take the end of the file."""
@@ -152,15 +151,14 @@ class _Parser:
         except expat.ExpatError as error:
             reason = expat.ErrorString(error.code) or "damaged"
             raise fault(
-                self.path, error.lineno, f"it is no well-formed XML, or it is cut short ({reason})"
+                error.lineno, f"it is no well-formed XML, or it is cut short ({reason})"
             ) from None
         except (LookupError, UnicodeError, ValueError) as error:
             if isinstance(error, ReadError):
                 raise
             raise ReadError(
-                f"'{self.path}' is in an encoding that cannot be read: UTF-8, UTF-16 and those of "
-                "one byte a letter can.",
-                path=self.path,
+                f"{FILE} is in an encoding that cannot be read: UTF-8, UTF-16 and those of "
+                "one byte a letter can."
             ) from None
 
     @property
@@ -168,9 +166,7 @@ class _Parser:
         return int(self._expat.CurrentLineNumber)
 
     def _refuse_doctype(self, *_: Any) -> NoReturn:
-        raise fault(
-            self.path, self._now, "it declares a document type, which LandXML has none of: refused"
-        )
+        raise fault(self._now, "it declares a document type, which LandXML has none of: refused")
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         name = self._locals.get(tag)
@@ -181,7 +177,7 @@ class _Parser:
         if len(stack) == 1:
             self._require_root(name, attributes)
         elif len(stack) > _DEEPEST:
-            raise fault(self.path, self._now, f"elements are nested more than {_DEEPEST} deep")
+            raise fault(self._now, f"elements are nested more than {_DEEPEST} deep")
         handler = self._starts.get(name)
         if handler is not None:
             handler(attributes)
@@ -189,16 +185,14 @@ class _Parser:
     def _add_name(self, tag: str) -> str:
         name = tag.rpartition(":")[2]
         if name == "include" and tag != name:
-            raise fault(self.path, self._now, "it includes another file, and none is followed")
+            raise fault(self._now, "it includes another file, and none is followed")
         if len(self._locals) < _BATCH:
             self._locals[tag] = name
         return name
 
     def _require_root(self, name: str, attributes: dict[str, str]) -> None:
         if name != "LandXML":
-            raise ReadError(
-                f"'{self.path}' is no LandXML: its root element is '{name[:60]}'.", path=self.path
-            )
+            raise ReadError(f"{FILE} is no LandXML: its root element is '{name[:60]}'.")
         self.content.version = attributes.get("version", "")
 
     def _end(self, _: str) -> None:
@@ -268,9 +262,7 @@ class _Parser:
         batch = self._batches["P"]
         if not batch.texts:
             return
-        ids = parse_rows(
-            batch.ids, batch.lines, width=1, kind=np.int64, what="the id of a point", path=self.path
-        )
+        ids = parse_rows(batch.ids, batch.lines, width=1, kind=np.int64, what="the id of a point")
         texts = batch.texts
         if any(batch.references):
             before = sum(map(len, surface.points))
@@ -278,9 +270,7 @@ class _Parser:
                 if name and not texts[k].strip():
                     surface.references[before + k] = name
                     texts[k] = "0 0 0"
-        rows = parse_rows(
-            texts, batch.lines, width=3, kind=np.float64, what="a point", path=self.path
-        )
+        rows = parse_rows(texts, batch.lines, width=3, kind=np.float64, what="a point")
         surface.ids.append(ids.ravel())
         surface.points.append(rows)
         batch.clear()
@@ -304,12 +294,12 @@ class _Parser:
 
     def _count_hidden(self, surface: Surface, state: str) -> None:
         if state not in ("1", "true"):
-            raise fault(self.path, self._now, f"a face has i='{state[:60]}', and 0 or 1 is allowed")
+            raise fault(self._now, f"a face has i='{state[:60]}', and 0 or 1 is allowed")
         surface.n_hidden += 1
 
     def _parse_sides(self, text: str) -> int:
         if text.strip() not in {str(k) for k in range(8)}:
-            raise fault(self.path, self._now, f"a face has b='{text[:60]}', and 0 to 7 is allowed")
+            raise fault(self._now, f"a face has b='{text[:60]}', and 0 to 7 is allowed")
         return int(text)
 
     def _end_face(self) -> None:
@@ -324,9 +314,7 @@ class _Parser:
     def _take_faces(self, surface: Surface) -> None:
         batch = self._batches["F"]
         if batch.texts:
-            rows = parse_rows(
-                batch.texts, batch.lines, width=3, kind=np.int64, what="a face", path=self.path
-            )
+            rows = parse_rows(batch.texts, batch.lines, width=3, kind=np.int64, what="a face")
             surface.faces.append(rows)
             batch.clear()
 
@@ -354,7 +342,6 @@ class _Parser:
             self._now,
             width=_LIST_WIDTHS[name],
             what=f"{name} of a {self._line.element}",
-            path=self.path,
         )
         if len(rows):
             self._line.coordinates.append(rows)
@@ -416,12 +403,12 @@ class _Parser:
 
     def _parse_survey_point(self, text: str) -> list[float]:
         """Return northing, easting, elevation; NaN for an elevation, or all, that is not there."""
-        row = parse_words(text, self._now, what="a survey point", path=self.path)
+        row = parse_words(text, self._now, what="a survey point")
         if len(row) not in (0, 2, 3):
             has = counted(len(row), "number")
-            raise fault(self.path, self._now, f"a survey point has {has}, not 2 or 3")
+            raise fault(self._now, f"a survey point has {has}, not 2 or 3")
         if not all(map(math.isfinite, row)):
-            raise fault(self.path, self._now, "a survey point has a number that is not finite")
+            raise fault(self._now, "a survey point has a number that is not finite")
         return row + [math.nan] * (3 - len(row))
 
     # ------------------------------------------------------------------ reference

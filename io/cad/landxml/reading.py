@@ -8,7 +8,7 @@ import numpy as np
 
 from ....base.errors import OptionError, ReadError, choice
 from ....base.policies import DrawingContent, FacePolicy
-from ....base.sentences import counted, shown
+from ....base.sentences import FILE, counted, shown
 from ...mesh.common import Reference, require_own_crs
 from ..reference import Declared, Measures, choose_measures
 from ..surfaces import make_tin_with_lines, merge_equal_points
@@ -74,16 +74,16 @@ def read(
     wanted = _as_wanted(surface)
     declared = Declared.of(crs, unit, z_unit)
     found = parse(path, surface=wanted, points_only=content == "points")
-    chosen = None if content == "points" else _choose_surface(found, wanted, content, path)
-    kind = content or _choose_content(found, chosen, path)
+    chosen = None if content == "points" else _choose_surface(found, wanted, content)
+    kind = content or _choose_content(found, chosen)
     notes = _describe_rest(found, chosen, kind)
     if kind == "surface" and chosen is not None:
-        return _read_tin(found, chosen, declared, path, notes, faces)
+        return _read_tin(found, chosen, declared, notes, faces)
     if kind != "points" and chosen is None:
         has = "source data" if kind == "source" else "visible faces"
-        raise ReadError(f"'{path}' has no surface with {has}.", path=path)
+        raise ReadError(f"{FILE} has no surface with {has}.")
     source = chosen if kind == "source" else None
-    measures = _choose_measures(found, source, declared, path)
+    measures = _choose_measures(found, source, declared)
     measures = measures.tell(*notes, first=True)
     if source is not None:
         return make_survey_of_source(found, source, measures, declared, path)
@@ -99,16 +99,11 @@ def _as_wanted(surface: str | int | None) -> str | int | None:
 
 
 def _read_tin(
-    found: Content,
-    chosen: Surface,
-    declared: Declared,
-    path: Path,
-    notes: list[str],
-    faces: FacePolicy,
+    found: Content, chosen: Surface, declared: Declared, notes: list[str], faces: FacePolicy
 ) -> TIN:
-    mesh = make_mesh(found, chosen, path)
-    measures = _choose_measures(found, chosen, declared, path)
-    require_own_crs(measures.source, declared.crs, path)
+    mesh = make_mesh(found, chosen)
+    measures = _choose_measures(found, chosen, declared)
+    require_own_crs(measures.source, declared.crs)
     points = measures.apply(mesh.points[:, [1, 0, 2]])
     mesh = merge_equal_points(
         mesh._replace(points=points, notes=[*notes, *measures.notes, *mesh.notes])
@@ -116,7 +111,6 @@ def _read_tin(
     tin = make_tin_with_lines(
         mesh,
         select_edge_lines(chosen, measures),
-        path,
         reference=Reference(measures.source, measures.elevation_unit),
         faces=faces,
     )
@@ -127,11 +121,11 @@ def _read_tin(
 
 
 def _choose_surface(
-    found: Content, wanted: str | int | None, content: str | None, path: Path
+    found: Content, wanted: str | int | None, content: str | None
 ) -> Surface | None:
     """Return the surface wanted, else the only one that has what is wanted; None if none has."""
     if wanted is not None:
-        return _find_surface(found, wanted, path)
+        return _find_surface(found, wanted)
     with_faces = [one for one in found.surfaces if one.n_visible]
     with_source = [one for one in found.surfaces if one.has_source]
     if content == "source":
@@ -140,27 +134,25 @@ def _choose_surface(
         fitting = with_faces or (with_source if content is None else [])
     if len(fitting) > 1:
         raise ReadError(
-            f"'{path}' has {len(fitting)} surfaces ({_list_surfaces(fitting)}): name the one to "
-            "read by the option surface.",
-            path=path,
+            f"{FILE} has {len(fitting)} surfaces ({_list_surfaces(fitting)}): name the one to "
+            "read by the option `surface`."
         )
     return fitting[0] if fitting else None
 
 
-def _find_surface(found: Content, wanted: str | int, path: Path) -> Surface:
+def _find_surface(found: Content, wanted: str | int) -> Surface:
     named = [one for one in found.surfaces if one.name == wanted]
     if len(named) > 1:
         numbers = ", ".join(str(one.number) for one in named)
         raise ReadError(
-            f"'{path}' has {len(named)} surfaces of the name {shown(wanted)}: choose one by its "
-            f"number in the file ({numbers}).",
-            path=path,
+            f"{FILE} has {len(named)} surfaces of the name {shown(wanted)}: choose one by its "
+            f"number in the file ({numbers})."
         )
     numbered = [one for one in found.surfaces if str(one.number) == str(wanted)]
     if named or numbered:
         return (named or numbered)[0]
     allowed = _list_surfaces(found.surfaces) or "none: the file has no surface"
-    raise OptionError("surface", wanted, f"one of those in '{path}', {allowed}")
+    raise OptionError("surface", wanted, f"one of those in {FILE}, {allowed}")
 
 
 def _list_surfaces(surfaces: list[Surface]) -> str:
@@ -168,24 +160,22 @@ def _list_surfaces(surfaces: list[Surface]) -> str:
     return ", ".join(names) + (", ..." if len(surfaces) > len(names) else "")
 
 
-def _choose_content(found: Content, chosen: Surface | None, path: Path) -> str:
+def _choose_content(found: Content, chosen: Surface | None) -> str:
     if chosen is not None and (chosen.n_visible or not chosen.has_source):
         return "surface"
     has_points = len(found.points) > 0
     if chosen is not None and has_points and _has_own_points(chosen):
         raise ReadError(
-            f"'{path}' has no faces, but the source data of a surface and "
-            f"{counted(len(found.points), 'survey point')}: choose content='source' or "
-            "content='points'.",
-            path=path,
+            f"{FILE} has no faces, but the source data of a surface and "
+            f"{counted(len(found.points), 'survey point')}: choose `content='source'` or "
+            "`content='points'`."
         )
     if chosen is not None:
         return "source"
     if has_points:
         return "points"
     raise ReadError(
-        f"'{path}' has neither a surface with visible faces, nor source data or survey points.",
-        path=path,
+        f"{FILE} has neither a surface with visible faces, nor source data or survey points."
     )
 
 
@@ -203,7 +193,8 @@ def _describe_rest(found: Content, chosen: Surface | None, kind: str) -> list[st
         notes.append(f"Not read: {counted(len(found.surfaces), 'surface')}.")
     if kind == "surface" and len(found.points):
         notes.append(
-            f"Not read: {counted(len(found.points), 'survey point')}, which content='points' gives."
+            f"Not read: {counted(len(found.points), 'survey point')}, which "
+            "`content='points'` gives."
         )
     if found.others:
         told = ", ".join(counted(n, what) for what, n in found.others.items())
@@ -216,22 +207,17 @@ def _describe_rest(found: Content, chosen: Surface | None, kind: str) -> list[st
 # ------------------------------------------------------------------ reference
 
 
-def _choose_measures(
-    found: Content, chosen: Surface | None, declared: Declared, path: Path
-) -> Measures:
+def _choose_measures(found: Content, chosen: Surface | None, declared: Declared) -> Measures:
     sample = _take_sample(found, chosen)
-    stated, notes = find_stated(
-        found, path, sample=sample, is_crs_declared=declared.crs is not None
-    )
+    stated, notes = find_stated(found, sample=sample, is_crs_declared=declared.crs is not None)
     system = stated.crs or declared.crs
     told = (stated.unit, declared.unit, declared.elevation_unit)
     if all(one is None for one in told) and (system is None or system.vertical_unit is None):
         raise ReadError(
-            f"'{path}' does not say its units: declare that of the elevations, such as "
-            "z_unit='m' or z_unit='US survey foot', or that of all lengths, unit='ft'.",
-            path=path,
+            f"{FILE} does not say its units: declare that of the elevations, such as "
+            "`z_unit='m'` or `z_unit='US survey foot'`, or that of all lengths, `unit='ft'`."
         )
-    return choose_measures(stated, declared, path, sample=sample).tell(*notes, first=True)
+    return choose_measures(stated, declared, sample=sample).tell(*notes, first=True)
 
 
 def _take_sample(found: Content, chosen: Surface | None) -> Float64Array:

@@ -11,7 +11,7 @@ import numpy as np
 from ....base import optional
 from ....base.errors import LinesError, ReadError
 from ....base.policies import BreaklineKind
-from ....base.sentences import counted
+from ....base.sentences import FILE, counted
 from ....tin import Breakline, Survey, Water
 from ....tin.constraints.breaklines import as_ring
 from ....tin.screening.nodata import describe_elevations
@@ -53,12 +53,9 @@ def make_survey_of_points(
     if not len(kept):
         why = "; ".join(f"{count:,} {what}" for what, count in skipped.items())
         raise ReadError(
-            f"'{path}' has no survey point with an elevation{f' ({why})' if why else ''}.",
-            path=path,
+            f"{FILE} has no survey point with an elevation{f' ({why})' if why else ''}."
         )
-    placing = place_rows(
-        [points.rows[kept][:, [1, 0, 2]]], measures, declared, path, names_axes=True
-    )
+    placing = place_rows([points.rows[kept][:, [1, 0, 2]]], measures, declared, names_axes=True)
     return Survey(
         points=placing.rows[0],
         attributes=_gather_attributes(points, kept),
@@ -123,10 +120,10 @@ def make_survey_of_source(
         If there are none, or a line is none.
     """
     if not surface.has_source:
-        raise ReadError(f"'{path}': surface {surface.label} has no source data.", path=path)
+        raise ReadError(f"surface {surface.label} has no source data.")
     own = [part for one in surface.lines if one.element == "DataPoints" for part in one.coordinates]
     notes = _describe_parts_left_out(surface)
-    points = [_turn(part, path, one="DataPoints") for part in own]
+    points = [_turn(part, one="DataPoints") for part in own]
     attributes: dict[str, AnyArray] = {}
     if not points and not any(one.element == "Contour" for one in surface.lines):
         kept, _ = _select_points(found.points)
@@ -134,9 +131,9 @@ def make_survey_of_source(
         attributes = _gather_attributes(found.points, kept) if len(kept) else {}
         if len(kept):
             notes.append(f"Its points are the {counted(len(kept), 'survey point')} of the file.")
-    lines = [*_iterate_lines(surface, path), *_resolve_chains(found, surface, path)]
+    lines = [*_iterate_lines(surface), *_resolve_chains(found, surface)]
     placing = place_rows(
-        [*points, *(rows for _, rows in lines)], measures, declared, path, names_axes=True
+        [*points, *(rows for _, rows in lines)], measures, declared, names_axes=True
     )
     rows = placing.rows[: len(points)]
     survey = Survey(
@@ -150,23 +147,23 @@ def make_survey_of_source(
     try:
         return _add_lines(survey, [one for one, _ in lines], placing, len(points))
     except LinesError as error:
-        raise ReadError(f"'{path}': {error}", path=path) from error
+        raise ReadError(f"{error}") from error
 
 
-def _turn(part: Float64Array, path: Path, *, one: str) -> Float64Array:
+def _turn(part: Float64Array, *, one: str) -> Float64Array:
     if part.shape[1] != 3:
-        raise ReadError(f"'{path}': {one} have no elevations.", path=path)
+        raise ReadError(f"{one} have no elevations.")
     return part[:, [1, 0, 2]]
 
 
-def _iterate_lines(surface: Surface, path: Path) -> list[tuple[Line, Float64Array]]:
+def _iterate_lines(surface: Surface) -> list[tuple[Line, Float64Array]]:
     """Return the lines as easting, northing, and elevation where it counts."""
     found = []
     for line in surface.lines:
         for part in line.coordinates:
             rows = part[:, [1, 0, *range(2, part.shape[1])]]
             if line.element == "Contour":
-                rows = _raise_contour(line, rows, path)
+                rows = _raise_contour(line, rows)
             elif line.element == "DataPoints" or _is_foreign_boundary(line):
                 continue
             elif line.attributes.get("brkType") in NO_ELEVATIONS:
@@ -180,27 +177,25 @@ def _is_foreign_boundary(line: Line) -> bool:
     return line.element == "Boundary" and not find_boundary_kind(line)
 
 
-def _raise_contour(line: Line, rows: Float64Array, path: Path) -> Float64Array:
+def _raise_contour(line: Line, rows: Float64Array) -> Float64Array:
     try:
         elevation = float(line.attributes.get("elev", "nan"))
     except ValueError:
         elevation = np.nan
     if not np.isfinite(elevation):
         shown = line.attributes.get("elev", "")[:60]
-        raise fault(path, line.line, f"a contour has the elevation '{shown}', which is no number")
+        raise fault(line.line, f"a contour has the elevation '{shown}', which is no number")
     return np.column_stack([rows[:, :2], np.full(len(rows), elevation)])
 
 
-def _resolve_chains(
-    found: Content, surface: Surface, path: Path
-) -> list[tuple[Line, Float64Array]]:
+def _resolve_chains(found: Content, surface: Surface) -> list[tuple[Line, Float64Array]]:
     """Return the lines that are given by the names of survey points."""
     from .content import Line
 
     lines = []
     for text, attributes, number in surface.chains:
         names = dict(enumerate(text.split()))
-        rows = resolve_references(np.zeros((len(names), 3)), names, found, path)[:, [1, 0, 2]]
+        rows = resolve_references(np.zeros((len(names), 3)), names, found)[:, [1, 0, 2]]
         rows = rows if np.isfinite(rows).all() else rows[:, :2]
         lines.append((Line("Breakline", attributes, number), rows))
     return lines

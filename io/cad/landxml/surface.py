@@ -13,8 +13,6 @@ from ..surfaces import EdgeLine, Mesh
 from .properties import KIND, LINE, SOURCE
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ....base.arrays import BoolArray, Float64Array, Int64Array
     from ..reference import Measures
     from .content import Content, Line, Surface
@@ -39,7 +37,7 @@ _OPPOSITE = (2, 0, 1)
 """The corner opposite side 1, 2, 3 of a face: sides join its corners in their order."""
 
 
-def make_mesh(found: Content, surface: Surface, path: Path) -> Mesh:
+def make_mesh(found: Content, surface: Surface) -> Mesh:
     """Return the points, northing first, and the visible triangles of a surface.
 
     Raises
@@ -50,20 +48,16 @@ def make_mesh(found: Content, surface: Surface, path: Path) -> Mesh:
     """
     if surface.kind.lower() == "grid":
         raise ReadError(
-            f"'{path}': surface {surface.label} is a grid (surfType='grid'), and only TIN surfaces "
-            "are read.",
-            path=path,
+            f"surface {surface.label} is a grid (surfType='grid'), and only TIN surfaces are read."
         )
     if not surface.faces:
         hidden = f", but {counted(surface.n_hidden, 'invisible one')}" if surface.n_hidden else ""
-        raise ReadError(
-            f"'{path}': surface {surface.label} has no visible faces{hidden}.", path=path
-        )
+        raise ReadError(f"surface {surface.label} has no visible faces{hidden}.")
     ids, points = np.concatenate(surface.ids or [np.empty(0, np.int64)]), _gather_points(surface)
     if surface.references:
-        points = resolve_references(points, surface.references, found, path)
+        points = resolve_references(points, surface.references, found)
     faces = np.concatenate(surface.faces)
-    triangles = _find_points(ids, points, faces, surface, path)
+    triangles = _find_points(ids, points, faces, surface)
     notes = [f"Skipped: {counted(surface.n_hidden, 'invisible face')}."] * bool(surface.n_hidden)
     if surface.point_files:
         notes.append(describe_point_files(surface))
@@ -81,40 +75,33 @@ def describe_point_files(surface: Surface) -> str:
 
 
 def _find_points(
-    ids: Int64Array,
-    points: Float64Array,
-    faces: Int64Array,
-    surface: Surface,
-    path: Path,
+    ids: Int64Array, points: Float64Array, faces: Int64Array, surface: Surface
 ) -> Int64Array:
     """Return the row of each point that a face names."""
     order = np.argsort(ids, kind="stable")
     ordered = ids[order]
-    _require_unique(ordered, points[order], surface, path)
+    _require_unique(ordered, points[order], surface)
     at = np.searchsorted(ordered, faces)
     at = np.minimum(at, max(len(ordered) - 1, 0))
     wrong = ordered[at] != faces if len(ordered) else np.ones(faces.shape, np.bool_)
     if wrong.any():
         row, corner = np.argwhere(wrong)[0].tolist()
         raise ReadError(
-            f"'{path}': visible face {row + 1} of surface {surface.label} names point "
-            f"{faces[row, corner]}, and there is no point with this id.",
-            path=path,
+            f"visible face {row + 1} of surface {surface.label} names point "
+            f"{faces[row, corner]}, and there is no point with this id."
         )
     triangles: Int64Array = order[at]
     return triangles
 
 
-def _require_unique(ids: Int64Array, points: Float64Array, surface: Surface, path: Path) -> None:
+def _require_unique(ids: Int64Array, points: Float64Array, surface: Surface) -> None:
     twice = ids[1:] == ids[:-1]
     if not twice.any():
         return
     differ = twice & (points[1:] != points[:-1]).any(axis=1)
     if differ.any():
         raise ReadError(
-            f"'{path}': in surface {surface.label} the id {ids[1:][np.argmax(differ)]} stands for "
-            "two points.",
-            path=path,
+            f"in surface {surface.label} the id {ids[1:][np.argmax(differ)]} stands for two points."
         )
 
 
@@ -129,7 +116,7 @@ def _find_flags(surface: Surface) -> BoolArray | None:
 
 
 def resolve_references(
-    points: Float64Array, references: dict[int, str], found: Content, path: Path
+    points: Float64Array, references: dict[int, str], found: Content
 ) -> Float64Array:
     """Return points with those that refer to survey points by name.
 
@@ -143,8 +130,7 @@ def resolve_references(
     for row, name in references.items():
         if name not in row_of:
             raise ReadError(
-                f"'{path}': a point refers to the survey point '{name[:60]}', which there is not.",
-                path=path,
+                f"a point refers to the survey point '{name[:60]}', which there is not."
             )
         points[row] = rows[row_of[name]]
     return points

@@ -8,13 +8,12 @@ import numpy as np
 
 from ....base.crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit
 from ....base.errors import CrsError, ReadError
-from ....base.sentences import shown
+from ....base.sentences import FILE, shown
 from ..reference import Stated
 from .properties import ELEVATION_UNIT, UNKNOWN
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
     from ....base.arrays import Float64Array
     from .content import Content
@@ -51,14 +50,13 @@ def name_unit(unit: Unit) -> tuple[str, str] | None:
 
 
 def find_stated(
-    content: Content, path: Path, *, sample: Float64Array, is_crs_declared: bool
+    content: Content, *, sample: Float64Array, is_crs_declared: bool
 ) -> tuple[Stated, list[str]]:
     """Return what the file says of units and CRS, and notes of what it says in other words.
 
     Parameters
     ----------
     content : Content
-    path : Path
     sample : (n, 2) float64 array
         Easting and northing of some points.
     is_crs_declared : bool
@@ -69,27 +67,25 @@ def find_stated(
     ReadError
         If it contradicts itself.
     """
-    crs, notes = _find_crs(content, path, sample, is_crs_declared=is_crs_declared)
-    units = [_parse_units(system, attributes, path) for system, attributes in content.units]
+    crs, notes = _find_crs(content, sample, is_crs_declared=is_crs_declared)
+    units = [_parse_units(system, attributes) for system, attributes in content.units]
     if len(set(units)) > 1:
         raise ReadError(
-            f"'{path}' gives its units twice, and not the same: {units[0][0].name} and "
-            f"{units[1][0].name}.",
-            path=path,
+            f"{FILE} gives its units twice, and not the same: {units[0][0].name} and "
+            f"{units[1][0].name}."
         )
     unit, elevation_unit = units[0] if units else (None, None)
     is_unknown = content.system_properties.get(ELEVATION_UNIT) == UNKNOWN
     return Stated(crs, unit, elevation_unit, is_unknown, "its element Units"), notes
 
 
-def _parse_units(system: str, attributes: dict[str, str], path: Path) -> tuple[Unit, Unit | None]:
+def _parse_units(system: str, attributes: dict[str, str]) -> tuple[Unit, Unit | None]:
     text = attributes.get("linearUnit", "").strip()
     unit = _find_unit(text)
     if unit is None:
         allowed = ", ".join(name for _, name in _LINEAR)
         raise ReadError(
-            f"'{path}' has the linearUnit {shown(text)} under {system}: {allowed} are allowed.",
-            path=path,
+            f"{FILE} has the linearUnit {shown(text)} under {system}: {allowed} are allowed."
         )
     word = attributes.get("elevationUnit", "").strip()
     elevation_unit = _find_unit(word)
@@ -106,7 +102,7 @@ def _find_unit(text: str) -> Unit | None:
 
 
 def _find_crs(
-    content: Content, path: Path, sample: Float64Array, *, is_crs_declared: bool
+    content: Content, sample: Float64Array, *, is_crs_declared: bool
 ) -> tuple[CRS | None, list[str]]:
     system = content.system
     code, wkt = system.get("epsgCode", "").strip(), system.get("ogcWktCode", "").strip()
@@ -117,7 +113,7 @@ def _find_crs(
         if text and found is None and text != "0"
     ]
     if by_code is not None and by_wkt is not None:
-        return _choose_crs(by_code, by_wkt, path, sample, is_crs_declared=is_crs_declared), notes
+        return _choose_crs(by_code, by_wkt, sample, is_crs_declared=is_crs_declared), notes
     found = by_code or by_wkt or _find_named(system)
     if found is None and system and not is_crs_declared:
         words = next((system[name] for name in _NAMES_OF_SYSTEMS if system.get(name)), "")
@@ -150,18 +146,15 @@ def _find_named(system: dict[str, str]) -> CRS | None:
     return None
 
 
-def _choose_crs(
-    by_code: CRS, by_wkt: CRS, path: Path, sample: Float64Array, *, is_crs_declared: bool
-) -> CRS:
+def _choose_crs(by_code: CRS, by_wkt: CRS, sample: Float64Array, *, is_crs_declared: bool) -> CRS:
     """Return the CRS of which code and WKT speak, the fuller one; refuse two different ones."""
     if by_wkt.horizontal.is_same(by_code.horizontal):
         return by_wkt if by_code.vertical_unit is None else by_code
     if is_crs_declared or _lie_together(by_code, by_wkt, sample):
         return by_code
     raise ReadError(
-        f"'{path}' names two CRSs, {by_code.caption} by its epsgCode and {by_wkt.name} by its "
-        "ogcWktCode, which are not the same: declare the right one.",
-        path=path,
+        f"{FILE} names two CRSs, {by_code.caption} by its epsgCode and {by_wkt.name} by its "
+        "ogcWktCode, which are not the same: declare the right one."
     )
 
 

@@ -7,15 +7,16 @@ that the unit of elevations is not known, stands in elements ``Feature``, as the
 
 from __future__ import annotations
 
-import warnings
 from typing import IO, TYPE_CHECKING
 
 import numpy as np
 
 from ....base.atomic import replacing
 from ....base.crs import CRS
-from ....base.errors import FormatError, LossWarning, OptionError
+from ....base.errors import FormatError, OptionError
+from ....base.notes import warn
 from ....base.results import Features
+from ....base.sentences import FILE
 from ....tin import TIN, Surface, Survey
 from ...registry.losses import select_attributes, tell_unknown_elevations
 from ..lengths import choose_length_unit
@@ -91,16 +92,16 @@ def write(
         left out, or line breaks in texts.
     """
     if not isinstance(obj, Surface | Survey | Features):
-        raise FormatError(f"Cannot write '{path}': a {type(obj).__name__} is no surface or survey.")
+        raise FormatError(f"Cannot write {FILE}: a {type(obj).__name__} is no surface or survey.")
     if surface is None:
         surface = (obj.name.strip() if isinstance(obj, Surface) else "") or "surface"
     if not isinstance(surface, str) or not surface.strip():
         raise OptionError("surface", surface, "the name of a surface")
-    _require_lines(obj, path)
+    _require_lines(obj)
     along, factor = choose_length_unit(
-        obj, unit, path, is_known=lambda one: name_unit(one) is not None, format_name="LandXML"
+        obj, unit, is_known=lambda one: name_unit(one) is not None, format_name="LandXML"
     )
-    texts = _select_texts(obj, path)
+    texts = _select_texts(obj)
     with replacing(path, binary=False) as file:
         file.write(_ROOT)
         _write_reference(file, obj, along)
@@ -109,7 +110,7 @@ def write(
         file.write("</LandXML>\n")
     if progress is not None:
         progress(1.0)
-    tell_unknown_elevations(obj, path)
+    tell_unknown_elevations(obj)
 
 
 def _write_content(
@@ -139,9 +140,9 @@ def _scale(points: Float64Array, factor: float) -> Float64Array:
     return points if factor == 1.0 else points * [1.0, 1.0, factor]
 
 
-def _require_lines(obj: TIN | Survey | Features, path: Path) -> None:
+def _require_lines(obj: TIN | Survey | Features) -> None:
     if isinstance(obj, Features) and obj.kind == "polygons":
-        raise FormatError(f"Cannot write '{path}': LandXML holds points and lines, not polygons.")
+        raise FormatError(f"Cannot write {FILE}: LandXML holds points and lines, not polygons.")
     if isinstance(obj, Features) and obj.kind == "points":
         _require_elevations(obj)
 
@@ -264,7 +265,7 @@ def _write_points(file: IO[str], points: Float64Array, texts: dict[str, list[str
     file.write("</CgPoints>\n")
 
 
-def _select_texts(obj: TIN | Survey | Features, path: Path) -> dict[str, list[str]]:
+def _select_texts(obj: TIN | Survey | Features) -> dict[str, list[str]]:
     """Return the texts of points that LandXML holds; numbers only if they all differ."""
     if isinstance(obj, Surface) or (isinstance(obj, Features) and obj.kind != "points"):
         return {}
@@ -272,17 +273,14 @@ def _select_texts(obj: TIN | Survey | Features, path: Path) -> dict[str, list[st
     held = select_attributes(
         attributes,
         ("number", *_TEXTS.values()),
-        path,
         "LandXML has the number, the description and the code of a point",
     )
     texts = {name: [_as_text(one) for one in values.tolist()] for name, values in held.items()}
     numbers = texts.get("number", [])
     if not all(numbers) or len(set(numbers)) < len(numbers):
-        warnings.warn(
-            f"'{path}': points are numbered 1, 2, 3 ... anew, as numbers are missing or stand "
-            "twice, which LandXML does not allow.",
-            LossWarning,
-            stacklevel=4,
+        warn(
+            f"{FILE}: points are numbered 1, 2, 3 ... anew, as numbers are missing or stand "
+            "twice, which LandXML does not allow."
         )
         del texts["number"]
     return texts

@@ -46,20 +46,19 @@ class _Reader:
 
     def __init__(self, lines: TextLines, path: Path) -> None:
         self.book = Book(path, "Trimble")
-        self.is_east_first = self._read_header(lines, path)
+        self.is_east_first = self._read_header(lines)
         self._known: set[str] = set()
         self._waiting: list[tuple[int, str, str]] = []
 
-    def _read_header(self, lines: TextLines, path: Path) -> bool:
+    def _read_header(self, lines: TextLines) -> bool:
         """Read units and the order of coordinates, and return whether eastings come first."""
         head = find_head(lines)
         if not head.startswith("00"):
             what = f" begins with '{head[:20]}', and a Trimble DC file with the record 00."
-            raise describe_head_fault(path, what)
+            raise describe_head_fault(what)
         length, order = head[41:42], head[44:45]
         if length not in ("1", "2", "3") or order not in ("1", "2"):
             raise describe_head_fault(
-                path,
                 f", line 1: the units of the header are '{head[40:46].strip()}', and they must be "
                 "digits for angles, lengths (1, 2 or 3), pressure, temperature, order of "
                 "coordinates (1 or 2) and direction of angles.",
@@ -83,7 +82,7 @@ class _Reader:
         name, *cells, code = (
             line[at : at + _WIDTH].strip() for at in range(4, _END_OF_CODE, _WIDTH)
         )
-        first, second, z = (parse_coordinate(cell, self.book.path, number) for cell in cells)
+        first, second, z = (parse_coordinate(cell, number) for cell in cells)
         x, y = (first, second) if self.is_east_first else (second, first)
         self._known.add(name)
         self.book.add(name, (x, y, z), code, number, line[_END_OF_CODE : _END_OF_CODE + 2].strip())

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ....base.crs import METRE
 from ....base.errors import OptionError, ReadError
-from ....base.sentences import counted, inflect
+from ....base.sentences import FILE, counted, inflect
 from ...delimited.lines import read_lines
 from .records import Book, require_refraction
 from .reduction import Shot, Station, reduce_shot, to_radians
@@ -81,7 +81,7 @@ def read_book(
     if code_blocks not in (None, "before", "after"):
         raise OptionError("code_blocks", code_blocks, ("before", "after"))
     coefficient = require_refraction(refraction)
-    blocks = list(_iterate_blocks(read_lines(path, encoding=encoding), path))
+    blocks = list(_iterate_blocks(read_lines(path, encoding=encoding)))
     if not any(11 in block.words for block in blocks):
         raise ReadError(f"'{path}' has no block of a point (word 11).", path=path)
     reader = _Reader(Book(path, "Leica"), oriented=oriented, refraction=coefficient)
@@ -98,14 +98,14 @@ def read_book(
 # ------------------------------------------------------------------ words
 
 
-def _iterate_blocks(lines: TextLines, path: Path) -> Iterator[_Block]:
+def _iterate_blocks(lines: TextLines) -> Iterator[_Block]:
     """Walk the blocks; one begins with a line, and with each point or code in it."""
     for number in range(len(lines)):
         text = lines.decode_line(number).rstrip()
         if not text.strip():
             continue
         block: _Block | None = None
-        for word in _split(text, number + 1, path):
+        for word in _split(text, number + 1):
             if block is None or (word.number in (11, 41) and block.words):
                 if block is not None:
                     yield block
@@ -115,20 +115,20 @@ def _iterate_blocks(lines: TextLines, path: Path) -> Iterator[_Block]:
             yield block
 
 
-def _split(text: str, line: int, path: Path) -> Iterator[_Word]:
+def _split(text: str, line: int) -> Iterator[_Word]:
     """Walk the words of a line."""
     has_star = text.startswith("*")
     text = text[has_star:]
     width = 16 if has_star else len(text.split(" ", 1)[0]) - _HEAD
     if width not in _WIDTHS:
-        raise _fail(path, line, text.split(" ", 1)[0], "8 characters behind its sign, or 16")
+        raise _fail(line, text.split(" ", 1)[0], "8 characters behind its sign, or 16")
     step = _HEAD + width
     at = 0
     while at < len(text):
         word = text[at : at + step]
         is_cut = len(word.rstrip()) <= _HEAD or len(word) < step
         if _WORD.match(word) is None or is_cut or text[at + step : at + step + 1].strip():
-            raise _fail(path, line, word, f"index, information, sign and {width} characters")
+            raise _fail(line, word, f"index, information, sign and {width} characters")
         index = word[:3] if word[2].isdigit() and word[:2] not in ("11", "41") else word[:2]
         yield _Word(int(index), word[5], word[6], word[_HEAD:])
         at += step
@@ -136,10 +136,9 @@ def _split(text: str, line: int, path: Path) -> Iterator[_Word]:
             at += 1
 
 
-def _fail(path: Path, line: int, word: str, allowed: str) -> ReadError:
+def _fail(line: int, word: str, allowed: str) -> ReadError:
     return ReadError(
-        f"'{path}', line {line}: '{word[:30]}' is no word of GSI: it must have {allowed}.",
-        path=path,
+        f"{FILE}, line {line}: '{word[:30]}' is no word of GSI: it must have {allowed}.",
         lines=[line],
     )
 
@@ -167,7 +166,7 @@ def _assign_codes(blocks: list[_Block], where: str | None, book: Book) -> dict[i
         book.notes.append(
             inflect(
                 f"{counted(len(coded), 'block')} of codes [is|are] not read: nothing shows whether "
-                "codes stand before or after their points, and the option code_blocks says it.",
+                "codes stand before or after their points, and the option `code_blocks` says it.",
                 len(coded),
             )
         )
@@ -268,8 +267,8 @@ class _Reader:
         """Say what is missing for shots that were left out."""
         if self._without_orientation:
             self.book.notes.append(
-                "The file does not say whether its circle reads azimuths: the option oriented says "
-                "that it does."
+                "The file does not say whether its circle reads azimuths: the option `oriented` "
+                "says that it does."
             )
 
     def _set_up(self, block: _Block) -> None:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from xml.parsers import expat
 
 from ....base.errors import ReadError
-from ....base.sentences import counted, inflect
+from ....base.sentences import FILE, counted, inflect
 from .record_lines import parse_coordinate
 from .records import Book
 
@@ -91,23 +91,18 @@ class _Reader:
 
     def refuse_declaration(self, *_: object) -> None:
         """Refuse a document type, which may define entities or name other files."""
-        raise ReadError(
-            f"'{self.path}' declares a document type, which no JobXML has.", path=self.path
-        )
+        raise ReadError(f"{FILE} declares a document type, which no JobXML has.")
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:  # noqa: ARG002 - of expat
         """Open an element."""
         self._tags.append(tag.rpartition(":")[2])
         if len(self._tags) > _DEEPEST:
             raise ReadError(
-                f"'{self.path}', line {self.parser.CurrentLineNumber}: its elements are nested "
+                f"{FILE}, line {self.parser.CurrentLineNumber}: its elements are nested "
                 f"deeper than {_DEEPEST}.",
-                path=self.path,
             )
         if len(self._tags) == 1 and self._tags[0] != "JOBFile":
-            raise ReadError(
-                f"'{self.path}' is <{tag[:40]}>, and JobXML is <JOBFile>.", path=self.path
-            )
+            raise ReadError(f"{FILE} is <{tag[:40]}>, and JobXML is <JOBFile>.")
         if self._record is None and tuple(self._tags) in _RECORDS:
             self._record = _Record(self.parser.CurrentLineNumber)
             self._depth = len(self._tags)
@@ -144,8 +139,7 @@ class _Reader:
     def _require_north_east(self, text: str) -> None:
         if text and text != "IncreasingNorthEast":
             raise ReadError(
-                f"'{self.path}': its grid is '{text[:40]}', and only IncreasingNorthEast is read.",
-                path=self.path,
+                f"its grid is '{text[:40]}', and only IncreasingNorthEast is read.",
             )
 
     def finish(self) -> Book:
@@ -174,7 +168,7 @@ class _Reader:
         if grid is None:
             book.leave_out("points without a position in the grid", record.line)
             return
-        x, y, z = (parse_coordinate(grid.get(axis, ""), self.path, record.line) for axis in _AXES)
+        x, y, z = (parse_coordinate(grid.get(axis, ""), record.line) for axis in _AXES)
         texts = record.texts
         method = texts.get("SurveyMethod") or texts.get("Method") or ""
         name = texts.get("Name", "")

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from ....base.errors import ReadError
+from ....base.sentences import FILE
 from ...delimited.cells import is_number
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ...delimited.lines import TextLines
     from .records import Book
 
@@ -43,9 +42,9 @@ def find_head(lines: TextLines) -> str:
     return next(filter(str.strip, heads), "")
 
 
-def describe_head_fault(path: Path, what: str) -> ReadError:
+def describe_head_fault(what: str) -> ReadError:
     """Return the error of a first line that is not as the format asks for."""
-    return ReadError(f"'{path}'{what}", path=path, lines=[1])
+    return ReadError(f"{FILE}{what}", lines=[1])
 
 
 def read_records(lines: TextLines, reader: _Reader) -> Book:
@@ -60,7 +59,7 @@ def read_records(lines: TextLines, reader: _Reader) -> Book:
     return reader.book
 
 
-def parse_coordinate(text: str, path: Path, line: int) -> float:
+def parse_coordinate(text: str, line: int) -> float:
     """Return a coordinate, NaN where there is none.
 
     Raises
@@ -73,8 +72,7 @@ def parse_coordinate(text: str, path: Path, line: int) -> float:
     value = float(text) if is_number(text, ".") else math.inf
     if math.isinf(value):
         raise ReadError(
-            f"'{path}', line {line}: '{text[:30]}' stands where a coordinate must be.",
-            path=path,
+            f"{FILE}, line {line}: '{text[:30]}' stands where a coordinate must be.",
             lines=[line],
         )
     return value

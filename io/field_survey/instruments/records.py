@@ -11,7 +11,7 @@ import numpy as np
 from ....base.checks import is_finite_number
 from ....base.crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit, require_same_unit
 from ....base.errors import CrsError, OptionError, ReadError
-from ....base.sentences import counted, inflect
+from ....base.sentences import FILE, counted, inflect
 from ....base.types import RowSources
 from ....tin import Survey
 from ...delimited.findings import find_odd_elevations, find_repeated_numbers
@@ -87,15 +87,13 @@ class Book:
             If there are no points, or they are in feet of which nobody says which.
         """
         if not self.points:
-            raise ReadError(self._describe_nothing(), path=self.path)
+            raise ReadError(self._describe_nothing())
         target, source = CRS.of(crs), CRS.of(source_crs)
         self._sort()
         points = np.array(self.points, np.float64)
         unit = self._settle(source or target, Unit.of(z_unit))
         points[:, :2] = self._scale(points[:, :2], source or target, unit)
-        placed = place(
-            points, source=source, target=target, path=self.path, unit=unit, looks_at_order=False
-        )
+        placed = place(points, source=source, target=target, unit=unit, looks_at_order=False)
         numbers = parse_names(self.names)
         rows = np.array(self.lines, np.int64) - 1
         return Survey(
@@ -137,16 +135,16 @@ class Book:
         why = f": {lost}" if lost else ""
         first = self.notes[0] if self.notes else ""
         hint = f" ({first[:-1]})" if first else ""
-        return f"'{self.path}' holds no point with coordinates{why}{hint}."
+        return f"{FILE} holds no point with coordinates{why}{hint}."
 
     def _settle(self, crs: CRS | None, declared: Unit | None) -> Unit:
         """Return the unit of the file's lengths: feet are those of the CRS, or as declared."""
         if self.unit is not None:
-            unit = settle_unit(declared, self.unit, self.path)
+            unit = settle_unit(declared, self.unit)
             return self.unit if unit is None else unit
         known = None if crs is None or crs.is_geographic else crs.horizontal_unit
         if declared is not None and declared not in _FEET:
-            require_same_unit(FOOT, declared, f"as '{self.path}' itself says")
+            require_same_unit(FOOT, declared, f"as {FILE} itself says")
         if declared is not None:
             return declared
         if known in _FEET:
@@ -155,9 +153,8 @@ class Book:
             )
             return known
         raise ReadError(
-            f"'{self.path}' is in feet and does not say which: give z_unit='ft' (0.3048 m) or "
-            "z_unit='US survey foot' (1200/3937 m).",
-            path=self.path,
+            f"{FILE} is in feet and does not say which: give `z_unit='ft'` (0.3048 m) or "
+            "`z_unit='US survey foot'` (1200/3937 m).",
         )
 
     def _scale(self, xy: Any, crs: CRS | None, unit: Unit) -> Any:
@@ -170,7 +167,7 @@ class Book:
         if unit == wanted:
             return xy
         if wanted.metres is None or unit.metres is None:
-            raise CrsError(f"'{self.path}': {crs.label} has no unit of length.", crs=crs)
+            raise CrsError(f"{crs.label} has no unit of length.", crs=crs)
         self.notes.append(
             f"Eastings and northings were converted from {unit.name}, the unit of the file, to "
             f"{wanted.name}, that of {crs.label}."

@@ -70,7 +70,7 @@ class _Reader:
     def __init__(self, lines: TextLines, path: Path, refraction: float | None) -> None:
         self.book = Book(path, "SDR")
         self.refraction = refraction
-        self.columns, self.is_east_first, self.angle = self._read_header(lines, path)
+        self.columns, self.is_east_first, self.angle = self._read_header(lines)
         self.is_from_horizon = False
         self.scale = 1.0
         self.stations: dict[str, tuple[float, float, float, float]] = {}
@@ -88,7 +88,7 @@ class _Reader:
             "09": self._read_observation,
         }
 
-    def _read_header(self, lines: TextLines, path: Path) -> tuple[_Columns, bool, str]:
+    def _read_header(self, lines: TextLines) -> tuple[_Columns, bool, str]:
         head = find_head(lines)
         version = head[4:20].strip().upper()
         columns = next((one for name, one in _VERSIONS.items() if version.startswith(name)), None)
@@ -96,11 +96,10 @@ class _Reader:
             what = (
                 f" begins with '{head[:20]}', and an SDR file with the record 00 of SDR33 or SDR20."
             )
-            raise describe_head_fault(path, what)
+            raise describe_head_fault(what)
         angle, length, order = head[40:41], head[41:42], head[44:45]
         if angle not in _ANGLES or length not in "12" or order not in "12" or not length + order:
             raise describe_head_fault(
-                path,
                 f", line 1: the units of the header are '{head[40:46]}', and they must be digits "
                 "for angles (1, 2 or 4), lengths (1 or 2), pressure, temperature and order of "
                 "coordinates (1 or 2).",

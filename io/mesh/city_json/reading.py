@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ....base.errors import ReadError
-from ..common import choose_reference, cut_into_fans, make_tin, read_content
+from ....base.sentences import FILE
+from ..common import Mesh, join_places, mesh_reader, read_content, require_vertices
 from .decimals import DecimalGrid
 from .sequence import City, SequenceError, parse_city
 
@@ -17,9 +18,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ....base.arrays import Float64Array, Int64Array
-    from ....base.crs import CrsLike, UnitLike
-    from ....base.policies import FacePolicy
-    from ....tin import TIN
 
 __all__ = ["read"]
 
@@ -42,15 +40,8 @@ class _Relief(NamedTuple):
     attributes: dict[str, Any]
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    surface: str | None = None,
-    join: bool = False,
-    faces: FacePolicy = "most",
-) -> TIN:
+@mesh_reader
+def read(path: Path, *, surface: str | None = None, join: bool = False) -> Mesh:
     """Read the terrain of a CityJSON file, or of a sequence of features (CityJSONSeq).
 
     The CRS defaults to that of the metadata; the unit of elevations is known where tinsmith wrote
@@ -65,81 +56,71 @@ def read(
         Whether all of them become one TIN.
     """
     city, ranges = _parse(path)
-    objects = _choose_objects(city, surface, join, path)
+    objects = _choose_objects(city, surface, join)
     notes: list[str] = []
-    reliefs = [_collect(name, one, notes, path, ranges.get(name)) for name, one in objects.items()]
-    points = _restore_vertices(city, path)
+    reliefs = [_collect(name, one, notes, ranges.get(name)) for name, one in objects.items()]
+    points = _restore_vertices(city)
     corners = np.concatenate([one.corners for one in reliefs])
     lengths = np.concatenate([np.diff(one.offsets) for one in reliefs])
     offsets = np.concatenate([[0], np.cumsum(lengths)])
     if len(lengths) == 0:
-        raise ReadError(f"'{path}' holds a TINRelief without any triangle.", path=path)
-    made = cut_into_fans(corners, offsets, points, path)
-    notes += made.notes
-    points, triangles = _merge_vertices(points, made.triangles)
+        raise ReadError(f"{FILE} holds a TINRelief without any triangle.")
+    require_vertices(corners, offsets, len(points))
+    points, corners = _merge_vertices(points, corners)
     found_crs, found_unit = _find_reference(city, reliefs)
-    reference = choose_reference(crs, z_unit, path, found_crs=found_crs, found_unit=found_unit)
-    return make_tin(points, triangles, path, reference=reference, notes=notes, faces=faces)
+    return Mesh(points, corners, offsets, crs=found_crs, elevation_unit=found_unit, notes=notes)
 
 
-def _describe_damage(path: Path, what: str) -> ReadError:
-    return ReadError(f"'{path}' is a damaged CityJSON file: {what}.", path=path)
+def _describe_damage(what: str) -> ReadError:
+    return ReadError(f"{FILE} is a damaged CityJSON file: {what}.")
 
 
 def _parse(path: Path) -> City:
     try:
         found = parse_city(read_content(path))
     except SequenceError as error:
-        raise _describe_damage(path, str(error)) from error
+        raise _describe_damage(str(error)) from error
     city = found.document
     if not isinstance(city, dict) or city.get("type") != "CityJSON":
-        raise ReadError(f"'{path}' is no CityJSON file: its type is not 'CityJSON'.", path=path)
+        raise ReadError(f"{FILE} is no CityJSON file: its type is not 'CityJSON'.")
     version = str(city.get("version", ""))[:20]
     if not version.startswith(_VERSIONS):
         raise ReadError(
-            f"'{path}' is CityJSON of version '{version}': {', '.join(_VERSIONS)} are read.",
-            path=path,
+            f"{FILE} is CityJSON of version '{version}': {', '.join(_VERSIONS)} are read."
         )
     return found
 
 
 def _choose_objects(
-    city: dict[str, Any], surface: str | None, join: bool, path: Path
+    city: dict[str, Any], surface: str | None, join: bool
 ) -> dict[str, dict[str, Any]]:
     """Return the terrains to read by their names."""
     every = city.get("CityObjects")
     if not isinstance(every, dict):
-        raise _describe_damage(path, "it has no CityObjects")
+        raise _describe_damage("it has no CityObjects")
     found = {
         str(name): one
         for name, one in every.items()
         if isinstance(one, dict) and one.get("type") == "TINRelief"
     }
     if not found:
-        raise ReadError(f"'{path}' holds no TINRelief among its city objects.", path=path)
+        raise ReadError(f"{FILE} holds no TINRelief among its city objects.")
     names = ", ".join(f"'{name[:40]}'" for name in list(found)[:_SHOWN_NAMES])
     names += ", ..." if len(found) > _SHOWN_NAMES else ""
     if surface is not None:
         if surface not in found:
-            raise ReadError(
-                f"'{path}' holds no TINRelief '{surface}': there is {names}.", path=path
-            )
+            raise ReadError(f"{FILE} holds no TINRelief '{surface}': there is {names}.")
         return {surface: found[surface]}
     if len(found) > 1 and not join:
         raise ReadError(
-            f"'{path}' holds {len(found)} objects TINRelief ({names}): name one as surface, or "
-            "join them.",
-            path=path,
+            f"{FILE} holds {len(found)} objects TINRelief ({names}): name one as surface, or "
+            "join them."
         )
     return found
 
 
 def _collect(
-    name: str,
-    relief: dict[str, Any],
-    notes: list[str],
-    path: Path,
-    vertices: tuple[int, int] | None,
+    name: str, relief: dict[str, Any], notes: list[str], vertices: tuple[int, int] | None
 ) -> _Relief:
     """Return the polygons of the finest geometry of a terrain, of the vertices of its feature."""
     geometries = relief.get("geometry")
@@ -148,25 +129,25 @@ def _collect(
     attributes = relief.get("attributes")
     attributes = attributes if isinstance(attributes, dict) else {}
     if not fitting:
-        raise _describe_damage(path, f"TINRelief '{name[:40]}' has no CompositeSurface")
+        raise _describe_damage(f"TINRelief '{name[:40]}' has no CompositeSurface")
     fitting.sort(key=lambda one: str(one.get("lod", "")))
     if len(fitting) > 1:
         notes.append(
             f"TINRelief '{name[:40]}' has {len(fitting)} levels of detail: "
             f"{str(fitting[-1].get('lod'))[:20]} was read."
         )
-    corners, lengths = _flatten(fitting[-1].get("boundaries"), name, path)
+    corners, lengths = _flatten(fitting[-1].get("boundaries"), name)
     if vertices is not None:
         first, end = vertices
         if (corners >= end - first).any():
             raise _describe_damage(
-                path, f"a surface of '{name[:40]}' names a vertex that its feature does not have"
+                f"a surface of '{name[:40]}' names a vertex that its feature does not have"
             )
         corners = corners + first
     return _Relief(corners, np.concatenate([[0], np.cumsum(lengths)]), attributes)
 
 
-def _flatten(boundaries: Any, name: str, path: Path) -> tuple[Int64Array, Int64Array]:
+def _flatten(boundaries: Any, name: str) -> tuple[Int64Array, Int64Array]:
     """Return the corners of all polygons, and how many each has."""
     try:
         rings = [ring for (ring,) in boundaries]
@@ -174,34 +155,32 @@ def _flatten(boundaries: Any, name: str, path: Path) -> tuple[Int64Array, Int64A
         flat = [corner for ring in rings for corner in ring]
     except (TypeError, ValueError):
         raise _describe_damage(
-            path, f"the surfaces of '{name[:40]}' are no lists of one ring each"
+            f"the surfaces of '{name[:40]}' are no lists of one ring each"
         ) from None
     if not all(type(corner) is int and 0 <= corner < _LARGEST_EXACT for corner in flat):
         raise _describe_damage(
-            path, f"a surface of '{name[:40]}' names a vertex that is no number from 0 on"
+            f"a surface of '{name[:40]}' names a vertex that is no number from 0 on"
         )
     return np.array(flat, np.int64), lengths
 
 
-def _restore_vertices(city: dict[str, Any], path: Path) -> Float64Array:
+def _restore_vertices(city: dict[str, Any]) -> Float64Array:
     """Return the coordinates of all vertices."""
     try:
         vertices = np.array(city["vertices"], np.float64).reshape(-1, 3)
     except (KeyError, TypeError, ValueError, OverflowError):
-        raise _describe_damage(path, "its vertices are no list of three numbers each") from None
+        raise _describe_damage("its vertices are no list of three numbers each") from None
     transform = city.get("transform")
     if transform is None:
         if not str(city["version"]).startswith(_WITHOUT_TRANSFORM):
-            raise _describe_damage(
-                path, f"version {city['version']} needs a transform, and it has none"
-            )
+            raise _describe_damage(f"version {city['version']} needs a transform, and it has none")
         return vertices
     try:
         scale = np.array(transform["scale"], np.float64).reshape(3)
         translate = np.array(transform["translate"], np.float64).reshape(3)
     except (KeyError, TypeError, ValueError, OverflowError):
         raise _describe_damage(
-            path, "its transform has no scale and translate of three numbers"
+            "its transform has no scale and translate of three numbers"
         ) from None
     with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused later
         return np.column_stack([_scale(vertices[:, k], scale[k], translate[k]) for k in range(3)])
@@ -219,15 +198,13 @@ def _scale(values: Float64Array, scale: float, translate: float) -> Float64Array
     return DecimalGrid(digits, int(translate)).restore(values.astype(np.int64))
 
 
-def _merge_vertices(points: Float64Array, triangles: Int64Array) -> tuple[Float64Array, Int64Array]:
-    """Return the vertices that triangles have, each place once, in the order of the file."""
-    used = np.unique(triangles)
-    _, first, number = np.unique(points[used], axis=0, return_index=True, return_inverse=True)
-    rank = np.empty(len(first), np.int64)
-    rank[np.argsort(first)] = np.arange(len(first))
+def _merge_vertices(points: Float64Array, corners: Int64Array) -> tuple[Float64Array, Int64Array]:
+    """Return the vertices that polygons have, each place once, in the order of the file."""
+    used = np.unique(corners)
+    places, number = join_places(points[used])
     place = np.zeros(len(points), np.int64)
-    place[used] = rank[number.ravel()]
-    return points[used][np.sort(first)], place[triangles]
+    place[used] = number
+    return places, place[corners]
 
 
 def _find_reference(

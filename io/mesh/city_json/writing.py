@@ -8,14 +8,14 @@ unit of elevations and a CRS without a number.
 from __future__ import annotations
 
 import json
-import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ....base.atomic import replacing
-from ....base.errors import LossWarning, OptionError, WriteError
-from ....base.sentences import counted
+from ....base.errors import OptionError, WriteError
+from ....base.notes import warn
+from ....base.sentences import FILE, counted
 from ....tin.topology import mark_corners
 from ..common import format_crs, format_unit, require_tin
 from .decimals import DecimalGrid, choose_digits
@@ -58,13 +58,13 @@ def write(
     LossWarning
         If the CRS has no EPSG number: programs other than this one do not find it.
     """
-    tin = require_tin(surface, path, format_name="CityJSON")
+    tin = require_tin(surface, format_name="CityJSON")
     used = mark_corners(tin.triangles, len(tin.points))
     points = tin.points[used]
     triangles = (np.cumsum(used) - 1)[tin.triangles]
     grids = [_choose_grid(axis, precision) for axis in points.T]
     counts = np.stack([grid.count(axis) for grid, axis in zip(grids, points.T, strict=True)], 1)
-    _require_areas(counts, triangles, grids, path)
+    _require_areas(counts, triangles, grids)
     done, total = 0, len(counts) + len(triangles)
     head, middle = _format_head(tin, grids, counts), ']}]}},\n"vertices":[\n'
     with replacing(path, binary=False) as file:
@@ -93,12 +93,7 @@ def _count_digits(precision: float) -> int:
     raise OptionError("precision", precision, "a power of ten from 1e-15 to 1, such as 0.001")
 
 
-def _require_areas(
-    counts: Int64Array,
-    triangles: Int64Array,
-    grids: list[DecimalGrid],
-    path: Path,
-) -> None:
+def _require_areas(counts: Int64Array, triangles: Int64Array, grids: list[DecimalGrid]) -> None:
     """Refuse a grid on which triangles are turned over or lose their area."""
     places = np.column_stack([grids[k].restore(counts[:, k]) for k in (0, 1)])
     places -= places.min(axis=0)
@@ -107,9 +102,8 @@ def _require_areas(
     lost = int((u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] <= 0).sum())
     if lost:
         raise WriteError(
-            f"Cannot write '{path}': at a precision of {grids[0].step:g} "
-            f"{counted(lost, 'triangle')} would have no area; choose a finer one.",
-            path=path,
+            f"Cannot write {FILE}: at a precision of {grids[0].step:g} "
+            f"{counted(lost, 'triangle')} would have no area; choose a finer one."
         )
 
 
@@ -140,11 +134,9 @@ def _find_reference(tin: TIN) -> str | None:
         return None
     epsg = tin.crs.to_epsg()
     if epsg is None:
-        warnings.warn(
+        warn(
             f"CityJSON names a CRS by its EPSG number, and {tin.crs.label} has none: it is kept as "
-            "an attribute that other programs do not look for.",
-            LossWarning,
-            stacklevel=4,
+            "an attribute that other programs do not look for."
         )
         return None
     return f"https://www.opengis.net/def/crs/EPSG/0/{epsg}"

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ....base.sentences import FILE
 from ...isolated import Answer, Refusal
 from .digests import digest_lines
 from .geometries import POINT
@@ -27,7 +28,7 @@ _TRIANGLE = np.dtype([("corners", "i8", (3,)), ("flags", "i8")])
 _READ_ONLY = {sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_FUNCTION}
 
 
-def read_tables(path: str, shown: str) -> Answer:
+def read_tables(path: str) -> Answer:
     """Return points, triangles, flags and record of a file.
 
     The value holds the ``document`` and the ``digests`` as text, that of the ``lines``, and the
@@ -36,10 +37,10 @@ def read_tables(path: str, shown: str) -> Answer:
     """
     try:
         with closing(_open(path)) as file:
-            _require_plain_tables(file, shown)
-            return _read(file, Path(path).stat().st_size, shown)
+            _require_plain_tables(file)
+            return _read(file, Path(path).stat().st_size)
     except (sqlite3.Error, OverflowError, UnicodeError) as error:
-        raise Refusal(f"'{shown}' is a damaged GeoPackage ({error}).") from error
+        raise Refusal(f"{FILE} is a damaged GeoPackage ({error}).") from error
 
 
 def _open(path: str) -> sqlite3.Connection:
@@ -49,7 +50,7 @@ def _open(path: str) -> sqlite3.Connection:
     return file
 
 
-def _require_plain_tables(file: sqlite3.Connection, shown: str) -> None:
+def _require_plain_tables(file: sqlite3.Connection) -> None:
     """Refuse views and virtual tables in place of tables; then allow reading only."""
     rows = file.execute("SELECT name, type, sql FROM sqlite_master").fetchall()
     plain = {
@@ -59,21 +60,21 @@ def _require_plain_tables(file: sqlite3.Connection, shown: str) -> None:
     }
     missing = {"vertices", "triangles", "lines", RECORD} - plain
     if missing:
-        raise Refusal(f"'{shown}' is no GeoPackage of a TIN: it has no table '{min(missing)}'.")
+        raise Refusal(f"{FILE} is no GeoPackage of a TIN: it has no table '{min(missing)}'.")
     file.set_authorizer(
         lambda action, *_: sqlite3.SQLITE_OK if action in _READ_ONLY else sqlite3.SQLITE_DENY
     )
 
 
-def _read(file: sqlite3.Connection, size: int, shown: str) -> Answer:
-    texts, arrays = _read_record(file, shown)
+def _read(file: sqlite3.Connection, size: int) -> Answer:
+    texts, arrays = _read_record(file)
     lines = file.execute("SELECT geom, kind, name FROM lines ORDER BY fid")
     rows = [row for row in lines if [type(one) for one in row] == [bytes, str, str]]
-    triangles = _read_triangles(file, size, shown)
+    triangles = _read_triangles(file, size)
     return Answer(
         {**texts, "lines": digest_lines(rows)},
         {
-            "points": _read_points(file, shown),
+            "points": _read_points(file),
             "triangles": triangles["corners"].copy(),
             "flags": triangles["flags"].copy(),
             **{f" {name}": array for name, array in arrays.items()},
@@ -81,36 +82,33 @@ def _read(file: sqlite3.Connection, size: int, shown: str) -> Answer:
     )
 
 
-def _read_points(file: sqlite3.Connection, shown: str) -> Float64Array:
+def _read_points(file: sqlite3.Connection) -> Float64Array:
     blobs = []
     found = file.execute("SELECT vertex, geom FROM vertices ORDER BY vertex")
     for count, (number, blob) in enumerate(found):
         if number != count or not isinstance(blob, bytes) or len(blob) != POINT.itemsize:
-            raise Refusal(f"'{shown}': layer 'vertices' has no point with z of number {count}.")
+            raise Refusal(f"layer 'vertices' has no point with z of number {count}.")
         blobs.append(blob)
     rows = np.frombuffer(b"".join(blobs), POINT)
     is_point = (rows["magic"] == b"GP") & (rows["order"] == 1) & (rows["kind"] == 1001)
     if not is_point.all():
         number = int(np.argmin(is_point))
-        raise Refusal(f"'{shown}': layer 'vertices' has no point with z of number {number}.")
+        raise Refusal(f"layer 'vertices' has no point with z of number {number}.")
     return np.ascontiguousarray(rows["xyz"])
 
 
-def _read_triangles(file: sqlite3.Connection, size: int, shown: str) -> AnyArray:
+def _read_triangles(file: sqlite3.Connection, size: int) -> AnyArray:
     rows = file.execute("SELECT a, b, c, constrained FROM triangles ORDER BY fid")
     found = (((a, b, c), flags) for a, b, c, flags in islice(rows, size))
     try:
         return np.fromiter(found, _TRIANGLE)
     except (TypeError, ValueError) as error:
         raise Refusal(
-            f"'{shown}': layer 'triangles' has a column a, b, c or constrained that is no whole "
-            "number."
+            "layer 'triangles' has a column a, b, c or constrained that is no whole number."
         ) from error
 
 
-def _read_record(
-    file: sqlite3.Connection, shown: str
-) -> tuple[dict[str, str], dict[str, AnyArray]]:
+def _read_record(file: sqlite3.Connection) -> tuple[dict[str, str], dict[str, AnyArray]]:
     texts, arrays = {}, {}
     for name, kind, shape, data in file.execute(f"SELECT name, type, shape, data FROM {RECORD}"):
         if kind == "json" and name in ("digests", "document") and isinstance(data, bytes):
@@ -118,9 +116,9 @@ def _read_record(
         elif _is_array(kind, shape, data):
             arrays[str(name)] = np.frombuffer(data, kind).reshape([int(n) for n in shape.split()])
         else:
-            raise Refusal(f"'{shown}': the table '{RECORD}' is damaged at '{name}'.")
+            raise Refusal(f"the table '{RECORD}' is damaged at '{name}'.")
     if len(texts) < 2:
-        raise Refusal(f"'{shown}': the table '{RECORD}' has no document.")
+        raise Refusal(f"the table '{RECORD}' has no document.")
     return texts, arrays
 
 

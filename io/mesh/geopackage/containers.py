@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ....base.atomic import folder_beside, replacing_path
 from ....base.errors import WriteError
+from ....base.sentences import FILE
 from .digests import digest_lines
 from .journals import require_closed
 from .schema import LAYERS, NO_CLOCK, RECORD
@@ -75,7 +76,7 @@ def adding_layers(path: Path, placing: Placing) -> Iterator[Path]:
                 else:
                     _merge(path, made, beside, placing)
             except sqlite3.Error as error:
-                raise WriteError(f"Cannot write '{path}': {error}.", path=path) from error
+                raise WriteError(f"Cannot write {FILE}: {error}.") from error
 
 
 def _open(path: Path) -> sqlite3.Connection:
@@ -87,7 +88,7 @@ def _open(path: Path) -> sqlite3.Connection:
         file.close()
         why = "it is locked by another program" if "locked" in str(error) else "it is no GeoPackage"
         raise WriteError(
-            f"Cannot write '{path}': a file is there, and {why}; name another file.", path=path
+            f"Cannot write {FILE}: a file is there, and {why}; name another file."
         ) from error
     return file
 
@@ -127,9 +128,8 @@ def _require_free(
 
 def _refuse(path: Path, layer: str, why: str) -> WriteError:
     return WriteError(
-        f"Cannot write '{path}': its layer '{layer}' {why}. Name another layer "
-        f"('{path.name}:NAME'), or overwrite it on purpose.",
-        path=path,
+        f"Cannot write {FILE}: its layer '{layer}' {why}. Name another layer "
+        f"('{path.name}:NAME'), or overwrite it on purpose."
     )
 
 
@@ -179,7 +179,7 @@ def _merge(path: Path, made: Path, beside: Path, placing: Placing) -> None:
         for layer in layers:
             there = _find_table(file, layer)
             if there is not None and placing.append:
-                _append(file, layer, there, numbers, path)
+                _append(file, layer, there, numbers)
                 continue
             if there is not None:
                 _remove(file, there)
@@ -384,9 +384,7 @@ def _make_register(file: sqlite3.Connection, register: str) -> None:
         file.execute(sql)
 
 
-def _append(
-    file: sqlite3.Connection, layer: str, there: str, numbers: dict[int, int], path: Path
-) -> None:
+def _append(file: sqlite3.Connection, layer: str, there: str, numbers: dict[int, int]) -> None:
     """Add the features of a layer to one of the same kind."""
     kinds = [
         file.execute(
@@ -401,9 +399,8 @@ def _append(
     same = new is not None and old is not None and new[:2] == old[:2] and new[3] == old[3]
     if not same or numbers.get(new[2], new[2]) != old[2] or set(columns[0]) != set(columns[1]):
         raise WriteError(
-            f"Cannot append to the layer '{there}' of '{path}': geometries, columns and CRS must "
-            f"be the same; it has {', '.join(columns[1])}.",
-            path=path,
+            f"Cannot append to the layer '{there}' of {FILE}: geometries, columns and CRS must "
+            f"be the same; it has {', '.join(columns[1])}."
         )
     listed = ", ".join(_quote(one) for one in columns[0] if one.casefold() != "fid")
     triggers = file.execute(

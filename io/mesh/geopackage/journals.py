@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ....base.errors import WriteError
+from ....base.sentences import FILE
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,7 +28,6 @@ def require_closed(path: Path) -> None:
         journal = path.with_name(path.name + end)
         if journal.exists():
             raise WriteError(
-                f"Cannot write '{path}': it is open in another program, as '{journal.name}' beside "
-                "it shows; close it there first.",
-                path=path,
+                f"Cannot write {FILE}: it is open in another program, as '{journal.name}' beside "
+                "it shows; close it there first."
             )

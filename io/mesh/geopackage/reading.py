@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ....base.errors import PointsError, ReadError
+from ....base.sentences import FILE
 from ....tin import TIN
 from ...isolated import run_isolated
 from ...reprojection.contradictions import look_at_crs
@@ -66,46 +66,39 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     journal = path.with_name(path.name + "-wal")
     if journal.exists() and journal.stat().st_size:
         raise ReadError(
-            f"'{path}' is open in another program, as '{journal.name}' beside it shows: close it "
-            "there first.",
-            path=path,
+            f"{FILE} is open in another program, as '{journal.name}' beside it shows: close it "
+            "there first."
         )
     answer = run_isolated(
-        f"{__package__}.child:read_tables",
-        {"path": os.path.abspath(path), "shown": str(path)},  # noqa: PTH100
-        path=path,
+        f"{__package__}.child:read_tables", {"path": str(path.absolute())}, path=path
     )
-    points, triangles, constrained = _take_mesh(answer, path)
-    record = Record(_load_json(answer, "document", path), _take_arrays(answer))
-    digests = _load_json(answer, "digests", path)
+    points, triangles, constrained = _take_mesh(answer)
+    record = Record(_load_json(answer, "document"), _take_arrays(answer))
+    digests = _load_json(answer, "digests")
     text = answer.value["document"]
     if digest_arrays(*record.arrays.values(), text=text) != digests.get("record"):
-        raise ReadError(f"'{path}' is damaged: its record of the TIN is not as written.", path=path)
-    reference = _choose_reference(record, crs, z_unit, path)
+        raise ReadError(f"{FILE} is damaged: its record of the TIN is not as written.")
+    reference = _choose_reference(record, crs, z_unit)
     mesh = digest_arrays(points, triangles, constrained)
     if (mesh, answer.value["lines"]) != (digests.get("mesh"), digests.get("lines")):
-        tin = make_tin(points, triangles, path, constrained=constrained, reference=reference)
+        tin = make_tin(points, triangles, constrained=constrained, reference=reference)
         return _add_note(tin)
     declared = _declare(record, reference)
-    told = (
-        look_at_crs(points, reference.crs, path, is_declared=True) if reference.is_declared else ()
-    )
+    told = look_at_crs(points, reference.crs, is_declared=True) if reference.is_declared else ()
     try:
         tin = unpack_tin(declared, points, triangles, constrained)
         return add_notes(tin, told) if told else tin
     except PointsError as error:
-        raise ReadError(f"'{path}' holds no TIN. {error}", path=path) from error
+        raise ReadError(f"{FILE} holds no TIN. {error}") from error
 
 
-def _take_mesh(answer: Answer, path: Path) -> tuple[Float64Array, Int32Array, BoolArray]:
+def _take_mesh(answer: Answer) -> tuple[Float64Array, Int32Array, BoolArray]:
     points, triangles, flags = (answer.arrays[name] for name in ("points", "triangles", "flags"))
     wrong = ((triangles < 0) | (triangles >= len(points))).any(axis=1) | (flags < 0) | (flags > 7)
     if wrong.any() or not len(triangles):
         row = int(np.argmax(wrong)) if len(wrong) else 0
         raise ReadError(
-            f"'{path}': row {row + 1} of the layer 'triangles' names no three of the "
-            f"{len(points)} vertices.",
-            path=path,
+            f"row {row + 1} of the layer 'triangles' names no three of the {len(points)} vertices."
         )
     constrained = (flags[:, None] & np.array([1, 2, 4])) != 0
     return points, triangles.astype(np.int32), constrained
@@ -116,24 +109,22 @@ def _take_arrays(answer: Answer) -> dict[str, AnyArray]:
     return dict(sorted(found.items(), key=lambda item: int(item[0]) if item[0].isdecimal() else -1))
 
 
-def _load_json(answer: Answer, name: str, path: Path) -> dict[str, Any]:
+def _load_json(answer: Answer, name: str) -> dict[str, Any]:
     try:
         found = json.loads(answer.value[name])
     except (ValueError, RecursionError):
         found = None
     if not isinstance(found, dict):
-        raise ReadError(f"'{path}' is damaged: its {name} is no JSON object.", path=path)
+        raise ReadError(f"{FILE} is damaged: its {name} is no JSON object.")
     return found
 
 
-def _choose_reference(
-    record: Record, crs: CrsLike | None, z_unit: UnitLike | None, path: Path
-) -> Reference:
+def _choose_reference(record: Record, crs: CrsLike | None, z_unit: UnitLike | None) -> Reference:
     found = {}
     for name, key in (("crs", "crs"), ("elevation_unit", "unit")):
         tree = record.document.get(name)
         found[key] = tree.get(key) if isinstance(tree, dict) else None
-    return choose_reference(crs, z_unit, path, found_crs=found["crs"], found_unit=found["unit"])
+    return choose_reference(crs, z_unit, found_crs=found["crs"], found_unit=found["unit"])
 
 
 def _declare(record: Record, reference: Reference) -> Record:

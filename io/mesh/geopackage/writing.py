@@ -12,6 +12,7 @@ import numpy as np
 
 from ....base.checks import as_flag
 from ....base.errors import CrsError, WriteError
+from ....base.sentences import FILE
 from ....terrain.relief.gradients import aspect, slope
 from ..common import format_unit, require_tin
 from .containers import Placing, adding_layers
@@ -70,13 +71,13 @@ def write(
     ``tinsmith_tin`` holds the rest: the report, and what edits and undoing them need. Other layers
     of a file that is there already stay as they are.
     """
-    tin = require_tin(surface, path, format_name="a GeoPackage of a TIN")
+    tin = require_tin(surface, format_name="a GeoPackage of a TIN")
     with adding_layers(path, Placing(overwrite=as_flag("overwrite", overwrite))) as beside:
         try:
             with closing(sqlite3.connect(beside, isolation_level=None)) as file:
                 _write_content(file, tin, progress or (lambda _: None))
         except sqlite3.Error as error:
-            raise WriteError(f"Cannot write '{path}': {error}.", path=path) from error
+            raise WriteError(f"Cannot write {FILE}: {error}.") from error
 
 
 def _write_content(file: sqlite3.Connection, tin: TIN, progress: Tell) -> None:

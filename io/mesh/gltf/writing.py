@@ -11,15 +11,15 @@ from __future__ import annotations
 import json
 import os
 import struct
-import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ....base.atomic import replacing
 from ....base.crs import assume_elevation_unit
-from ....base.errors import CrsError, LossWarning, WriteError
-from ....base.sentences import counted
+from ....base.errors import CrsError, WriteError
+from ....base.notes import warn
+from ....base.sentences import FILE, counted
 from ....terrain.viewer.tints import interpolate_tints
 from ..common import format_crs, format_unit, require_factor, require_tin
 from ..texture import choose_picture, load_texture
@@ -104,25 +104,25 @@ def write(
     its units are taken to be metres, and ``extras`` does not tell any. Lines are lost, and so are
     triangles without area in float32, of which a LossWarning tells.
     """
-    tin = require_tin(surface, path, format_name="GLB")
+    tin = require_tin(surface, format_name="GLB")
     require_factor("exaggeration", exaggeration)
     if tin.crs is not None and tin.crs.is_geographic:
         raise CrsError(
-            f"Cannot write '{path}': GLB is in metres, and {tin.crs.label} in degrees; build the "
+            f"Cannot write {FILE}: GLB is in metres, and {tin.crs.label} in degrees; build the "
             "TIN in a projected CRS.",
             crs=tin.crs,
         )
     picture = choose_picture(drape, texture)
-    draped = None if picture is None else load_texture(picture, tin, stacklevel=4)
+    draped = None if picture is None else load_texture(picture, tin)
     origin = np.floor(tin.points.min(axis=0))
     scale = _choose_scale(tin) * (1.0, 1.0, exaggeration)
-    mesh = _make_mesh(tin, origin, scale, draped, path)
+    mesh = _make_mesh(tin, origin, scale, draped)
     node = {"translation": _turn_up((origin * scale)[None])[0].tolist(), "extras": _describe(
         tin, origin, scale, exaggeration)}  # fmt: skip
     chunks = _pack(mesh, node)
     length = 12 + sum(8 + len(chunk) for _, chunk in chunks)
     if length > _LARGEST_FILE:
-        raise WriteError(f"Cannot write '{path}': GLB ends at 4 GiB.", path=path)
+        raise WriteError(f"Cannot write {FILE}: GLB ends at 4 GiB.")
     with replacing(path) as file:
         file.write(struct.pack("<III", _MAGIC, _VERSION, length))
         for kind, chunk in chunks:
@@ -148,14 +148,10 @@ def _turn_up(vectors: Float64Array) -> Float64Array:
 
 
 def _make_mesh(
-    tin: TIN,
-    origin: Float64Array,
-    scale: Float64Array,
-    texture: Texture | None,
-    path: Path,
+    tin: TIN, origin: Float64Array, scale: Float64Array, texture: Texture | None
 ) -> _Mesh:
     every = (tin.points - origin) * scale
-    corners = tin.triangles[_find_areas(_turn_up(every).astype(np.float32), tin.triangles, path)]
+    corners = tin.triangles[_find_areas(_turn_up(every).astype(np.float32), tin.triangles)]
     used = np.unique(corners)
     number = np.zeros(len(tin.points), np.int64)
     number[used] = np.arange(len(used))
@@ -171,10 +167,10 @@ def _make_mesh(
     )
 
 
-def _find_areas(positions: Float32Array, triangles: Int32Array, path: Path) -> BoolArray:
+def _find_areas(positions: Float32Array, triangles: Int32Array) -> BoolArray:
     """Return which triangles have an area in float32; warn of others, refuse where none has."""
     if not np.isfinite(positions[triangles]).all():
-        raise WriteError(f"Cannot write '{path}': the TIN is too large for float32.", path=path)
+        raise WriteError(f"Cannot write {FILE}: the TIN is too large for float32.")
     a, b, c = (positions[triangles[:, k]].astype(np.float64) for k in range(3))
     has_area: BoolArray = (np.cross(b - a, c - a) != 0.0).any(axis=1)
     count = int(np.count_nonzero(~has_area))
@@ -183,9 +179,9 @@ def _find_areas(positions: Float32Array, triangles: Int32Array, path: Path) -> B
         "millionth of the extent"
     )
     if not has_area.any():
-        raise WriteError(f"Cannot write '{path}': it has nothing but {told}.", path=path)
+        raise WriteError(f"Cannot write {FILE}: it has nothing but {told}.")
     if count:
-        warnings.warn(f"'{path}' does not hold {told}.", LossWarning, stacklevel=6)
+        warn(f"{FILE} does not hold {told}.")
     return has_area
 
 

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ....base.errors import ReadError
+from ....base.sentences import FILE
 
 if TYPE_CHECKING:
     from collections.abc import Collection
-    from pathlib import Path
 
     from ....base.arrays import AnyArray, Float64Array, Int64Array
     from .header import Element, Header
@@ -44,9 +44,7 @@ class Table:
     lists: dict[str, Ragged]
 
 
-def read_tables(
-    content: bytes, header: Header, path: Path, names: Collection[str]
-) -> dict[str, Table]:
+def read_tables(content: bytes, header: Header, names: Collection[str]) -> dict[str, Table]:
     """Read the tables up to the last of those named.
 
     Raises
@@ -55,7 +53,7 @@ def read_tables(
         If the file ends before a table does, or text holds something that is no number.
     """
     wanted = [i for i, element in enumerate(header.elements) if element.name in names]
-    body = _Body(content, header, path)
+    body = _Body(content, header)
     read = header.elements[: max(wanted, default=-1) + 1]
     tables = {element.name: body.read_table(element) for element in read}
     if read and len(read) == len(header.elements):
@@ -66,14 +64,13 @@ def read_tables(
 class _Body:
     """Rows of cells, read from a cursor on; a cell of a text is one word, read as a number."""
 
-    def __init__(self, content: bytes, header: Header, path: Path) -> None:
-        self.path = path
+    def __init__(self, content: bytes, header: Header) -> None:
         self.cursor = 0
         self.byte_order = header.byte_order
         self.cells: AnyArray = (
             np.frombuffer(content, np.uint8)[header.size :]
             if self.byte_order
-            else _parse_text_body(content[header.size :], path)
+            else _parse_text_body(content[header.size :])
         )
 
     def find_dtype(self, type_name: str) -> np.dtype[Any]:
@@ -109,9 +106,8 @@ class _Body:
         rest = len(self.cells) - self.cursor
         if rest >= max(_measure_shortest_row(element, self), _LINE_END if self.byte_order else 1):
             raise ReadError(
-                f"'{self.path}' goes on behind its last element: its header promises "
-                f"{_count_rows(element)}, and more follow.",
-                path=self.path,
+                f"{FILE} goes on behind its last element: its header promises "
+                f"{_count_rows(element)}, and more follow."
             )
 
     def _require_room(self, element: Element) -> None:
@@ -122,9 +118,8 @@ class _Body:
 
     def _describe_truncation(self, element: Element) -> ReadError:
         return ReadError(
-            f"'{self.path}' ends too early: its header promises {_count_rows(element)}, more than "
-            "the file holds.",
-            path=self.path,
+            f"{FILE} ends too early: its header promises {_count_rows(element)}, more than "
+            "the file holds."
         )
 
     def _list_lengths(self, element: Element, start: int) -> tuple[list[int], int]:
@@ -147,10 +142,7 @@ class _Body:
             raise self._describe_truncation(element)
         length = self.view_block(start, 1, (1, 1), count_type)[0, 0]
         if not (0 <= length < len(self.cells) and length == int(length)):
-            raise ReadError(
-                f"'{self.path}': a list of '{element.name}' has the length {length}.",
-                path=self.path,
-            )
+            raise ReadError(f"a list of '{element.name}' has the length {length}.")
         return int(length)
 
     def _read_even_table(self, element: Element) -> Table | None:
@@ -220,12 +212,10 @@ def _measure_shortest_row(element: Element, body: _Body) -> int:
     return sum(body.measure_width(prop.count_type or prop.type) for prop in element.properties)
 
 
-def _parse_text_body(text: bytes, path: Path) -> Float64Array:
+def _parse_text_body(text: bytes) -> Float64Array:
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)
         try:
             return np.fromstring(text, dtype=np.float64, sep=" ")
         except (DeprecationWarning, ValueError):
-            raise ReadError(
-                f"'{path}': the body of the PLY file holds something that is no number.", path=path
-            ) from None
+            raise ReadError("the body of the PLY file holds something that is no number.") from None

@@ -11,7 +11,6 @@ from .body import Ragged
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from pathlib import Path
 
     from ....base.arrays import AnyArray, Int64Array
     from .body import Table
@@ -26,7 +25,7 @@ _RESTART = -1
 """What stands between two strips of one row."""
 
 
-def find_faces(tables: Mapping[str, Table], path: Path) -> Ragged | None:
+def find_faces(tables: Mapping[str, Table]) -> Ragged | None:
     """Return the vertices of the faces, whole numbers, those of strips behind the others.
 
     Returns
@@ -41,9 +40,9 @@ def find_faces(tables: Mapping[str, Table], path: Path) -> Ragged | None:
     """
     parts = []
     for name in ("face", *STRIPS):
-        found = _find_list(tables.get(name), name, path)
+        found = _find_list(tables.get(name), name)
         if found is not None:
-            found = found._replace(items=_require_whole_numbers(found.items, path))
+            found = found._replace(items=_require_whole_numbers(found.items))
             parts.append(found if name == "face" else _cut_strips(found))
     if not parts:
         return None
@@ -52,7 +51,7 @@ def find_faces(tables: Mapping[str, Table], path: Path) -> Ragged | None:
     return Ragged(np.concatenate([one.items for one in parts]), offsets)
 
 
-def _find_list(table: Table | None, element: str, path: Path) -> Ragged | None:
+def _find_list(table: Table | None, element: str) -> Ragged | None:
     """Return the list of vertices of an element; None if it has no rows."""
     if table is None:
         return None
@@ -60,9 +59,8 @@ def _find_list(table: Table | None, element: str, path: Path) -> Ragged | None:
     if found is None and _has_rows(table):
         others = ", ".join(f"'{name[:40]}'" for name in (*table.lists, *table.columns))
         raise ReadError(
-            f"'{path}': the rows of '{element}' have the properties {others}, and their vertices "
-            f"must be a list {' or '.join(_LISTS)}.",
-            path=path,
+            f"the rows of '{element}' have the properties {others}, and their vertices "
+            f"must be a list {' or '.join(_LISTS)}."
         )
     return None if found is None or len(found.offsets) == 1 else found
 
@@ -86,10 +84,10 @@ def _cut_strips(strips: Ragged) -> Ragged:
     return Ragged(triangles.ravel(), 3 * np.arange(len(triangles) + 1))
 
 
-def _require_whole_numbers(items: AnyArray, path: Path) -> Int64Array:
+def _require_whole_numbers(items: AnyArray) -> Int64Array:
     if items.dtype.kind == "f" and not (np.abs(items) < 2.0**53).all():
-        raise ReadError(f"'{path}': a face names a vertex that is no number.", path=path)
+        raise ReadError("a face names a vertex that is no number.")
     whole = items.astype(np.int64)
     if (whole != items).any():
-        raise ReadError(f"'{path}': a face names a vertex that is no whole number.", path=path)
+        raise ReadError("a face names a vertex that is no whole number.")
     return whole

@@ -17,16 +17,16 @@ import numpy as np
 
 from ....base.atomic import replacing
 from ....base.errors import ReadError
-from ....base.sentences import counted
+from ....base.sentences import FILE, counted
 from ....tin import TIN, Surface, Survey
 from ...registry.losses import tell_lost_attributes
 from .. import common
+from ..common import Mesh, flag_edges, mesh_reader
 from .body import Table, read_tables
 from .faces import STRIPS, find_faces
 from .header import parse_header
 from .lines import (
     ENDS,
-    flag_edges,
     format_line_comments,
     read_lines,
     require_edges,
@@ -37,8 +37,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ....base.arrays import AnyArray, BoolArray, Float64Array
-    from ....base.crs import CrsLike, UnitLike
-    from ....base.policies import FacePolicy
     from ....base.progress import Tell
     from ....tin.constraints.breaklines import Lines
     from .header import Header
@@ -61,13 +59,8 @@ _TYPE_NAMES = {
 }
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    faces: FacePolicy = "most",
-) -> TIN | Survey:
+@mesh_reader
+def read(path: Path) -> Mesh:
     """Read a PLY file, text or binary of either byte order.
 
     CRS and unit default to those named in the header. Polygons and strips are cut into triangles,
@@ -75,56 +68,42 @@ def read(
     file without faces gives a survey.
     """
     content = common.read_content(path)
-    header = parse_header(content, path)
+    header = parse_header(content)
     names = {"vertex", "face", *STRIPS, *(("edge",) if header.lines is not None else ())}
-    tables = read_tables(content, header, path, names)
-    vertices = _require_vertices(tables, path)
+    tables = read_tables(content, header, names)
+    vertices = _require_vertices(tables)
     points = _stack_coordinates(vertices)
     notes = common.describe_single_precision(points, vertices.columns["x"].dtype)
-    reference = common.choose_reference(
-        crs, z_unit, path, found_crs=header.crs, found_unit=header.elevation_unit
-    )
-    found = find_faces(tables, path)
-    attributes = _find_vertex_attributes(vertices)
-    if found is None:
-        notes += _describe_skipped(header)
-        return common.make_survey(
-            points, path, attributes=attributes, reference=reference, notes=notes
-        )
-    made = common.cut_into_fans(found.items, found.offsets, points, path)
-    notes += made.notes
-    flags = _find_edge_flags(tables.get("face"), len(made.triangles))
-    has_lines = header.lines is not None and "edge" in tables
-    edges = require_edges(tables["edge"], path, len(points)) if has_lines else None
-    if flags is None and edges is not None:
-        flags = flag_edges(made.triangles, edges, len(points))
-    tin = common.make_tin(
+    mesh = Mesh(
         points,
-        made.triangles,
-        path,
-        constrained=flags,
-        reference=reference,
-        attributes=attributes,
+        attributes=_find_vertex_attributes(vertices),
+        crs=header.crs,
+        elevation_unit=header.elevation_unit,
         notes=notes,
-        faces=faces,
     )
-    if edges is None or header.lines is None:
-        return tin
-    lines = read_lines(header.lines, edges, path)
-    _require_edges_of_tin(tin, lines, path)
-    return tin.replace(lines=lines)
+    found = find_faces(tables)
+    if found is None:
+        mesh.notes = [*notes, *_describe_skipped(header)]
+        return mesh
+    mesh.corners, mesh.offsets = found
+    mesh.constrained = _find_edge_flags(tables.get("face"))
+    if header.lines is not None and "edge" in tables:
+        edges = mesh.constrained_edges = require_edges(tables["edge"], len(points))
+        lines = read_lines(header.lines, edges)
+        mesh.add_lines = lambda tin: _add_lines(tin, lines)
+    return mesh
 
 
-def _require_edges_of_tin(tin: TIN, lines: Lines, path: Path) -> None:
+def _add_lines(tin: TIN, lines: Lines) -> TIN:
     segments = lines.segments()
     is_edge = tin.is_edge(segments[:, 0], segments[:, 1])
     if not is_edge.all():
         row = int(np.argmin(is_edge))
         raise ReadError(
-            f"'{path}': edge {row}, of a line, joins vertices {segments[row].tolist()}, which are "
-            "no edge of a triangle.",
-            path=path,
+            f"edge {row}, of a line, joins vertices {segments[row].tolist()}, which are "
+            "no edge of a triangle."
         )
+    return tin.replace(lines=lines)
 
 
 def _stack_coordinates(vertices: Table) -> Float64Array:
@@ -133,10 +112,10 @@ def _stack_coordinates(vertices: Table) -> Float64Array:
         return np.stack(columns, axis=1).astype(np.float64)
 
 
-def _require_vertices(tables: dict[str, Table], path: Path) -> Table:
+def _require_vertices(tables: dict[str, Table]) -> Table:
     vertices = tables.get("vertex")
     if vertices is None or not set(_COORDINATES) <= vertices.columns.keys():
-        raise ReadError(f"'{path}' has no element 'vertex' with x, y and z.", path=path)
+        raise ReadError(f"{FILE} has no element 'vertex' with x, y and z.")
     return vertices
 
 
@@ -149,14 +128,11 @@ def _describe_skipped(header: Header) -> list[str]:
     ]
 
 
-def _find_edge_flags(faces: Table | None, n_triangles: int) -> BoolArray | None:
-    """Return the edge flags if the file has them and every face is a triangle."""
+def _find_edge_flags(faces: Table | None) -> BoolArray | None:
+    """Return the edge flags if the file has them."""
     found = {} if faces is None else faces.columns
     columns = [found[name] for name in _FLAGS if name in found]
-    if len(columns) < len(_FLAGS) or len(columns[0]) != n_triangles:
-        return None
-    flags: BoolArray = np.stack(columns, axis=1) != 0
-    return flags
+    return np.stack(columns, axis=1) != 0 if len(columns) == len(_FLAGS) else None
 
 
 def _find_vertex_attributes(vertices: Table) -> dict[str, AnyArray]:
@@ -173,10 +149,10 @@ def write(surface: TIN | Survey, path: Path, *, progress: Tell | None = None) ->
     Of the attributes of points those that are numbers are written (whole numbers beyond 32 bits as
     double); PLY has no text.
     """
-    surface = common.require_writable(surface, path)
+    surface = common.require_writable(surface)
     columns, lost = _select_number_columns(surface.attributes)
     if isinstance(surface, Survey):
-        tell_lost_attributes(lost, path, "PLY has doubles, and names of one ASCII word")
+        tell_lost_attributes(lost, "PLY has doubles, and names of one ASCII word")
     body = {"vertex": _pack_vertices(surface.points, columns)}
     comments: list[str] = []
     if isinstance(surface, Surface):

@@ -7,12 +7,11 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from ....base.errors import ReadError
+from ....base.sentences import FILE
 from ...registry.signatures import is_ply
 from .lines import parse_line_comment
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from .lines import LineComment
 
 __all__ = ["SCALARS", "Element", "Header", "Property", "parse_header"]
@@ -84,7 +83,7 @@ class Header:
     """What the first edges are, where all are constrained ones; None where that is not said."""
 
 
-def parse_header(content: bytes, path: Path) -> Header:
+def parse_header(content: bytes) -> Header:
     """Read the header of a PLY file.
 
     Raises
@@ -92,7 +91,7 @@ def parse_header(content: bytes, path: Path) -> Header:
     ReadError
         If it is not the header of a PLY file.
     """
-    lines, size = _split_header(content, path)
+    lines, size = _split_header(content)
     byte_order: str | None = None
     elements: list[Element] = []
     for number, line in enumerate(lines, start=1):
@@ -103,25 +102,22 @@ def parse_header(content: bytes, path: Path) -> Header:
             case ["element", name, count] if _is_new(name, elements) and _COUNT.fullmatch(count):
                 elements.append(Element(name, int(count)))
             case ["property", *rest] if elements and (found := _parse_property(rest)) is not None:
-                _require_new(found, elements[-1], number, path)
+                _require_new(found, elements[-1], number)
                 elements[-1].properties.append(found)
             case [] | ["ply" | "comment" | "obj_info" | "end_header", *_]:
                 pass
             case _:
                 raise ReadError(
-                    f"'{path}', line {number}: '{line[:60]}' is no line of a PLY header.",
-                    path=path,
+                    f"{FILE}, line {number}: '{line[:60]}' is no line of a PLY header.",
                     lines=[number],
                 )
     if byte_order is None:
-        raise ReadError(f"'{path}': the PLY header has no line 'format'.", path=path)
-    crs, unit, told = _read_comments(lines, path)
+        raise ReadError("the PLY header has no line 'format'.")
+    crs, unit, told = _read_comments(lines)
     return Header(byte_order, elements, crs, size, unit, told)
 
 
-def _read_comments(
-    lines: list[str], path: Path
-) -> tuple[str | None, str | None, list[LineComment] | None]:
+def _read_comments(lines: list[str]) -> tuple[str | None, str | None, list[LineComment] | None]:
     """Return what comments say of the CRS, the unit of elevations, and lines."""
     crs: str | None = None
     unit: str | None = None
@@ -135,28 +131,26 @@ def _read_comments(
             case ["comment", "edges:", "constrained"]:
                 told = []
             case ["comment", "line:", *_] if told is not None:
-                told.append(_require_line_comment(line, number, path))
+                told.append(_require_line_comment(line, number))
     return crs, unit, told
 
 
-def _require_line_comment(line: str, number: int, path: Path) -> LineComment:
+def _require_line_comment(line: str, number: int) -> LineComment:
     found = parse_line_comment(line.split("line:", 1)[1].strip())
     if found is None:
         raise ReadError(
-            f"'{path}', line {number}: '{line[:60]}' tells no line of a TIN.",
-            path=path,
-            lines=[number],
+            f"{FILE}, line {number}: '{line[:60]}' tells no line of a TIN.", lines=[number]
         )
     return found
 
 
-def _split_header(content: bytes, path: Path) -> tuple[list[str], int]:
+def _split_header(content: bytes) -> tuple[list[str], int]:
     if not is_ply(content[:_LONGEST_FIRST_LINE]):
-        raise ReadError(f"'{path}' is no PLY file: it does not begin with 'ply'.", path=path)
+        raise ReadError(f"{FILE} is no PLY file: it does not begin with 'ply'.")
     mark = content.find(b"\nend_header", 0, LONGEST_HEADER)
     line_end = content.find(b"\n", mark + 1) if mark >= 0 else -1
     if line_end < 0:
-        raise ReadError(f"'{path}': the PLY header does not end with 'end_header'.", path=path)
+        raise ReadError("the PLY header does not end with 'end_header'.")
     text = content[:line_end].decode("utf-8", errors="replace")
     return [line.rstrip() for line in text.split("\n")], line_end + 1
 
@@ -165,11 +159,10 @@ def _is_new(name: str, elements: list[Element]) -> bool:
     return name not in [element.name for element in elements]
 
 
-def _require_new(added: Property, element: Element, number: int, path: Path) -> None:
+def _require_new(added: Property, element: Element, number: int) -> None:
     if added.name in [one.name for one in element.properties]:
         raise ReadError(
-            f"'{path}', line {number}: '{element.name}' has the property '{added.name}' twice.",
-            path=path,
+            f"{FILE}, line {number}: '{element.name}' has the property '{added.name}' twice.",
             lines=[number],
         )
 

@@ -17,22 +17,21 @@ import numpy as np
 
 from ....base.errors import ReadError
 from ....base.policies import LineKind
+from ....base.sentences import FILE
 from ....tin import topology
 from ....tin.constraints.breaklines import Lines
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
     from typing import Any
 
-    from ....base.arrays import AnyArray, BoolArray, Int32Array, Int64Array
+    from ....base.arrays import Int32Array, Int64Array
     from ....tin import TIN
     from .body import Table
 
 __all__ = [
     "ENDS",
     "LineComment",
-    "flag_edges",
     "format_line_comments",
     "parse_line_comment",
     "read_lines",
@@ -67,16 +66,6 @@ def take_edges(tin: TIN) -> Int32Array:
     return np.concatenate([segments, others]).astype(np.int32)
 
 
-def flag_edges(triangles: AnyArray, edges: AnyArray, n_vertices: int) -> BoolArray:
-    """Return which edges of triangles, each opposite a corner, are among some, (m, 3) flags."""
-    if len(edges) == 0:
-        return np.zeros((len(triangles), 3), np.bool_)
-    sides = np.stack([np.roll(triangles, -1, axis=1), np.roll(triangles, -2, axis=1)], axis=2)
-    keys = topology.edge_keys(sides.reshape(-1, 2), n_vertices)
-    found = np.isin(keys, topology.edge_keys(edges, n_vertices))
-    return found.reshape(len(triangles), 3)
-
-
 def format_line_comments(tin: TIN) -> list[str]:
     """Return the lines of the header that tell what the edges are."""
     lines = tin.lines
@@ -104,20 +93,20 @@ def parse_line_comment(text: str) -> LineComment | None:
     return LineComment(kind, source, n_edges, name)
 
 
-def require_edges(table: Table, path: Path, n_vertices: int) -> Int64Array:
+def require_edges(table: Table, n_vertices: int) -> Int64Array:
     """Return the edges of a file of ours as (k, 2) vertex numbers."""
     columns = [table.columns.get(name) for name in ENDS]
     if columns[0] is None or columns[1] is None:
-        raise ReadError(f"'{path}' has edges without vertex1 and vertex2.", path=path)
+        raise ReadError(f"{FILE} has edges without vertex1 and vertex2.")
     ends = np.stack([np.asarray(column, np.float64) for column in columns], axis=1)
     wrong = ~((ends >= 0) & (ends < n_vertices) & (ends == np.floor(ends))).all(axis=1)
     if wrong.any():
         row = int(np.argmax(wrong))
-        raise ReadError(f"'{path}': edge {row} does not join two of the vertices.", path=path)
+        raise ReadError(f"edge {row} does not join two of the vertices.")
     return ends.astype(np.int64)
 
 
-def read_lines(told: Sequence[LineComment], edges: Int64Array, path: Path) -> Lines:
+def read_lines(told: Sequence[LineComment], edges: Int64Array) -> Lines:
     """Return the lines that the header tells of, as chains of vertices.
 
     Raises
@@ -127,9 +116,7 @@ def read_lines(told: Sequence[LineComment], edges: Int64Array, path: Path) -> Li
     """
     counts = np.array([one.n_edges for one in told], np.int64)
     if counts.sum() > len(edges) or (counts < 1).any():
-        raise ReadError(
-            f"'{path}': its lines have {counts.sum()} edges, and there are {len(edges)}.", path=path
-        )
+        raise ReadError(f"its lines have {counts.sum()} edges, and there are {len(edges)}.")
     starts = np.cumsum(counts) - counts
     own = edges[: counts.sum()]
     follows = np.ones(len(own), np.bool_)
@@ -137,7 +124,7 @@ def read_lines(told: Sequence[LineComment], edges: Int64Array, path: Path) -> Li
     follows[starts] = True
     if not follows.all():
         row = int(np.argmin(follows))
-        raise ReadError(f"'{path}': edge {row} does not go on where its line is.", path=path)
+        raise ReadError(f"edge {row} does not go on where its line is.")
     vertices = np.insert(own[:, 1], starts, own[starts, 0])
     return Lines(
         vertices=vertices.astype(np.int32),

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, NamedTuple
 from ....base.errors import ReadError
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from .tile import TileName
 
 __all__ = ["HALF_WORLD", "Placing", "find_placing"]
@@ -40,7 +38,7 @@ class Placing(NamedTuple):
 
 
 def find_placing(
-    center: tuple[float, float, float], name: TileName, path: Path, *, is_declared: bool
+    center: tuple[float, float, float], name: TileName, *, is_declared: bool
 ) -> Placing:
     """Return where a tile of a name lies, by the centre that its header tells.
 
@@ -69,7 +67,7 @@ def find_placing(
     )
     if is_declared:
         return globe._replace(notes=(f"The tile lies where it is declared to lie, and {fault}.",))
-    raise ReadError(f"'{path}': {fault}.", path=path)
+    raise ReadError(f"{fault}.")
 
 
 def _place_in_mercator(name: TileName) -> Placing:

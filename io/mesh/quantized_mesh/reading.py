@@ -10,17 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ....base.errors import OptionError, ReadError
-from ..common import add_notes, choose_reference, make_tin, read_content
+from ....base.sentences import FILE
+from ..common import Mesh, join_places, mesh_reader, read_content
 from .placing import find_placing
 from .tile import STEPS, BrokenTileError, TileName, decode_tile
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....base.arrays import Int64Array
-    from ....base.crs import CrsLike, UnitLike
-    from ....base.policies import FacePolicy
-    from ....tin import TIN
 
 __all__ = ["read"]
 
@@ -31,14 +28,8 @@ _LARGEST = 1 << 28
 _HEIGHTMAP_BYTES = 65 * 65 * 2
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
-    tile: str | None = None,
-    faces: FacePolicy = "most",
-) -> TIN:
+@mesh_reader
+def read(path: Path, *, tile: str | None = None) -> Mesh:
     """Read a tile, gzipped or not, in longitude, latitude and metres above the ellipsoid.
 
     A tile of a pyramid of web Mercator, by the centre that its header tells, is in EPSG:3857; the
@@ -52,26 +43,26 @@ def read(
         Where it lies, "level/column/row", rows from the south; default what the path says.
     """
     name = _find_name(path, tile)
-    content = _unzip(read_content(path), path)
+    content = _unzip(read_content(path))
     try:
         found = decode_tile(content)
     except BrokenTileError as error:
-        raise ReadError(_describe_fault(path, content, str(error)), path=path) from None
-    placing = find_placing(found.center, name, path, is_declared=tile is not None)
-    reference = choose_reference(crs, z_unit, path, found_crs=placing.crs, found_unit=placing.unit)
-    steps, triangles = _merge(found.steps, found.triangles)
+        raise ReadError(_describe_fault(content, str(error))) from None
+    placing = find_placing(found.center, name, is_declared=tile is not None)
+    steps, number = join_places(found.steps)  # at one place and height
+    triangles = number[found.triangles]
     places = replace(found, steps=steps).place(placing.west, placing.south, placing.width)
     if len(triangles) == 0:
-        raise ReadError(f"'{path}' is a tile without any triangle.", path=path)
-    tin = make_tin(
+        raise ReadError(f"{FILE} is a tile without any triangle.")
+    return Mesh(
         places,
-        triangles,
-        path,
-        reference=reference,
-        faces=faces,
+        triangles.ravel(),
+        np.arange(0, triangles.size + 1, 3),
+        crs=placing.crs,
+        elevation_unit=placing.unit,
+        notes=placing.notes,
         rounding=placing.width / STEPS,
     )
-    return add_notes(tin, placing.notes)
 
 
 def _find_name(path: Path, tile: str | None) -> TileName:
@@ -84,14 +75,13 @@ def _find_name(path: Path, tile: str | None) -> TileName:
             return TileName(level, x, y)
     if tile is None:
         raise ReadError(
-            f"'{path}' does not tell where the tile lies: a path that ends in "
-            "level/column/row.terrain does, or tell it as tile.",
-            path=path,
+            f"{FILE} does not tell where the tile lies: a path that ends in "
+            "level/column/row.terrain does, or tell it as tile."
         )
     raise OptionError("tile", tile, "level/column/row of a tile, such as '14/17000/12000'")
 
 
-def _unzip(content: bytes, path: Path) -> bytes:
+def _unzip(content: bytes) -> bytes:
     """Return the content of a gzipped file, no more than a tile can have."""
     if not content.startswith(_GZIP):
         return content
@@ -99,21 +89,13 @@ def _unzip(content: bytes, path: Path) -> bytes:
     try:
         plain = opened.decompress(content, _LARGEST)
     except zlib.error as error:
-        raise ReadError(f"'{path}' is a damaged gzip file: {error}.", path=path) from None
+        raise ReadError(f"{FILE} is a damaged gzip file: {error}.") from None
     if not opened.eof:
-        raise ReadError(f"'{path}' is a gzip file that ends early, or no tile.", path=path)
+        raise ReadError(f"{FILE} is a gzip file that ends early, or no tile.")
     return plain
 
 
-def _describe_fault(path: Path, content: bytes, why: str) -> str:
+def _describe_fault(content: bytes, why: str) -> str:
     if _HEIGHTMAP_BYTES < len(content) <= _HEIGHTMAP_BYTES + 2 + 65536:
         why += "; it may be one of the older format heightmap-1.0, which is not read"
-    return f"'{path}' is no sound quantized-mesh tile: {why}."
-
-
-def _merge(steps: Int64Array, triangles: Int64Array) -> tuple[Int64Array, Int64Array]:
-    """Make vertices at one place one, where they have one height too."""
-    kept, first, number = np.unique(steps, axis=0, return_index=True, return_inverse=True)
-    rank = np.empty(len(kept), np.int64)
-    rank[np.argsort(first)] = np.arange(len(kept))
-    return steps[np.sort(first)], rank[number.ravel()][triangles]
+    return f"{FILE} is no sound quantized-mesh tile: {why}."

@@ -18,7 +18,9 @@ import numpy as np
 from ....base.atomic import replacing_folder
 from ....base.checks import as_flag, is_whole_number
 from ....base.crs import CRS
-from ....base.errors import CrsError, LossWarning, OptionError, WriteError
+from ....base.errors import CrsError, OptionError, WriteError
+from ....base.notes import warn
+from ....base.sentences import FILE
 from ....tin import TIN
 from ...reprojection.transformation import reproject
 from ..common import require_tin
@@ -100,10 +102,10 @@ def write(
     ellipsoid, since Cesium asks for all of them. Simplification differs at the vertices by less
     than a quarter of the error that Cesium expects of a level. Lines are lost.
     """
-    tin = require_tin(surface, path, format_name="quantized-mesh")
+    tin = require_tin(surface, format_name="quantized-mesh")
     is_gzipped = as_flag("gzipped", gzipped)
     _require_level(max_level)
-    placed = _place(tin, path)
+    placed = _place(tin)
     finest = _choose_finest(placed) if max_level is None else int(max_level)
     first = min(_choose_first(placed), finest)
     available: list[list[TileName]] = []
@@ -115,7 +117,7 @@ def write(
         for level, triangles in zip(
             range(first, finest + 1), _iterate_meshes(placed, first, finest), strict=True
         ):
-            tiles = dict(_cut_into_tiles(placed, triangles, level, path))
+            tiles = dict(_cut_into_tiles(placed, triangles, level))
             if level == 0:  # Cesium needs both
                 both = [TileName(0, x, 0) for x in (0, 1)]
                 tiles = {name: tiles.get(name) or _make_bare_tile(name) for name in both}
@@ -130,35 +132,33 @@ def write(
 def _require_level(level: object) -> None:
     if level is None or (is_whole_number(level) and 0 <= level <= _MOST_LEVEL):  # type: ignore[operator]
         return
-    raise OptionError("max_level", level, f"a whole number from 0 to {_MOST_LEVEL}, or None")
+    raise OptionError("max_level", level, f"a whole number from 0 to {_MOST_LEVEL}", or_none=True)
 
 
 # ----------------------------------------------------------------------- where it lies
 
 
-def _place(tin: TIN, path: Path) -> TIN:
+def _place(tin: TIN) -> TIN:
     """Return the surface in longitude, latitude and metres above the ellipsoid."""
     if tin.crs is None:
         raise CrsError(
-            f"Cannot write '{path}': the CRS of the TIN is not known, and tiles lie on the globe.",
+            f"Cannot write {FILE}: the CRS of the TIN is not known, and tiles lie on the globe."
         )
     used = np.unique(tin.triangles)
     number = np.zeros(len(tin.points), np.int64)
     number[used] = np.arange(len(used))
     target = CRS(_ELLIPSOIDAL)
     if tin.crs.vertical_unit is None or not _has_vertical_transformation(tin.crs):
-        warnings.warn(
+        warn(
             f"The elevations are not known above the ellipsoid in {tin.crs.label}: they are "
-            "written as if they were, and differ by the height of the geoid, up to 110 m.",
-            LossWarning,
-            stacklevel=4,
+            "written as if they were, and differ by the height of the geoid, up to 110 m."
         )
         source, unit = tin.crs.horizontal, tin.elevation_unit or tin.crs.usual_elevation_unit
     else:
         source, unit = tin.crs, tin.elevation_unit
     places = reproject(tin.points[used], source, target, unit=unit).points
     if np.ptp(places[:, 0]) > 180.0:
-        raise WriteError(f"Cannot write '{path}': the surface crosses the antimeridian.", path=path)
+        raise WriteError(f"Cannot write {FILE}: the surface crosses the antimeridian.")
     return TIN.from_triangles(places, number[tin.triangles])
 
 
@@ -217,7 +217,7 @@ def _iterate_meshes(placed: TIN, first: int, finest: int) -> Iterator[Int64Array
 
 
 def _cut_into_tiles(
-    placed: TIN, triangles: Int64Array, level: int, path: Path
+    placed: TIN, triangles: Int64Array, level: int
 ) -> Iterator[tuple[TileName, Tile]]:
     """Yield the tiles of a level."""
     scale = STEPS * 2**level / 180.0
@@ -226,9 +226,8 @@ def _cut_into_tiles(
     mesh = cut_along_grid(mesh, STEPS)
     if len(mesh.triangles) == 0:
         raise WriteError(
-            f"Cannot write '{path}': on level {level} no triangle is as large as a step of a tile; "
-            "choose a finer one.",
-            path=path,
+            f"Cannot write {FILE}: on level {level} no triangle is as large as a step of a tile; "
+            "choose a finer one."
         )
     normals = _compute_normals(mesh, scale)
     tiles = mesh.steps[mesh.triangles].min(axis=1) // STEPS

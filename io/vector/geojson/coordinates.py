@@ -9,12 +9,10 @@ import numpy as np
 
 from ....base.crs import CRS, METRE
 from ....base.errors import CrsError, WriteError
-from ....base.sentences import coordinate, counted
+from ....base.sentences import FILE, coordinate, counted
 from ...reprojection.transformation import reproject
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ....base.arrays import Float64Array, ObjectArray
     from ....base.crs import Unit
 
@@ -78,7 +76,7 @@ def project_to_wgs84(surface: Located) -> Places:
     if crs is None:
         raise CrsError(
             "The CRS of these points is not known, and GeoJSON is in WGS 84: declare it, for "
-            'example crs="EPSG:32616", or keep the coordinates as they are with projected=True.'
+            'example `crs="EPSG:32616"`, or keep the coordinates as they are with `projected=True`.'
         )
     has_datum = crs.vertical_unit is not None
     target = CRS.of("EPSG:4979" if has_datum else "OGC:CRS84")
@@ -137,7 +135,7 @@ def format_positions(xyz: Float64Array) -> ObjectArray:
     return written
 
 
-def require_one_piece(longitudes: Float64Array, path: Path) -> None:
+def require_one_piece(longitudes: Float64Array) -> None:
     """Refuse features that reach from one end of the longitudes to the other.
 
     Parameters
@@ -153,10 +151,9 @@ def require_one_piece(longitudes: Float64Array, path: Path) -> None:
     wide = np.ptp(longitudes, axis=1) > _HALF_TURN
     if wide.any():
         raise WriteError(
-            f"Cannot write '{path}': {_describe_crossing(int(wide.sum()))} a pole, "
+            f"Cannot write {FILE}: {_describe_crossing(int(wide.sum()))} a pole, "
             "which longitude and latitude cannot show in one piece; keep the coordinates "
-            "of the CRS with projected=True.",
-            path=path,
+            "of the CRS with `projected=True`."
         )
 
 

@@ -11,6 +11,8 @@ import numpy as np
 from ....base.atomic import replacing
 from ....base.errors import WriteError
 from ....base.results.columns import unit_text
+from ....base.sentences import FILE
+from ..surface_features import make_features
 from .coordinates import format_positions, keep_in_crs, project_to_wgs84
 from .values import json_texts, properties_template
 
@@ -20,8 +22,10 @@ if TYPE_CHECKING:
 
     from ....base.arrays import Float64Array, Int64Array, ObjectArray
     from ....base.crs import CRS, Unit
+    from ....base.policies import FeatureKind
     from ....base.progress import Tell
     from ....base.results import Features
+    from ..surface_features import Writable
     from .coordinates import Places
 
 __all__ = ["write_feature_lines", "write_features"]
@@ -51,7 +55,7 @@ def write_features(
     located = _locate(features)
     places = (keep_in_crs if projected else project_to_wgs84)(located)
     if places.crs_member is None:
-        _require_one_side(places.xyz, features, path)
+        _require_one_side(places.xyz, features)
     with replacing(path, binary=False) as file:
         file.write(_format_head(features, places))
         separator = "\n"
@@ -63,13 +67,22 @@ def write_features(
         file.write("\n]}\n")
 
 
-def write_feature_lines(features: Features, path: Path, *, progress: Tell | None = None) -> None:
-    """Write features as a sequence of GeoJSON texts, a line each, with no head around them.
+def write_feature_lines(
+    surface: Writable, path: Path, *, kind: FeatureKind | None = None, progress: Tell | None = None
+) -> None:
+    """Write a kind of parts of a surface, or features, as lines of GeoJSON, each a feature.
 
-    Parameters, errors and coordinates are those of :func:`write_features`.
+    The CRS must be known: coordinates are WGS 84 longitude and latitude, elevations metres, as
+    those of a GeoJSON file.
+
+    Parameters
+    ----------
+    kind : {"triangles", "points", "edges", "lines", "hull"}, optional
+        Of a TIN; default triangles.
     """
+    features = make_features(surface, kind)
     places = project_to_wgs84(_locate(features))
-    _require_one_side(places.xyz, features, path)
+    _require_one_side(places.xyz, features)
     with replacing(path, binary=False) as file:
         for done, written in _iterate_batches(features, places):
             file.writelines(f"{line}\n" for line in written)
@@ -178,7 +191,7 @@ def _measure_rings(xy: Float64Array, offsets: Int64Array) -> Float64Array:
     return sums
 
 
-def _require_one_side(xyz: Float64Array, features: Features, path: Path) -> None:
+def _require_one_side(xyz: Float64Array, features: Features) -> None:
     """Refuse a line or ring that jumps from one end of the longitudes to the other."""
     if not features.offsets or len(xyz) == 0:
         return
@@ -188,8 +201,7 @@ def _require_one_side(xyz: Float64Array, features: Features, path: Path) -> None
         what = features.kind[:-1]
         number = int(np.searchsorted(features.offsets[0], jumps.argmax(), side="right")) - 1
         raise WriteError(
-            f"Cannot write '{path}': {what if what == 'line' else 'ring'} {number} crosses the "
+            f"Cannot write {FILE}: {what if what == 'line' else 'ring'} {number} crosses the "
             "antimeridian or holds a pole, which longitude and latitude cannot show in one piece; "
-            "keep the coordinates of the CRS with projected=True.",
-            path=path,
+            "keep the coordinates of the CRS with `projected=True`."
         )

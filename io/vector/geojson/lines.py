@@ -1,4 +1,4 @@
-"""Edges and lines of a surface as GeoJSON features."""
+"""Edges, lines and rings of a surface, and their text as GeoJSON features."""
 
 from __future__ import annotations
 
@@ -8,19 +8,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ....base import optional
 from ....base.errors import FormatError
 from ....terrain.drawing.linework import EDGE_KINDS, find_line_edges
 from ....tin.topology import edge_keys, edges_at
 
 if TYPE_CHECKING:
-    from ....base.arrays import BoolArray, Int8Array, Int32Array, ObjectArray
+    from ....base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, ObjectArray
     from ....tin import TIN
 
 __all__ = [
     "find_edge_kinds",
     "format_edge_properties",
     "format_lines",
+    "gather_edge_flags",
+    "group_rings",
     "list_line_vertices",
+    "measure_signed_area",
     "require_lines",
 ]
 
@@ -90,3 +94,34 @@ def format_lines(tin: TIN, positions: ObjectArray) -> Iterator[str]:
             kind, name = json.dumps(lines.kinds[number]), json.dumps(lines.names[number])
             properties = (kind, name, int(lines.sources[number]))
         yield _LINE % (number, *properties, ",".join(positions[vertices]))
+
+
+def gather_edge_flags(tin: TIN) -> BoolArray:
+    """Return the flags of the edges, each edge flagged if either of its triangles says so."""
+    flags = tin.constrained.copy()
+    triangle, corner = np.nonzero(tin.constrained & (tin.neighbors >= 0))
+    other = tin.neighbors[triangle, corner]
+    row, back = np.nonzero(tin.neighbors[other] == triangle[:, None])
+    flags[other[row], back] = True
+    return flags
+
+
+def group_rings(tin: TIN) -> list[list[Int32Array]]:
+    """Group the boundary rings: an outer ring followed by its holes."""
+    Polygon = optional.load("shapely").Polygon
+    outer = [ring for ring in tin.rings if measure_signed_area(tin.points[ring]) > 0]
+    holes = [ring for ring in tin.rings if measure_signed_area(tin.points[ring]) <= 0]
+    outer.sort(key=lambda ring: measure_signed_area(tin.points[ring]))
+    groups = [[ring] for ring in outer]
+    shapes = [Polygon(tin.points[ring, :2]) for ring in outer] if holes else []
+    for hole in holes:
+        shape = Polygon(tin.points[hole, :2])
+        home = next((i for i, around in enumerate(shapes) if around.covers(shape)), -1)
+        groups[home].append(hole)
+    return groups[::-1]
+
+
+def measure_signed_area(ring: Float64Array) -> float:
+    """Area in the plane, positive counter-clockwise."""
+    x, y = (ring[:, :2] - ring[0, :2]).T
+    return float(np.dot(x, np.roll(y, -1)) - np.dot(np.roll(x, -1), y)) / 2

@@ -7,18 +7,25 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ....base import optional
 from ....base.atomic import replacing
-from ....base.errors import FormatError, WriteError, choice
+from ....base.errors import WriteError
 from ....base.policies import FeatureKind
 from ....base.results import Features
-from ....base.sentences import counted
+from ....base.sentences import FILE, counted
 from ....terrain.relief.gradients import aspect, measure_areas, measure_ring_area, slope
 from ....tin import Survey
-from ...mesh.common import require_writable
+from ..surface_features import choose_kind
 from .coordinates import Places, format_positions, keep_in_crs, project_to_wgs84, require_one_piece
 from .features import write_features
-from .lines import format_edge_properties, format_lines, list_line_vertices, require_lines
+from .lines import (
+    format_edge_properties,
+    format_lines,
+    gather_edge_flags,
+    group_rings,
+    list_line_vertices,
+    measure_signed_area,
+    require_lines,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -28,9 +35,7 @@ if TYPE_CHECKING:
     from ....base.progress import Tell
     from ....tin import TIN
 
-__all__ = ["Kind", "gather_edge_flags", "group_rings", "write"]
-
-Kind = FeatureKind
+__all__ = ["write"]
 
 _BATCH = 16_384
 _LARGEST = 2**63
@@ -49,7 +54,7 @@ def write(
     surface: TIN | Survey | Features,
     path: Path,
     *,
-    kind: Kind | None = None,
+    kind: FeatureKind | None = None,
     projected: bool = False,
     progress: Tell | None = None,
 ) -> None:
@@ -97,15 +102,13 @@ def write(
     The file is written in batches; beside the surface itself memory holds about 100 bytes for
     each vertex.
     """
+    chosen = choose_kind(surface, kind)
     if isinstance(surface, Features):
-        _require_no_kind(kind)
         write_features(surface, path, projected=projected, progress=progress)
         return
-    surface = require_writable(surface, path)
-    chosen = _require_kind(surface, kind)
     if chosen == "lines" and not isinstance(surface, Survey):
         require_lines(surface)
-    _require_finite_points(surface.points, path)
+    _require_finite_points(surface.points)
     place = keep_in_crs if projected else project_to_wgs84
     places = place(surface)
     if isinstance(surface, Survey) or chosen == "points":
@@ -114,7 +117,7 @@ def write(
     else:
         corners = places.xyz[surface.triangles, 0]
         if places.crs_member is None:
-            require_one_piece(corners, path)
+            require_one_piece(corners)
         used = places.xyz[_find_used_vertices(surface, chosen)]
         total = len(surface.triangles)
         features = _SURFACE_FEATURES[chosen](surface, places)
@@ -129,32 +132,14 @@ def write(
         file.write("\n]}\n")
 
 
-def _require_no_kind(kind: str | None) -> None:
-    if kind is not None:
-        raise FormatError(f"Invalid kind '{kind}': features are written as they are, without one.")
-
-
-def _require_kind(surface: TIN | Survey, kind: str | None) -> str:
-    is_survey = isinstance(surface, Survey)
-    if kind is None:
-        return "points" if is_survey else "triangles"
-    choice("kind", kind, Kind)
-    if is_survey and kind != "points":
-        raise FormatError(
-            f"A survey has no {kind}, only points: triangulate it first.", known=("points",)
-        )
-    return kind
-
-
-def _require_finite_points(points: Float64Array, path: Path) -> None:
+def _require_finite_points(points: Float64Array) -> None:
     wrong = ~np.isfinite(points).all(axis=1)
     if wrong.any():
         row, count = int(np.argmax(wrong)), int(wrong.sum())
         raise WriteError(
-            f"Cannot write '{path}': {counted(count, 'point')} "
+            f"Cannot write {FILE}: {counted(count, 'point')} "
             f"{'is' if count == 1 else 'are'} not finite (first: point "
-            f"{row}, {points[row].tolist()}), and JSON has only finite numbers.",
-            path=path,
+            f"{row}, {points[row].tolist()}), and JSON has only finite numbers."
         )
 
 
@@ -251,16 +236,6 @@ def _format_edges(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
         written += len(starts)
 
 
-def gather_edge_flags(tin: TIN) -> BoolArray:
-    """Return the flags of the edges, each edge flagged if either of its triangles says so."""
-    flags = tin.constrained.copy()
-    triangle, corner = np.nonzero(tin.constrained & (tin.neighbors >= 0))
-    other = tin.neighbors[triangle, corner]
-    row, back = np.nonzero(tin.neighbors[other] == triangle[:, None])
-    flags[other[row], back] = True
-    return flags
-
-
 def _format_lines(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
     yield len(tin.triangles), ",\n".join(format_lines(tin, format_positions(places.xyz)))
 
@@ -279,30 +254,9 @@ def _format_hull(tin: TIN, places: Places) -> Iterator[tuple[int, str]]:
     yield len(tin.triangles), ",\n".join(features)
 
 
-def group_rings(tin: TIN) -> list[list[Int32Array]]:
-    """Group the boundary rings: an outer ring followed by its holes."""
-    Polygon = optional.load("shapely").Polygon
-    outer = [ring for ring in tin.rings if _measure_signed_area(tin.points[ring]) > 0]
-    holes = [ring for ring in tin.rings if _measure_signed_area(tin.points[ring]) <= 0]
-    outer.sort(key=lambda ring: _measure_signed_area(tin.points[ring]))
-    groups = [[ring] for ring in outer]
-    shapes = [Polygon(tin.points[ring, :2]) for ring in outer] if holes else []
-    for hole in holes:
-        shape = Polygon(tin.points[hole, :2])
-        home = next((i for i, around in enumerate(shapes) if around.covers(shape)), -1)
-        groups[home].append(hole)
-    return groups[::-1]
-
-
-def _measure_signed_area(ring: Float64Array) -> float:
-    """Area in the plane, positive counter-clockwise."""
-    x, y = (ring[:, :2] - ring[0, :2]).T
-    return float(np.dot(x, np.roll(y, -1)) - np.dot(np.roll(x, -1), y)) / 2
-
-
 def _close_ring(ring: Int32Array, xyz: Float64Array, counter_clockwise: bool) -> Int32Array:
     closed = np.append(ring, ring[0])
-    return closed if (_measure_signed_area(xyz[ring]) > 0) == counter_clockwise else closed[::-1]
+    return closed if (measure_signed_area(xyz[ring]) > 0) == counter_clockwise else closed[::-1]
 
 
 # ----------------------------------------------------------------------------- points

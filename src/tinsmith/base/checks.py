@@ -47,13 +47,13 @@ def as_flag(name: str, value: Any) -> bool:
 def require_count(name: str, value: Any, *, or_none: bool = False) -> None:
     """Refuse what is no whole number above 0."""
     if not (is_whole_number(value) and value >= 1) and not (or_none and value is None):
-        raise OptionError(name, value, f"a whole number >= 1{', or None' if or_none else ''}")
+        raise OptionError(name, value, "a whole number >= 1", or_none=or_none)
 
 
 def require_positive(name: str, value: Any, *, what: str = "a length") -> None:
     """Refuse what is neither a finite number above 0 nor None."""
     if value is not None and not (is_finite_number(value) and value > 0):
-        raise OptionError(name, value, f"{what} > 0 in CRS units, or None")
+        raise OptionError(name, value, f"{what} > 0 in CRS units", or_none=True)
 
 
 def require_distance(name: str, value: Any) -> None:
@@ -65,7 +65,7 @@ def require_distance(name: str, value: Any) -> None:
 def require_type(name: str, value: Any, kind: type, *, or_none: bool = False) -> None:
     """Refuse what is not of a class of the toolkit."""
     if not isinstance(value, kind) and not (or_none and value is None):
-        raise OptionError(name, value, f"a {kind.__name__}{', or None' if or_none else ''}")
+        raise OptionError(name, value, f"a {kind.__name__}", or_none=or_none)
 
 
 def require_tin(tin: Any) -> None:

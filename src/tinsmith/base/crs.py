@@ -101,7 +101,7 @@ class Unit:
             return value
         found = _find_unit(value) if isinstance(value, str) else None
         if found is None:
-            raise OptionError("unit of elevations", value, _ALLOWED_UNITS)
+            raise OptionError("z_unit", value, _ALLOWED_UNITS, what="unit of elevations")
         return found
 
     @property
@@ -492,7 +492,9 @@ def require_same_unit(known: Unit, declared: Unit, why: str) -> None:
     OptionError
     """
     if known != declared:
-        raise OptionError("unit of elevations", declared.name, f"{known.name}, {why}")
+        raise OptionError(
+            "z_unit", declared.name, f"{known.name}, {why}", what="unit of elevations"
+        )
 
 
 def measure_angular_unit(crs: CRS | None) -> float | None:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
-from .sentences import printable, shown
+from .sentences import FILE, name_file, printable, shown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
     from pathlib import Path
 
 __all__ = [
@@ -23,6 +23,7 @@ __all__ = [
     "ReadError",
     "RenderError",
     "TinsmithError",
+    "UnknownOptionError",
     "WriteError",
     "choice",
 ]
@@ -31,7 +32,30 @@ Value = TypeVar("Value")
 
 
 class TinsmithError(Exception):
-    """Root of every error that tinsmith raises on purpose; its text is one clear sentence."""
+    """Root of every error that tinsmith raises on purpose; its text is one clear sentence.
+
+    Attributes
+    ----------
+    file : Path or None
+        The file that was read or written.
+    """
+
+    file: Path | None = None
+    is_of_file = False
+    """Whether it is what a file holds that is at fault: the sentence names the file."""
+
+    def __str__(self) -> str:
+        text = str(self.args[0]) if self.args else ""
+        return text.replace(FILE, "the file")
+
+    def add_file(self, file: Path) -> None:
+        """Name the file of which the sentence speaks, unless one is named."""
+        if self.file is not None or not self.args:
+            return
+        self.file = file
+        text = str(self.args[0])
+        if self.is_of_file or FILE in text:
+            self.args = (printable(name_file(text, str(file))),)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Copy and pickle sentence and data, whatever the class is made of."""
@@ -55,6 +79,10 @@ class OptionError(TinsmithError, ValueError):
         What was given.
     allowed : str or tuple of str
         What may be given instead: the words, where it is one of a few.
+    what : str
+        What of the option the value is, such as its number of items; empty for itself.
+    or_none : bool
+        Whether None may be given, too.
 
     Examples
     --------
@@ -64,13 +92,38 @@ class OptionError(TinsmithError, ValueError):
     Invalid crossing 'join': it must be one of split, error.
     """
 
-    def __init__(self, option: str, value: object, allowed: str | Iterable[str]) -> None:
-        is_text = isinstance(allowed, str)
-        self.allowed = allowed if is_text else tuple(allowed)
-        what = allowed if is_text else f"one of {', '.join(allowed)}"
-        super().__init__(printable(f"Invalid {option} {shown(value)}: it must be {what}."))
+    def __init__(
+        self,
+        option: str,
+        value: object,
+        allowed: str | Iterable[str],
+        *,
+        what: str = "",
+        or_none: bool = False,
+    ) -> None:
         self.option = option
         self.value = value
+        self.allowed = allowed if isinstance(allowed, str) else tuple(allowed)
+        self.what = what
+        self.or_none = or_none
+        super().__init__(self.describe())
+
+    def add_file(self, file: Path) -> None:
+        """Name the file of which the sentence speaks."""
+        if isinstance(self.allowed, str):
+            self.allowed = self.allowed.replace(FILE, f"'{file}'")
+        super().add_file(file)
+
+    def describe(self, flag: str = "") -> str:
+        """Return the sentence, with the flag of a command in place of the option's name."""
+        is_text = isinstance(self.allowed, str)
+        allowed = self.allowed if is_text else f"one of {', '.join(self.allowed)}"
+        none = ", or None" if self.or_none and not flag else ""
+        named = self.what or flag or self.option
+        from_flag = f" ({flag})" if self.what and flag else ""
+        return printable(
+            f"Invalid {named} {shown(self.value)}: it must be {allowed}{none}.{from_flag}"
+        )
 
 
 def choice(option: str, value: Value, allowed: Any) -> Value:
@@ -96,6 +149,8 @@ class CrsError(TinsmithError, ValueError):
         What was given.
     """
 
+    is_of_file = True
+
     def __init__(self, message: str, *, crs: object = None) -> None:
         super().__init__(message)
         self.crs = crs
@@ -110,6 +165,8 @@ class PointsError(TinsmithError, ValueError):
         The first few row numbers (0-based, in the caller's own input) at fault; may be empty.
     """
 
+    is_of_file = True
+
     def __init__(self, message: str, *, rows: Iterable[int] = ()) -> None:
         super().__init__(message)
         self.rows = tuple(int(row) for row in rows)
@@ -123,6 +180,8 @@ class LinesError(TinsmithError, ValueError):
     lines : tuple of int
         The first few lines (0-based, in the caller's own input) at fault; may be empty.
     """
+
+    is_of_file = True
 
     def __init__(self, message: str, *, lines: Iterable[int] = ()) -> None:
         super().__init__(message)
@@ -148,17 +207,17 @@ class ReadError(TinsmithError, ValueError):
 
     Attributes
     ----------
-    path : Path or None
-        The file.
     lines : tuple of int
         The first few line numbers at fault, counted from 1 as an editor does; may be empty.
     """
+
+    is_of_file = True
 
     def __init__(
         self, message: str, *, path: Path | None = None, lines: Sequence[int] = ()
     ) -> None:
         super().__init__(printable(message))
-        self.path = path
+        self.file = path
         self.lines = tuple(int(line) for line in lines)
 
     @property
@@ -168,17 +227,13 @@ class ReadError(TinsmithError, ValueError):
 
 
 class WriteError(TinsmithError, OSError):
-    """A file that cannot be written; a file that was there before is left whole.
+    """A file that cannot be written; a file that was there before is left whole."""
 
-    Attributes
-    ----------
-    path : Path or None
-        The file.
-    """
+    is_of_file = True
 
     def __init__(self, message: str, *, path: Path | None = None) -> None:
         super().__init__(message)
-        self.path = path
+        self.file = path
 
 
 class FormatError(TinsmithError, ValueError):
@@ -193,6 +248,31 @@ class FormatError(TinsmithError, ValueError):
     def __init__(self, message: str, *, known: Sequence[str] = ()) -> None:
         super().__init__(printable(message))
         self.known = tuple(known)
+
+
+class UnknownOptionError(FormatError):
+    """A format has not the option that is given.
+
+    Attributes
+    ----------
+    option : str
+    action : str
+        "read" or "write".
+    format : str
+        Name of the format.
+    """
+
+    def __init__(self, option: str, action: str, format: str, known: Sequence[str]) -> None:  # noqa: A002 - as in read
+        self.option, self.action, self.format = option, action, format
+        self.known = tuple(known)
+        super().__init__(self.describe(), known=known)
+
+    def describe(self, find_flag: Callable[[str], str | None] = str) -> str:
+        """Return the sentence, with the flags of those options of the format that have one."""
+        named = [flag for flag in map(find_flag, self.known) if flag]
+        there_are = f"its options are {', '.join(named)}" if named else "it has no options"
+        option = printable(find_flag(self.option) or self.option)
+        return f"Unknown option {option} to {self.action} the format {self.format}: {there_are}."
 
 
 class RenderError(TinsmithError, RuntimeError):

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import sys
-import warnings
 from importlib.machinery import PathFinder
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .errors import PlugInWarning
+from .notes import warn
 from .sentences import printable
 
 if TYPE_CHECKING:
@@ -98,4 +98,4 @@ def warn_of_plug_in(what: str, distribution: str, reason: str) -> None:
         End of the sentence.
     """
     text = f"Plug-in {distribution}, {what}: {reason}."
-    warnings.warn(printable(text), PlugInWarning, stacklevel=3)
+    warn(printable(text), PlugInWarning)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar, cast
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["is_product", "join_notes", "product"]
+__all__ = ["is_product", "notes_of_surfaces", "product"]
 
 F = TypeVar("F", bound="Callable[..., Any]")
 
@@ -84,10 +84,10 @@ def _is_surface(value: Any) -> bool:
 def _add_notes(made: Any, surfaces: Iterable[_Surface]) -> Any:
     if not hasattr(type(made), "with_notes"):
         return made
-    return made.with_notes(join_notes(surfaces))
+    return made.with_notes(notes_of_surfaces(surfaces))
 
 
-def join_notes(surfaces: Iterable[_Surface]) -> tuple[str, ...]:
+def notes_of_surfaces(surfaces: Iterable[_Surface]) -> tuple[str, ...]:
     """Return the notes of surfaces; of several ones each with the name of its surface."""
     told = list(surfaces)
     if len(told) == 1:

@@ -42,7 +42,7 @@ class Progress:
 
     def __init__(self, tell: Tell | None) -> None:
         if tell is not None and not callable(tell):
-            raise OptionError("progress", tell, "a function of the fraction done, or None")
+            raise OptionError("progress", tell, "a function of the fraction done", or_none=True)
         self._tell = tell
         self._told = 0.0
         self._raised: BaseException | None = None

@@ -6,9 +6,25 @@ import re
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
-__all__ = ["coordinate", "counted", "height", "inflect", "printable", "shown", "suggest"]
+__all__ = [
+    "FILE",
+    "coordinate",
+    "counted",
+    "height",
+    "inflect",
+    "name_file",
+    "name_options",
+    "printable",
+    "shown",
+    "suggest",
+]
+
+FILE = "⟨file⟩"
+"""Mark of the file that is read or written, where a sentence is made that does not know it."""
+
+_OPTION = re.compile(r"(?:\b[tT]he option )?`([a-z]\w*)(?:=([^`]*))?`")
 
 _INFLECTED = re.compile(r"\[([^\[|\]]*)\|([^\[|\]]*)\]")
 _ODD_LETTER = "\N{REPLACEMENT CHARACTER}"
@@ -87,6 +103,49 @@ def suggest(word: str, known: Iterable[str]) -> str:
 
     near = get_close_matches(word, known, n=1)
     return f" Did you mean '{near[0]}'?" if near else ""
+
+
+def name_file(text: str, name: str) -> str:
+    """Return a sentence with the name of a file in place of its mark, or before it if it has none.
+
+    Examples
+    --------
+    >>> name_file(f"{FILE} is empty.", "a.csv"), name_file("row 2 is not a number.", "a.csv")
+    ("'a.csv' is empty.", "'a.csv': row 2 is not a number.")
+    """
+    name = printable(name)
+    if FILE in text:
+        return text.replace(FILE, f"'{name}'")
+    return text if f"'{name}'" in text else f"'{name}': {text}"
+
+
+def name_options(text: str, find_flag: Callable[[str], str | None]) -> str:
+    """Return a sentence with flags of a command in place of the options that it marks.
+
+    Sentences of the library have options, and options with a value, between backticks.
+
+    Parameters
+    ----------
+    text : str
+    find_flag : callable
+        Returns the flag of an option, None if the command has none: it is left as it is.
+
+    Examples
+    --------
+    >>> flag = "--{}".format
+    >>> name_options("say with the option `crs` which; `crs='EPSG:2056'` or `fill=True`.", flag)
+    "say with --crs which; --crs 'EPSG:2056' or --fill."
+    """
+
+    def name(found: re.Match[str]) -> str:
+        flag, value = find_flag(found[1]), found[2]
+        if flag is None:
+            return found[0]
+        if value in ("True", "False"):
+            return flag if value == "True" else flag.replace("--", "--no-", 1)
+        return flag if value is None else f"{flag} {value}"
+
+    return _OPTION.sub(name, text)
 
 
 def printable(text: str) -> str:

@@ -243,10 +243,10 @@ def note_found(found: Survey | TIN, console: Console) -> None:
 
 def note_surfaces(surfaces: Sequence[TIN], console: Console) -> None:
     """Take note of what is known of surfaces, showing progress, for summary and record."""
-    from ..base.products import join_notes
+    from ..base.products import notes_of_surfaces
 
     with console.step("Looking for blunders and gaps"):
-        console.note(join_notes(surface.snapshot() for surface in surfaces))
+        console.note(notes_of_surfaces(surface.snapshot() for surface in surfaces))
 
 
 def list_inputs(*files: Path, how: Coding | None = None) -> list[Named]:

@@ -2,33 +2,40 @@
 
 from __future__ import annotations
 
-import re
+from collections.abc import Sequence
+from typing import Any
 
 import click
 from click.core import ParameterSource
 
-__all__ = ["find_given_flag", "name_flags", "note_given"]
+from ..base.sentences import name_options
+
+__all__ = ["LibraryOption", "find_flag", "find_given_flag", "name_flags", "note_given"]
 
 _CONTEXT = "tinsmith.context"
-_FLAGS_OF = {
-    "cells": ("spacing",),
-    "interval": ("interval", "sections"),
-    "level": ("levels",),
-    "spacing": ("spacing", "label_spacing"),
-    "unit of elevations": ("z_unit", "lines_z_unit"),
-    "width": ("sections",),
-}
-"""Parameters of commands for options that the library calls otherwise."""
 
-_LENGTH_UNIT = "length_unit"
-"""What the library calls ``unit``."""
+
+class LibraryOption(click.Option):
+    """An option of a command that the library calls otherwise.
+
+    Parameters
+    ----------
+    sets : sequence of str
+        Options of the library that have its value, where the command has no flag of that name.
+    instead : str
+        The one for which it stands whatever other flag has that name.
+    """
+
+    def __init__(
+        self, *declared: Any, sets: Sequence[str] = (), instead: str = "", **more: Any
+    ) -> None:
+        super().__init__(*declared, **more)
+        self.sets = tuple(sets)
+        self.instead = instead
 
 
 def name_flags(text: str, **renamed: str) -> str:
-    """Return a sentence of the library with flags in place of the names of its options.
-
-    Only what cannot be taken for another word is replaced: ``the option crs``, ``Invalid snap``,
-    ``max_edge``, ``crs='EPSG:32616'``.
+    """Return a sentence of the library with the flags of this command for the options it marks.
 
     Parameters
     ----------
@@ -36,21 +43,20 @@ def name_flags(text: str, **renamed: str) -> str:
     **renamed : str
         Flags of options that the library calls by another name.
     """
-    context = click.get_current_context(silent=True)
-    if context is None:
-        return text
-    flags = _list_flags(_find_running_command(context)) | renamed
-    text = text.replace(", or None.", ".")
-    text = re.sub(r"(?<=its options are )[\w, ]+", lambda found: _name_known(found[0], flags), text)
-    for name, flag in flags.items():
-        text = re.sub(rf"\b[Tt]he option '?{name}\b'?", flag, text)
-        text = re.sub(rf"\b(Invalid|Unknown option) '?{name}\b'?(?! of\b)", rf"\1 {flag}", text)
-        text = re.sub(rf"(?<![\w-]){name}=True\b", flag, text)
-        text = re.sub(rf"(?<![\w-]){name}=False\b", flag.replace("--", "--no-", 1), text)
-        text = re.sub(rf"(?<![\w-]){name}=(?=['\"\w.-])", f"{flag} ", text)
-        if "_" in name:
-            text = re.sub(rf"(?<![\w'\"./-]){name}(?![\w'\"/-])(?!\.\w)", flag, text)
-    return text
+    return name_options(text, lambda name: renamed.get(name) or find_flag(name))
+
+
+def find_flag(name: str) -> str | None:
+    """Return the flag of the command that runs, or failed, for an option of the library."""
+    root = click.get_current_context(silent=True)
+    if root is None:
+        return None
+    found = [
+        (rank, option.opts[0])
+        for option in _list_options(_find_running_command(root))
+        if (rank := _rank(option, name)) is not None
+    ]
+    return min(found, default=(0, None))[1]
 
 
 def note_given(context: click.Context) -> None:
@@ -77,22 +83,32 @@ def find_given_flag(option: str) -> tuple[click.Context, str] | None:
     context = None if root is None else root.find_root().meta.get(_CONTEXT)
     if context is None:
         return None
-    name = option.removeprefix("number of ")
-    names = (name.replace("-", "_"), *_FLAGS_OF.get(name, ()))
-    for one in context.command.params:
-        is_flag = isinstance(one, click.Option) and one.opts[0].startswith("--") and one.name
-        if not is_flag:
-            continue
-        called = {one.name, one.opts[0].removeprefix("--").replace("-", "_")}
-        source = context.get_parameter_source(one.name)
-        if source is ParameterSource.COMMANDLINE and called.intersection(names):
-            return context, one.opts[0]
-    return None
+    given = [
+        (rank, one.opts[0])
+        for one in _list_options(context.command)
+        if (rank := _rank(one, option)) is not None
+        and context.get_parameter_source(one.name or "") is ParameterSource.COMMANDLINE
+    ]
+    return (context, min(given)[1]) if given else None
 
 
-def _name_known(names: str, flags: dict[str, str]) -> str:
-    """Return the flags of those options in a list that have one here."""
-    return ", ".join(flags[name] for name in names.split(", ") if name in flags)
+def _rank(option: click.Option, name: str) -> int | None:
+    """Return how nearly an option is that of the library with a name, 0 best; None if not."""
+    if name == getattr(option, "instead", ""):
+        return 0
+    if option.opts[0].removeprefix("--").replace("-", "_") == name:
+        return 1
+    if option.name == name:
+        return 2
+    return 3 if name in getattr(option, "sets", ()) else None
+
+
+def _list_options(command: click.Command) -> list[click.Option]:
+    return [
+        one
+        for one in command.params
+        if isinstance(one, click.Option) and one.name and one.opts[0].startswith("--")
+    ]
 
 
 def _find_running_command(context: click.Context) -> click.Command:
@@ -101,16 +117,3 @@ def _find_running_command(context: click.Context) -> click.Command:
     if isinstance(command, click.Group) and context.invoked_subcommand:
         return command.get_command(context, context.invoked_subcommand) or command
     return command
-
-
-def _list_flags(command: click.Command) -> dict[str, str]:
-    """Return the flag for each name that the library may use, longest names first."""
-    flags = {}
-    for option in command.params:
-        if isinstance(option, click.Option) and option.opts[0].startswith("--") and option.name:
-            flags[option.opts[0].removeprefix("--").replace("-", "_")] = option.opts[0]
-            flags.setdefault(option.name, option.opts[0])
-    for option in command.params:
-        if option.name == _LENGTH_UNIT:  # before any unit that a command has of its own
-            flags["unit"] = option.opts[0]
-    return dict(sorted(flags.items(), key=lambda item: -len(item[0])))

@@ -13,7 +13,6 @@ import click
 
 from .. import __version__
 from ..base.sentences import suggest
-from ..io.isolated.forking import permit_forks
 from .command_list import SECTIONS, SUMMARIES
 from .output.events import note_events
 from .output.failures import show_failure, tell_warning, translate_failures
@@ -81,8 +80,6 @@ class _Commands(click.Group):
             return super().main(args, standalone_mode=False, **how)
         arguments = sys.argv[1:] if args is None else list(args)
         reserve_standard_streams()
-        if args is None:  # this process is the command's own
-            permit_forks()
         with raise_for_signals():
             sys.exit(self._find_exit_code(arguments, **how))
 

@@ -7,6 +7,7 @@ from typing import Any
 import click
 
 from ..base.policies import CodeStyle, CrossingPolicy, ShotOrder, TrimPolicy
+from .flags import LibraryOption
 from .parameters import choice_option, number_option, under
 from .paths import LINES
 
@@ -92,6 +93,8 @@ _LINES = under(
     ),
     click.option(
         "--lines-z-unit",
+        cls=LibraryOption,
+        sets=("z_unit",),
         metavar="UNIT",
         help="Unit of the elevations in the files of lines, if they do not state it.",
     ),

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import click
 
 from ..base.policies import DrawingContent, DuplicatePolicy, FacePolicy, FeatureKind, LineReading
-from .flags import note_given
+from .flags import LibraryOption, note_given
 from .line_options import CODE_OPTIONS, LINE_OPTIONS
 from .mesh_options import MESH_READING, MESH_WRITING
 from .output.console import Console
@@ -461,6 +461,8 @@ def make_reading_options(*, unit_flag: str = "--unit") -> Callable[[Function], F
     unit = click.option(
         unit_flag,
         "length_unit",
+        cls=LibraryOption,
+        instead="unit",
         metavar="UNIT",
         help="Unit of coordinates and elevations, if the file does not state one; of a LandXML or "
         "DXF file also where it states one that differs from its CRS.",

@@ -188,8 +188,8 @@ def test_equal_names_of_a_coordinate_are_refused():
     with pytest.raises(ReadError) as caught:
         columns.find_columns_by_header(header)
     assert str(caught.value) == (
-        "the header has 2 columns named 'E' for the easting: say with the option columns which is "
-        "meant."
+        "the header has 2 columns named 'E' for the easting: say with the option `columns` which "
+        "is meant."
     )
     assert columns.names_coordinates(header).word == "ENZ"  # it is a header nonetheless
 
@@ -221,7 +221,8 @@ def test_columns_by_the_callers_word(word, header, count, letters, names):
 def test_the_caller_may_contradict_the_header_which_is_told():
     found = columns.find_columns_by_word("NEZ", ["E", "N", "Z"], 3)
     assert found.notes == (
-        "The option columns takes 'E' as the northing and 'N' as the easting, against the header.",
+        "The option `columns` takes 'E' as the northing and 'N' as the easting, "
+        "against the header.",
     )
     assert columns.find_columns_by_word("ENZ", ["E", "N", "Z"], 3).notes == ()
     assert columns.find_columns_by_word("ENZ", ["a", "b", "c"], 3).notes == ()

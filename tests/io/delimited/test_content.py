@@ -90,7 +90,7 @@ def test_two_plausible_layouts_are_refused(columns, words):
         find_columns_by_content(columns, None)
     message = str(caught.value)
     assert f"its columns may be {' or '.join(words)}: " in message
-    assert " or ".join(f"columns='{word}'" for word in words) in message
+    assert " or ".join(f"`columns='{word}'`" for word in words) in message
     assert message.endswith("the CRS of the points may decide, too.")
 
 
@@ -239,7 +239,7 @@ def test_no_convention_holds_where_a_line_speaks_of_coordinates_or_the_area_of_u
         with pytest.raises(ReadError) as caught:
             find_columns_by_content([EASTING, NORTHING, ELEVATION], area, heading=heading)
         assert words in str(caught.value)
-        assert "columns='XYZ' says so" in str(caught.value)
+        assert "`columns='XYZ'` says so" in str(caught.value)
 
 
 # ------------------------------------------------------------------ measures

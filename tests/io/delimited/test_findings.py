@@ -31,7 +31,7 @@ HERE = [742_000.0, 4_030_000.0, 320.0]
 def told(points, rows=None, area=UTM_16, columns=COLUMNS):
     points = np.array(points, float)
     rows = np.arange(len(points)) if rows is None else np.array(rows)
-    return require_in_area(points, rows, columns, area, PATH)
+    return require_in_area(points, rows, columns, area)
 
 
 # -------------------------------------------------------------------- the area
@@ -46,8 +46,8 @@ def test_columns_that_fit_only_when_exchanged_are_refused_with_the_word_that_fit
     right = COLUMNS.permute(order)
     places = [f"{role} in {right.label(right.roles[role])}" for role in ROLES]
     assert str(caught.value) == (
-        f"'a.csv': read as ENZ the points lie outside {AREA}, and read as "
-        f"{right.word} inside it: columns='{right.word}' takes the {', the '.join(places)}."
+        f"read as ENZ the points lie outside {AREA}, and read as "
+        f"{right.word} inside it: `columns='{right.word}'` takes the {', the '.join(places)}."
     )
 
 

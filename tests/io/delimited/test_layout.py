@@ -11,6 +11,7 @@ from tinsmith.io import ReadError
 from tinsmith.io.delimited import layout as layouts
 from tinsmith.io.delimited.layout import find_layout
 from tinsmith.io.delimited.lines import TextLines, decode_head, read_lines
+from tinsmith.io.door import naming_file
 
 USUAL = {
     "delimiter": ",",
@@ -279,19 +280,19 @@ def test_a_decimal_mark_that_is_told_is_known_to_be(decimal, is_told):
             "E,N,Z,Q,R\n1.5,2.5,3.5\n",
             {},
             "'a.csv': the header names 5 columns (E, N, Z, Q, R), but rows have 3: say with the "
-            "option columns what all of them are, and check delimiter and decimal mark.",
+            "option `columns` what all of them are, and check delimiter and decimal mark.",
         ),
         (
             "E,Q,Z\n1.5,2.5,3.5\n",
             {},
             "'a.csv': the header (E, Q, Z) does not name easting, northing and elevation (known: "
-            "easting 'E', elevation 'Z'): say with the option columns which columns they are.",
+            "easting 'E', elevation 'Z'): say with the option `columns` which columns they are.",
         ),
         (
             "Q,R,S\n1.5,2.5,3.5\n",
             {},
             "'a.csv': the header (Q, R, S) does not name easting, northing and elevation (known: "
-            "none of it): say with the option columns which columns they are.",
+            "none of it): say with the option `columns` which columns they are.",
         ),
         (
             ",".join(["1.5"] * 1001) + "\n",
@@ -304,7 +305,7 @@ def test_what_is_no_table_is_told(text, options, sentence):
     with pytest.raises(ReadError) as caught:
         found_in(text, **options)
     assert str(caught.value) == sentence
-    assert caught.value.path == Path("a.csv")
+    assert caught.value.file == Path("a.csv")
 
 
 def test_a_thousand_columns_are_read():
@@ -427,8 +428,8 @@ def test_the_encoding_is_found_or_told(tmp_path, data, encoding, text):
 @pytest.mark.parametrize(
     ("data", "encoding", "words"),
     [
-        (b"\xff", "utf-8", "is not utf-8 text: invalid start byte; the option encoding names"),
-        (b"\xff\xfea", None, "is not utf-16-le text: truncated data; the option encoding names"),
+        (b"\xff", "utf-8", "is not utf-8 text: invalid start byte; the option `encoding` names"),
+        (b"\xff\xfea", None, "is not utf-16-le text: truncated data; the option `encoding` names"),
         (b"a", "latin-7000", "Unknown encoding 'latin-7000' for"),
         (b"a\x00bcdefghijklmnop", None, "holds binary data, not delimited text."),
         (b"x" * 1_000_001, None, "line 1: 1,000,001 bytes are no row of points; at most 1,000,000"),
@@ -437,11 +438,11 @@ def test_the_encoding_is_found_or_told(tmp_path, data, encoding, text):
 def test_text_that_cannot_be_read_is_told(tmp_path, data, encoding, words):
     path = tmp_path / "a.csv"
     path.write_bytes(data)
-    with pytest.raises(ReadError) as caught:
+    with pytest.raises(ReadError) as caught, naming_file(path):
         read_lines(path, encoding=encoding)
     assert words in str(caught.value)
     assert str(path) in str(caught.value)
-    assert caught.value.path == path
+    assert caught.value.file == path
 
 
 def test_a_line_of_a_million_bytes_is_read(tmp_path):

@@ -120,7 +120,9 @@ def test_the_decimal_mark_that_cells_prove(row, delimiter, mark, is_noted):
 
 
 def test_a_comma_that_may_separate_thousands_is_refused():
-    with pytest.raises(ReadError, match=r"\('752,700'\): decimal=',' or decimal='\.' settles it"):
+    with pytest.raises(
+        ReadError, match=r"\('752,700'\): `decimal=','` or `decimal='\.'` settles it"
+    ):
         find_decimal_mark([["752,700", "4"]], BLANKS)
 
 

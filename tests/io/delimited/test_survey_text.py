@@ -230,11 +230,11 @@ def test_no_header_with_numbers_and_codes_is_pnezd_where_the_crs_applies(survey)
 def test_without_a_crs_nothing_tells_northing_from_easting(survey):
     content = "\n".join(",".join(map(str, row)) for row in ROWS)
     said = str(fault(survey, content))
-    assert "columns='PNEZD' or columns='PENZD'" in said
+    assert "`columns='PNEZD'` or `columns='PENZD'`" in said
     assert "XYZ" not in said
     assert np.array_equal(survey(content, columns="PNEZD").points, EXPECTED)
     names = "A1;10;20;1,5\nA2;11;21;1,7\nB1;12;20;1,9\n"
-    assert "columns='PNEZ' or columns='PENZ'" in str(fault(survey, names))
+    assert "`columns='PNEZ'` or `columns='PENZ'`" in str(fault(survey, names))
     found = survey(names, columns="PNEZ")
     assert found.points.tolist() == [[20, 10, 1.5], [21, 11, 1.7], [20, 12, 1.9]]
     assert found.attributes["number"].tolist() == ["A1", "A2", "B1"]
@@ -256,7 +256,7 @@ def test_named_columns_are_refused_where_only_the_exchanged_ones_fit(survey):
     """Neither a header nor the caller's word may put a site on another continent silently."""
     axes = "y,x,z\n752646,4024238,1\n752647,4024238,1\n"
     said = str(fault(survey, axes, CrsError, crs="EPSG:32616"))
-    assert "columns='ENZ' takes the easting in column 1 ('y')" in said
+    assert "`columns='ENZ'` takes the easting in column 1 ('y')" in said
     content = axes.replace("y,x", "northing,easting")
     said = str(fault(survey, content, CrsError, crs="EPSG:32616"))
     assert "check that EPSG:32616 is the CRS of the points" in said  # not that names are wrong
@@ -359,7 +359,7 @@ def test_without_a_crs_two_layouts_are_plausible(survey, layout, numbers):
 
 def test_small_coordinates_of_a_local_grid_are_no_less_doubtful(survey):
     rows = "".join(f"{i},{5000 + i % 5}.5,{1000 + i // 5}.25,{100 + i}.125\n" for i in range(20))
-    assert "columns='PNEZ' or columns='PENZ'" in str(fault(survey, rows))
+    assert "`columns='PNEZ'` or `columns='PENZ'`" in str(fault(survey, rows))
     whole = "".join(f"{i},{5000 + i % 5},{1000 + i // 5},{100 + i}\n" for i in range(20))
     assert "PNEZ" in str(fault(survey, whole))
 
@@ -368,7 +368,7 @@ def test_two_layouts_inside_the_area_are_refused(survey):
     """Eastings and northings of Birmingham, exchanged, lie in the Irish Sea: Britain's grid."""
     rows = "".join(f"{i},{407000 + i}.5,{287000 + 2 * i}.5,120.25\n" for i in range(9))
     said = str(fault(survey, rows, crs="EPSG:27700"))
-    assert "columns='PNEZ' or columns='PENZ'" in said
+    assert "`columns='PNEZ'` or `columns='PENZ'`" in said
     assert "the CRS of the points may tell" not in said
     bare = "".join(f"{407000 + i}.5 {287000 + 2 * i}.5 120.25\n" for i in range(9))
     assert survey(bare, crs="EPSG:27700").points[0].tolist() == [407000.5, 287000.5, 120.25]
@@ -556,7 +556,7 @@ def test_nodata_in_text_is_told_and_left_out_on_request(survey):
     content = "x,y,z\n1,2,318.5\n4,5,-9999\n7,8,320.5\n9,9,331\n3,4,-9999\n5,6,0\n"
     notes = survey(content).notes
     assert "2 points have the elevation -9999, far from the others (318.5 to 331)" in notes[0]
-    assert "nodata=-9999 leaves them out" in notes[0]
+    assert "`nodata=-9999` leaves them out" in notes[0]
     assert "1 point has the elevation 0" in notes[1]
     found = survey(content, nodata=[-9999, 0])
     assert found.points[:, 2].tolist() == [318.5, 320.5, 331]
@@ -1180,7 +1180,7 @@ def test_a_unit_in_the_header_that_the_crs_has_not_is_refused(tmp_path, unit):
         _with_units(tmp_path, unit, crs="EPSG:32617", source_crs="EPSG:32616")
     told = _with_units(tmp_path, unit, crs="EPSG:32616", columns="PNEZ")
     assert "measures in metre, as which they are taken" in " ".join(told.notes)
-    with pytest.raises(ts.CrsError, match="and the elevation in metre: the option crs names"):
+    with pytest.raises(ts.CrsError, match="and the elevation in metre: the option `crs` names"):
         _with_units(tmp_path, unit)  # no CRS would keep the unit
     told = _with_units(tmp_path, unit, columns="PNEZ")
     assert "which is not kept where no CRS is named" in " ".join(told.notes)
@@ -1321,7 +1321,7 @@ def test_a_unit_in_every_row_is_told(survey):
     assert found.elevation_unit is None
     assert found.notes == [
         "'Unit' begins with 'ft' in every row: if this is the unit of the elevations, the option "
-        "z_unit says so."
+        "`z_unit` says so."
     ]
 
 
@@ -1554,7 +1554,7 @@ def test_a_line_that_gives_the_unit_of_elevations_is_followed(survey, line, unit
     if unit is not None:
         assert "gives the unit of the elevations" in found.notes[0]
         said = str(fault(survey, f"{line}\n{WITH_HEADER}", z_unit="cm"))
-        assert "as the unit of the elevations, and the option z_unit another" in said
+        assert "as the unit of the elevations, and the option `z_unit` another" in said
 
 
 def test_geocentric_coordinates_are_no_eastings(survey):

@@ -27,7 +27,7 @@ PATH = Path("a.csv")
 def cells_of(text, **options):
     lines = TextLines.of(text.encode())
     layout = find_layout(lines, PATH, **options)
-    return read_cells(lines, layout, PATH), layout, lines
+    return read_cells(lines, layout), layout, lines
 
 
 def is_regular(data, layout):
@@ -219,38 +219,38 @@ def test_the_share_of_words_among_numbers_is_told():
     [
         (
             "1,2,3\n4,5\n6,7\n1,2,3\n1,2,3\n",
-            "'a.csv': 2 of 5 rows do not have 3 columns (line 2 has 2, line 3 has 2); the option "
-            "skip_bad leaves such rows out.",
+            "2 of 5 rows do not have 3 columns (line 2 has 2, line 3 has 2); the option "
+            "`skip_bad` leaves such rows out.",
             [2, 3],
         ),
         (
             "1,2,3\n4,5",
-            "'a.csv': 1 of 2 rows does not have 3 columns (line 2 has 2); the last line has no "
-            "end, so the file may be truncated; the option skip_bad leaves such rows out.",
+            "1 of 2 rows does not have 3 columns (line 2 has 2); the last line has no "
+            "end, so the file may be truncated; the option `skip_bad` leaves such rows out.",
             [2],
         ),
         (
             "1,2,3\n4,5\n4,5,6",
-            "'a.csv': 1 of 3 rows does not have 3 columns (line 2 has 2); the option skip_bad "
+            "1 of 3 rows does not have 3 columns (line 2 has 2); the option `skip_bad` "
             "leaves such rows out.",
             [2],
         ),
         (
             "1,2,3\n" + "4,5\n" * 6 + "1,2,3\n" * 7,
-            "'a.csv': 6 of 14 rows do not have 3 columns (line 2 has 2, line 3 has 2, line 4 has "
-            "2, line 5 has 2, line 6 has 2, ...); the option skip_bad leaves such rows out.",
+            "6 of 14 rows do not have 3 columns (line 2 has 2, line 3 has 2, line 4 has "
+            "2, line 5 has 2, line 6 has 2, ...); the option `skip_bad` leaves such rows out.",
             [2, 3, 4, 5, 6],
         ),
         (
             "1,2,3\nx,5,6\n7,8,9\n",
-            "'a.csv': 1 of 3 rows has a coordinate that is not a finite number with decimal point "
-            "(line 2: easting in column 1 ('easting') is 'x'); the option skip_bad leaves such "
+            "1 of 3 rows has a coordinate that is not a finite number with decimal point "
+            "(line 2: easting in column 1 ('easting') is 'x'); the option `skip_bad` leaves such "
             "rows out.",
             [2],
         ),
         (
             '1,2,3\n4,5\n"6,7,8\n7,8,9\n',
-            "'a.csv', line 3: a quote opens a cell and is not closed on the line; a quote at the "
+            "the file, line 3: a quote opens a cell and is not closed on the line; a quote at the "
             'start of a cell must be doubled ("").',
             [3],
         ),
@@ -259,16 +259,15 @@ def test_the_share_of_words_among_numbers_is_told():
 def test_faults_are_one_sentence(text, sentence, lines):
     cells, layout, source = cells_of(text, columns="ENZ")
     faults = read_table(cells, layout, find_columns_by_word("ENZ", [], 3), source).faults
-    error = describe_faults_of_rows(faults, len(layout.rows), source, layout, PATH)
+    error = describe_faults_of_rows(faults, len(layout.rows), source, layout)
     assert isinstance(error, ReadError)
     assert str(error) == sentence
     assert list(error.lines) == lines
-    assert error.path == PATH
 
 
 def test_a_decimal_comma_is_named():
     cells, layout, source = cells_of("1,5;2;3\nx;5;6\n", columns="ENZ", decimal=",")
     faults = read_table(cells, layout, find_columns_by_word("ENZ", [], 3), source).faults
     assert "finite number with decimal comma" in str(
-        describe_faults_of_rows(faults, 2, source, layout, PATH)
+        describe_faults_of_rows(faults, 2, source, layout)
     )

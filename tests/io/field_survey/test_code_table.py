@@ -205,7 +205,7 @@ def test_a_table_that_is_not_there(tmp_path):
     with pytest.raises(ts.ReadError, match="Cannot read"):
         read_code_table(tmp_path)
     with pytest.raises(
-        ts.OptionError, match=r"Invalid rules .* left out where there is a code_tab"
+        ts.OptionError, match=r"Invalid rules .* left out where there is a `code_tab"
     ):
         make({"codes": {"EP": "hard"}}, "EP1", "EP1", rules={"EP": "hard"})
 

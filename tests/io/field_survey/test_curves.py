@@ -188,7 +188,7 @@ def test_curves_that_cannot_be_are_refused_or_told():
     assert "curve that turns back" in [one.kind for one in made.findings]
     assert len(made.breaklines[0].coords) == 4
     codes = ["EP1 BC", "EP1", "EP1 EC"]
-    with pytest.raises(ts.LinesError, match=r"more than 10,000 vertices .* larger arc_tolerance"):
+    with pytest.raises(ts.LinesError, match=r"more than 10,000 vertices .* larger `arc_tolerance`"):
         bend(on_circle([0, 40, 90]), codes, arc_tolerance=1e-9)
     with pytest.raises(ts.LinesError, match="Curves need a projected CRS: EPSG:4326"):
         lines_from_codes(site([[0, 0], [1, 1], [2, 0]], codes, crs="EPSG:4326"))

@@ -238,7 +238,7 @@ def two_crews(**given):
 
 
 def test_repeated_numbers_of_two_crews_are_refused_until_the_order_is_said():
-    with pytest.raises(ts.LinesError, match=r"3 numbers .*first: 1.*option shot_order"):
+    with pytest.raises(ts.LinesError, match=r"3 numbers .*first: 1.*option `shot_order"):
         two_crews()
     found = two_crews(shot_order="row").breaklines
     assert [one.coords[:, 0].tolist() for one in found] == [[0, 8, 16], [0, 8, 16]]

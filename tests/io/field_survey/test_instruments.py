@@ -181,7 +181,7 @@ def test_gsi_shots_with_coordinates_prove_the_orientation(tmp_path):
 
 def test_gsi_feet(tmp_path):
     text = "110001+00000001 81..01+00515836 82..01+00525871 83..01+00003079\n"
-    refused("in feet and does not say which: give z_unit='ft'", tmp_path, "a.gsi", text)
+    refused("in feet and does not say which: give `z_unit='ft'`", tmp_path, "a.gsi", text)
     assert read(tmp_path, "a.gsi", text, z_unit="ft").elevation_unit == ts.Unit.of("ft")
     survey = read(tmp_path, "a.gsi", text, crs="EPSG:2274")
     assert survey.points[0].tolist() == [515.836, 525.871, 3.079]

@@ -88,7 +88,7 @@ def test_the_note_counts_what_makes_no_sense_in_both_styles():
 
 def test_a_slash_parts_words_or_begins_a_remark_and_is_refused():
     rows = ("EP1/B", "EP1", "EP1/E", "EP1/B", "EP1")
-    refused("two styles, 'words' and 'slash'.*EP1 of 5 shots.*the option code_style", *rows)
+    refused("two styles, 'words' and 'slash'.*EP1 of 5 shots.*the option `code_style`", *rows)
     assert lines(*rows, code_style="words") == [("EP1", [0, 1, 2, 3, 4])]
     assert lines(*rows, code_style="slash") == TWO
 

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import io
-import json
 import os
 import signal
 import socket
-import subprocess
 import sys
 import threading
 from pathlib import Path
@@ -113,9 +111,10 @@ CRASHED = "'some file' cannot be read, it is damaged: the library that reads thi
     ],
 )
 def test_each_end_of_a_child_has_its_sentence(code, timed_out, sentence):
-    error = workers._describe_death(code, timed_out, FILE, LIMITS)
+    error = workers._describe_death(code, timed_out, LIMITS)
+    error.add_file(FILE)
     assert str(error) == sentence
-    assert error.path == FILE
+    assert error.file == FILE
 
 
 @pytest.mark.parametrize(
@@ -123,14 +122,18 @@ def test_each_end_of_a_child_has_its_sentence(code, timed_out, sentence):
     [(1.0, "1 second"), (1.4, "1 second"), (1.6, "2 seconds"), (0.4, "0 seconds")],
 )
 def test_seconds_are_counted_in_words(seconds, words):
-    error = workers._describe_death(None, True, FILE, Limits(seconds, 1))
+    error = workers._describe_death(None, True, Limits(seconds, 1))
+    error.add_file(FILE)
     assert str(error) == TOO_LONG.format(words)
 
 
 @pytest.mark.parametrize(
     ("answer", "sentence"),
     [
-        ({"kind": "refusal", "text": "A whole\x07\x1b sentence."}, "A whole  sentence."),
+        (
+            {"kind": "refusal", "text": "A whole\x07\x1b sentence."},
+            "'some file': A whole  sentence.",
+        ),
         ({"kind": "memory", "text": "no matter"}, GREEDY),
         (
             {"kind": "fault", "text": "  two \n words. .."},
@@ -147,9 +150,10 @@ def test_seconds_are_counted_in_words(seconds, words):
     ],
 )
 def test_each_answer_that_is_none_has_its_sentence(answer, sentence):
-    error = workers._describe_answer(answer, FILE, LIMITS)
+    error = workers._describe_answer(answer, LIMITS)
+    error.add_file(FILE)
     assert str(error) == sentence
-    assert error.path == FILE
+    assert error.file == FILE
 
 
 # ------------------------------------------------------------------- the interpreter
@@ -241,71 +245,6 @@ def test_a_child_that_is_let_go_of_is_closed_and_not_waited_for():
     assert (len(closed), worker._process.returncode) == (2, 0)
 
 
-# ---------------------------------------------------------------------------- forks
-
-FORKS = """
-import json, os, signal, subprocess, sys, time
-from tinsmith.io.isolated.forking import Fork
-keep = os.open(os.devnull, os.O_RDONLY)
-sys.path.insert(0, "")
-signal.signal(signal.SIGTERM, lambda *_: None)
-
-def tell():
-    found = {
-        "leads": os.getsid(0) == os.getpid(),
-        "SIGTERM": signal.getsignal(signal.SIGTERM) == signal.SIG_DFL,
-        "SIGPIPE": signal.getsignal(signal.SIGPIPE) == signal.SIG_IGN,
-        "mask": len(signal.pthread_sigmask(signal.SIG_BLOCK, ())),
-        "files": sorted(int(name) for name in os.listdir("/proc/self/fd"))[:3],
-        "kept": os.path.exists(f"/proc/self/fd/{keep}"),
-        "path": "" in sys.path,
-        "variable": os.environ.get("OF_A_FORK"),
-        "heard": os.read(0, 100).decode(),
-    }
-    os.write(1, json.dumps(found).encode())
-
-def fail():
-    raise ValueError("not to be printed")
-
-fork = Fork(tell, {"OF_A_FORK": "yes"})
-fork.stdin.write(b"a request")
-print(fork.stdout.read().decode())
-print(json.dumps([
-    fork.wait(), "OF_A_FORK" in os.environ, len(signal.pthread_sigmask(signal.SIG_BLOCK, ())),
-    Fork(fail, {}).wait(), Fork(lambda: None, {}).wait(20.0),
-]))
-fork = Fork(lambda: time.sleep(600), {})
-begin = time.monotonic()
-try:
-    fork.wait(0.3)
-except subprocess.TimeoutExpired as error:
-    print(json.dumps([0.29 < time.monotonic() - begin < 500, error.timeout, fork.returncode]))
-fork.kill()
-print(fork.wait(20.0), fork.returncode, fork.wait())
-fork.kill()
-"""
-
-
-@on_linux
-def test_a_fork_begins_clean_and_its_end_is_told():
-    done = subprocess.run(
-        [sys.executable, "-c", FORKS], capture_output=True, text=True, check=False, timeout=600
-    )
-    assert (done.returncode, done.stderr) == (0, "")
-    told, ends, late, last = done.stdout.splitlines()
-    assert json.loads(told) == {
-        **dict.fromkeys(("leads", "SIGTERM", "SIGPIPE"), True),
-        **dict.fromkeys(("kept", "path"), False),
-        "mask": 0,
-        "files": [0, 1, 2],
-        "variable": "yes",
-        "heard": "a request",
-    }
-    assert json.loads(ends) == [0, False, 0, 1, 0]
-    assert json.loads(late) == [True, 0.3, None]
-    assert last == "-9 -9 -9"
-
-
 # ---------------------------------------------------------------------------- pipes
 
 
@@ -321,7 +260,7 @@ def test_a_fork_begins_clean_and_its_end_is_told():
 def test_faults_of_the_system_are_sentences(error, sentence):
     found = spooling.describe_system_error(FILE, error)
     assert isinstance(found, ReadError)
-    assert (str(found), found.path) == (sentence, FILE)
+    assert (str(found), found.file) == (sentence, FILE)
 
 
 def test_a_file_is_read_where_it_is(tmp_path):
@@ -351,11 +290,11 @@ def test_errors_of_a_copy_speak_of_the_pipe():
     with pytest.raises(ReadError) as caught, spooling.spool(io.BytesIO(b"1"), path) as copy:
         raise ReadError(f"'{copy}' is not good, nor is {copy.name}.", path=copy)
     assert str(caught.value) == "'/dev/stdin' is not good, nor is stdin."
-    assert caught.value.path == path
+    assert caught.value.file == path
     other = Path("elsewhere")
     with pytest.raises(ReadError) as caught, spooling.spool(io.BytesIO(b"1"), path):
         raise ReadError("Not here.", path=other)
-    assert caught.value.path == other
+    assert caught.value.file == other
 
 
 @on_linux

@@ -32,7 +32,7 @@ def refused(name, limits=QUICK, **arguments):
     text = str(caught.value)
     assert text.isprintable()
     assert text.endswith(".")
-    assert caught.value.path == FILE
+    assert caught.value.file == FILE
     return text
 
 
@@ -68,7 +68,7 @@ def test_a_sound_child_is_used_again_and_another_is_not():
     first = run("process").value[0]
     assert first != os.getpid()
     assert run("process").value[0] == first
-    assert refused("refuse", text="No.") == "No."
+    assert refused("refuse", text="No.") == "'some file': No."
     assert run("process").value[0] == first
     refused("fail", text="broken")
     assert run("process").value[0] == first
@@ -212,95 +212,6 @@ def test_numbers_keep_their_type_and_order():
 
 
 # ------------------------------------------------------------------ children that are forks
-
-FORKING = """
-import sys; sys.path.append(sys.argv[1])
-import os, signal, threading
-from pathlib import Path
-from tinsmith.io import ReadError
-from tinsmith.io.isolated import Limits, forking, run_isolated, workers
-signal.signal(signal.SIGTERM, lambda *_: os.write(2, b"handler"))
-kept = open(sys.argv[2], "w"); kept.write("once")  # not flushed yet
-forking.permit_forks()
-{before}
-
-def run(name, seconds=5.0, **arguments):
-    how = {{"path": Path("f"), "limits": Limits(seconds, 1 << 28)}}
-    return run_isolated("support.isolated_functions:" + name, arguments, **how).value
-
-def child():
-    return run("process")[0]
-
-{code}
-"""
-
-on_linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux forks safely")
-
-
-def forking_program(tmp_path, code, before=""):
-    done = subprocess.run(
-        [sys.executable, "-c", FORKING.format(code=code, before=before),
-         str(Path(__file__).parents[2]),
-         str(tmp_path / "kept")],
-        capture_output=True, text=True, check=False, timeout=600,
-    )  # fmt: skip
-    assert done.stderr == ""
-    assert (tmp_path / "kept").read_text() == "once"
-    return done.stdout.split()
-
-
-@on_linux
-def test_a_fork_starts_at_once_and_is_used_again(tmp_path):
-    code = (
-        "first = child()\n"
-        "print(first != os.getpid(), child() == first, run('answer', k=3)['k'])\n"
-        "print(type(workers._POOL._idle['support.isolated_functions']._process).__name__)\n"
-    )
-    assert forking_program(tmp_path, code) == ["True", "True", "3", "Fork"]
-
-
-@on_linux
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [("crash", "crashed"), ("leave", "crashed"), ("spin", "after 1 second"),
-     pytest.param("wait", "after 1 second", marks=pytest.mark.slow), ("hoard", "GiB of memory")],
-)  # fmt: skip
-def test_what_becomes_of_a_fork_leaves_the_program_alone(tmp_path, name, words):
-    code = (
-        f"try: run('{name}', 1.0)\n"
-        f"except ReadError as error: print({words!r} in str(error))\n"
-        "print(run('answer', k=3)['k'])\n"
-    )
-    assert forking_program(tmp_path, code) == ["True", "3"]
-
-
-@on_linux
-def test_a_fork_ends_at_a_signal_and_does_not_run_the_handlers_of_the_program(tmp_path):
-    code = (
-        "first = child()\n"
-        "os.kill(first, signal.SIGTERM)\n"
-        "try: print(child() != first)\n"
-        "except ReadError: print(child() != first)\n"
-    )
-    assert forking_program(tmp_path, code) == ["True"]
-
-
-@on_linux
-@pytest.mark.parametrize(
-    "before",
-    ["forking._permitted = False", "sys.modules['rasterio'] = sys", "forking._LARGEST_PARENT = 1"],
-)
-def test_a_fork_needs_permission_no_native_library_and_a_small_program(tmp_path, before):
-    child = "workers._POOL._idle['support.isolated_functions']._process"
-    code = f"child(); print(type({child}).__name__)"
-    assert forking_program(tmp_path, code, before) == ["Popen"]
-
-
-def test_a_library_does_not_fork():
-    from tinsmith.io.isolated.forking import can_fork
-
-    assert not can_fork()
-
 
 # ------------------------------------------------------------------ messages
 

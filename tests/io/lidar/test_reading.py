@@ -173,9 +173,7 @@ def test_every_goes_on_over_chunks(monkeypatch, tmp_path, cloud):
     monkeypatch.setattr(las_child, "_CHUNK", 64)
     wanted = {"classes": None, "returns": None, "window": None, "resolution": None, "every": 7,
               "withheld": True, "attributes": []}  # fmt: skip
-    parts = list(
-        las_child.read_points(str(tmp_path / "cloud.laz"), shown="cloud.laz", wanted=wanted)
-    )
+    parts = list(las_child.read_points(str(tmp_path / "cloud.laz"), wanted=wanted))
     assert len(parts) == 8
     found = np.concatenate([part.arrays["xyz"] for part in parts])
     assert np.array_equal(found[:, 0], np.asarray(cloud.X)[::7])

@@ -35,11 +35,11 @@ def same_mesh(tin, points, triangles):
     assert [sorted(t) for t in tin.triangles.tolist()] == [sorted(t) for t in triangles]
 
 
-def require_refusal(read, path, words):
+def require_refusal(form, path, words):
     """Require that a file is refused in one line that has such words; return the error."""
     with pytest.raises(ReadError, match=words) as caught:
-        read(path)
-    assert caught.value.path == path
+        ts.read(path, format=form)
+    assert caught.value.file == path
     assert "\n" not in str(caught.value)
     return caught.value
 
@@ -264,7 +264,7 @@ GOOD_TEXT = ply_text(CORNERS + "3 0 1 2\n3 0 2 3\n")
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "no PLY file"),
+        (" ", "no PLY file"),
         ("plywood\n", "no PLY file"),
         (GOOD_TEXT.replace("end_header", "end"), "does not end with 'end_header'"),
         (GOOD_TEXT.replace("format ascii 1.0\n", ""), "no line 'format'"),
@@ -293,7 +293,7 @@ GOOD_TEXT = ply_text(CORNERS + "3 0 1 2\n3 0 2 3\n")
 def test_damaged_text_ply(tmp_path, text, words):
     path = tmp_path / "a.ply"
     path.write_text(text)
-    require_refusal(ply.read, path, words)
+    require_refusal("ply", path, words)
 
 
 @pytest.mark.parametrize("order", ["<", ">"])
@@ -400,7 +400,7 @@ def test_obj_without_faces_is_a_survey(tmp_path):
 def test_damaged_obj(tmp_path, text, words, line):
     path = tmp_path / "a.obj"
     path.write_text(text)
-    assert require_refusal(obj.read, path, words).line == line
+    assert require_refusal("obj", path, words).line == line
 
 
 # ----------------------------------------------------------------------- foreign STL
@@ -459,7 +459,7 @@ GOOD_STL = binary_stl([SQUARE[HALVES[0]], SQUARE[HALVES[1]]])
 def test_damaged_stl(tmp_path, content, words):
     path = tmp_path / "a.stl"
     path.write_bytes(content)
-    require_refusal(stl.read, path, words)
+    require_refusal("stl", path, words)
 
 
 # ----------------------------------------------------------------------- foreign VTK
@@ -595,7 +595,7 @@ def notes_of(tmp_path, text, name="a.obj"):
 
 def test_triangles_of_a_file_that_overlap_are_told(tmp_path):
     assert notes_of(tmp_path, TWO_OVER_EACH_OTHER) == [
-        "Triangles overlap (westernmost place: near vertex 3). faces='surface' leaves out 1 of 2 "
+        "Triangles overlap (westernmost place: near vertex 3). `faces='surface'` leaves out 1 of 2 "
         "triangles (1 that overlaps others, 50 % of the area)."
     ]
 

@@ -74,7 +74,7 @@ def test_numbers_with_gaps():
     assert len(tin.points) == 5
     assert tin.area == pytest.approx(1.5e6)
     told = " ".join(tin.report.notes)
-    assert "1 quadrilateral of the file was cut" in told
+    assert "1 polygon of the file was cut" in told
     assert "1 element of the file that is a line (E2L) is left out" in told
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from support.surfaces import hills, punched
@@ -18,7 +16,7 @@ trimesh = pytest.importorskip("trimesh")
 def test_a_solid_is_closed_whatever_the_surface(seed):
     """Holes, parts, and parts that touch in one vertex."""
     tin = punched(seed)
-    solid = build_solid(tin, tin.points, 2.0, Path("a.stl"))
+    solid = build_solid(tin, tin.points, 2.0)
     mesh = trimesh.Trimesh(solid.points, solid.triangles, process=False)
     assert mesh.is_volume
     z = tin.points[:, 2]

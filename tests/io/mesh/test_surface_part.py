@@ -49,7 +49,7 @@ def test_what_makes_no_surface_is_refused_with_an_offer(
         return
     with pytest.raises(ts.ReadError, match=fault) as caught:
         ts.read(path, **how)
-    assert f"faces='surface' leaves out 1 of 3 triangles ({offer})" in str(caught.value)
+    assert f"`faces='surface'` leaves out 1 of 3 triangles ({offer})" in str(caught.value)
     tin = ts.read(path, **how, faces="surface")
     assert len(tin.triangles) == 2
     assert any(f"1 of 3 triangles ({offer})" in note for note in tin.notes)
@@ -73,7 +73,7 @@ def test_triangles_that_overlap_elsewhere_are_told_with_the_offer(tmp_path, kind
     path, how = write_faces(kind, points, [[0, 1, 2], [3, 4, 5]], tmp_path)
     tin = ts.read(path, **how)
     assert len(tin.triangles) == 2
-    assert any("faces='surface' leaves out 1 of 2 triangles" in note for note in tin.notes)
+    assert any("`faces='surface'` leaves out 1 of 2 triangles" in note for note in tin.notes)
     assert len(ts.read(path, **how, faces="surface").triangles) == 1
 
 
@@ -83,14 +83,14 @@ def test_few_triangles_that_make_no_surface_are_left_out_and_told(tmp_path, kind
     tin = ts.read(path, **how)
     assert len(tin.triangles) == 2
     assert any(" 1 of 3 triangles (1 that overlaps others" in note for note in tin.notes)
-    with pytest.raises(ts.ReadError, match="faces='surface' leaves out 1 of 3"):
+    with pytest.raises(ts.ReadError, match="`faces='surface'` leaves out 1 of 3"):
         ts.read(path, **how, faces="all")
 
 
 @pytest.mark.parametrize("kind", ["obj", "ply", "off", "2dm"])
 def test_a_triangle_that_names_a_vertex_twice_is_refused(tmp_path, kind):
     path, how = write_faces(kind, SQUARE, [[0, 1, 2], [0, 2, 2]], tmp_path)
-    with pytest.raises(ts.ReadError, match="faces='surface' leaves out 1 of 2"):
+    with pytest.raises(ts.ReadError, match="`faces='surface'` leaves out 1 of 2"):
         ts.read(path, **how)
 
 
@@ -113,7 +113,7 @@ def test_another_word_for_faces_is_refused(tmp_path):
 def test_the_top_of_a_closed_solid_is_its_surface(tmp_path):
     tin = hills(60, size=300.0, unit=None)
     path = ts.write(tin, tmp_path / "a.stl", solid=True, thickness=5)
-    with pytest.raises(ts.ReadError, match="faces='surface' leaves out"):
+    with pytest.raises(ts.ReadError, match="`faces='surface'` leaves out"):
         ts.read(path)
     top = ts.read(path, faces="surface")
     assert len(top.triangles) == len(tin.triangles)
@@ -124,7 +124,7 @@ def test_the_top_of_a_closed_solid_is_its_surface(tmp_path):
 def test_a_mesh_of_another_library_is_chosen_from_likewise():
     trimesh = pytest.importorskip("trimesh")
     box = trimesh.creation.box()
-    with pytest.raises(ts.PointsError, match="faces='surface' leaves out 10 of 12 triangles"):
+    with pytest.raises(ts.PointsError, match="`faces='surface'` leaves out 10 of 12 triangles"):
         ts.from_mesh(box)
     top = ts.from_mesh(box, faces="surface")
     assert len(top.triangles) == 2

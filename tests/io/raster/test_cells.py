@@ -31,7 +31,7 @@ def header(**given):
 def choose_cells(stride=1, **part):
     part = {"window": None, "cells": None, **part}
     choice = dem.Choice(band=None, **part, stride=stride, nodata=None, fill=False)
-    return dem._choose_cells(header(), choice, PATH)
+    return dem._choose_cells(header(), choice)
 
 
 def sentence_of(kind, function, *arguments):
@@ -120,7 +120,7 @@ def test_bounds_choose_the_cells_that_they_touch(bounds, part):
     assert cells.bounds == Bounds(*bounds)
 
 
-NAMING = "; a part in cells (column, row, width, height) is the option cells."
+NAMING = "; a part in cells (column, row, width, height) is the option `cells`."
 
 
 def refuse(**part):
@@ -136,7 +136,7 @@ def refuse(**part):
 def test_bounds_beyond_the_raster_are_refused(bounds):
     said = refuse(window=Bounds(*map(float, bounds)))
     assert said == (
-        f"Invalid window {list(map(float, bounds))}: it must be an area that meets 'ground.tif', "
+        f"Invalid window {list(map(float, bounds))}: it must be an area that meets the file, "
         f"which spans easting 100 to 114 and northing 485 to 500{NAMING}"
     )
 
@@ -177,7 +177,7 @@ def test_a_window_that_may_be_meant_as_cells_is_told():
     notes = dem._describe_window(raster, dem.Choice(window=(1, 1, 3, 4), **choice))
     assert notes == [
         "The window 1, 1, 3, 4 is in coordinates (west, south, east, north); cells by column, row, "
-        "width and height are the option cells."
+        "width and height are the option `cells`."
     ]
 
 
@@ -193,7 +193,7 @@ def test_a_part_is_a_window_or_cells():
 )  # fmt: skip
 def test_cells_must_lie_in_the_raster(cells):
     assert refuse(cells=cells) == (
-        f"Invalid cells {list(cells)}: it must be a part of 'ground.tif': the raster has 7 "
+        f"Invalid cells {list(cells)}: it must be a part of the file: the raster has 7 "
         "columns and 5 rows."
     )
 
@@ -227,19 +227,19 @@ def test_no_more_cells_are_read_than_memory_holds(monkeypatch, width, height, st
     cells = dem._Cells(0, 0, width, height, stride)
     count = -(-width // stride) * -(-height // stride)
     monkeypatch.setattr(dem, "measure_free_memory", lambda: 48 * count)
-    dem._require_few_cells(cells, PATH)
+    dem._require_few_cells(cells)
     monkeypatch.setattr(dem, "measure_free_memory", lambda: 48 * count - 1)
-    said = sentence_of(ReadError, dem._require_few_cells, cells, PATH)
+    said = sentence_of(ReadError, dem._require_few_cells, cells)
     assert said == (
-        f"'ground.tif': {count:,} cells are to be read, and {count - 1:,} are the most that 0.0 "
+        f"the file: {count:,} cells are to be read, and {count - 1:,} are the most that 0.0 "
         "GiB of memory can hold: read a part of it (window) or every n-th row and column (stride)."
     )
 
 
 def test_no_more_cells_are_read_than_a_tin_holds(monkeypatch):
     monkeypatch.setattr(dem, "measure_free_memory", lambda: 1 << 60)
-    dem._require_few_cells(dem._Cells(0, 0, 2**31 - 1, 1, 1), PATH)
-    said = sentence_of(ReadError, dem._require_few_cells, dem._Cells(0, 0, 2**31, 1, 1), PATH)
+    dem._require_few_cells(dem._Cells(0, 0, 2**31 - 1, 1, 1))
+    said = sentence_of(ReadError, dem._require_few_cells, dem._Cells(0, 0, 2**31, 1, 1))
     assert "2,147,483,648 cells are to be read, and 2,147,483,647 are the most that a TIN" in said
 
 
@@ -279,31 +279,29 @@ def test_a_strip_is_scaled_after_its_mask_and_before_nodata_of_the_caller():
 
 def test_elevations_that_scale_makes_infinite_are_counted():
     points = np.array([[1, 2, 3], [4, 5, np.inf], [6, 7, np.nan]])
-    said = sentence_of(ReadError, dem._require_finite_centres, points, 3, PATH)
+    said = sentence_of(ReadError, dem._require_finite_centres, points, 3)
     assert said == (
-        "'ground.tif': 2 cells of band 3 would have an elevation that is not finite (first at 4, "
+        "the file: 2 cells of band 3 would have an elevation that is not finite (first at 4, "
         "5): its scale or offset is wrong."
     )
-    assert "1 cell of band 1" in sentence_of(
-        ReadError, dem._require_finite_centres, points[:2], 1, PATH
-    )
-    dem._require_finite_centres(points[:1], 1, PATH)
+    assert "1 cell of band 1" in sentence_of(ReadError, dem._require_finite_centres, points[:2], 1)
+    dem._require_finite_centres(points[:1], 1)
 
 
 # ----------------------------------------------------------------- the band
 
-BANDS = "Invalid band {}: it must be one of the bands 1 to 2 of 'ground.tif'."
+BANDS = "Invalid band {}: it must be one of the bands 1 to 2 of the file."
 
 
 @pytest.mark.parametrize(
     ("given", "band", "kind", "sentence"),
     [
-        ({"count": 0}, None, ReadError, "'ground.tif' holds no band of its own."),
+        ({"count": 0}, None, ReadError, "the file holds no band of its own."),
         (
             {"count": 0, "subdatasets": [*"abcdef"]},
             None,
             ReadError,
-            "'ground.tif' holds no band of its own but several rasters (a, b, c, d, e): extract "
+            "the file holds no band of its own but several rasters (a, b, c, d, e): extract "
             "one of them first.",
         ),
         ({}, 3, OptionError, BANDS.format("3")),
@@ -313,16 +311,16 @@ BANDS = "Invalid band {}: it must be one of the bands 1 to 2 of 'ground.tif'."
             {"count": 1},
             2,
             OptionError,
-            "Invalid band 2: it must be 1, the only band of 'ground.tif'.",
+            "Invalid band 2: it must be 1, the only band of the file.",
         ),
     ],
 )
 def test_a_band_that_is_not_there_is_refused(given, band, kind, sentence):
-    assert sentence_of(kind, dem.choose_band, header(**given), band, PATH) == sentence
+    assert sentence_of(kind, dem.choose_band, header(**given), band) == sentence
 
 
 def test_the_first_band_is_the_default():
-    assert [dem.choose_band(header(), band, PATH) for band in (None, 1, 2)] == [1, 1, 2]
+    assert [dem.choose_band(header(), band) for band in (None, 1, 2)] == [1, 1, 2]
 
 
 @pytest.mark.parametrize(
@@ -344,9 +342,9 @@ def test_the_first_band_is_the_default():
 def test_what_has_no_elevations_or_no_place_is_refused(given, band, is_told, words):
     raster = header(**given)
     if words is None:
-        dem.require_elevation_band(raster, band, is_told, PATH)
+        dem.require_elevation_band(raster, band, is_told)
     else:
-        said = sentence_of(ReadError, dem.require_elevation_band, raster, band, is_told, PATH)
+        said = sentence_of(ReadError, dem.require_elevation_band, raster, band, is_told)
         assert words in said
 
 
@@ -384,6 +382,6 @@ def test_two_units_are_refused_until_one_is_declared():
     raster = header(units=["m", None])
     said = sentence_of(ReadError, dem.find_elevation_unit, raster, 1, FEET_UP, None)
     assert said == (
-        "'ground.tif' gives its elevations two units: metre (of band 1) and US survey foot (of the "
+        "the file gives its elevations two units: metre (of band 1) and US survey foot (of the "
         "vertical axis of its CRS); declare the one that is right."
     )

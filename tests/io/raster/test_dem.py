@@ -5,7 +5,6 @@ from __future__ import annotations
 import subprocess
 import sys
 import warnings
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -248,9 +247,9 @@ def test_window_that_the_raster_does_not_have(raster, window):
 def test_cells_are_no_more_than_an_int32_can_number(monkeypatch, stride):
     monkeypatch.setattr(reading, "measure_free_memory", lambda: 1 << 60)
     most = np.iinfo(np.int32).max
-    reading._require_few_cells(reading._Cells(0, 0, stride * most, 1, stride), Path("a"))
+    reading._require_few_cells(reading._Cells(0, 0, stride * most, 1, stride))
     with pytest.raises(ReadError, match=f"{most + 1:,} cells .* {most:,} are the most that a TIN"):
-        reading._require_few_cells(reading._Cells(0, 0, stride * most + 1, 1, stride), Path("a"))
+        reading._require_few_cells(reading._Cells(0, 0, stride * most + 1, 1, stride))
 
 
 @pytest.mark.parametrize("stride", [0, -2, 6, 100, 1.5, "2"])
@@ -320,7 +319,7 @@ def test_degrees_are_projected_or_refused_with_a_fitting_zone(raster):
     path = raster(heights(), transform=transform, crs="EPSG:4269")
     for crs in (None, "EPSG:4326"):
         sentence = fault(path, crs=crs)
-        assert "give crs='EPSG:32616' to reproject" in sentence
+        assert "give `crs='EPSG:32616'` to reproject" in sentence
         assert "--" not in sentence  # the command line alone speaks of flags
     survey = read(path, crs="EPSG:32616")
     source = points_by_loop(heights(), transform)
@@ -446,4 +445,4 @@ def test_raster_becomes_a_tin(raster):
 def test_cells_without_a_size_are_refused(transform):
     header = SimpleNamespace(transform=transform, bounds=(0.0, 0.0, 1.0, 1.0))
     with pytest.raises(ReadError, match="in which a cell has no size, or none that is finite"):
-        reading._require_position(header, Path("a.tif"))
+        reading._require_position(header)

@@ -130,7 +130,7 @@ def test_cells_that_have_no_surface_between_them_are_refused(tmp_path):
     elevations = np.full((6, 6), NODATA)
     elevations[::2, ::2] = 300.0
     path = write(tmp_path / "a.tif", elevations)
-    with pytest.raises(ts.ReadError, match="the option fill spans them"):
+    with pytest.raises(ts.ReadError, match="the option `fill` spans them"):
         ts.read(path)
     assert ts.triangulate(ts.read(path, fill=True)).area == 1600
 

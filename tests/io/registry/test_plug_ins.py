@@ -148,7 +148,9 @@ def test_two_claims_to_a_suffix_are_refused_where_it_is_used(install, tmp_path):
     install(Entry("a", replace(MINE, sniff=None)), Entry("b", twin, "twins", "3.0"))
     path = tmp_path / "a.mine"
     path.write_text("anything")
-    claimed = "is claimed by 2 formats: mine (ground-plus 1.2), twin (twins 3.0); the option format"
+    claimed = (
+        "is claimed by 2 formats: mine (ground-plus 1.2), twin (twins 3.0); the option `format`"
+    )
     survey = ts.Survey(points=SQUARE)
     assert claimed in fault(ts.FormatError, lambda: ts.read(path))
     assert claimed in fault(ts.FormatError, lambda: ts.write(survey, path))

@@ -172,7 +172,7 @@ def test_unknown_option_names_those_there_are(tmp_path):
     path = tmp_path / "points.csv"
     path.write_text(SURVEY)
     message = fault(FormatError, lambda: read(path, bnad=1))
-    assert "'bnad'" in message
+    assert message.startswith("Unknown option bnad to read")
     assert "columns, delimiter, decimal" in message
     with pytest.raises(FormatError) as caught:
         write(read(path), tmp_path / "b.csv", precision=3)

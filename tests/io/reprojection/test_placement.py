@@ -1,7 +1,6 @@
 """Points of a file in the CRS wanted: what is told of areas of use, whatever the format."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,7 +18,7 @@ SITE = np.array(
 
 
 def _place(points, source, target, **options):
-    return place(points, source=source, target=target, path=Path("a"), **options).notes
+    return place(points, source=source, target=target, **options).notes
 
 
 def test_points_in_the_area_of_their_crs_are_not_told():
@@ -39,7 +38,7 @@ def test_points_outside_the_area_of_either_crs_are_told():
 
 def test_points_that_would_lie_inside_exchanged_are_refused_or_told():
     told = f"3 of 3 points lie outside the area of use of {ZONE} and, with easting and northing ex"
-    with pytest.raises(ts.CrsError, match="in the other order; check_crs=False takes them"):
+    with pytest.raises(ts.CrsError, match="in the other order; `check_crs=False` takes them"):
         _place(SITE[:, [1, 0, 2]], UTM, None)
     with checking_crs(False):
         assert _place(SITE[:, [1, 0, 2]], UTM, None)[0].startswith(told)

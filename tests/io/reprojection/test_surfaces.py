@@ -138,11 +138,10 @@ def test_a_better_transformation_that_needs_a_grid_is_told(tmp_path):
         points,
         source=ts.CRS("EPSG:31467"),
         target=ts.CRS("EPSG:25832"),
-        path=tmp_path / "p.csv",
     )
     assert any("BETA2007" in note for note in placed.notes)
     inside = np.array([[752_700.0, 4_024_200.0, 250.0]])
-    assert not place(inside, source=ts.CRS(UTM), target=ts.CRS("EPSG:32617"), path=tmp_path).notes
+    assert not place(inside, source=ts.CRS(UTM), target=ts.CRS("EPSG:32617")).notes
 
 
 def test_a_datum_that_is_left_out_is_told():

@@ -83,7 +83,7 @@ def test_multiples_of_the_interval_reach_the_top():
         ({"interval": 1e-6}, "at most 100,000"),
         ({"interval": 1.0, "levels": [1]}, "None where levels are given"),
         ({"levels": []}, "number of levels 0"),
-        ({"levels": [1, math.inf]}, "Invalid level inf"),
+        ({"levels": [1, math.inf]}, "Invalid levels inf"),
         ({"levels": "all"}, "Invalid levels"),
     ],
 )

@@ -289,7 +289,7 @@ def test_lengths_in_degrees_are_metres_on_the_ellipsoid():
             "Invalid number of levels 1000000: it must be at most 100,000",
         ),
         ({"levels": []}, "a list of one or more numbers"),
-        ({"levels": [1, math.inf]}, "Invalid level inf: it must be finite."),
+        ({"levels": [1, math.inf]}, "Invalid levels inf: it must be finite."),
         ({"levels": ["a"]}, "it must be numbers"),
         ({}, "Invalid interval and levels 'neither': it must be one of the two."),
         ({"interval": 1, "levels": [1]}, "'both': it must be one of the two."),

@@ -69,7 +69,7 @@ def test_an_edge_is_usual_if_more_than_five_percent_are_as_long(n_wide, n_senten
     sentences = describe_gaps(ts.triangulate(ground(np.column_stack([x.ravel(), y.ravel()]))))
     assert len(sentences) == n_sentences
     # Of the short edges the diagonals are the 95th percentile: 1.1 times 1.415, rounded up.
-    assert all("max_edge=1.6 " in sentence for sentence in sentences)
+    assert all("`max_edge=1.6` " in sentence for sentence in sentences)
 
 
 def test_edges_of_lines_are_no_gaps():
@@ -86,7 +86,7 @@ def test_a_steep_sliver_along_the_hull_is_told():
     (sentence,) = describe_gaps(ts.triangulate(lifted))
     steepest = float(re.search(r"as steep as ([\d.]+)", sentence)[1])
     assert steepest > 89
-    assert "max_edge below" in sentence
+    assert "`max_edge` below" in sentence
 
 
 def test_build_tells_of_gaps_with_its_flags_unless_told_how_far_to_span(tmp_path):

@@ -124,7 +124,7 @@ def test_sentences_on_suspects(count, what, begin, end):
     (sentence,) = describe_suspects(suspects(-9999.0, count=count), what)
     assert sentence.startswith(begin)
     assert "far from the others (300 to 340)" in sentence
-    assert sentence.endswith(f"nodata=-9999 {end}")
+    assert sentence.endswith(f"`nodata=-9999` {end}")
     (sentence,) = describe_suspects(suspects(-9999.0))
     assert "1 point has" in sentence
 

@@ -119,7 +119,7 @@ def test_the_bay_of_an_l_is_told_with_the_edge_that_opens_it(turn):
     tin = ts.triangulate(points)
     assert tin.area == pytest.approx(8750)
     (note,) = describe_findings(tin)
-    limit = float(re.search(r"max_edge=([\d.]+) trims them\.$", note)[1])
+    limit = float(re.search(r"`max_edge=([\d.]+)` trims them\.$", note)[1])
     cut = ts.triangulate(points, max_edge=limit)
     assert cut.area == pytest.approx(7550)  # half a cell more, whose edges are as others
     assert describe_findings(cut) == ()

@@ -21,10 +21,8 @@ __all__ = [
     "Units",
     "as_columns",
     "as_name",
-    "as_notes",
     "as_units",
     "frozen_copy",
-    "join_notes",
     "named_items",
     "unit_text",
 ]
@@ -174,19 +172,3 @@ def as_name(name: Any) -> str:
     if not (isinstance(name, str) and name.isprintable()):
         raise OptionError("name", name, allowed="a printable text")
     return str(name)
-
-
-def join_notes(*groups: Iterable[str]) -> tuple[str, ...]:
-    """Return notes one group after the other, each once."""
-    return tuple(dict.fromkeys(note for group in groups for note in group))
-
-
-def as_notes(notes: Any) -> tuple[str, ...]:
-    """Return notes as a tuple of sentences."""
-    if (
-        isinstance(notes, str)
-        or not isinstance(notes, Iterable)
-        or not all(isinstance(note, str) for note in notes)
-    ):
-        raise OptionError("notes", notes, allowed="a sequence of texts")
-    return tuple(notes)

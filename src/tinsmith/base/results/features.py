@@ -10,10 +10,11 @@ import numpy as np
 from ..crs import CRS, Unit, require_one_unit, shorten_crs
 from ..errors import OptionError
 from ..methods import make_card
+from ..notes import as_notes, join_notes
 from ..ranges import require_degrees
 from ..sentences import counted
 from ..types import Bounds, Frozen
-from .columns import as_columns, as_name, as_notes, as_units, frozen_copy, join_notes
+from .columns import as_columns, as_name, as_units, frozen_copy
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -410,7 +411,8 @@ def _as_levels(kind: Any, levels: Any, count: int) -> tuple[Int64Array, ...]:
         count, least = len(offsets) - 1, 1
     if len(checked) - _LEVELS[kind] not in ((0,) if kind == "points" else (0, 1)):
         allowed = f"{_LEVELS[kind]}, and one more for features of several parts"
-        raise OptionError(f"number of offset arrays of {kind}", len(checked), allowed=allowed)
+        what = f"number of offset arrays of {kind}"
+        raise OptionError("offsets", len(checked), allowed=allowed, what=what)
     return tuple(checked)
 
 

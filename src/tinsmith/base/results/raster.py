@@ -11,18 +11,11 @@ import numpy as np
 from ..crs import CRS, shorten_crs
 from ..errors import OptionError
 from ..methods import make_card
+from ..notes import as_notes, join_notes
 from ..ranges import require_degrees
 from ..sentences import counted
 from ..types import Frozen, Grid
-from .columns import (
-    FrozenMapping,
-    as_name,
-    as_notes,
-    as_units,
-    frozen_copy,
-    join_notes,
-    named_items,
-)
+from .columns import FrozenMapping, as_name, as_units, frozen_copy, named_items
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -85,7 +78,7 @@ class Raster(Frozen):
         require_grid(self.grid)
         items = dict(named_items("bands", self.bands))
         if not items:
-            raise OptionError("number of bands", 0, allowed="1 or more")
+            raise OptionError("bands", 0, allowed="1 or more", what="number of bands")
         shape = tuple(self.grid.shape)
         bands = {name: _as_band(name, values, shape) for name, values in items.items()}
         keep(self, "bands", FrozenMapping(bands))

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 from .. import optional
 from ..errors import OptionError
 from ..methods import make_card
+from ..notes import as_notes, join_notes
 from ..sentences import counted
 from ..types import Frozen
-from .columns import as_columns, as_name, as_notes, as_units, join_notes, unit_text
+from .columns import as_columns, as_name, as_units, unit_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -61,7 +62,7 @@ class Table(Frozen):
         keep = object.__setattr__
         keep(self, "columns", as_columns(self.columns, None, "row"))
         if not self.columns:
-            raise OptionError("number of columns", 0, allowed="1 or more")
+            raise OptionError("columns", 0, allowed="1 or more", what="number of columns")
         keep(self, "units", as_units(self.units, self.columns))
         keep(self, "name", as_name(self.name))
         keep(self, "notes", as_notes(self.notes))

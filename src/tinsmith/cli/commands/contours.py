@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...base.sentences import counted, height
+from ..flags import LibraryOption
 from ..options import vector_options
 from ..parameters import file_command, number_option, numbers_option
 from ..paths import make_title
@@ -51,6 +52,8 @@ __all__ = ["contours"]
     "--label-spacing",
     "DISTANCE",
     "Distance between labels of a line, in CRS units; default a third of the extent.",
+    cls=LibraryOption,
+    sets=("spacing",),
 )
 @surface_options(vector_options)
 def contours(

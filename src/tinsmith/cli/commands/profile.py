@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...base.sentences import counted
+from ..flags import LibraryOption
 from ..output.failures import Failure
 from ..parameters import command, file_option, number_option, output_files, position_option
 from ..paths import INPUT, Named, make_title
@@ -52,6 +53,8 @@ class _Line:
 @number_option("--start", "STATION", "Station at the start of the line.", default=0.0)
 @click.option(
     "--sections",
+    cls=LibraryOption,
+    sets=("interval", "width"),
     metavar="INTERVAL WIDTH",
     nargs=2,
     type=float,

@@ -17,7 +17,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from ..flags import find_given_flag, name_flags
+from ..flags import find_flag, find_given_flag, name_flags
 from .events import has_flag, send_event, wants_events
 from .streams import Terminated, escape_unprintable, silence, tell
 
@@ -157,13 +157,15 @@ def _make_interruption(ctx: click.Context, number: int) -> Interruption:
 
 
 def _make_failure(error: Exception, owner: str) -> click.ClickException:
-    from ...base.errors import OptionError, TinsmithError
+    from ...base.errors import OptionError, TinsmithError, UnknownOptionError
     from ...base.optional import describe_missing
 
     if isinstance(error, ImportError):
         error = describe_missing(error) or error
     if isinstance(error, OptionError):
         return refuse_option(error)
+    if isinstance(error, UnknownOptionError):
+        return Failure(error.describe(find_flag))
     if isinstance(error, TinsmithError):
         return Failure(str(error))
     if isinstance(error, MemoryError):
@@ -190,9 +192,7 @@ def refuse_option(error: OptionError, **renamed: str) -> click.ClickException:
     if found is None:
         return Failure(str(error))
     context, flag = found
-    is_option = not error.option.startswith("number of ")
-    text = name_flags(str(error), **({error.option: flag} if is_option else {}))
-    return click.UsageError(text if flag in text else f"{text} ({flag})", ctx=context)
+    return click.UsageError(name_flags(error.describe(flag)), ctx=context)
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:

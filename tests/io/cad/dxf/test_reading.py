@@ -122,7 +122,7 @@ def test_faces_and_other_points_are_a_choice(drawing, save):
     assert len(ts.read(save(drawing)).triangles) == 2
     space.add_point((2, 2, 9))
     path = save(drawing)
-    refused("content='surface' or content='source'", path)
+    refused("`content='surface'` or `content='source'`", path)
     assert len(ts.read(path, content="surface").triangles) == 2
     assert ts.read(path, content="points").points.tolist() == [[4, 0, 2], [2, 2, 9]]
 
@@ -255,7 +255,7 @@ def test_units_of_the_header_are_honoured(drawing, save):
     drawing.units = 4
     path = save(drawing)
     assert ts.read(path).elevation_unit.name == "millimetre"
-    refused("unit='millimetre' or unit='metre'", path, crs=32616)
+    refused("`unit='millimetre'` or `unit='metre'`", path, crs=32616)
     tin = ts.read(path, crs=32616, unit="mm")
     assert tin.bounds.xmax == pytest.approx(0.004)
     tin = ts.read(path, crs=32616, unit="m")

@@ -251,7 +251,7 @@ def test_an_unknown_unit_and_two_units_are_refused(write):
 def test_another_unit_of_elevations_has_two_readings(write):
     units = '<Units><Imperial linearUnit="foot" elevationUnit="meter"/></Units>'
     path = write(document(surface(), units=units))
-    refused("z_unit='foot' or z_unit='metre'", path)
+    refused("`z_unit='foot'` or `z_unit='metre'`", path)
     tin = ts.read(path, z_unit="foot")
     assert (tin.elevation_unit.name, tin.points[0, 2]) == ("foot", 1)
     tin = ts.read(path, z_unit="m")
@@ -307,7 +307,7 @@ def test_lines_far_beyond_any_coordinate_are_no_edges(write):
 
 def test_units_that_the_crs_does_not_have_are_refused_until_told(write):
     path = write(document(surface(points_of(UTM)), system=SYSTEM, units=FEET))
-    refused("unit='foot' or unit='metre'", path)
+    refused("`unit='foot'` or `unit='metre'`", path)
     refused("Invalid unit 'yard'", path, error=ts.OptionError, unit="yd")
     tin = ts.read(path, unit="m")
     assert (tin.points[0].tolist(), tin.elevation_unit.name) == ([500_000, 4_000_000, 1], "metre")
@@ -316,7 +316,7 @@ def test_units_that_the_crs_does_not_have_are_refused_until_told(write):
     assert tin.elevation_unit.name == "foot"
     assert "Coordinates were converted from foot to metre" in " ".join(tin.report.notes)
     path = write(document(surface(), units=SURVEY_FEET))
-    refused("unit='US survey foot' or unit='foot'", path, crs=2222)
+    refused("`unit='US survey foot'` or `unit='foot'`", path, crs=2222)
 
 
 def test_easting_before_northing_is_found_by_the_area_of_the_crs(write):

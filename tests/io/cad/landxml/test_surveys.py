@@ -118,7 +118,7 @@ def test_point_files_are_named_and_not_followed(write, tmp_path):
 def test_source_data_with_points_of_their_own_beside_survey_points_are_a_choice(write):
     data = "<DataPoints><PntList3D>0 0 1 0 9 2 9 9 3 9 0 4</PntList3D></DataPoints>"
     path = write(only_source(data, POINTS))
-    refused("content='source' or content='points'", path)
+    refused("`content='source'` or `content='points'`", path)
     assert len(ts.read(path, content="source")) == 4
     assert len(ts.read(path, content="points")) == 3
 

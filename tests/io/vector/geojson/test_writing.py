@@ -380,7 +380,7 @@ def refused(error, words, surface, path, **options):
 
 
 def test_no_crs_says_how_to_declare_it(tmp_path):
-    words = r'declare it, for example crs="EPSG:32616".*projected=True'
+    words = r'declare it, for example `crs="EPSG:32616"`.*projected=True'
     refused(CrsError, words, hills(crs=None), tmp_path / "a.geojson")
 
 

@@ -1,0 +1,69 @@
+"""Notes of what was guessed or lost, warnings of it, and the file of which they speak."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from collections.abc import Iterable
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import TYPE_CHECKING, Any
+
+from .errors import LossWarning, OptionError, TinsmithError
+from .sentences import FILE, name_file
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+__all__ = ["as_notes", "join_notes", "naming_file", "warn"]
+
+_PACKAGE = __name__.partition(".")[0]
+
+_FILE: ContextVar[Path | None] = ContextVar("file", default=None)
+"""The file that is read or written."""
+
+
+@contextmanager
+def naming_file(file: Path) -> Iterator[None]:
+    """Let every error and warning of a reader or writer speak of its file."""
+    token = _FILE.set(file)
+    try:
+        yield
+    except TinsmithError as error:
+        error.add_file(file)
+        raise
+    finally:
+        _FILE.reset(token)
+
+
+def warn(sentence: str, category: type[Warning] = LossWarning) -> None:
+    """Warn whoever called the toolkit, with the name of the file that is read or written."""
+    file = _FILE.get()
+    if file is not None and FILE in sentence:
+        sentence = name_file(sentence, str(file))
+    warnings.warn(sentence, category, stacklevel=_find_caller())
+
+
+def _find_caller() -> int:
+    """Return the ``stacklevel`` of the first frame outside of this package, seen from `warn`."""
+    level, frame = 2, sys._getframe(2)
+    while frame.f_back and str(frame.f_globals.get("__name__")).partition(".")[0] == _PACKAGE:
+        level, frame = level + 1, frame.f_back
+    return level
+
+
+def join_notes(*groups: Iterable[str]) -> tuple[str, ...]:
+    """Return notes one group after the other, each once."""
+    return tuple(dict.fromkeys(note for group in groups for note in group))
+
+
+def as_notes(notes: Any) -> tuple[str, ...]:
+    """Return notes as a tuple of sentences."""
+    if (
+        isinstance(notes, str)
+        or not isinstance(notes, Iterable)
+        or not all(isinstance(note, str) for note in notes)
+    ):
+        raise OptionError("notes", notes, allowed="a sequence of texts")
+    return tuple(notes)
