@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...base.crs import FOOT, Unit
 from ...base.errors import ReadError
 from ...base.sentences import counted, inflect, shown
 from ...tin.screening.nodata import find_suspect_elevations
@@ -262,8 +263,10 @@ def _find_signs_of_numbers(columns: Sequence[Column]) -> Iterator[str]:
         yield "would have whole numbers in one coordinate and decimals in the other"
 
 
-def are_plausible_elevations(z: Float64Array) -> bool:
+def are_plausible_elevations(z: Float64Array, unit: Unit | None = None) -> bool:
     """Whether at least half of some elevations are such as the earth has, in metres or feet."""
+    if unit is not None and unit.metres is not None:
+        z = z * (unit.metres / FOOT.metres)
     return bool(2 * ((z >= _LOWEST) & (z <= _HIGHEST)).sum() >= len(z))
 
 

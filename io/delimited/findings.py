@@ -40,6 +40,7 @@ __all__ = [
     "find_split_thousands",
     "find_summary_rows",
     "find_unit_words",
+    "require_ground",
     "require_in_area",
     "require_one_header",
     "require_unit_of_crs",
@@ -373,13 +374,6 @@ def find_odd_elevations(points: Float64Array, *, in_degrees: bool = False) -> li
     z = points[:, 2]
     notes = describe_elevations(z)
     some = points[:: max(1, len(points) // _SOME)]
-    if not are_plausible_elevations(some[:, 2]):
-        low, high = np.percentile(some[:, 2], [5, 95], method="nearest")
-        notes.append(
-            f"Most elevations lie between {height(low)} and {height(high)}, where no ground "
-            "is: check "
-            "the columns."
-        )
     relief, extent = measure_relief_and_extent(some)
     may_be_steep = len(points) >= _FEW_POINTS and not notes and not in_degrees
     if may_be_steep and is_too_steep(relief, extent):
@@ -388,6 +382,34 @@ def find_odd_elevations(points: Float64Array, *, in_degrees: bool = False) -> li
             "columns, and that eastings and northings are no degrees."
         )
     return notes
+
+
+def require_ground(z: Float64Array, unit: Unit | None, *, is_free: bool) -> list[str]:
+    """Refuse elevations that the earth does not have, or tell of them.
+
+    Parameters
+    ----------
+    z : (n,) float64 array
+    unit : Unit or None
+        Metres or feet if it is not known.
+    is_free : bool
+        Whether they may be what they are: no CRS places them on the earth, or the caller or the
+        format says which column is the elevation.
+
+    Raises
+    ------
+    ReadError
+    """
+    if len(z) == 0 or are_plausible_elevations(z, unit):
+        return []
+    low, high = np.percentile(z, [5, 95], method="nearest")
+    sentence = f"most elevations lie between {height(low)} and {height(high)}, where no ground is"
+    if is_free:
+        return [f"{sentence[0].upper()}{sentence[1:]}: check the columns."]
+    raise ReadError(
+        f"{sentence}: say with the option `columns` what the columns are, or with the option "
+        "`z_unit` the unit of the elevations."
+    )
 
 
 def find_repeated_numbers(numbers: AnyArray | None, rows: Int64Array) -> list[str]:

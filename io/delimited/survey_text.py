@@ -33,6 +33,7 @@ from .findings import (
     find_split_thousands,
     find_summary_rows,
     find_unit_words,
+    require_ground,
     require_in_area,
     require_one_header,
     require_unit_of_crs,
@@ -159,7 +160,9 @@ def read(
     unit, told_unit = _find_unit(layout, lines, Unit.of(z_unit))
     where = _Reference(source, target, area)
     told = _settle_places(told, lines, layout, meaning, where, is_told=columns is not None)
-    notes = [*layout.notes, *notes, *told_units, *told_cut, *told_unit, *told.notes]
+    is_free = columns is not None or where.area is None  # a plan of its own may lie anywhere
+    on_ground = require_ground(told.points[:, 2], unit, is_free=is_free)
+    notes = [*layout.notes, *notes, *told_units, *told_cut, *told_unit, *on_ground, *told.notes]
     placed = place(told.points, source=source, target=target, unit=unit, looks_at_area=False)
     left_out_lines = {**layout.left_out, **told.lines}
     return Survey(

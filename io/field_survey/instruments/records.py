@@ -14,7 +14,7 @@ from ....base.errors import CrsError, OptionError, ReadError
 from ....base.sentences import FILE, counted, inflect
 from ....base.types import RowSources
 from ....tin import Survey
-from ...delimited.findings import find_odd_elevations, find_repeated_numbers
+from ...delimited.findings import find_odd_elevations, find_repeated_numbers, require_ground
 from ...reprojection.placement import place, settle_unit
 from .reduction import NOT_APPLIED
 
@@ -109,6 +109,7 @@ class Book:
                 *self.notes,
                 *self._describe_reduced(),
                 *(_describe_left_out(what, lines) for what, lines in self.left_out.items()),
+                *require_ground(points[:, 2], unit, is_free=True),
                 *find_odd_elevations(points),
                 *find_repeated_numbers(numbers, rows),
                 *placed.notes,

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tinsmith.base.crs import CRS
+from tinsmith.base.crs import CRS, Unit
+from tinsmith.base.errors import ReadError
 from tinsmith.io import CrsError
 from tinsmith.io.delimited.columns import Columns
 from tinsmith.io.delimited.findings import (
@@ -15,6 +16,7 @@ from tinsmith.io.delimited.findings import (
     describe_left_out,
     find_odd_elevations,
     find_repeated_numbers,
+    require_ground,
     require_in_area,
 )
 from tinsmith.io.delimited.table import Fault
@@ -98,9 +100,23 @@ def test_usual_elevations_are_not_odd():
 
 def test_elevations_where_no_ground_is_are_told():
     z = np.linspace(4_020_000, 4_030_000, 101)
-    assert find_odd_elevations(points_with(z)) == [
+    assert require_ground(z, None, is_free=True) == [
         "Most elevations lie between 4020500 and 4029500, where no ground is: check the columns."
     ]
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"), [(None, 1), ("m", 1), ("ft", 1 / 0.3048), ("mm", 1000)]
+)
+def test_elevations_of_the_earth_are_not_refused_in_their_unit(unit, factor):
+    z = np.linspace(-400.0, 8_800.0, 11) * factor
+    assert require_ground(z, Unit.of(unit), is_free=False) == []
+
+
+@pytest.mark.parametrize("unit", [None, "m", "ft"])
+def test_elevations_where_no_ground_is_are_refused_until_columns_or_unit_are_said(unit):
+    with pytest.raises(ReadError, match=r"no ground is: .*`columns`.*`z_unit`"):
+        require_ground(np.full(9, 320_412.0), Unit.of(unit), is_free=False)
 
 
 def test_ground_that_rises_too_fast_is_told():

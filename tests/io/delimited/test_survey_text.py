@@ -1563,6 +1563,14 @@ def test_geocentric_coordinates_are_no_eastings(survey):
     assert len(survey("P,E,N,Z\n" + rows)) == len(survey("P,X,Y,Z\n" + rows, columns="PXYZ")) == 9
 
 
+def test_elevations_that_no_ground_has_are_refused_under_a_crs(survey):
+    rows = "".join(f"{752000 + i}.5,{320 + i}.25,{4024000 + i}.75\n" for i in range(9))
+    said = str(fault(survey, "E,N,Z\n" + rows, crs="EPSG:32616", check_crs=False))
+    assert "`columns`" in said
+    turned = survey("E,N,Z\n" + rows, columns="EZN", crs="EPSG:32616")
+    assert turned.points[0].tolist() == [752000.5, 4024000.75, 320.25]
+
+
 def test_white_space_of_any_kind_may_stand_around_a_number(tmp_path):
     path = tmp_path / "a.csv"
     path.write_text("7,\x1c3,\x1f-0\n8,4\x1d,5\n")
