@@ -347,7 +347,7 @@ def require_unit_of_crs(
 
 
 def _require_units_of_a_kind(columns: Columns, path: Path, *, is_told: bool) -> list[str]:
-    """Say where the header gives eastings another unit than elevations, which no CRS then keeps."""
+    """Say where the header gives eastings another unit than elevations, or refuse it."""
     across, up = (_find_unit(columns.units.get(role)) for role in ("easting", "elevation"))
     if across is None or across == (up or METRE):
         return []
@@ -355,6 +355,12 @@ def _require_units_of_a_kind(columns: Columns, path: Path, *, is_told: bool) -> 
         raise CrsError(
             f"'{path}': the header gives the easting in {across.name} and the elevation in "
             f"{up.name}: the option crs names the CRS that the points are in, columns tells the "
+            "columns whatever the header says."
+        )
+    if not is_told and across.metres is not None and not 0.3 < across.metres <= 1.0:
+        raise CrsError(
+            f"'{path}': the header gives the easting in {across.name}, in which elevations are "
+            "not given: the option crs names the CRS that the points are in, columns tells the "
             "columns whatever the header says."
         )
     return [
