@@ -339,7 +339,7 @@ def require_unit_of_crs(columns: Columns, crs: CRS | None, *, is_told: bool) -> 
 
 
 def _require_units_of_a_kind(columns: Columns, *, is_told: bool) -> list[str]:
-    """Say where the header gives eastings another unit than elevations, which no CRS then keeps."""
+    """Say where the header gives eastings another unit than elevations, or refuse it."""
     across, up = (_find_unit(columns.units.get(role)) for role in ("easting", "elevation"))
     if across is None or across == (up or METRE):
         return []
@@ -348,6 +348,12 @@ def _require_units_of_a_kind(columns: Columns, *, is_told: bool) -> list[str]:
             f"the header gives the easting in {across.name} and the elevation in "
             f"{up.name}: the option `crs` names the CRS that the points are in, `columns` tells "
             "the columns whatever the header says."
+        )
+    if not is_told and across.metres is not None and not 0.3 < across.metres <= 1.0:
+        raise CrsError(
+            f"the header gives the easting in {across.name}, in which elevations are not given: "
+            "the option `crs` names the CRS that the points are in, `columns` tells the columns "
+            "whatever the header says."
         )
     return [
         f"The header gives the easting in {across.name}, which is not kept where no CRS is named."

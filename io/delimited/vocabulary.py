@@ -182,7 +182,7 @@ def list_languages(phrase: str) -> frozenset[str]:
     known = _make_languages()
     if phrase in known:
         return known[phrase]
-    for affix in map(simplify, _AFFIXES):
+    for affix in _simplify_affixes():
         if phrase.endswith(affix) and affix in known:
             return known[affix]
     return frozenset()
@@ -192,6 +192,11 @@ def _list_phrases(text: str) -> Iterator[str]:
     """Return the phrases of a text as names are compared: their words joined."""
     for phrase in text.split(",") if text else ():
         yield "".join(simplify(word) for word in _WORDS.findall(phrase))
+
+
+@cache
+def _simplify_affixes() -> tuple[str, ...]:
+    return tuple(map(simplify, _AFFIXES))
 
 
 def find_sense(phrase: str) -> list[Sense]:
@@ -211,7 +216,7 @@ def find_sense(phrase: str) -> list[Sense]:
         return [Sense("datum")]
     if _SYSTEMS.fullmatch(phrase):
         return [Sense("system", phrase)]
-    for affix in map(simplify, _AFFIXES):
+    for affix in _simplify_affixes():
         is_behind = phrase.endswith(affix)
         rest = phrase.removesuffix(affix) if is_behind else phrase.removeprefix(affix)
         role = _make_vocabulary().get(rest)

@@ -656,7 +656,7 @@ def examine(case: Case) -> str:
         assert "\n" not in str(found)
         return f"{case['label']}: refused"
     notes = " ".join(found.notes)
-    if case["told"] and re.search(case["told"], notes):
+    if case["label"] == "doubtful" and case["told"] and re.search(case["told"], notes):
         return f"{case['label']}: told"
     what = f"{case['what']}; the notes say {found.notes}"
     assert case["truth"], f"read, and is no list of points: {what}"

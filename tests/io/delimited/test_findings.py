@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import tinsmith as ts
 from tinsmith.base.crs import CRS, Unit
 from tinsmith.base.errors import ReadError
 from tinsmith.io import CrsError
@@ -196,3 +197,12 @@ def test_bad_rows_are_counted_and_named():
     assert describe_faults(faults[:5]).endswith("line 5: fault 4).")
     assert describe_faults(faults).startswith("6 bad rows are left out (line 1: fault 0; line 2")
     assert describe_faults(faults).endswith("line 5: fault 4; ...).")
+
+
+@pytest.mark.parametrize("unit", ["km", "mm", "km x"])
+def test_eastings_in_a_unit_of_no_elevation_are_refused_without_a_crs(tmp_path, unit):
+    path = tmp_path / "points.csv"
+    rows = "".join(f"{512350 + 7 * i}.1,{5403211 + i * i}.2,31{i}.5\n" for i in range(5))
+    path.write_text(f"E ({unit}),N ({unit}),Z\n{rows}")
+    with pytest.raises(ts.TinsmithError, match="easting in"):
+        ts.read(path)
