@@ -70,7 +70,7 @@ RFC = Reason("longitude and latitude by its definition")
 
 
 def each(names, entry):
-    return dict.fromkeys(names, entry)
+    return dict.fromkeys(sorted(names), entry)
 
 
 # ------------------------------------------------------- places that contradict the CRS named
