@@ -8,6 +8,7 @@ two files more, ``site.mtl`` with the material and ``site_texture.jpg`` or ``.pn
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from itertools import chain
 from pathlib import PurePath
 from typing import TYPE_CHECKING
@@ -63,9 +64,10 @@ def read(path: Path) -> Mesh:
     points = vertices.parse_floats(slice(1, 4), "a vertex needs x, y and z")
     crs, unit = find_reference(content)
     mesh = Mesh(points, crs=crs, elevation_unit=unit)
-    if len(faces):
-        mesh.corners, mesh.offsets = _parse_faces(vertices, faces)
-    return mesh
+    if not len(faces):
+        return mesh
+    corners, offsets = _parse_faces(vertices, faces)
+    return replace(mesh, corners=corners, offsets=offsets)
 
 
 def _parse_faces(vertices: TextRows, faces: TextRows) -> tuple[Int64Array, Int64Array]:
