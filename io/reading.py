@@ -23,10 +23,10 @@ from ..base.sentences import counted, inflect, printable
 from ..tin import TIN, Survey
 from .door import naming_file
 from .isolated.archives import unpack
-from .isolated.local_files import require_local
 from .isolated.spooling import (
     describe_system_error,
     open_ordinary_file,
+    require_local,
     spool,
     translate_system_errors,
 )

@@ -1,7 +1,8 @@
-"""How long a native reader may take, and how much memory, for a file of a size."""
+"""How long a native reader may take, how much memory, and how much of it there is."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import NamedTuple
 
 __all__ = [
@@ -13,6 +14,7 @@ __all__ = [
     "WAITING_FACTOR",
     "Limits",
     "choose_limits",
+    "measure_free_memory",
 ]
 
 LEAST_SECONDS = 5.0
@@ -62,3 +64,24 @@ def choose_limits(n_bytes: int) -> Limits:
     return Limits(
         LEAST_SECONDS + n_bytes / BYTES_PER_SECOND, LEAST_MEMORY + MEMORY_PER_BYTE * n_bytes
     )
+
+
+_NOT_TOLD = 48 * (2**31 - 1)
+"""Bytes taken to be there where the system does not tell: those of the largest raster that is read.
+"""
+
+
+def measure_free_memory() -> int:
+    """Return the bytes of memory that are available, where the system tells.
+
+    Examples
+    --------
+    >>> measure_free_memory() > 0
+    True
+    """
+    try:
+        with Path("/proc/meminfo").open(encoding="ascii") as file:
+            found = next(line for line in file if line.startswith("MemAvailable:"))
+        return int(found.split()[1]) * 1024
+    except (OSError, StopIteration, ValueError, IndexError):
+        return _NOT_TOLD

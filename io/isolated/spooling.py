@@ -1,7 +1,8 @@
-"""Pipes as files: what can be read only once is copied to a temporary file first."""
+"""Files of this machine; pipes as files: what can be read once is copied to a temporary file."""
 
 from __future__ import annotations
 
+import re
 import shutil
 import stat
 from contextlib import contextmanager
@@ -12,6 +13,7 @@ from ...base.atomic import scratch_folder
 from ...base.errors import ReadError, TinsmithError
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Iterator
 
 __all__ = [
@@ -19,6 +21,7 @@ __all__ = [
     "is_pipe",
     "open_ordinary_file",
     "rename_in_error",
+    "require_local",
     "require_readable",
     "spool",
     "translate_system_errors",
@@ -134,3 +137,26 @@ def rename_in_error(error: TinsmithError, copy: Path, path: Path) -> None:
         error.args = (text, *error.args[1:])
     if error.file == copy:
         error.file = path
+
+
+_ELSEWHERE = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:/|/vsi[a-z0-9_]+/|\\vsi")
+"""A scheme of two letters or more (one is a drive), or a virtual file system of GDAL."""
+
+
+def require_local(path: str | os.PathLike[str]) -> None:
+    """Refuse an address in the network, or in a virtual file system of GDAL.
+
+    Raises
+    ------
+    ReadError
+
+    Examples
+    --------
+    >>> require_local("survey.csv")
+    """
+    if _ELSEWHERE.match(str(path)):
+        raise ReadError(
+            f"'{path}' is an address, and only files of this machine are read: download it first, "
+            "or let the option `remote` do so where points or a TIN are read.",
+            path=Path(path),
+        )

@@ -13,7 +13,7 @@ from ...base.errors import CrsError, OptionError, ReadError
 from ...base.sentences import coordinate, counted, inflect
 from ...tin import Bounds, Survey
 from ..isolated import choose_limits, start_early, stream_isolated
-from ..isolated.free_memory import measure_free_memory
+from ..isolated.limits import measure_free_memory
 from ..reprojection.placement import Placed, place, settle_unit
 from .crs import Reference, find_reference
 from .header import Header, parse_header

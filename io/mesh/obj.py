@@ -64,10 +64,10 @@ def read(path: Path) -> Mesh:
     points = vertices.parse_floats(slice(1, 4), "a vertex needs x, y and z")
     crs, unit = find_reference(content)
     mesh = Mesh(points, crs=crs, elevation_unit=unit)
-    if len(faces):
-        corners, offsets = _parse_faces(vertices, faces)
-        return replace(mesh, corners=corners, offsets=offsets)
-    return mesh
+    if not len(faces):
+        return mesh
+    corners, offsets = _parse_faces(vertices, faces)
+    return replace(mesh, corners=corners, offsets=offsets)
 
 
 def _parse_faces(vertices: TextRows, faces: TextRows) -> tuple[Int64Array, Int64Array]:

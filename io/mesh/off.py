@@ -60,10 +60,10 @@ def read(path: Path) -> Mesh:
     points = vertices.parse_floats(slice(0, 3), "a vertex needs x, y and z")
     crs, unit = find_reference(content)
     mesh = Mesh(points, crs=crs, elevation_unit=unit)
-    if counts.faces:
-        corners, offsets = _parse_faces(polygons.cut(0, counts.faces))
-        return replace(mesh, corners=corners, offsets=offsets)
-    return mesh
+    if not counts.faces:
+        return mesh
+    corners, offsets = _parse_faces(polygons.cut(0, counts.faces))
+    return replace(mesh, corners=corners, offsets=offsets)
 
 
 def _skip_keyword(rows: TextRows) -> TextRows:

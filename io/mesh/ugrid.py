@@ -8,7 +8,6 @@ line.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -36,7 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from ...base.arrays import Float64Array, Int64Array
+    from ...base.arrays import AnyArray, Float64Array
     from ...base.crs import CrsLike, UnitLike
     from ...base.policies import FacePolicy
     from ...base.progress import Tell
@@ -92,10 +91,13 @@ def read(
     reference = _choose_reference(crs, z_unit, value)
     notes += describe_single_precision(points, value["dtype"])
     notes += _require_units(value["xy_units"], reference.crs)
-    mesh = Mesh(points, arrays["corners"], arrays["offsets"], notes=notes)
-    if "edges" in arrays:
-        edges, types = arrays["edges"], arrays["types"]
-        mesh = replace(mesh, add_lines=lambda tin: _add_edge_types(tin, edges, types))
+    mesh = Mesh(
+        points,
+        arrays["corners"],
+        arrays["offsets"],
+        notes=notes,
+        add_lines=lambda tin: _add_edge_types(tin, arrays),
+    )
     return build_mesh(mesh, path, reference=reference, faces=faces)
 
 
@@ -165,8 +167,11 @@ def _is_unit(text: str) -> bool:
         return False
 
 
-def _add_edge_types(tin: TIN, edges: Int64Array, types: Int64Array) -> TIN:
+def _add_edge_types(tin: TIN, arrays: Mapping[str, AnyArray]) -> TIN:
     """Return the TIN with the lines and constrained edges of the file."""
+    if "edges" not in arrays:
+        return tin
+    edges, types = arrays["edges"], arrays["types"]
     chains = [
         Chain(chain, kind)
         for number, kind in _LINE_TYPES.items()

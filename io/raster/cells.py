@@ -11,8 +11,7 @@ from ... import terrain
 from ...base.crs import CRS
 from ...terrain.gridding.grids import Cells, to_grid
 from ..door import names_its_file
-from ..isolated.local_files import require_local
-from ..isolated.spooling import open_ordinary_file, require_readable
+from ..isolated.spooling import open_ordinary_file, require_local, require_readable
 from .dem import read_georeference
 
 if TYPE_CHECKING:

@@ -15,8 +15,7 @@ from ...base.sentences import FILE
 from ...terrain.gridding.grids import as_parts, to_grid
 from ...tin.screening.nodata import parse_nodata
 from ..door import names_its_file
-from ..isolated.local_files import require_local
-from ..isolated.spooling import is_pipe, require_readable
+from ..isolated.spooling import is_pipe, require_local, require_readable
 from ..reprojection.placement import place
 from .dem import (
     Header,

@@ -16,7 +16,7 @@ from ...base.notes import warn
 from ...base.sentences import FILE
 from ...terrain.viewer.ortho import Ortho
 from ..isolated import Limits, choose_limits, run_isolated
-from ..isolated.local_files import require_local
+from ..isolated.spooling import require_local
 from ..reprojection.transformation import reproject
 
 if TYPE_CHECKING:

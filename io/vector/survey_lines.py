@@ -10,18 +10,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base import optional
 from ...base.atomic import as_path
 from ...base.checks import require_type
 from ...base.errors import OptionError, ReadError
 from ...base.notes import naming_file
-from ...base.sentences import coordinate
+from ...base.sentences import coordinate, counted, inflect
 from ...tin import Bounds, Breakline, Survey, Water
-from .nesting import note_nesting
 from .reading import read_lines, read_polygons, read_water
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Iterable, Sequence
+    from pathlib import Path
 
     from ...base.arrays import Float64Array
     from ...base.crs import UnitLike
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
     Source = str | os.PathLike[str]
 
-__all__ = ["split_layer", "with_lines"]
+__all__ = ["note_nesting", "split_layer", "with_lines"]
 
 _FAR = 10.0
 """Lines further from the points than this many diagonals of their extent are somewhere else."""
@@ -171,3 +172,59 @@ def _format_extent(box: Bounds) -> str:
         f"x {coordinate(box.xmin)} to {coordinate(box.xmax)}, y {coordinate(box.ymin)} "
         f"to {coordinate(box.ymax)}"
     )
+
+
+def note_nesting(polygons: Sequence[Sequence[Float64Array]], path: Path) -> list[str]:
+    """Tell of polygons that lie within others, where they cut the surface away.
+
+    Parameters
+    ----------
+    polygons : sequence of sequences of (k, 2) or (k, 3) arrays
+        Of each the outer ring and its islands.
+    path : Path
+        For sentences.
+
+    Raises
+    ------
+    ReadError
+        If two overlap or are equal: whether the surface lies there is anybody's guess.
+    """
+    shapely = optional.load("shapely")
+    if len(polygons) < 2:
+        return []
+    shapes = shapely.make_valid(np.array([_shape(rings) for rings in polygons], object))
+    one, other = shapely.STRtree(shapes).query(shapes, predicate="intersects")
+    one, other = one[one < other], other[one < other]
+    shared = shapely.area(shapely.intersection(shapes[one], shapes[other]))
+    is_within = shapely.covers(shapes[one], shapes[other]) | shapely.covers(
+        shapes[other], shapes[one]
+    )
+    smaller = np.minimum(shapely.area(shapes[one]), shapely.area(shapes[other]))
+    is_equal = shapely.equals(shapes[one], shapes[other])
+    wrong = ((shared > _ROUNDING * smaller) & ~is_within) | is_equal
+    if wrong.any():
+        a, b = int(one[np.argmax(wrong)]), int(other[np.argmax(wrong)])
+        count = int(wrong.sum())
+        pairs = inflect(f"{counted(count, 'pair')} of boundary polygons [overlaps|overlap]", count)
+        raise ReadError(
+            f"{pairs} (first: number {a} and {b}, counted from 0): unite "
+            "them, or cut one along the other."
+        )
+    return _describe_nesting(int(is_within.sum()), path)
+
+
+_ROUNDING = 1e-9
+"""Neighbours whose common border was rounded share slivers, of this part of their area at most."""
+
+
+def _describe_nesting(count: int, path: Path) -> list[str]:
+    if count == 0:
+        return []
+    what = inflect(f"{counted(count, 'polygon')} [lies|lie]", count)
+    return [f"'{path.name}': {what} within another of the boundary: the surface is cut out there."]
+
+
+def _shape(rings: Sequence[Float64Array]) -> Any:
+    shapely = optional.load("shapely")
+    outer, *islands = [ring[:, :2] for ring in rings]
+    return shapely.Polygon(outer, islands)

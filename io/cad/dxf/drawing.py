@@ -13,8 +13,7 @@ from ....base.sentences import FILE, counted
 from ...isolated import Limits, choose_limits, run_isolated
 from ...isolated.spooling import translate_system_errors
 from ..reference import Stated
-from .names import CRS_PROPERTY, ELEVATION_PROPERTY, UNKNOWN
-from .units import UNIT_OF_CODE
+from .names import CRS_PROPERTY, ELEVATION_PROPERTY, UNIT_OF_CODE, UNKNOWN
 
 if TYPE_CHECKING:
     from pathlib import Path

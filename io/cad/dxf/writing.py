@@ -26,8 +26,7 @@ from ...registry.losses import tell_unknown_elevations
 from ..lengths import choose_length_unit
 from .content import add_features, add_survey, add_tin, select_texts
 from .entities import EntityWriter
-from .names import APPLICATION, CRS_PROPERTY, ELEVATION_PROPERTY, LAYERS, UNKNOWN
-from .units import find_code
+from .names import APPLICATION, CRS_PROPERTY, ELEVATION_PROPERTY, LAYERS, UNKNOWN, find_code
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -11,7 +11,36 @@ import numpy as np
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array, Int64Array
 
-__all__ = ["Content", "Line", "Points", "Surface"]
+__all__ = [
+    "ELEVATION_UNIT",
+    "FEATURE",
+    "KIND",
+    "LINE",
+    "PRIORITY",
+    "SOURCE",
+    "UNKNOWN",
+    "Content",
+    "Line",
+    "Points",
+    "Surface",
+]
+
+FEATURE = "tinsmith"
+"""Name of such a feature."""
+
+ELEVATION_UNIT = "elevationUnit"
+"""Of the CRS: ``UNKNOWN`` if the unit of elevations is not known."""
+
+UNKNOWN = "unknown"
+KIND = "kind"
+"""Of a line: what it is, where that is no hard breakline."""
+
+PRIORITY = "priority"
+LINE = "line"
+"""Of a line: which line of its TIN it is."""
+
+SOURCE = "source"
+"""Of a line: the line that it comes from, counted as in a TIN."""
 
 
 @dataclass(slots=True, eq=False)

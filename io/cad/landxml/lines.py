@@ -10,7 +10,7 @@ import numpy as np
 from ....tin import Breakline
 from ....tin.constraints.constraint_set import as_sequence
 from ....tin.constraints.polygons import gather_rings_of_regions
-from .properties import FEATURE, KIND, LINE, PRIORITY, SOURCE
+from .content import FEATURE, KIND, LINE, PRIORITY, SOURCE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

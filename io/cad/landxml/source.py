@@ -16,8 +16,8 @@ from ....tin import Breakline, Survey, Water
 from ....tin.constraints.breaklines import as_ring
 from ....tin.screening.nodata import describe_elevations
 from ..placing import Placing, place_rows
+from .content import KIND, PRIORITY
 from .numbers import fault
-from .properties import KIND, PRIORITY
 from .surface import (
     NO_ELEVATIONS,
     describe_point_files,

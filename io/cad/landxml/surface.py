@@ -10,7 +10,7 @@ from ....base.errors import ReadError
 from ....base.policies import LineKind
 from ....base.sentences import counted
 from ..surfaces import EdgeLine, Mesh
-from .properties import KIND, LINE, SOURCE
+from .content import KIND, LINE, SOURCE
 
 if TYPE_CHECKING:
     from ....base.arrays import BoolArray, Float64Array, Int64Array

@@ -10,7 +10,7 @@ from ....base.crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit
 from ....base.errors import CrsError, ReadError
 from ....base.sentences import FILE, shown
 from ..reference import Stated
-from .properties import ELEVATION_UNIT, UNKNOWN
+from .content import ELEVATION_UNIT, UNKNOWN
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

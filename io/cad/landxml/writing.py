@@ -20,8 +20,8 @@ from ....base.sentences import FILE
 from ....tin import TIN, Surface, Survey
 from ...registry.losses import select_attributes, tell_unknown_elevations
 from ..lengths import choose_length_unit
+from .content import ELEVATION_UNIT, FEATURE, UNKNOWN
 from .lines import quote, write_features, write_source_of_survey, write_source_of_tin
-from .properties import ELEVATION_UNIT, FEATURE, UNKNOWN
 from .units import name_unit
 
 if TYPE_CHECKING:

@@ -14,13 +14,13 @@ from ....base.atomic import folder_beside, replacing_path
 from ....base.errors import WriteError
 from ....base.sentences import FILE
 from .digests import digest_lines
-from .journals import require_closed
 from .schema import LAYERS, NO_CLOCK, RECORD
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+    from pathlib import Path
 
-__all__ = ["MARK", "Placing", "adding_layers"]
+__all__ = ["MARK", "Placing", "adding_layers", "require_closed"]
 
 MARK = "written by"
 """Item of a layer's metadata whose value is ``tinsmith``."""
@@ -518,3 +518,24 @@ def _list_columns(file: sqlite3.Connection, schema: str, table: str) -> list[str
 def _quote(name: str) -> str:
     """Return a name of SQL."""
     return '"' + name.replace('"', '""') + '"'
+
+
+_ENDS = ("-wal", "-journal")
+"""SQLite would play what is in these into any file of that name."""
+
+
+def require_closed(path: Path) -> None:
+    """Refuse to write a GeoPackage that another program works on.
+
+    Raises
+    ------
+    WriteError
+        If it does.
+    """
+    for end in _ENDS:
+        journal = path.with_name(path.name + end)
+        if journal.exists():
+            raise WriteError(
+                f"Cannot write {FILE}: it is open in another program, as '{journal.name}' beside "
+                "it shows; close it there first."
+            )

@@ -85,9 +85,8 @@ def read(path: Path) -> Mesh:
     found = find_faces(tables)
     if found is None:
         return replace(mesh, notes=[*notes, *_describe_skipped(header)])
-    corners, offsets = found
-    constrained = _find_edge_flags(tables.get("face"))
-    mesh = replace(mesh, corners=corners, offsets=offsets, constrained=constrained)
+    flags = _find_edge_flags(tables.get("face"))
+    mesh = replace(mesh, corners=found.items, offsets=found.offsets, constrained=flags)
     if header.lines is None or "edge" not in tables:
         return mesh
     edges = require_edges(tables["edge"], len(points))

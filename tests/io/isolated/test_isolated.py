@@ -15,7 +15,14 @@ import numpy as np
 import pytest
 
 from tinsmith.io import ReadError
-from tinsmith.io.isolated import Limits, choose_limits, run_isolated, stream_isolated
+from tinsmith.io.isolated import (
+    Limits,
+    choose_limits,
+    run_isolated,
+    start_early,
+    stream_isolated,
+    workers,
+)
 from tinsmith.io.isolated.answers import Answer, BrokenMessageError, receive, send
 
 FILE = Path("some file")
@@ -74,6 +81,15 @@ def test_a_sound_child_is_used_again_and_another_is_not():
     assert run("process").value[0] == first
     refused("crash")
     assert run("process").value[0] != first
+
+
+def test_a_child_that_was_started_early_takes_the_request():
+    module = "support.isolated_functions"
+    workers._POOL.end()
+    start_early(module)
+    start_early(module)  # one is enough
+    process = workers._POOL._idle[module]._process
+    assert run("process").value[0] == process.pid
 
 
 def test_errors_are_sentences_without_control_letters():

@@ -9,7 +9,7 @@ import pytest
 
 from tinsmith import OptionError, ReadError
 from tinsmith.base.crs import CRS, FOOT, METRE, US_SURVEY_FOOT
-from tinsmith.io.isolated import Limits, free_memory
+from tinsmith.io.isolated import Limits, limits
 from tinsmith.io.raster import dem
 from tinsmith.tin import Bounds
 
@@ -252,10 +252,10 @@ def test_free_memory_is_what_the_system_tells(monkeypatch, tmp_path):
     }
     for text, expected in files.items():
         (tmp_path / "meminfo").write_text(text)
-        monkeypatch.setattr(free_memory, "Path", lambda _: tmp_path / "meminfo")
-        assert free_memory.measure_free_memory() == expected
-    monkeypatch.setattr(free_memory, "Path", lambda _: tmp_path / "nowhere")
-    assert free_memory.measure_free_memory() == 48 * (2**31 - 1)
+        monkeypatch.setattr(limits, "Path", lambda _: tmp_path / "meminfo")
+        assert limits.measure_free_memory() == expected
+    monkeypatch.setattr(limits, "Path", lambda _: tmp_path / "nowhere")
+    assert limits.measure_free_memory() == 48 * (2**31 - 1)
 
 
 # ------------------------------------------------------------------- points
