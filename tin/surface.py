@@ -79,6 +79,7 @@ class Surface:
     _elevation_unit: Unit | None
     _row_attributes: Mapping[str, AnyArray]
     _source: str
+    _name: str
 
     @property
     def _current(self) -> Version:
@@ -127,6 +128,11 @@ class Surface:
     def source(self) -> str:
         """Name of the file that it was read from, else of that of its points; empty if of none."""
         return self._source or self._current.report.source
+
+    @property
+    def name(self) -> str:
+        """Name that the file gives it, as LandXML does; empty if none."""
+        return self._name
 
     @property
     def edits(self) -> tuple[Edit, ...]:
@@ -293,7 +299,8 @@ class Surface:
         >>> tin.transform(lambda points: points + [10.0, 20.0, 0.0]).bounds.xmin
         10.0
         """
-        return self._keep()._transform(function, crs, z_unit, length)
+        moved = self._keep()._transform(function, crs, z_unit, length)
+        return moved.with_source(self._source).with_name(self._name)
 
     # ---------------------------------------------------------------- measures
 
@@ -929,7 +936,7 @@ class TIN(Editable, Surface):
     (12.0, 4.0)
     """
 
-    __slots__ = ("__weakref__", "_crs", "_elevation_unit", "_row_attributes", "_source")
+    __slots__ = ("__weakref__", "_crs", "_elevation_unit", "_name", "_row_attributes", "_source")
 
     # ``dataclasses.replace(tin, crs=...)`` makes a TIN that differs in some arguments.
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]] = vars(
@@ -969,6 +976,7 @@ class TIN(Editable, Surface):
         self._elevation_unit = unit
         self._row_attributes = as_row_attributes(row_attributes or {}, len(vertex_of))
         self._source = ""
+        self._name = ""
 
     @classmethod
     def from_triangles(
@@ -1049,6 +1057,19 @@ class TIN(Editable, Surface):
         other._source = str(source)
         return other
 
+    def with_name(self, name: str) -> TIN:
+        """Return a copy of another name, which LandXML files keep.
+
+        Examples
+        --------
+        >>> tin = TIN.from_triangles([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
+        >>> tin.with_name("Existing ground").name
+        'Existing ground'
+        """
+        other = self.copy()
+        other._name = str(name)
+        return other
+
     def with_notes(self, notes: Sequence[str]) -> TIN:
         """Return the TIN with further notes in its report, in front; edits can be taken back.
 
@@ -1096,7 +1117,7 @@ class TIN(Editable, Surface):
         given = {name: getattr(version.triangulation, name) for name in _ARGUMENTS[:4]}
         given |= {name: getattr(version, name) for name in _ARGUMENTS[4:7]}
         made = type(self)(**(given | self._reference | changes))
-        made._source = self._source
+        made._source, made._name = self._source, self._name
         return made
 
     def _transform(
@@ -1152,11 +1173,11 @@ class TIN(Editable, Surface):
         super().__setattr__(name, value)
 
     def __getstate__(self) -> dict[str, Any]:
-        own = ("_crs", "_elevation_unit", "_row_attributes", "_source")
+        own = ("_crs", "_elevation_unit", "_name", "_row_attributes", "_source")
         return super().__getstate__() | {name: getattr(self, name) for name in own}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        super().__setstate__({"_row_attributes": {}, "_source": ""} | state)
+        super().__setstate__({"_row_attributes": {}, "_source": "", "_name": ""} | state)
 
     @property
     def _reference(self) -> dict[str, Any]:
@@ -1200,7 +1221,9 @@ class Snapshot(Surface):
     <Snapshot: 3 vertices, 1 triangle, z 1 to 3, crs unknown>
     """
 
-    __slots__ = ("__weakref__", "_crs", "_elevation_unit", "_row_attributes", "_source", "_tin")
+    __slots__ = (
+        *("__weakref__", "_crs", "_elevation_unit", "_name", "_row_attributes", "_source", "_tin"),
+    )
 
     def __init__(self, tin: TIN) -> None:
         self._tin = tin
@@ -1208,6 +1231,7 @@ class Snapshot(Surface):
         self._elevation_unit = tin._elevation_unit
         self._row_attributes = tin._row_attributes
         self._source = tin._source
+        self._name = tin._name
 
     @property
     def _current(self) -> Version:

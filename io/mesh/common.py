@@ -196,7 +196,7 @@ def _find_unit(text: str | None) -> Unit | None:
         raise ReadError(f"'{text}' is no unit of elevations.") from None
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Mesh:
     """What a file holds: vertices, polygons, and what it says of them."""
 

@@ -8,6 +8,7 @@ two files more, ``site.mtl`` with the material and ``site_texture.jpg`` or ``.pn
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from itertools import chain
 from pathlib import PurePath
 from typing import TYPE_CHECKING
@@ -64,7 +65,8 @@ def read(path: Path) -> Mesh:
     crs, unit = find_reference(content)
     mesh = Mesh(points, crs=crs, elevation_unit=unit)
     if len(faces):
-        mesh.corners, mesh.offsets = _parse_faces(vertices, faces)
+        corners, offsets = _parse_faces(vertices, faces)
+        return replace(mesh, corners=corners, offsets=offsets)
     return mesh
 
 

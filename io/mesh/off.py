@@ -7,6 +7,7 @@ Comments keep the CRS, ``# crs: EPSG:32616``, and the unit of elevations where i
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -60,7 +61,8 @@ def read(path: Path) -> Mesh:
     crs, unit = find_reference(content)
     mesh = Mesh(points, crs=crs, elevation_unit=unit)
     if counts.faces:
-        mesh.corners, mesh.offsets = _parse_faces(polygons.cut(0, counts.faces))
+        corners, offsets = _parse_faces(polygons.cut(0, counts.faces))
+        return replace(mesh, corners=corners, offsets=offsets)
     return mesh
 
 

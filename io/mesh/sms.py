@@ -62,16 +62,17 @@ def read(path: Path) -> Mesh:
         raise ReadError(f"{FILE} is no 2DM mesh: it must begin with 'MESH2D'.")
     cards = rows.sort_by_keyword()
     numbers, points = _parse_nodes(cards.get("ND", TextRows()))
-    mesh = Mesh(points)
     found = [_parse_elements(card, cards[card], numbers) for card in _FACES if card in cards]
     if not found:
-        return mesh
-    mesh.corners = np.concatenate([corners for corners, _ in found])
-    mesh.offsets = find_offsets(np.concatenate([lengths for _, lengths in found]))
-    mesh.notes = _describe_losses(cards)
+        return Mesh(points)
     strings = _parse_strings(cards.get("NS", TextRows()), numbers)
-    mesh.add_lines = lambda tin: add_lines(tin, strings, "segment")
-    return mesh
+    return Mesh(
+        points,
+        np.concatenate([corners for corners, _ in found]),
+        find_offsets(np.concatenate([lengths for _, lengths in found])),
+        notes=_describe_losses(cards),
+        add_lines=lambda tin: add_lines(tin, strings, "segment"),
+    )
 
 
 def _parse_nodes(rows: TextRows) -> tuple[Int64Array, Float64Array]:

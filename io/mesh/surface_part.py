@@ -133,12 +133,18 @@ def make_surface(
             raise error from None
         is_few = faces == "most" and part.is_nearly_all and not _repeat_corners(triangles)
         return _leave_out(make, part, error, is_few=is_few, rounding=rounding)
+    return tin, _describe_overlap(tin)
+
+
+def _describe_overlap(tin: TIN) -> list[str]:
+    """Tell whether triangles overlap without a common edge, and what "surface" would leave out."""
     overlap = find_overlap(tin)
     if not overlap.is_found:
-        return tin, [overlap.sentence] * bool(overlap.sentence)
-    part = _find_part(points, triangles)
-    offer = f" `faces='surface'` leaves out {part.describe()}." if part.n_left_out else ""
-    return tin, [f"{overlap.sentence}{offer}"]
+        return [overlap.sentence] * bool(overlap.sentence)
+    part = _find_part(tin.points, tin.triangles)
+    if part.n_left_out:
+        return [f"{overlap.sentence} `faces='surface'` leaves out {part.describe()}."]
+    return [overlap.sentence.replace("overlap", "overlap or touch", 1)]
 
 
 def _repeat_corners(triangles: AnyArray) -> bool:
@@ -159,11 +165,13 @@ def _leave_out(
     thin = part.keep_thick(_ROUNDINGS * rounding)
     if rounding > 0 and thin.n_left_out and thin.kept.any():
         with suppress(PointsError):
-            return make(thin.kept), thin.describe_left_out(_ROUNDED)
+            tin = make(thin.kept)
+            return tin, [*thin.describe_left_out(_ROUNDED), *_describe_overlap(tin)]
     if not part.n_left_out or not part.kept.any():
         raise error
     if is_few:
-        return make(part.kept), part.describe_left_out(" to make a surface")
+        tin = make(part.kept)
+        return tin, [*part.describe_left_out(" to make a surface"), *_describe_overlap(tin)]
     offer = f"To read the others, `faces='surface'` leaves out {part.describe()}."
     raise PointsError(f"{error} {offer}", rows=error.rows) from error
 

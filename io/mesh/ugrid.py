@@ -8,6 +8,7 @@ line.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -93,7 +94,8 @@ def read(
     notes += _require_units(value["xy_units"], reference.crs)
     mesh = Mesh(points, arrays["corners"], arrays["offsets"], notes=notes)
     if "edges" in arrays:
-        mesh.add_lines = lambda tin: _add_edge_types(tin, arrays["edges"], arrays["types"])
+        edges, types = arrays["edges"], arrays["types"]
+        mesh = replace(mesh, add_lines=lambda tin: _add_edge_types(tin, edges, types))
     return build_mesh(mesh, path, reference=reference, faces=faces)
 
 

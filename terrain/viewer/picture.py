@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import secrets
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -69,7 +70,9 @@ def _write(path: Path, picture: Image, dpi: float | None) -> None:
         picture.save(temporary, quality=_JPEG_QUALITY, **resolution)
         temporary.replace(path)
     except OSError as error:
-        raise RenderError(f"Cannot write '{path}': {error.strerror or error}.") from error
+        is_full = error.errno == errno.ENOSPC
+        reason = "no space is left on the disk" if is_full else error.strerror or error
+        raise RenderError(f"Cannot write '{path}': {reason}.") from error
     finally:
         temporary.unlink(missing_ok=True)
 

@@ -6,6 +6,7 @@ import contextlib
 import io
 import json
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -268,3 +269,14 @@ def test_the_bar_speaks_on_stderr_and_vanishes():
     assert bar.live.transient
     words = bar.columns[1]
     assert not words.markup
+
+
+@pytest.mark.parametrize("arguments", [["formats"], ["formats", "--json"], ["completion", "bash"]])
+@pytest.mark.parametrize(("to", "why"), [(">&-", "it is closed"), (">/dev/full", "No space left")])
+def test_commands_that_only_print_tell_that_they_cannot(arguments, to, why):
+    command = shlex.join([sys.executable, "-m", "tinsmith", *arguments])
+    done = subprocess.run(
+        ["sh", "-c", f"{command} {to}"], capture_output=True, text=True, check=False, timeout=120
+    )
+    assert done.returncode == 1
+    assert done.stderr.startswith(f"Error: Cannot write to standard output: {why}")

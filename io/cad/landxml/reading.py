@@ -108,12 +108,13 @@ def _read_tin(
     mesh = merge_equal_points(
         mesh._replace(points=points, notes=[*notes, *measures.notes, *mesh.notes])
     )
-    return make_tin_with_lines(
+    tin = make_tin_with_lines(
         mesh,
         select_edge_lines(chosen, measures),
         reference=Reference(measures.source, measures.elevation_unit),
         faces=faces,
     )
+    return tin.with_name(chosen.name)
 
 
 # ------------------------------------------------------------------ what is read

@@ -59,7 +59,7 @@ def write(
     obj: TIN | Survey | Features,
     path: Path,
     *,
-    surface: str = "surface",
+    surface: str | None = None,
     unit: UnitLike | None = None,
     progress: Tell | None = None,
 ) -> None:
@@ -70,8 +70,8 @@ def write(
 
     Parameters
     ----------
-    surface : str
-        Name of the surface.
+    surface : str, optional
+        Name of the surface; default that of the TIN, else "surface".
     unit : Unit or str, optional
         Unit of coordinates and elevations, where the CRS does not tell. Without one the file has
         no units, and programs guess.
@@ -93,6 +93,8 @@ def write(
     """
     if not isinstance(obj, Surface | Survey | Features):
         raise FormatError(f"Cannot write {FILE}: a {type(obj).__name__} is no surface or survey.")
+    if surface is None:
+        surface = (obj.name.strip() if isinstance(obj, Surface) else "") or "surface"
     if not isinstance(surface, str) or not surface.strip():
         raise OptionError("surface", surface, "the name of a surface")
     _require_lines(obj)

@@ -11,6 +11,7 @@ one side only.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -83,15 +84,15 @@ def read(path: Path) -> Mesh:
     )
     found = find_faces(tables)
     if found is None:
-        mesh.notes = [*notes, *_describe_skipped(header)]
+        return replace(mesh, notes=[*notes, *_describe_skipped(header)])
+    corners, offsets = found
+    constrained = _find_edge_flags(tables.get("face"))
+    mesh = replace(mesh, corners=corners, offsets=offsets, constrained=constrained)
+    if header.lines is None or "edge" not in tables:
         return mesh
-    mesh.corners, mesh.offsets = found
-    mesh.constrained = _find_edge_flags(tables.get("face"))
-    if header.lines is not None and "edge" in tables:
-        edges = mesh.constrained_edges = require_edges(tables["edge"], len(points))
-        lines = read_lines(header.lines, edges)
-        mesh.add_lines = lambda tin: _add_lines(tin, lines)
-    return mesh
+    edges = require_edges(tables["edge"], len(points))
+    lines = read_lines(header.lines, edges)
+    return replace(mesh, constrained_edges=edges, add_lines=lambda tin: _add_lines(tin, lines))
 
 
 def _add_lines(tin: TIN, lines: Lines) -> TIN:

@@ -88,7 +88,7 @@ def parse_line_comment(text: str) -> LineComment | None:
         return None
     kind: Any = found[1]
     source, n_edges = int(found[2]), int(found[3])
-    if not -_INT32 <= source < _INT32:
+    if not 0 <= source < _INT32:
         return None
     return LineComment(kind, source, n_edges, name)
 

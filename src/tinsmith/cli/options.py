@@ -248,6 +248,18 @@ def _parse_given(
     return value or None
 
 
+def _take_unchecked(
+    context: click.Context, parameter: click.Parameter, is_checked: bool | None
+) -> bool | None:
+    """Take coordinates of every file of the command as they are, those of lines too."""
+    del parameter
+    if is_checked is False:
+        from ..io.reprojection.contradictions import checking_crs
+
+        context.with_resource(checking_crs(is_checked))
+    return is_checked
+
+
 _COORDINATES = under(
     "Coordinates and units",
     crs_option(
@@ -264,6 +276,7 @@ _COORDINATES = under(
     click.option(
         "--check-crs/--no-check-crs",
         default=None,
+        callback=_take_unchecked,
         help="Refuse coordinates that contradict their CRS (the default), or tell it only.",
     ),
     crs_option("--source-crs", "CRS that the points are in, if it is not --crs."),

@@ -84,3 +84,15 @@ def test_faults_are_refused(path, old, new, reason):
         ts.read(path)
     assert reason in str(caught.value)
     assert "a.ply" in str(caught.value)
+
+
+def test_a_line_of_a_source_below_0_is_no_line(path):
+    ts.write(make_tin(), path)
+    content = path.read_bytes()
+    assert b"line: hard 0 " in content
+    path.write_bytes(content.replace(b"line: hard 0 ", b"line: hard -1 ", 1))
+    try:
+        found = ts.read(path)
+    except ts.ReadError:
+        return
+    assert ts.check(found, level=2).ok

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from ..output.console import emit_text
 from ..parameters import Words, command
 
 __all__ = ["completion"]
@@ -32,4 +33,4 @@ def completion(ctx: click.Context, shell: str) -> None:
     if kind is None:  # pragma: no cover - click has all three
         raise click.UsageError(f"No completion for '{shell}'.")
     script = kind(ctx.find_root().command, {}, "tinsmith", _VARIABLE)
-    click.echo(script.source_template % script.source_vars())
+    emit_text(script.source_template % script.source_vars())

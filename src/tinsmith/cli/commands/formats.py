@@ -76,9 +76,8 @@ def _draw_table(known: tuple[Format, ...]) -> str:
             " ".join(one.suffixes),
         )
     text = StringIO()
-    RichConsole(
-        file=text, width=get_terminal_size().columns, force_terminal=sys.stdout.isatty()
-    ).print(table)
+    is_shown = sys.stdout is not None and sys.stdout.isatty()
+    RichConsole(file=text, width=get_terminal_size().columns, force_terminal=is_shown).print(table)
     return "\n".join(line.rstrip() for line in text.getvalue().strip("\n").splitlines())
 
 

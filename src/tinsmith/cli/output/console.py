@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
     from pathlib import Path
 
-__all__ = ["Console", "Row", "emit_file", "format_json"]
+__all__ = ["Console", "Row", "emit_file", "emit_text", "format_json"]
 
 Row = tuple[str, str]
 """A label and what it says; further lines stand under the first."""
@@ -106,14 +106,27 @@ class Console:
         if sys.stdout is None:
             raise Failure("Cannot write to standard output: it is closed.")
         note_answer()
-        try:
-            click.echo(text)
-            sys.stdout.flush()
-        except BrokenPipeError:
-            raise
-        except OSError as error:
-            silence(sys.stdout)
-            raise Failure(f"Cannot write to standard output: {error.strerror}.") from error
+        emit_text(text)
+
+
+def emit_text(text: str) -> None:
+    """Write to stdout, to the last byte.
+
+    Raises
+    ------
+    Failure
+        As :meth:`Console.emit`.
+    """
+    if sys.stdout is None:
+        raise Failure("Cannot write to standard output: it is closed.")
+    try:
+        click.echo(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        silence(sys.stdout)
+        raise Failure(f"Cannot write to standard output: {error.strerror}.") from error
 
 
 def emit_file(path: Path) -> None:

@@ -1,12 +1,15 @@
 """LandXML that we write: what the schema asks for, what a plain reader finds, and round trips."""
 
+import pickle
 import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
-from support.surfaces import scatter, survey_site
+from click.testing import CliRunner
+from support.surfaces import hills, scatter, survey_site
 
 import tinsmith as ts
+from tinsmith.cli import main
 
 SPACE = "{http://www.landxml.org/schema/LandXML-1.2}"
 
@@ -137,3 +140,25 @@ def test_names_that_xml_cannot_hold(tmp_path):
     tin = ts.triangulate(ts.Survey(points=points, breaklines=[line], elevation_unit="m"))
     read = ts.read(ts.write(tin, tmp_path / "a.xml"))
     assert read.lines.names == ('a b "c"',)
+
+
+def test_the_name_of_a_surface_goes_from_file_to_file(tmp_path):
+    tin = hills(20, size=50.0, unit="m").with_name("Existing <ground> & more")
+    first = ts.write(tin, tmp_path / "a.xml")
+    again = ts.read(first)
+    assert again.name == "Existing <ground> & more"
+    moved = ts.reproject(again, "EPSG:32617")
+    for made in (again, again.snapshot(), again.copy(), pickle.loads(pickle.dumps(again)), moved):
+        assert ts.read(ts.write(made, tmp_path / "b.xml")).name == again.name
+    assert ts.read(ts.write(again, tmp_path / "c.xml", surface="Design")).name == "Design"
+    assert ts.read(ts.write(tin.with_name(""), tmp_path / "d.xml")).name == "surface"
+
+
+def test_the_command_line_keeps_and_sets_the_name(tmp_path):
+    first = ts.write(hills(20, size=50.0, unit="m"), tmp_path / "a.xml", surface="Ground 2026")
+    for options, name in (((), "Ground 2026"), (("--name", "Design"), "Design")):
+        done = CliRunner().invoke(
+            main, ["convert", str(first), "-o", str(tmp_path / "b.xml"), *options]
+        )
+        assert done.exit_code == 0, done.output
+        assert f'<Surface name="{name}">' in (tmp_path / "b.xml").read_text()
