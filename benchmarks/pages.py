@@ -23,9 +23,9 @@ _ARGUMENTS = (
 )
 _OPENED = "window.terrain.then(() => performance.now())"
 _TURNED = """window.terrain.then((page) => {
-  const start = performance.now(), gl = page.stage.renderer.getContext();
+  const start = performance.now(), gl = page.scene.renderer.getContext();
   for (let k = 0; k < 20; k += 1) {
-    page.stage.turn(0.02, 0); page.stage.draw(); gl.readPixels(0, 0, 1, 1, gl.RGBA,
+    page.scene.turn(0.02, 0); page.scene.draw(); gl.readPixels(0, 0, 1, 1, gl.RGBA,
       gl.UNSIGNED_BYTE, new Uint8Array(4)); }
   return (performance.now() - start) / 20; })"""
 

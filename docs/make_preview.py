@@ -66,7 +66,7 @@ def draw_page(shown: Any, path: Path) -> None:
         browser = driver.chromium.launch(executable_path=browser_path, args=[*ARGUMENTS])
         page = browser.new_page(viewport={"width": 1200, "height": 740})
         page.goto(page_path.as_uri(), timeout=120_000)
-        page.evaluate("window.terrain.then((p) => { p.stage.draw(); p.read(560, 420); })")
+        page.evaluate("window.terrain.then((p) => { p.scene.draw(); p.tool.read(560, 420); })")
         page.wait_for_timeout(2000)
         page.screenshot(path=path, timeout=120_000)
         browser.close()

@@ -39,6 +39,8 @@ from .isolines import check_contours as check_contours
 from .isolines import contour_bands as contour_bands
 from .isolines import contour_labels as contour_labels
 from .isolines import contours as contours
+from .plans import Plan as Plan
+from .plans import plan as plan
 from .relief.classes import aspect_classes as aspect_classes
 from .relief.classes import slope_classes as slope_classes
 from .relief.curvatures import curvature as curvature
@@ -50,8 +52,6 @@ from .sections import cross_sections as cross_sections
 from .sections import drape as drape
 from .sections import profile as profile
 from .sections import section_lines as section_lines
-from .sheets import Plan as Plan
-from .sheets import plan as plan
 from .sight import line_of_sight as line_of_sight
 from .sight import viewshed as viewshed
 from .sight import visible_vertices as visible_vertices

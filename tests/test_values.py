@@ -21,7 +21,7 @@ WORKED_ON = {
     "io.field_survey.instruments.gsi._Block", "io.field_survey.instruments.records.Book",
     "io.lidar.selection.Tally", "io.cad.landxml.content.Content", "io.cad.landxml.content.Line",
     "io.cad.landxml.content.Points", "io.cad.landxml.content.Surface",
-    "terrain.sheets.mapping.Drawn", "tin.screening.heights._Search",
+    "terrain.plans.mapping.Drawn", "tin.screening.heights._Search",
 }  # fmt: skip
 """Filled in step by step while a file is read, a sheet is drawn, or blunders are searched."""
 

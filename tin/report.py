@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..base.methods import make_card
+from ..base.methods import make_html_repr
 from ..base.sentences import counted, height
 from ..base.types import Frozen, RowSources
 
@@ -750,4 +750,4 @@ class Report(Frozen):
         )
 
     def _repr_html_(self) -> str:
-        return make_card(self)
+        return make_html_repr(self)

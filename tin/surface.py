@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.crs import CRS, Unit, require_lengths, require_one_unit, scale_elevations, shorten_crs
 from ..base.errors import choice
-from ..base.methods import call_method, make_card
+from ..base.methods import call_method, make_html_repr
 from ..base.policies import Extrapolation, FeatureKind, InterpolationMethod
 from ..base.ranges import describe_span, require_degrees
 from ..base.sentences import counted
@@ -750,7 +750,7 @@ class Surface:
         )
 
     def _repr_html_(self) -> str:
-        return make_card(self)
+        return make_html_repr(self)
 
     # ---------------------------------------------------------------- as a value
 

@@ -30,7 +30,7 @@ PAGES = {
     "surfaces": ("tin", ""),
     "quality": ("tin.checking", "tin.meshing", "tin.voronoi", "tin.paper"),
     "products": ("terrain",),
-    "results": ("terrain.results", "terrain.charts", "terrain.viewer", "terrain.sheets"),
+    "results": ("terrain.results", "terrain.charts", "terrain.viewer", "terrain.plans"),
     "files": ("io",),
     "errors": ("errors", "crs"),
 }

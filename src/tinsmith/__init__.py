@@ -12,14 +12,14 @@ from .base.methods import register_methods
 # What tin cannot do itself, for it knows no pictures, features and files.
 register_methods(
     {
-        "TIN._repr_html_": "tinsmith.terrain.viewer.card:make_card",
-        "Snapshot._repr_html_": "tinsmith.terrain.viewer.card:make_card",
+        "TIN._repr_html_": "tinsmith.terrain.viewer.html_repr:make_html_repr",
+        "Snapshot._repr_html_": "tinsmith.terrain.viewer.html_repr:make_html_repr",
         "Surface.findings": "tinsmith.tin.screening:describe_findings",
-        "Survey._repr_html_": "tinsmith.terrain.drawing.cards.survey:make_survey_card",
-        "Report._repr_html_": "tinsmith.terrain.drawing.cards.survey:make_report_card",
-        "Features._repr_html_": "tinsmith.terrain.drawing.cards.results:make_features_card",
-        "Raster._repr_html_": "tinsmith.terrain.drawing.cards.results:make_raster_card",
-        "Table._repr_html_": "tinsmith.terrain.drawing.cards.results:make_table_card",
+        "Survey._repr_html_": "tinsmith.terrain.drawing.html_repr.survey:make_survey_html",
+        "Report._repr_html_": "tinsmith.terrain.drawing.html_repr.survey:make_report_html",
+        "Features._repr_html_": "tinsmith.terrain.drawing.html_repr.results:make_features_html",
+        "Raster._repr_html_": "tinsmith.terrain.drawing.html_repr.results:make_raster_html",
+        "Table._repr_html_": "tinsmith.terrain.drawing.html_repr.results:make_table_html",
         "TIN.plot": "tinsmith.terrain.charts.triangles:plot_tin",
         "TIN.to_crs": "tinsmith.io.reprojection.surfaces:reproject",
         "TIN.to_geodataframe": "tinsmith.io.vector.libraries:build_frame",

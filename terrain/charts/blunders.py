@@ -13,6 +13,7 @@ from ...base.georeference.axes import turn_into_drawing
 from ...base.results import Table
 from ...base.sentences import counted
 from ...tin.screening.suspects import DROPPED
+from .. import palette
 from .arguments import parse_title
 from .figures import INK, picture
 from .maps import draw_shade, shade_for_map, start_map
@@ -26,7 +27,6 @@ __all__ = ["blunder_map"]
 _PURPOSE = "A map of blunders"
 _MARKERS = {"spike": "^", "pit": "v", "factor": "X", "code": "X", "number": "s", "place": "s"}
 _OTHER = "o"
-_COLORS = {"high": "#c1121f", "medium": "#f77f00", "low": "#fcbf49"}
 _LIGHTS = (-330, 245)
 _MOST_DOTS = 20_000
 """More points would hide the ground."""
@@ -119,7 +119,7 @@ def _mark(drawn: Map, table: Table) -> None:
     reasons, certainties = (table[name].astype(str) for name in ("reason", "certainty"))
     kinds = [
         (reason, certainty, (reasons == reason) & (certainties == certainty) & in_view)
-        for certainty in reversed(_COLORS)
+        for certainty in reversed(palette.BLUNDERS)
         for reason in dict.fromkeys(reasons.tolist())
     ]
     for reason, certainty, chosen in kinds:
@@ -128,7 +128,7 @@ def _mark(drawn: Map, table: Table) -> None:
                 table["x"][chosen],
                 table["y"][chosen],
                 marker=_MARKERS.get(reason, _OTHER),
-                color=_COLORS[certainty],
+                color=palette.BLUNDERS[certainty],
                 edgecolor=INK,
                 linewidth=0.6,
                 s=46,

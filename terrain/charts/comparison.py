@@ -9,6 +9,7 @@ import numpy as np
 from ...base.checks import require_type
 from ...base.sentences import counted
 from ...tin.paper.comparison import Comparison
+from ..palette import TRIANGULATIONS
 from .arguments import parse_title
 from .figures import INK, start_panels
 
@@ -19,12 +20,6 @@ if TYPE_CHECKING:
 __all__ = ["comparison_picture"]
 
 _PURPOSE = "A picture of a comparison"
-_EDGE = "#5b6670"
-_SOUND = "#ffffff"
-_GAP = "#c9d1d8"
-_VIOLATING = "#f2b134"
-_OVERLAPPING = "#c8371b"
-_UNEXTENDED = "#1f5fbf"
 _VEIL = 0.22
 """Opacity of an overlapping triangle: the more of them, the darker."""
 
@@ -95,18 +90,22 @@ def _describe_outcome(outcome: Outcome, expected: int) -> str:
 def _draw_outcome(axes: Any, xy: Float64Array, hull: Int32Array, outcome: Outcome) -> None:
     is_crowded = len(xy) > _CROWD
     line = 0.35 if is_crowded else 0.8
-    axes.fill(*xy[hull].T, facecolor=_GAP, edgecolor=INK, linewidth=line, zorder=1)
+    axes.fill(*xy[hull].T, facecolor=TRIANGULATIONS["gap"], edgecolor=INK, linewidth=line, zorder=1)
     for chosen, color, alpha in (
-        (~outcome.violating, _SOUND, 1.0),
-        (outcome.violating, _VIOLATING, 1.0),
-        (outcome.overlapping, _OVERLAPPING, _VEIL),
+        (~outcome.violating, TRIANGULATIONS["sound"], 1.0),
+        (outcome.violating, TRIANGULATIONS["violating"], 1.0),
+        (outcome.overlapping, TRIANGULATIONS["overlapping"], _VEIL),
     ):
         corners = xy[outcome.triangles[chosen]]
         axes.add_collection(
             _load_collections().PolyCollection(corners, facecolors=color, alpha=alpha, linewidths=0)
         )
-    axes.add_collection(_make_line_collection(xy, _find_edges(outcome.triangles), _EDGE, line))
-    axes.add_collection(_make_line_collection(xy, outcome.unextended, _UNEXTENDED, 3 * line))
+    axes.add_collection(
+        _make_line_collection(xy, _find_edges(outcome.triangles), TRIANGULATIONS["edge"], line)
+    )
+    axes.add_collection(
+        _make_line_collection(xy, outcome.unextended, TRIANGULATIONS["unextended"], 3 * line)
+    )
     if not is_crowded:
         axes.plot(*xy.T, ".", color=INK, markersize=4, zorder=4)
     axes.set_aspect("equal")
@@ -134,14 +133,21 @@ def _add_legend(figure: Any) -> None:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    edge: dict[str, Any] = {"edgecolor": _EDGE, "linewidth": 0.8}
+    edge: dict[str, Any] = {"edgecolor": TRIANGULATIONS["edge"], "linewidth": 0.8}
     figure.legend(
         handles=[
-            Patch(facecolor=_SOUND, label="empty circle", **edge),
-            Patch(facecolor=_VIOLATING, label="point in the circle", **edge),
-            Patch(facecolor=_OVERLAPPING, alpha=2 * _VEIL, label="overlapping", **edge),
-            Patch(facecolor=_GAP, label="not covered", **edge),
-            Line2D([], [], color=_UNEXTENDED, linewidth=2.4, label="edge not extended"),
+            Patch(facecolor=TRIANGULATIONS["sound"], label="empty circle", **edge),
+            Patch(facecolor=TRIANGULATIONS["violating"], label="point in the circle", **edge),
+            Patch(
+                facecolor=TRIANGULATIONS["overlapping"],
+                alpha=2 * _VEIL,
+                label="overlapping",
+                **edge,
+            ),
+            Patch(facecolor=TRIANGULATIONS["gap"], label="not covered", **edge),
+            Line2D(
+                [], [], color=TRIANGULATIONS["unextended"], linewidth=2.4, label="edge not extended"
+            ),
         ],
         loc="outside lower center",
         ncols=5,

@@ -10,6 +10,7 @@ import numpy as np
 from ...base.checks import is_finite_number, is_whole_number
 from ...base.crs import CRS, Unit, assume_elevation_unit
 from ...base.errors import OptionError
+from .. import palette
 from ..drawing.rounding import format_number, round_down
 from .figures import INK, color_frame
 
@@ -33,10 +34,7 @@ __all__ = [
     "write_elevation",
 ]
 
-FAINT = "#d9d9d9"
-_COLORS = ("#7a5230", "#c0392b", "#1f618d", "#6c3483", "#117864")
-_GROUND = "#efe6da"
-_CUT, _FILL = "#eba694", "#9cc9e4"  # the hues of a map of cut and fill
+FAINT = palette.FAINT
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,7 +79,12 @@ def find(table: Table, rows: BoolArray, along: str) -> list[Curve]:
     measured = [name for name in table.columns if name.partition("_")[0] == "elevation"]
     places = table[along][rows]
     return [
-        Curve(name.partition("_")[2], places, table[name][rows], _COLORS[k % len(_COLORS)])
+        Curve(
+            name.partition("_")[2],
+            places,
+            table[name][rows],
+            palette.CURVES[k % len(palette.CURVES)],
+        )
         for k, name in enumerate(measured)
     ]
 
@@ -141,7 +144,7 @@ def draw(axes: Any, curves: list[Curve], marks: Float64Array, floor: float) -> N
     if len(curves) == 2:
         _shade(axes, *curves)
     else:
-        how = {"color": _GROUND, "linewidth": 0, "zorder": 1}
+        how = {"color": palette.GROUND_BELOW, "linewidth": 0, "zorder": 1}
         axes.fill_between(ground.stations, ground.elevations, floor, **how)
     for curve in curves:
         how = {"color": curve.color, "linewidth": 1.6, "zorder": 4}
@@ -155,7 +158,10 @@ def draw(axes: Any, curves: list[Curve], marks: Float64Array, floor: float) -> N
 def _shade(axes: Any, first: Curve, second: Curve) -> None:
     """Shade what is to be dug off below the first surface, and filled above it."""
     stations, ground, design = _add_crossings(first, second)
-    for words, color, limit in (("cut", _CUT, np.minimum), ("fill", _FILL, np.maximum)):
+    for words, color, limit in (
+        ("cut", palette.CUT, np.minimum),
+        ("fill", palette.FILL, np.maximum),
+    ):
         bound = limit(ground, design)
         if (np.abs(bound - ground) > 0.0).any():
             how = {"color": color, "linewidth": 0, "label": words, "zorder": 2}

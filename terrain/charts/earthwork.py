@@ -9,6 +9,7 @@ import numpy as np
 from ...base import optional
 from ...base.checks import require_tin, require_type
 from ...tin import Bounds
+from .. import palette
 from ..drawing.north_up import draw_north_up
 from ..drawing.rounding import round_down
 from ..earthwork import Difference
@@ -30,8 +31,6 @@ __all__ = ["earthwork_map"]
 _PURPOSE = "A cut and fill map"
 _PAD = 0.18
 """Of the ground around what is cut and filled, as a share of its extent."""
-_ZERO = "#111111"
-_COLORS = ("#8c1c13", "#e07a5f", "#fbfaf5", "#5fa8d3", "#1b4965")
 """From the deepest cut over nothing to the highest fill."""
 _LIGHTS = (-330, 245)
 """What is black and what is white: the ground is paler than what matters."""
@@ -143,7 +142,7 @@ def _draw_difference(drawn: Map, tin: TIN) -> None:
     image = axes.imshow(
         np.ma.masked_invalid(raster.bands["elevation"]),
         extent=(bounds.xmin, bounds.xmax, bounds.ymin, bounds.ymax),
-        cmap=colors.LinearSegmentedColormap.from_list("earthwork", _COLORS),
+        cmap=colors.LinearSegmentedColormap.from_list("earthwork", palette.EARTHWORK),
         vmin=-most,
         vmax=most,
         aspect=axes.get_aspect(),
@@ -179,7 +178,7 @@ def _draw_zero_line(axes: Any, surface: TIN, lines: Features) -> None:
     for drawn, width, style in ((paths, 1.4, "solid"), (rings, 0.9, (0, (4, 2)))):
         axes.add_collection(
             collections.LineCollection(
-                drawn, colors=_ZERO, linewidths=width, linestyles=style, zorder=3
+                drawn, colors=palette.NO_CHANGE, linewidths=width, linestyles=style, zorder=3
             ),
             autolim=False,
         )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 from ...base import optional
 from ...base.products import notes_of_surfaces, product
 from ...tin.surface import Surface
+from .. import palette
 from ..drawing.north_up import draw_north_up
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ __all__ = ["INK", "color_frame", "picture", "start_figure", "start_panels", "wri
 
 F = TypeVar("F", bound="Callable[..., Any]")
 
-INK = "#333333"
+INK = palette.INK
 _TITLE = {"fontsize": 15, "color": INK, "parse_math": False}
 """How a title is written."""
 

@@ -11,6 +11,7 @@ import numpy as np
 from ...base.checks import require_type
 from ...base.sentences import counted
 from ...tin import Quality
+from .. import palette
 from ..drawing.rounding import choose_ticks
 from .arguments import parse_text, parse_title
 from .figures import INK, start_panels
@@ -25,8 +26,6 @@ _SIZE = (11.0, 7.0)
 """Of the picture, inches."""
 
 _BARS = 60
-_BAR = "#5f8f6b"
-_MEDIAN = "#b3472d"
 _TAIL = 0.002
 """Share of values at each end that may lie outside a panel without ends of its own."""
 
@@ -147,7 +146,7 @@ def _describe_share(chosen: BoolArray, what: str) -> str:
 
 def _draw_panel(axes: Any, panel: _Panel) -> None:
     counts, edges = np.histogram(panel.values, panel.edges)
-    axes.stairs(100 * counts / len(panel.values), edges, fill=True, color=_BAR)
+    axes.stairs(100 * counts / len(panel.values), edges, fill=True, color=palette.BARS)
     axes.set_title(panel.title, loc="left", fontsize=12, color=INK)
     low, high = _format_number(panel.values.min()), _format_number(panel.values.max())
     spread = f"{low} to {high}{panel.unit}" + (f", {panel.note}" if panel.note else "")
@@ -160,7 +159,7 @@ def _mark_median(axes: Any, panel: _Panel) -> None:
     middle = float(np.quantile(panel.values, 0.5, method="inverted_cdf"))
     if not np.isfinite(middle):
         return
-    axes.axvline(middle, color=_MEDIAN, linewidth=1.5)
+    axes.axvline(middle, color=palette.MEDIAN, linewidth=1.5)
     is_left = np.searchsorted(panel.edges, middle) < len(panel.edges) / 2
     axes.annotate(
         f"median {_format_number(middle)}{panel.unit}",
@@ -169,7 +168,7 @@ def _mark_median(axes: Any, panel: _Panel) -> None:
         xytext=(5 if is_left else -5, -10),
         textcoords="offset points",
         ha="left" if is_left else "right",
-        color=_MEDIAN,
+        color=palette.MEDIAN,
         fontsize=9,
     )
 
@@ -185,7 +184,7 @@ def _label_axes(axes: Any, panel: _Panel) -> None:
     axes.set_xlim(low, high)
     axes.set_ylim(0, 1.14 * (axes.dataLim.ymax or 1.0))
     axes.set_ylabel("share, %", color=INK)
-    axes.grid(axis="y", color="#dddddd", linewidth=0.6)
+    axes.grid(axis="y", color=palette.GRID, linewidth=0.6)
     axes.set_axisbelow(True)
     axes.tick_params(colors=INK)
     axes.spines[["top", "right"]].set_visible(False)

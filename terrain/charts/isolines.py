@@ -8,8 +8,9 @@ import numpy as np
 
 from ...base import optional
 from ...base.checks import require_tin
+from .. import palette
 from ..isolines.labels import contour_labels
-from ..viewer.tints import interpolate_tints
+from ..palette import interpolate_tints
 from .arguments import parse_title, require_features
 from .figures import picture
 from .maps import draw_scale, draw_shade, find_paths, shade_for_map, start_map
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 __all__ = ["contour_map"]
 
 _PURPOSE = "A contour map"
-_LINE = "#6b4a2b"
 _LIGHTS = (-60, 255)
 """What is black and what is white: paler than a hillshade alone, so that lines are read."""
 _SCALE = 0.95
@@ -135,14 +135,14 @@ def _draw_lines(axes: Any, lines: Features) -> None:
     is_index = lines.columns["is_index"]
     widths = np.where(is_index, 1.3, 0.55)
     axes.add_collection(
-        collections.LineCollection(paths, colors=_LINE, linewidths=widths, zorder=3),
+        collections.LineCollection(paths, colors=palette.CONTOURS, linewidths=widths, zorder=3),
         autolim=False,
     )
 
 
 def _draw_labels(axes: Any, labels: Features) -> None:
     effects = optional.load("matplotlib.patheffects", _PURPOSE)
-    halo = [effects.withStroke(linewidth=2.6, foreground="#ffffffd9")]
+    halo = [effects.withStroke(linewidth=2.6, foreground=palette.HALO)]
     columns = labels.columns
     for (x, y), text, rotation in zip(
         labels.coordinates[:, :2], columns["text"], columns["rotation"], strict=True
@@ -157,7 +157,7 @@ def _draw_labels(axes: Any, labels: Features) -> None:
             ha="center",
             va="center_baseline",
             fontsize=7,
-            color=_LINE,
+            color=palette.CONTOURS,
             path_effects=halo,
             clip_on=True,
             zorder=4,

@@ -12,6 +12,7 @@ from ...base.errors import OptionError
 from ...base.georeference.axes import find_axes
 from ...base.georeference.units import find_ground
 from ...base.products import product
+from .. import palette
 from ..drawing.linework import EDGE_KINDS, find_line_edges
 from ..relief.gradients import slope
 
@@ -24,11 +25,6 @@ __all__ = ["plot_tin", "to_matplotlib"]
 
 _MOST_WITH_EDGES = 5_000
 """Triangles; the edges of more hide the colours."""
-
-_COLORS = {
-    "soft": "#404448", "hard": "#222226", "hole": "#963a22", "boundary": "#963a22",
-    "water": "#185c98",
-}  # fmt: skip
 
 
 @product
@@ -141,7 +137,7 @@ def _draw_lines(ax: Any, tin: TIN) -> None:
             style = "--" if kind == "soft" else "-"
             ends = tin.points[pairs][..., :2]
             ax.add_collection(
-                collection(ends, colors=_COLORS[kind], linewidths=1.2, linestyles=style)
+                collection(ends, colors=palette.LINES[kind], linewidths=1.2, linestyles=style)
             )
 
 

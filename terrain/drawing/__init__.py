@@ -1,1 +1,1 @@
-"""Drawing: what pages, plans, charts and notebooks share: lines, numbers, 3D models, cards."""
+"""Drawing: what pages, plans, charts and notebooks share: lines, numbers, 3D models, HTML."""

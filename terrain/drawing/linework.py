@@ -8,10 +8,13 @@ import numpy as np
 
 from ...base import optional
 from ...tin.topology import edge_keys, edges_at
+from .. import palette
+from ..palette import parse_hex
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array, Int8Array, Int32Array, Int64Array
     from ...tin import TIN
+    from ..palette import Color
 
 __all__ = ["EDGE_KINDS", "LineEdges", "add_lines", "add_polylines", "find_line_edges"]
 
@@ -24,17 +27,17 @@ _PURPOSE = "A preview"
 class _Pen(NamedTuple):
     """How a kind is drawn; ``width`` is in design pixels."""
 
-    color: tuple[int, int, int]
+    color: Color
     width: float
     is_dashed: bool = False
 
 
 _PENS = {
-    "soft": _Pen((64, 68, 72), 1.8, is_dashed=True),
-    "hard": _Pen((34, 34, 38), 1.7),
-    "hole": _Pen((150, 58, 34), 2.0),
-    "boundary": _Pen((150, 58, 34), 2.4),
-    "water": _Pen((24, 92, 152), 2.6),
+    "soft": _Pen(parse_hex(palette.LINES["soft"]), 1.8, is_dashed=True),
+    "hard": _Pen(parse_hex(palette.LINES["hard"]), 1.7),
+    "hole": _Pen(parse_hex(palette.LINES["hole"]), 2.0),
+    "boundary": _Pen(parse_hex(palette.LINES["boundary"]), 2.4),
+    "water": _Pen(parse_hex(palette.LINES["water"]), 2.6),
 }
 _DASH_SHARE = 0.006
 """Length of a dash, and of the gap after it, as a share of the extent."""
@@ -136,7 +139,7 @@ def _draw_edges(plotter: Any, ends: Float64Array, pen: _Pen, factor: float) -> A
     return _draw(plotter, mesh, pen.color, pen.width * factor)
 
 
-def _draw(plotter: Any, mesh: Any, color: tuple[int, int, int], width: float) -> Any:
+def _draw(plotter: Any, mesh: Any, color: Color, width: float) -> Any:
     """Draw lines in front of the surface that they lie on."""
     actor = plotter.add_mesh(mesh, color=color, lighting=False, line_width=width, pickable=False)
     actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
@@ -150,7 +153,7 @@ def add_polylines(
     offsets: AnyArray,
     chosen: Int64Array,
     *,
-    color: tuple[int, int, int],
+    color: Color,
     width: float,
 ) -> Any:
     """Draw polylines over a surface.

@@ -10,7 +10,7 @@ from ...tin import topology
 from .. import _kernel
 from ..earthwork.cells import fan_out
 from ..earthwork.reference import require_finite
-from ..isolines.mending import PolygonParts, mend_polygons
+from ..isolines.repair import PolygonParts, repair_polygons
 from ..relief.dissolving import DividedMesh, dissolve
 
 if TYPE_CHECKING:
@@ -129,7 +129,7 @@ def gather_polygons(patches: DividedMesh) -> Polygons:
     """Join the triangles of each region to polygons that are valid."""
     found = dissolve(patches, patches.owners)
     counts = np.diff(found.feature_offsets)
-    parts, notes = mend_polygons(
+    parts, notes = repair_polygons(
         PolygonParts(
             np.ascontiguousarray(patches.points[found.vertices, :2]),
             found.ring_offsets,

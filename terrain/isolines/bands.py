@@ -15,8 +15,8 @@ from .. import _kernel
 from ..earthwork.slivers import leave_out_slivers
 from .levels import LevelOptions
 from .measures import measure_ring_areas, sum_parts
-from .mending import PolygonParts, is_whole, mend_polygons, require_whole
 from .rebuilding import rebuild_wrong_bands
+from .repair import PolygonParts, is_whole, repair_polygons, require_whole
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -81,7 +81,7 @@ def contour_bands(
         filled = _kernel.fill_bands(tin.points, *kept, chosen.values)
     except OverflowError as error:
         raise options.refuse_count(int(str(error)), "parts of triangles") from None
-    parts, notes = mend_polygons(PolygonParts(*filled))
+    parts, notes = repair_polygons(PolygonParts(*filled))
     said: tuple[str, ...] = ()
     if notes or not is_whole(tin, parts):
         parts, said = rebuild_wrong_bands(tin, chosen.values, parts)

@@ -10,7 +10,7 @@ from ...base import optional
 from ...base.sentences import counted
 from .. import _kernel
 from .measures import measure_lengths, measure_ring_areas, sum_parts
-from .mending import PolygonParts, as_parts, turn
+from .repair import PolygonParts, as_parts, turn
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, ObjectArray

@@ -12,7 +12,7 @@ from ...base.georeference import describe_unknown, find_plane_units
 from ...base.policies import SlopeUnit
 from ...base.products import product
 from ...base.results import Features
-from .colors import compass_colors, ramp_colors
+from ..palette import COMPASS, STEEPNESS, interpolate_colors
 from .dissolving import dissolve, make_polygons
 from .gradients import aspect, measure_plane_areas, slope
 from .statistics import SYMBOLS
@@ -105,7 +105,7 @@ def slope_classes(
         ],
         lower,
         upper,
-        ramp_colors(len(lower)),
+        interpolate_colors(STEEPNESS, len(lower)),
     )
     return _as_features(tin, classes, legend, symbol, "slope_classes")
 
@@ -142,7 +142,7 @@ def aspect_classes(tin: TIN) -> Features:
         (*_COMPASS, _LEVEL),
         [*((middle - sector / 2) % 360.0).tolist(), math.nan],
         [*(middle + sector / 2).tolist(), math.nan],
-        compass_colors(),
+        COMPASS,
     )
     return _as_features(tin, classes, legend, "°", "aspect_classes")
 

@@ -10,6 +10,7 @@ from ...base.checks import as_flag
 from ...base.georeference import find_plane_units
 from ...base.products import product
 from ...base.progress import Progress
+from .. import palette
 from ..earthwork.reference import find_reference
 from ..relief.dissolving import dissolve, make_polygons
 from .eyes import as_view, measure_distances
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 __all__ = ["viewshed"]
 
 _CLASSES = ("visible", "partly", "hidden")
-_COLORS = ("#7fbf7b", "#f6e8a6", "#b9aec4")
 _DOUBT = 1e-12
 """Share of its terms below which a height above a plane may be rounding."""
 
@@ -176,7 +176,7 @@ def _as_features(
         "triangles": counts,
         "area": measured,
         "share": 100.0 * measured / measured.sum(),
-        "color": np.array(_COLORS, object)[found.classes],
+        "color": np.array(palette.SIGHT, object)[found.classes],
     }
     return make_polygons(
         tin,

@@ -9,19 +9,19 @@ import numpy as np
 
 from ...tin import Bounds
 from ..drawing.rounding import choose_ticks, format_number, round_down
+from ..palette import Palette, choose_ramp
+from .actors import NORTHWEST
 from .camera import View, measure_pixels_per_unit, name_direction, project_ground_axes
-from .palette import Palette
-from .ramps import Legend, choose_ramp
-from .scene import NORTHWEST
+from .legend import Legend
 from .titles import fit_title, shorten
 
 if TYPE_CHECKING:
     from ...base.crs import Unit
+    from ..palette import Color
     from ..relief.light import Light
     from .overlay import Overlay
-    from .palette import Color
 
-__all__ = ["Caption", "Sheet", "annotate", "scale_bar_length"]
+__all__ = ["Layout", "TitleBlock", "annotate", "scale_bar_length"]
 
 MARGIN = 44.0
 _COMPASS_RADIUS = 32.0
@@ -36,7 +36,7 @@ _LEAST_FORESHORTENING = 0.05
 
 
 @dataclass(frozen=True, slots=True)
-class Sheet:
+class Layout:
     """The picture's layout, in design pixels from the lower left."""
 
     width: float
@@ -49,7 +49,7 @@ class Sheet:
 
 
 @dataclass(frozen=True, slots=True)
-class Caption:
+class TitleBlock:
     """The words and numbers of the annotations."""
 
     title: str
@@ -72,20 +72,20 @@ class Caption:
     """Whether colours that tell something are seen anywhere."""
 
 
-def annotate(overlay: Overlay, sheet: Sheet, caption: Caption, camera: Any) -> None:
+def annotate(overlay: Overlay, layout: Layout, title_block: TitleBlock, camera: Any) -> None:
     """Draw all annotations for the present camera, in place of earlier ones.
 
     The camera is one in parallel projection.
     """
     overlay.clear()
-    palette = caption.palette
-    _draw_margins(overlay, sheet, palette)
-    _draw_title(overlay, sheet, caption)
+    palette = title_block.palette
+    _draw_margins(overlay, layout, palette)
+    _draw_title(overlay, layout, title_block)
     _draw_north_arrow(overlay, camera, palette)
-    pixels = measure_pixels_per_unit(camera, sheet.height)
-    _draw_scale_bar(overlay, caption.unit, pixels, palette)
-    _draw_notes(overlay, caption, View.of(camera))
-    _draw_legend(overlay, sheet, caption)
+    pixels = measure_pixels_per_unit(camera, layout.height)
+    _draw_scale_bar(overlay, title_block.unit, pixels, palette)
+    _draw_notes(overlay, title_block, View.of(camera))
+    _draw_legend(overlay, layout, title_block)
 
 
 def scale_bar_length(unit: Unit, pixels: float) -> tuple[float, float, str]:
@@ -100,21 +100,21 @@ def scale_bar_length(unit: Unit, pixels: float) -> tuple[float, float, str]:
     return length, length, unit.symbol
 
 
-def _draw_margins(overlay: Overlay, sheet: Sheet, palette: Palette) -> None:
+def _draw_margins(overlay: Overlay, layout: Layout, palette: Palette) -> None:
     """Keep the paper behind the words free, however far a user zooms into the terrain."""
-    frame, top = sheet.frame, sheet.height - sheet.frame.ymax
-    overlay.draw_rectangle((0.0, 0.0), (sheet.width, frame.ymin - 8.0), palette.paper)
-    overlay.draw_rectangle((0.0, frame.ymax + 8.0), (sheet.width, top), palette.paper)
+    frame, top = layout.frame, layout.height - layout.frame.ymax
+    overlay.draw_rectangle((0.0, 0.0), (layout.width, frame.ymin - 8.0), palette.paper)
+    overlay.draw_rectangle((0.0, frame.ymax + 8.0), (layout.width, top), palette.paper)
 
 
-def _draw_title(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
-    room, palette = sheet.width - 2 * MARGIN, caption.palette
-    title = fit_title(overlay, caption.title, room)
+def _draw_title(overlay: Overlay, layout: Layout, title_block: TitleBlock) -> None:
+    room, palette = layout.width - 2 * MARGIN, title_block.palette
+    title = fit_title(overlay, title_block.title, room)
     for words, drop in zip(title.lines, title.drops, strict=True):
-        place = (MARGIN, sheet.height - drop)
+        place = (MARGIN, layout.height - drop)
         overlay.draw_text(place, words, palette.ink, size=title.size, bold=True)
-    words = shorten(overlay, caption.subtitle, room, size=17.0)
-    place = (MARGIN, sheet.height - title.next_drop)
+    words = shorten(overlay, title_block.subtitle, room, size=17.0)
+    place = (MARGIN, layout.height - title.next_drop)
     overlay.draw_text(place, words, palette.grey, size=17.0)
 
 
@@ -156,12 +156,12 @@ def _draw_scale_bar(overlay: Overlay, unit: Unit, pixels: float, palette: Palett
     overlay.draw_text((left, 38.0), "true from left to right", grey, size=14)
 
 
-def _draw_notes(overlay: Overlay, caption: Caption, view: View) -> None:
-    left, palette = _NOTES_LEFT, caption.palette
-    words = _describe_exaggeration(caption.exaggeration, view)
+def _draw_notes(overlay: Overlay, title_block: TitleBlock, view: View) -> None:
+    left, palette = _NOTES_LEFT, title_block.palette
+    words = _describe_exaggeration(title_block.exaggeration, view)
     overlay.draw_text((left, 84.0), words, palette.ink, size=17)
     overlay.draw_text((left, 61.0), view.caption, palette.grey, size=14)
-    overlay.draw_text((left, 38.0), _describe_light(caption.sun), palette.grey, size=14)
+    overlay.draw_text((left, 38.0), _describe_light(title_block.sun), palette.grey, size=14)
 
 
 def _describe_light(sun: Light) -> str:
@@ -185,15 +185,15 @@ def _describe_exaggeration(factor: float, view: View) -> str:
     return f"{what} exaggeration {factor:g}\N{MULTIPLICATION SIGN}{true}"
 
 
-def _draw_legend(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
-    left, bottom, height = sheet.width - MARGIN - _LEGEND_WIDTH, 62.0, 14.0
-    palette = caption.palette
-    if caption.warning:
-        words = shorten(overlay, caption.warning, _LEGEND_WIDTH, size=14)
+def _draw_legend(overlay: Overlay, layout: Layout, title_block: TitleBlock) -> None:
+    left, bottom, height = layout.width - MARGIN - _LEGEND_WIDTH, 62.0, 14.0
+    palette = title_block.palette
+    if title_block.warning:
+        words = shorten(overlay, title_block.warning, _LEGEND_WIDTH, size=14)
         overlay.draw_text((left, bottom + height + 31.0), words, palette.warning, size=14)
-    if not caption.has_tints:
+    if not title_block.has_tints:
         return
-    legend = caption.legend or _describe_elevations(caption)
+    legend = title_block.legend or _describe_elevations(title_block)
     overlay.draw_text((left, bottom + height + 8.0), legend.name, palette.ink, size=15)
     overlay.draw_scale((left, bottom), (_LEGEND_WIDTH, height), legend.colors)
     if not legend.ticks:
@@ -205,9 +205,9 @@ def _draw_legend(overlay: Overlay, sheet: Sheet, caption: Caption) -> None:
         _draw_legend_tick(overlay, words, (x, bottom), palette.ink)
 
 
-def _describe_elevations(caption: Caption) -> Legend:
-    name = f"Elevation ({caption.elevation_caption or 'unit not known'})"
-    return Legend(name, choose_ramp("elevation", 100), caption.elevations)
+def _describe_elevations(title_block: TitleBlock) -> Legend:
+    name = f"Elevation ({title_block.elevation_caption or 'unit not known'})"
+    return Legend(name, choose_ramp("elevation", 100), title_block.elevations)
 
 
 def _draw_legend_tick(

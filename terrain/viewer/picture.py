@@ -11,7 +11,7 @@ import numpy as np
 
 from ...base.errors import RenderError
 from . import opengl
-from .stage import Show, make_stage
+from .scene import ScenePlotter, make_scene
 from .strips import label_strips, paste_strips
 
 if TYPE_CHECKING:
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
     from ...tin import TIN
-    from .look import Look
+    from .options import PreviewOptions
     from .ortho import Ortho
-    from .stage import Stage
+    from .scene import Scene
 
 __all__ = ["PICTURE_SUFFIXES", "keep_vtk_plain", "write_picture"]
 
@@ -36,27 +36,29 @@ _SUPERSAMPLING = 2
 _JPEG_QUALITY = 92
 
 
-def write_picture(tin: TIN, path: Path, look: Look, ortho: Ortho | None = None) -> None:
+def write_picture(
+    tin: TIN, path: Path, options: PreviewOptions, ortho: Ortho | None = None
+) -> None:
     """Draw a surface off screen and write the picture whole or not at all."""
     opengl.require_opengl()
     with keep_vtk_plain():
-        picture = _render(make_stage(tin, look, ortho))
-    _write(path, picture, look.dpi)
+        picture = _render(make_scene(tin, options, ortho))
+    _write(path, picture, options.dpi)
 
 
-def _render(stage: Stage) -> Image:
+def _render(scene: Scene) -> Image:
     """Draw off screen, larger than asked, and average down: smooth edges for lines and words."""
     from PIL.Image import fromarray
 
-    width, height = stage.look.size
+    width, height = scene.options.size
     window = (_SUPERSAMPLING * width, _SUPERSAMPLING * height)
-    show = Show(stage, window, off_screen=True)
+    drawn = ScenePlotter(scene, window, off_screen=True)
     try:
-        label_strips(show)
-        pixels = np.array(show.plotter.screenshot(return_img=True))
+        label_strips(drawn)
+        pixels = np.array(drawn.plotter.screenshot(return_img=True))
     finally:
-        show.plotter.close()
-    paste_strips(pixels, stage)
+        drawn.plotter.close()
+    paste_strips(pixels, scene)
     return fromarray(pixels).reduce(_SUPERSAMPLING)
 
 

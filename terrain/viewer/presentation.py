@@ -18,14 +18,14 @@ from ...base.notes import join_notes
 from ...base.products import product
 from ...tin import TIN, Survey
 from ..earthwork import difference
+from .actors import choose_exaggeration, measure_relief
 from .alignment import Aligned, align
-from .look import Look, LookOptions, make_look
+from .options import PreviewKeywords, PreviewOptions
 from .ortho import Ortho, read_ortho
 from .page.content import Start, describe_page, find_labels
 from .page.document import make_document
 from .picture import PICTURE_SUFFIXES, write_picture
-from .scene import choose_exaggeration, measure_relief
-from .stage import describe_far_off
+from .scene import describe_far_off
 from .window import open_window
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ class Preview:
     def __init__(
         self,
         aligned: Aligned,
-        look: Look,
+        options: PreviewOptions,
         survey: Survey | None,
         ortho: Ortho | None = None,
         notes: Sequence[str] = (),
@@ -69,7 +69,7 @@ class Preview:
         self._ortho = ortho
         self._aligned = aligned
         self._surfaces = aligned.surfaces
-        self._look = look
+        self._look = options
         self._survey = survey
 
     @cached_property
@@ -196,15 +196,15 @@ class Preview:
 
     def _choose_start(self, ground: Ground) -> Start:
         """Choose how the page looks when it is opened, far off elevations left out."""
-        look, ranges = self._look, self._ranges.values()
+        options, ranges = self._look, self._ranges.values()
         relief = (min(one.low for one in ranges), max(one.high for one in ranges))
         last, shown = list(self._surfaces.values())[-1], list(ranges)[-1]
         return Start(
-            exaggeration=look.exaggeration or choose_exaggeration(last, ground, shown),
-            elevations=look.elevations or relief,
+            exaggeration=options.exaggeration or choose_exaggeration(last, ground, shown),
+            elevations=options.elevations or relief,
             relief=relief,
-            tint=look.tint,
-            interval=look.contours or 0.0,
+            tint=options.tint,
+            interval=options.contours or 0.0,
         )
 
     def _repr_html_(self) -> str:
@@ -237,7 +237,7 @@ def preview(
     output: None = None,
     survey: Survey | None = None,
     drape: str | os.PathLike[str] | None = None,
-    **look: Unpack[LookOptions],
+    **options: Unpack[PreviewKeywords],
 ) -> Preview: ...
 
 
@@ -248,7 +248,7 @@ def preview(
     output: str | os.PathLike[str],
     survey: Survey | None = None,
     drape: str | os.PathLike[str] | None = None,
-    **look: Unpack[LookOptions],
+    **options: Unpack[PreviewKeywords],
 ) -> Path: ...
 
 
@@ -259,7 +259,7 @@ def preview(
     output: str | os.PathLike[str] | None = None,
     survey: Survey | None = None,
     drape: str | os.PathLike[str] | None = None,
-    **look: Unpack[LookOptions],
+    **options: Unpack[PreviewKeywords],
 ) -> Preview | Path:
     """Show a TIN in 3D with hypsometric tints, hillshade, legend, scale bar and north arrow.
 
@@ -359,7 +359,7 @@ def preview(
     '<!doctype html>'
     """
     require_type("survey", survey, Survey, or_none=True)
-    chosen, aligned = make_look(**look), align(tin, survey)
+    chosen, aligned = PreviewOptions.of(**options), align(tin, survey)
     ortho = None if drape is None else read_ortho(drape, [*aligned.surfaces.values()])
     if ortho is not None:
         ortho = ortho.draw_north_up(aligned.crs)

@@ -1,262 +1,339 @@
-"""Scene: the surface with its tints, the block it stands on, and the light from northwest."""
+"""Scene: terrain, light, camera and annotations in place, in a window or off screen."""
 
 from __future__ import annotations
 
-import math
+from dataclasses import astuple, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...base import optional
-from ...tin.topology import edges_at
+from ...base.georeference.units import find_ground
+from ...base.sentences import counted
+from ...tin import Bounds
+from .. import palette
+from ..drawing.linework import add_lines, add_polylines
 from ..drawing.models import choose_origin
-from ..relief.light import Light
-from .elevations import ElevationRange, find_elevation_range
-from .ramps import PLAIN, choose_ramp, measure_tint
+from ..drawing.rounding import format_number
+from ..isolines import contours
+from ..palette import parse_hex
+from .actors import (
+    BLOCK_SHARE,
+    add_lights,
+    add_ortho,
+    add_terrain,
+    choose_exaggeration,
+    fade_edges,
+    measure_extent,
+    measure_relief,
+    place_vertices,
+    round_exaggeration,
+)
+from .annotations import Layout, TitleBlock, annotate
+from .camera import aim, measure_pixels_per_unit, place_camera, project_ground_axes
+from .corridor import cut_into_strips, find_corridor, measure_mean_width
+from .legend import measure_tint
+from .overlay import Overlay
 
 if TYPE_CHECKING:
-    from ...base.arrays import BoolArray, Float32Array, Float64Array, Int32Array
+    from collections.abc import Callable
+
+    from ...base.arrays import Float64Array
     from ...base.georeference.units import Ground
-    from ...base.policies import Tint
     from ...tin import TIN
+    from .camera import View
+    from .corridor import Corridor, Strips
+    from .elevations import ElevationRange
+    from .options import PreviewOptions
     from .ortho import Ortho
 
 __all__ = [
-    "BLOCK_SHARE",
-    "NORTHWEST",
-    "add_lights",
-    "add_ortho",
-    "add_terrain",
-    "choose_exaggeration",
-    "fade_edges",
-    "measure_extent",
-    "measure_relief",
-    "place_vertices",
-    "round_exaggeration",
+    "Scene",
+    "ScenePlotter",
+    "add_scene",
+    "describe_far_off",
+    "fit_layout",
+    "make_scene",
+    "open_plotter",
+    "place_in_scene",
 ]
 
 _PURPOSE = "A preview"
 
-RELIEF_SHARE = 0.1
-"""Least share of the extent that the relief takes in a picture; below, heights are exaggerated."""
+_DESIGN_SIZE = (1600.0, 1000.0)
+"""Picture size for which the annotations are laid out, pixels."""
 
-_EXAGGERATIONS = (1.0, 1.5, 2.0, 3.0, 5.0, 10.0, 15.0, 20.0, 30.0, 50.0, 100.0)
+_RELIEF_OF_STRIP = 0.5
+"""Share of a corridor's width that the relief within a strip takes, at least."""
 
-BLOCK_SHARE = 0.025
-"""Depth of the block below the lowest point, as a share of the extent."""
+_CONTOUR_COLOR = parse_hex(palette.CONTOURS_3D)
+_CONTOUR_WIDTH = 0.9
 
-_BLOCK_COLOR = (206, 203, 197)
-_BLOCK_AMBIENT = 0.72
-_ORTHO_AMBIENT = 0.68
-"""A photograph has shadows of its own: the light adds half as much as to tints."""
-
-_EDGE_COLOR = (40, 46, 50)
-_EDGE_OPACITY = 0.42
-_FAINTEST_EDGE = 0.04
-_CLEAR_SIDE = 16.0
-"""Side of a triangle, in design pixels, from which its edges are drawn at full strength."""
-
-_AMBIENT = 0.36
-NORTHWEST = Light(315.0, 45.0)
-"""The light of printed maps."""
-
-_SUN = 0.58
-_FROM_ABOVE = 0.10
-_SKY = ((-90.0, 50.0, 0.10), (90.0, 50.0, 0.06))
-"""Azimuth from that of the sun and altitude (degrees), and strength: a weak sky beside it."""
-
-_STEEPNESS = math.sin(math.radians(NORTHWEST.altitude))
-"""Of the usual sun. For any other the sky above makes up for the difference, so that the tint of
-level ground is always that of the legend."""
+_LEAST_WIDTH = 2.0
+"""Depths of the block that the ground is wide, at least, to stand on a block: else it would hide
+behind its own wall."""
 
 
-def choose_exaggeration(tin: TIN, ground: Ground, shown: ElevationRange) -> float:
-    """Choose a round vertical exaggeration that shows the relief.
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """What is to be drawn, and how."""
 
-    It is the smallest of 1, 1.5, 2, 3, 5, 10, 15, ... 100 that lifts the relief to a tenth of the
-    extent (and so to at most a fifth, if 1 is not enough); 1 for level ground. Elevations far off
-    the others do not count.
+    tin: TIN
+    ground: Ground
+    options: PreviewOptions
+    view: View
+    shown: ElevationRange
+    """Elevations that must be in the picture."""
+    title_block: TitleBlock
+    has_block: bool
+    strips: Strips | None
+    """Pieces of a corridor."""
+    ortho: Ortho | None = None
+    """Picture draped over the surface."""
+
+    @property
+    def exaggeration(self) -> float:
+        """Factor on heights."""
+        return self.title_block.exaggeration
+
+    @property
+    def points(self) -> Float64Array:
+        """The vertices as drawn."""
+        return place_vertices(self.tin, self.ground, self.exaggeration)
+
+
+def make_scene(
+    tin: TIN, options: PreviewOptions, ortho: Ortho | None = None, *, has_strips: bool = True
+) -> Scene:
+    """Choose all that the caller left open.
+
+    With ``has_strips`` a corridor is cut into strips, if nobody chose where to look from.
     """
-    relief = (shown.high - shown.low) * ground.scale[2]
-    return round_exaggeration(RELIEF_SHARE * measure_extent(tin, ground), relief)
+    optional.load("pyvista", _PURPOSE)
+    ground = find_ground(tin)
+    shown = measure_relief(tin, ground)
+    view = options.seen_from
+    corridor = find_corridor(tin, ground) if options.azimuth is None else None
+    factor = options.exaggeration or choose_exaggeration(tin, ground, shown)
+    strips = None
+    if corridor is not None:
+        view = replace(view, azimuth=corridor.find_side(view.azimuth))
+        if has_strips:
+            factor, strips = _cut(tin, ground, options, view)
+    title_block = _make_title_block(tin, ground, options, shown, factor, corridor, strips)
+    is_covered = ortho is not None and ortho.gap == 0.0
+    title_block = replace(title_block, has_tints=options.tint != "plain" and not is_covered)
+    depth = BLOCK_SHARE * measure_extent(tin, ground)
+    has_block = strips is None and measure_mean_width(tin, ground) >= _LEAST_WIDTH * depth
+    return Scene(tin, ground, options, view, shown, title_block, has_block, strips, ortho)
 
 
-def round_exaggeration(wanted: float, relief: float) -> float:
-    """Return the smallest round exaggeration that makes a relief as high as is wanted."""
-    if relief == 0:
-        return 1.0
-    factors = (factor for factor in _EXAGGERATIONS if factor * relief >= wanted)
-    return next(factors, _EXAGGERATIONS[-1])
+def _cut(
+    tin: TIN, ground: Ground, options: PreviewOptions, view: View
+) -> tuple[float, Strips | None]:
+    """Return the exaggeration and the strips of a corridor; None where one alone is enough."""
+    frame = fit_layout(options.size)[0].frame
+    edges = tin.edges
+
+    def cut(factor: float) -> Strips:
+        return cut_into_strips(place_vertices(tin, ground, factor), edges, view, frame)
+
+    factor = options.exaggeration
+    if factor is None:
+        relief = _measure_relief_in(cut(1.0), tin, ground, view)
+        factor = round_exaggeration(_RELIEF_OF_STRIP * measure_mean_width(tin, ground), relief)
+    strips = cut(factor)
+    return factor, strips if len(strips.lows) > 1 else None
 
 
-def measure_relief(tin: TIN, ground: Ground) -> ElevationRange:
-    """Return the range of a TIN's elevations, without those that are far off the others."""
-    extent = measure_extent(tin, ground) / ground.scale[2]
-    return find_elevation_range(tin.points[:, 2], extent)
+def _measure_relief_in(strips: Strips, tin: TIN, ground: Ground, view: View) -> float:
+    """Return the median of the relief within each strip that has ground."""
+    points = place_vertices(tin, ground, 1.0)
+    strip = np.searchsorted(strips.edges[1:-1], points @ view.axes[0], side="right")
+    lows, highs = np.full(len(strips.lows), np.inf), np.full(len(strips.lows), -np.inf)
+    np.minimum.at(lows, strip, points[:, 2])
+    np.maximum.at(highs, strip, points[:, 2])
+    return float(np.median((highs - lows)[highs >= lows]))
 
 
-def measure_extent(tin: TIN, ground: Ground) -> float:
-    """Return the greater of a TIN's extents to the east and to the north, on the ground."""
-    return float((np.ptp(tin.points[:, :2], axis=0) * ground.scale[:2]).max())
+class ScenePlotter:
+    """A plotter with terrain, light, camera and annotations in place.
+
+    The window is so many pixels wide and high. ``surfaces`` are the actors of the surface, and of
+    what is draped over it; ``overlay`` has the annotations. ``after_update`` is called when they
+    were drawn anew, which then cover what was drawn before.
+    """
+
+    def __init__(self, scene: Scene, window: tuple[int, int], *, off_screen: bool) -> None:
+        self.scene = scene
+        self.plotter = open_plotter(scene, window, off_screen=off_screen)
+        self.overlay = Overlay(self.plotter.renderer)
+        self._drawn_for: tuple[object, ...] = ()
+        self.surfaces: list[Any] = []
+        self._terrain: list[str] = []
+        self.after_update: Callable[[], None] | None = None
+        if scene.strips is None:
+            self._aim(self._build(window), window)
+        else:
+            height = fit_layout(window)[0].height / scene.strips.scale
+            place_camera(
+                self.plotter.camera, scene.points, view=scene.view, middle=(0.0, 0.0), height=height
+            )
+        self.update()
+
+    def _aim(self, seen: Float64Array, window: tuple[int, int]) -> None:
+        layout, factor = fit_layout(window)
+        frame = Bounds(*(factor * side for side in astuple(layout.frame)))
+        aim(self.plotter.camera, seen, view=self.scene.view, frame=frame, size=window)
+        self.plotter.renderer.ResetCameraClippingRange()
+
+    def _build(self, window: tuple[int, int]) -> Float64Array:
+        """Add the terrain, and return what must be seen."""
+        before = set(self.plotter.renderer.actors)
+        self.surfaces, seen = add_scene(self.plotter, self.scene, fit_layout(window)[1])
+        self._terrain = [name for name in self.plotter.renderer.actors if name not in before]
+        return seen
+
+    def rebuild(self, scene: Scene) -> None:
+        """Draw another scene of the same surface, seen from where the camera stands."""
+        self.scene = scene
+        for name in self._terrain:
+            self.plotter.remove_actor(name, render=False, reset_camera=False)
+        self._build(tuple(self.plotter.window_size))
+        self._drawn_for = ()
+        self.update()
+        self.plotter.renderer.ResetCameraClippingRange()
+
+    def update(self, *_: object) -> None:
+        """Make the annotations true for the present camera and window, if these have changed."""
+        camera, (width, height) = self.plotter.camera, self.plotter.window_size
+        state = (width, height, camera.parallel_scale, project_ground_axes(camera).tobytes())
+        if state == self._drawn_for:
+            return
+        self._drawn_for = state
+        layout, self.overlay.factor = fit_layout((width, height))
+        pixels = measure_pixels_per_unit(camera, layout.height)
+        for surface in self.surfaces:
+            fade_edges(surface, self.scene.tin, self.scene.ground, pixels)
+        annotate(self.overlay, layout, self.scene.title_block, camera)
+        if self.after_update is not None:
+            self.after_update()
 
 
-def place_vertices(tin: TIN, ground: Ground, exaggeration: float) -> Float64Array:
-    """Return the vertices as drawn: true to scale on the ground, near the origin."""
-    east, north, height = ground.scale
-    return (tin.points - choose_origin(tin)) * (east, north, height * exaggeration)
+def open_plotter(scene: Scene, window: tuple[int, int], *, off_screen: bool) -> Any:
+    """Return a plotter with background and light, and nothing in it."""
+    pv = optional.load("pyvista", _PURPOSE)
+    plotter = pv.Plotter(off_screen=off_screen, window_size=list(window), lighting="none")
+    plotter.set_background([part / 255 for part in scene.title_block.palette.paper])
+    add_lights(plotter, scene.options.sun)
+    return plotter
 
 
-def add_terrain(
-    plotter: Any,
+def add_scene(plotter: Any, scene: Scene, factor: float) -> tuple[list[Any], Float64Array]:
+    """Add terrain and lines to a plotter; return actors with edges, and what must be seen.
+
+    ``factor`` is window pixels for one design pixel.
+    """
+    points = scene.points
+    surface, seen = add_terrain(
+        plotter,
+        scene.tin,
+        points,
+        edges=scene.options.edges,
+        elevations=scene.title_block.elevations,
+        tint=scene.options.tint,
+        is_far_off=scene.shown.is_far_off,
+        has_block=scene.has_block,
+    )
+    surfaces = [surface]
+    if scene.ortho is not None:
+        surfaces.append(add_ortho(plotter, scene.tin, points, scene.ortho, surface))
+    if scene.options.lines:
+        add_lines(plotter, scene.tin, points, factor=factor)
+    if scene.options.contours is not None:
+        _add_contours(plotter, scene, scene.options.contours, factor)
+    return surfaces, seen
+
+
+def _add_contours(plotter: Any, scene: Scene, interval: float, factor: float) -> None:
+    """Draw contour lines, index contours heavier."""
+    found = contours(scene.tin, interval)
+    places = place_in_scene(scene, found.coordinates)
+    for is_index, width in ((False, _CONTOUR_WIDTH), (True, 2 * _CONTOUR_WIDTH)):
+        chosen = np.flatnonzero(found.columns["is_index"] == is_index)
+        if len(chosen):
+            lines = places, found.offsets[0], chosen
+            add_polylines(plotter, *lines, color=_CONTOUR_COLOR, width=width * factor)
+
+
+def place_in_scene(scene: Scene, points: Float64Array) -> Float64Array:
+    """Return where points, (k, 3) in the units of the TIN, are drawn."""
+    placed: Float64Array = (points - choose_origin(scene.tin)) * scene.ground.scale
+    return placed * (1.0, 1.0, scene.exaggeration)
+
+
+def fit_layout(window: tuple[int, int]) -> tuple[Layout, float]:
+    """Return the layout that fills a window, and the window pixels for one design pixel."""
+    factor = min(full / design for full, design in zip(window, _DESIGN_SIZE, strict=True))
+    return Layout(window[0] / factor, window[1] / factor), factor
+
+
+# ----------------------------------------------------------------------- words
+
+
+def _make_title_block(
     tin: TIN,
-    points: Float64Array,
-    *,
-    edges: bool,
-    elevations: tuple[float, float] | None = None,
-    tint: Tint = "elevation",
-    is_far_off: BoolArray | None = None,
-    has_block: bool = True,
-) -> tuple[Any, Float64Array]:
-    """Add the surface and its block to a plotter; return its actor, and points that must be seen.
-
-    ``points`` are its vertices as drawn, (n, 3); ``elevations`` those of the lowest and the highest
-    tint, by default of the TIN; the vertices ``is_far_off``, (n,), need not be in the picture,
-    however high or low they are. What must be seen is (k, 3).
-    """
-    pv = optional.load("pyvista", _PURPOSE)
-
-    ends = (tin.points[:, 2].min(), tin.points[:, 2].max()) if elevations is None else elevations
-    surface = pv.PolyData.from_regular_faces(points, np.array(tin.triangles))
-    surface.point_data["elevation"] = tin.points[:, 2].copy()
-    surface.point_data.active_normals = _average_normals(points, tin.triangles)
-    coloring = _choose_tints(pv, surface, tin, tint, (float(ends[0]), float(ends[1])))
-    actor = plotter.add_mesh(surface, **coloring, **_choose_lighting(), show_scalar_bar=False)
-    actor.prop.interpolation = "Phong"
-    if edges:
-        actor.prop.show_edges = True
-        actor.prop.edge_color = _EDGE_COLOR
-    kept = points if is_far_off is None else points[~is_far_off]
-    if not has_block:
-        return actor, kept
-    block = _make_block(pv, tin, points, float(kept[:, 2].min()))
-    plotter.add_mesh(block, color=_BLOCK_COLOR, culling="back", **_choose_lighting(_BLOCK_AMBIENT))
-    rim = block.points if is_far_off is None else _without(block.points, kept)
-    return actor, np.vstack([kept, rim])
+    ground: Ground,
+    options: PreviewOptions,
+    shown: ElevationRange,
+    factor: float,
+    corridor: Corridor | None,
+    strips: Strips | None,
+) -> TitleBlock:
+    parts = [
+        f"{len(tin.points):,} points, {counted(len(tin.triangles), 'triangle')}",
+        ground.crs_name,
+    ]
+    if corridor is not None and strips is not None:
+        parts.append(_describe_strips(strips, ground))
+    ends = options.elevations or (shown.low, shown.high)
+    return TitleBlock(
+        title=" ".join(options.title.split()),
+        subtitle="  \N{MIDDLE DOT}  ".join(parts),
+        exaggeration=factor,
+        elevations=ends,
+        elevation_caption=ground.elevation_caption,
+        unit=ground.unit,
+        sun=options.sun,
+        warning=_warn(tin, options, shown),
+        palette=options.palette,
+        legend=measure_tint(tin, options.tint, ends, ground.elevation_caption)[1],
+    )
 
 
-def _without(points: Float64Array, kept: Float64Array) -> Float64Array:
-    """Return the points of a block, base last, but for corners far above it or below its base."""
-    height = points[:, 2]
-    rim: Float64Array = points[(height >= height[-1]) & (height <= kept[:, 2].max())]
-    return rim
+def _describe_strips(strips: Strips, ground: Ground) -> str:
+    length = format_number(strips.length, step=1.0 if strips.length >= 100 else 0.01)
+    unit = f" {ground.unit.symbol}" if ground.unit.symbol else ""
+    strip = counted(len(strips.lows), "strip")
+    return f"{strip} of {length}{unit}, to read from left to right, then down"
 
 
-def add_ortho(plotter: Any, tin: TIN, points: Float64Array, ortho: Ortho, surface: Any) -> Any:
-    """Lay a picture over the surface, and return its actor; where it has none, the tints are seen.
-
-    ``points`` are the vertices as drawn, (n, 3); the surface is moved back a little.
-    """
-    pv = optional.load("pyvista", _PURPOSE)
-
-    rows, columns = ortho.shape
-    sides = np.array([columns, rows])
-    # The picture has a transparent frame of a pixel, so that nothing of its edge is drawn out.
-    share = (ortho.place(tin.points) * sides + 1.0) / (sides + 2.0)
-    sheet = pv.PolyData.from_regular_faces(points, np.array(tin.triangles))
-    sheet.active_texture_coordinates = np.column_stack([share[:, 0], 1.0 - share[:, 1]])
-    sheet.point_data.active_normals = _average_normals(points, tin.triangles)
-    texture = pv.Texture(np.pad(ortho.decode(), ((1, 1), (1, 1), (0, 0))))
-    texture.interpolate, texture.mipmap, texture.repeat = True, True, False
-    lighting = _choose_lighting(_ORTHO_AMBIENT)
-    actor = plotter.add_mesh(sheet, color="white", texture=texture, **lighting)
-    actor.prop.interpolation = "Phong"
-    actor.ForceTranslucentOn()
-    surface.mapper.SetResolveCoincidentTopologyToPolygonOffset()
-    surface.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(1.0, 1.0)
-    if surface.prop.show_edges:
-        actor.prop.show_edges = True
-        actor.prop.edge_color = _EDGE_COLOR
-    return actor
+def _warn(tin: TIN, options: PreviewOptions, shown: ElevationRange) -> str:
+    """Return what the tints leave out: elevations far off, or outside of what is asked for."""
+    if options.elevations is None:
+        return describe_far_off(tin, shown)
+    elevations = tin.points[:, 2]
+    low, high = options.elevations
+    count = int(((elevations < low) | (elevations > high)).sum())
+    return f"{counted(count, 'elevation')} out of this range" if count else ""
 
 
-def fade_edges(actor: Any, tin: TIN, ground: Ground, pixels: float) -> None:
-    """Draw the edges of a surface fainter where triangles are small, or they would hide the tints.
-
-    A length of 1 in the scene has so many design pixels.
-    """
-    area = tin.triangulation.area * ground.scale[0] * ground.scale[1] / len(tin.triangles)
-    side = math.sqrt(2 * area) * pixels
-    strength = min(side / _CLEAR_SIDE, 1.0)
-    actor.prop.edge_opacity = max(_EDGE_OPACITY * strength, _FAINTEST_EDGE)
-
-
-def add_lights(plotter: Any, sun: Light = NORTHWEST) -> None:
-    """Light the scene, wherever the camera stands: by a sun, and a weak sky around it."""
-    pv = optional.load("pyvista", _PURPOSE)
-
-    plotter.remove_all_lights()
-    for azimuth, height, strength in _balance_lights(sun):
-        turn, rise = math.radians(azimuth), math.radians(height)
-        flat = math.cos(rise)
-        lamp = pv.Light(light_type="scene light", intensity=strength)
-        lamp.position = (flat * math.sin(turn), flat * math.cos(turn), math.sin(rise))
-        lamp.focal_point = (0.0, 0.0, 0.0)
-        plotter.add_light(lamp)
-
-
-def _balance_lights(sun: Light) -> list[tuple[float, float, float]]:
-    """Return azimuth, altitude and strength of all lights; level ground is always lit alike."""
-    steepness = math.sin(math.radians(sun.altitude))
-    above = _FROM_ABOVE + _SUN * (_STEEPNESS - steepness)
-    strength = _SUN if above >= 0 else (_FROM_ABOVE + _SUN * _STEEPNESS) / steepness
-    beside = [((sun.azimuth + turn) % 360.0, height, share) for turn, height, share in _SKY]
-    return [(*sun, strength), *beside, (0.0, 90.0, max(above, 0.0))]
-
-
-def _choose_lighting(ambient: float = _AMBIENT) -> dict[str, float]:
-    diffuse = (1.0 - ambient) / (1.0 - _AMBIENT)
-    return {"ambient": ambient, "diffuse": diffuse, "specular": 0.0}
-
-
-def _choose_tints(
-    pv: Any, surface: Any, tin: TIN, tint: Tint, ends: tuple[float, float]
-) -> dict[str, Any]:
-    """Return what a plotter needs to colour a surface, and give it what the colours tell."""
-    values, legend = measure_tint(tin, tint, ends, "")
-    if values is None or legend is None:
-        return {"color": PLAIN}
-    low, high = legend.ends if legend.ends[0] < legend.ends[1] else (ends[0] - 0.5, ends[0] + 0.5)
-    if tint != "elevation":
-        surface.cell_data[tint] = values
-    colors = np.column_stack([choose_ramp(tint, 256), np.full(256, 255, np.uint8)])
-    table = pv.LookupTable(values=colors, scalar_range=(low, high), nan_color=PLAIN)
-    return {"scalars": tint, "cmap": table}
-
-
-def _average_normals(points: Float64Array, triangles: Int32Array) -> Float32Array:
-    """Average the unit normals of the triangles at each vertex, weighted by area in the plane.
-
-    So the steep slivers along a hull, which have hardly any area in the plane, do not darken
-    their neighbours.
-    """
-    first, second, third = (points[triangles[:, k]] for k in range(3))
-    faces = np.cross(second - first, third - first)
-    faces *= (faces[:, 2] / np.linalg.norm(faces, axis=1))[:, np.newaxis]
-    corners = triangles.ravel()
-    sums = [np.bincount(corners, np.repeat(part, 3), len(points)) for part in faces.T]
-    normals = np.column_stack(sums)
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    return (normals / np.where(lengths > 0, lengths, 1.0)).astype(np.float32)
-
-
-def _make_block(pv: Any, tin: TIN, points: Float64Array, lowest: float) -> Any:
-    """Return the walls from the boundary down to a level base."""
-    start, stop = edges_at(tin.triangles, tin.neighbors < 0).T
-    extent = float(np.ptp(points[:, :2], axis=0).max())
-    base = lowest - BLOCK_SHARE * extent
-    upper = np.concatenate([points[start], points[stop]])
-    lower = upper * (1.0, 1.0, 0.0) + (0.0, 0.0, base)
-    count = np.arange(len(start))
-    walls = np.column_stack([count, 2 * len(start) + count, 3 * len(start) + count])
-    walls = np.column_stack([walls, len(start) + count])
-    return pv.PolyData.from_regular_faces(np.concatenate([upper, lower]), walls)
+def describe_far_off(tin: TIN, shown: ElevationRange) -> str:
+    """Return how many elevations are far off all others, and the farthest; "" if none."""
+    far = tin.points[shown.is_far_off, 2]
+    if len(far) == 0:
+        return ""
+    worst = far[np.abs(far - (shown.low + shown.high) / 2).argmax()]
+    number = f"{worst:,.12g}"
+    such = ":" if len(far) == 1 else ", such as"
+    return f"{counted(len(far), 'elevation')} far off all others{such} {number}"

@@ -11,20 +11,22 @@ from ...base import optional
 from ...base.errors import TinsmithError
 from ...base.georeference.axes import label_axes
 from ...base.policies import Tint
+from .. import palette
 from ..drawing.linework import add_polylines
 from ..drawing.models import choose_origin
 from ..drawing.rounding import round_down
+from ..palette import parse_hex
 from ..relief.gradients import slope
 from ..sections import profile
 from . import opengl
 from .overlay import Overlay
 from .picture import keep_vtk_plain
-from .stage import Show, fit_sheet, make_stage, place_on_stage
+from .scene import ScenePlotter, fit_layout, make_scene, place_in_scene
 
 if TYPE_CHECKING:
     from ...base.results import Table
     from ...tin import TIN
-    from .look import Look
+    from .options import PreviewOptions
     from .ortho import Ortho
 
 __all__ = ["Reading", "Window", "open_window"]
@@ -36,7 +38,7 @@ _LEVELS = 12
 """Contour levels, about, when the window chooses their interval."""
 
 _MOST_EXAGGERATION = 20.0
-_MARK_COLOR = (200, 30, 60)
+_MARK_COLOR = parse_hex(palette.MARKS_3D)
 _MARK_SIZE = 12.0
 _SECTION_WIDTH = 3.0
 _CHART_PLACE, _CHART_SIZE = (0.52, 0.16), (0.46, 0.3)
@@ -62,59 +64,64 @@ class Window:
     """A surface in a window that follows mouse and keys, or off screen, where nobody sees it."""
 
     def __init__(
-        self, tin: TIN, look: Look, ortho: Ortho | None = None, *, off_screen: bool = False
+        self,
+        tin: TIN,
+        options: PreviewOptions,
+        ortho: Ortho | None = None,
+        *,
+        off_screen: bool = False,
     ) -> None:
-        stage = make_stage(tin, look, ortho, has_strips=False)
-        self.show = Show(stage, look.size, off_screen=off_screen)
+        scene = make_scene(tin, options, ortho, has_strips=False)
+        self.drawn = ScenePlotter(scene, options.size, off_screen=off_screen)
         self.readings: list[Reading] = []
         self._slopes = slope(tin)
-        self._words = Overlay(self.show.plotter.renderer)
+        self._words = Overlay(self.drawn.plotter.renderer)
         self._marks: list[Any] = []
         self._section: Table | None = None
         self._chart: Any = None
         self._line = ""
         self._slider: Any = None
-        self.show.after_update = self._raise_words
+        self.drawn.after_update = self._raise_words
         self._raise_words()
 
     @property
-    def stage(self) -> Any:
+    def scene(self) -> Any:
         """What is drawn now."""
-        return self.show.stage
+        return self.drawn.scene
 
     # ------------------------------------------------------------------ drawing
 
     def set_exaggeration(self, factor: float) -> None:
         """Draw heights with another factor."""
-        stage = self.stage
-        look = replace(stage.look, exaggeration=factor)
-        caption = replace(stage.caption, exaggeration=factor)
-        self._rebuild(replace(stage, look=look, caption=caption))
+        scene = self.scene
+        options = replace(scene.options, exaggeration=factor)
+        title_block = replace(scene.title_block, exaggeration=factor)
+        self._rebuild(replace(scene, options=options, title_block=title_block))
 
     def set_tint(self, tint: Tint) -> None:
         """Colour by elevation, slope or aspect, or not at all."""
-        look = replace(self.stage.look, tint=tint)
-        words = make_stage(self.stage.tin, look, self.stage.ortho, has_strips=False).caption
-        caption = replace(words, exaggeration=self.stage.exaggeration)
-        self._rebuild(replace(self.stage, look=look, caption=caption))
+        options = replace(self.scene.options, tint=tint)
+        words = make_scene(self.scene.tin, options, self.scene.ortho, has_strips=False).title_block
+        title_block = replace(words, exaggeration=self.scene.exaggeration)
+        self._rebuild(replace(self.scene, options=options, title_block=title_block))
 
     def set_contours(self, interval: float | None) -> None:
         """Draw contours at an interval, in the unit of elevations; None for none."""
-        self._rebuild(replace(self.stage, look=replace(self.stage.look, contours=interval)))
+        self._rebuild(replace(self.scene, options=replace(self.scene.options, contours=interval)))
 
     def change_tint(self) -> None:
         """Colour by what comes next."""
-        self.set_tint(_TINTS[(_TINTS.index(self.stage.look.tint) + 1) % len(_TINTS)])
+        self.set_tint(_TINTS[(_TINTS.index(self.scene.options.tint) + 1) % len(_TINTS)])
 
     def toggle_contours(self) -> None:
         """Draw contours at a round interval, or none."""
-        shown = self.stage.shown
+        shown = self.scene.shown
         relief = shown.high - shown.low
-        is_off = self.stage.look.contours is None and relief > 0
+        is_off = self.scene.options.contours is None and relief > 0
         self.set_contours(round_down(relief / _LEVELS * 1.3) if is_off else None)
 
-    def _rebuild(self, stage: Any) -> None:
-        self.show.rebuild(stage)
+    def _rebuild(self, scene: Any) -> None:
+        self.drawn.rebuild(scene)
         self._mark()
 
     # ------------------------------------------------------------------ reading
@@ -128,9 +135,9 @@ class Window:
 
         picker = vtkCellPicker()
         picker.SetTolerance(0.0)
-        picker.AddPickList(self.show.surfaces[0])
+        picker.AddPickList(self.drawn.surfaces[0])
         picker.PickFromListOn()
-        if not picker.Pick(x, y, 0.0, self.show.plotter.renderer):
+        if not picker.Pick(x, y, 0.0, self.drawn.plotter.renderer):
             self._say("No surface there.")
             return None
         found = self.read(np.array(picker.GetPickPosition()))
@@ -143,7 +150,7 @@ class Window:
 
     def read(self, place: Any) -> Reading | None:
         """Read the surface at a place as it is drawn, (3,) array; None off the surface."""
-        tin, scale = self.stage.tin, self.stage.ground.scale
+        tin, scale = self.scene.tin, self.scene.ground.scale
         xy = (place[:2] / scale[:2] + choose_origin(tin)[:2])[np.newaxis]
         triangle = int(tin.locate(xy)[0])
         if triangle < 0:
@@ -153,7 +160,7 @@ class Window:
 
     def describe(self, found: Reading) -> str:
         """Return a reading in words, in the units of the CRS."""
-        ground, crs = self.stage.ground, self.stage.tin.crs
+        ground, crs = self.scene.ground, self.scene.tin.crs
         east, north = label_axes(crs)
         is_geographic = crs is not None and crs.is_geographic
         digits = 7 if is_geographic else 3
@@ -172,7 +179,7 @@ class Window:
             return None
         ends = [(one.easting, one.northing) for one in self.readings]
         try:
-            table = profile(self.stage.tin, ends)
+            table = profile(self.scene.tin, ends)
         except TinsmithError as error:
             self._say(str(error))
             return None
@@ -184,8 +191,8 @@ class Window:
     def _draw_chart(self, table: Table) -> None:
         pv = optional.load("pyvista", _PURPOSE)
         if self._chart is not None:
-            self.show.plotter.remove_chart(self._chart)
-        unit, up = self.stage.ground.unit.symbol, self.stage.ground.elevation_caption
+            self.drawn.plotter.remove_chart(self._chart)
+        unit, up = self.scene.ground.unit.symbol, self.scene.ground.elevation_caption
         self._chart = pv.Chart2D(
             size=_CHART_SIZE,
             loc=_CHART_PLACE,
@@ -194,18 +201,18 @@ class Window:
         )
         self._chart.background_color = (1.0, 1.0, 1.0, 0.9)
         self._chart.line(np.array(table["station"]), np.array(table["elevation"]), color="k")
-        self.show.plotter.add_chart(self._chart)
+        self.drawn.plotter.add_chart(self._chart)
 
     def _mark(self) -> None:
         """Show the last readings, and the section between them, on the surface."""
-        plotter = self.show.plotter
+        plotter = self.drawn.plotter
         for actor in self._marks:
             plotter.remove_actor(actor, render=False)
         self._marks = []
         if not self.readings:
             return
         places = [(one.easting, one.northing, one.elevation) for one in self.readings]
-        drawn = place_on_stage(self.stage, np.array(places))
+        drawn = place_in_scene(self.scene, np.array(places))
         options = {"color": _MARK_COLOR, "lighting": False, "pickable": False}
         self._marks.append(
             plotter.add_points(
@@ -223,9 +230,9 @@ class Window:
         places = np.column_stack([ends[0] + share * (ends[1] - ends[0]), elevation])
         seen = np.isfinite(elevation)
         pairs = np.flatnonzero(seen[:-1] & seen[1:])
-        drawn = place_on_stage(self.stage, places)[np.column_stack([pairs, pairs + 1])]
+        drawn = place_in_scene(self.scene, places)[np.column_stack([pairs, pairs + 1])]
         return add_polylines(
-            self.show.plotter,
+            self.drawn.plotter,
             drawn.reshape(-1, 3),
             np.arange(0, 2 * len(pairs) + 1, 2),
             np.arange(len(pairs)),
@@ -240,15 +247,15 @@ class Window:
 
     def _raise_words(self) -> None:
         """Draw the line, what keys do, and the slider over the annotations."""
-        sheet, self._words.factor = fit_sheet(tuple(self.show.plotter.window_size))
-        palette, left = self.stage.caption.palette, sheet.frame.xmin
+        layout, self._words.factor = fit_layout(tuple(self.drawn.plotter.window_size))
+        palette, left = self.scene.title_block.palette, layout.frame.xmin
         self._words.clear()
         self._words.draw_text((left, 14.0), _HELP, palette.grey, size=13)
         if self._line:
-            place = (left, sheet.frame.ymax - 14.0)
+            place = (left, layout.frame.ymax - 14.0)
             self._words.draw_text(place, self._line, palette.ink, size=17)
         if self._slider is not None:
-            knob, renderer = self._slider.GetRepresentation(), self.show.plotter.renderer
+            knob, renderer = self._slider.GetRepresentation(), self.drawn.plotter.renderer
             renderer.RemoveViewProp(knob)
             renderer.AddViewProp(knob)
 
@@ -256,11 +263,11 @@ class Window:
 
     def connect(self) -> None:
         """Follow mouse, keys and slider."""
-        plotter = self.show.plotter
+        plotter = self.drawn.plotter
         plotter.enable_anti_aliasing("msaa", multi_samples=8)
         plotter.enable_terrain_style(mouse_wheel_zooms=True)
-        plotter.camera.AddObserver("ModifiedEvent", self.show.update)
-        plotter.render_window.AddObserver("WindowResizeEvent", self.show.update)
+        plotter.camera.AddObserver("ModifiedEvent", self.drawn.update)
+        plotter.render_window.AddObserver("WindowResizeEvent", self.drawn.update)
         keys = {
             "t": self.change_tint,
             "c": self.toggle_contours,
@@ -269,7 +276,7 @@ class Window:
         }
         for key, action in keys.items():
             plotter.add_key_event(key, action)
-        factor = self.stage.exaggeration
+        factor = self.scene.exaggeration
         self._slider = plotter.add_slider_widget(
             self._slide,
             (min(1.0, factor), max(_MOST_EXAGGERATION, factor)),
@@ -277,7 +284,7 @@ class Window:
             title="Vertical exaggeration",
             pointa=(0.72, 0.93),
             pointb=(0.97, 0.93),
-            color=[part / 255 for part in self.stage.caption.palette.ink],
+            color=[part / 255 for part in self.scene.title_block.palette.ink],
             interaction_event="end",
             fmt="%.1f",
             style="modern",
@@ -288,19 +295,19 @@ class Window:
 
     def _slide(self, value: float) -> None:
         factor = round(value, 1) or value
-        if factor != self.stage.exaggeration:
+        if factor != self.scene.exaggeration:
             self.set_exaggeration(factor)
 
     def _pick_under_pointer(self) -> None:
-        self.pick(*self.show.plotter.iren.get_event_position())
+        self.pick(*self.drawn.plotter.iren.get_event_position())
 
 
-def open_window(tin: TIN, look: Look, ortho: Ortho | None = None) -> None:
+def open_window(tin: TIN, options: PreviewOptions, ortho: Ortho | None = None) -> None:
     """Show a surface in a window, and wait until it is closed."""
     optional.load("pyvista", _PURPOSE)
     opengl.require_window()
     with keep_vtk_plain():
-        window = Window(tin, look, ortho)
-        opengl.require_on_screen(window.show.plotter.render_window.GetClassName())
+        window = Window(tin, options, ortho)
+        opengl.require_on_screen(window.drawn.plotter.render_window.GetClassName())
         window.connect()
-        window.show.plotter.show(title=window.stage.caption.title)
+        window.drawn.plotter.show(title=window.scene.title_block.title)

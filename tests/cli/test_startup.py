@@ -13,7 +13,7 @@ NOT_FOR_HELP = (
     f"{HEAVY} importlib.metadata tinsmith.cli.commands.build tinsmith.tin tinsmith.io.reading"
 )
 NOT_FOR_JOBS = "pandas rich rasterio pyogrio matplotlib pyvista vtk meshio laspy pyarrow"
-PARTS = "tinsmith.terrain.sheets tinsmith.terrain.charts tinsmith.terrain.viewer"
+PARTS = "tinsmith.terrain.plans tinsmith.terrain.charts tinsmith.terrain.viewer"
 PROGRAM = """
 import json, sys
 from tinsmith.cli import main

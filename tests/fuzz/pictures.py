@@ -10,11 +10,11 @@ import numpy as np
 
 import tinsmith as ts
 from tinsmith.base.crs import METRE
-from tinsmith.terrain.viewer.annotations import Caption, annotate
+from tinsmith.terrain.viewer.annotations import TitleBlock, annotate
 from tinsmith.terrain.viewer.camera import View, aim
 from tinsmith.terrain.viewer.corridor import STRIP_GAP
-from tinsmith.terrain.viewer.look import make_look
-from tinsmith.terrain.viewer.stage import fit_sheet, make_stage
+from tinsmith.terrain.viewer.options import PreviewOptions
+from tinsmith.terrain.viewer.scene import fit_layout, make_scene
 from tinsmith.terrain.viewer.strips import place_strips
 
 from .campaign import Campaign, Case
@@ -81,22 +81,22 @@ def examine(case: Case) -> str:
     except ts.TinsmithError:
         return "refused: points"
     options = {name: case[name] for name in ("azimuth", "tilt", "size", "title")}
-    stage = make_stage(tin, make_look(**options))
-    sheet, _ = fit_sheet(stage.look.size)
-    if stage.strips is not None:
-        examine_strips(stage, sheet)
-        return f"{min(len(stage.strips.lows), 9)} strips"
-    size = (sheet.width, sheet.height)
+    scene = make_scene(tin, PreviewOptions.of(**options))
+    layout, _ = fit_layout(scene.options.size)
+    if scene.strips is not None:
+        examine_strips(scene, layout)
+        return f"{min(len(scene.strips.lows), 9)} strips"
+    size = (layout.width, layout.height)
     camera = SimpleNamespace()
-    points = stage.points[~stage.shown.is_far_off]
-    aim(camera, points, view=stage.view, frame=sheet.frame, size=size)
+    points = scene.points[~scene.shown.is_far_off]
+    aim(camera, points, view=scene.view, frame=layout.frame, size=size)
     shown = project(camera, points, size)
-    frame, slack = sheet.frame, 1e-6 * max(size)
+    frame, slack = layout.frame, 1e-6 * max(size)
     assert (shown.min(axis=0) >= np.array([frame.xmin, frame.ymin]) - slack).all(), "left, below"
     assert (shown.max(axis=0) <= np.array([frame.xmax, frame.ymax]) + slack).all(), "right, above"
     room = np.array([frame.width, frame.height]) - np.ptp(shown, axis=0)
     assert room.min() <= 1e-3 * max(size), "the frame is not filled"
-    examine_annotations(stage, sheet, camera)
+    examine_annotations(scene, layout, camera)
     return "one picture"
 
 
@@ -113,12 +113,12 @@ def project(camera: Any, points: Any, size: Any) -> Any:
     return np.column_stack([away @ right, away @ up]) * scale + np.divide(size, 2)
 
 
-def examine_annotations(stage: Any, sheet: Any, camera: Any) -> None:
-    overlay, size = Recorder(), (sheet.width, sheet.height)
+def examine_annotations(scene: Any, layout: Any, camera: Any) -> None:
+    overlay, size = Recorder(), (layout.width, layout.height)
     unit = float(camera.parallel_scale)
-    caption = Caption(stage.caption.title, "S", 1.0, (0.0, 1.0), "m", METRE)
-    annotate(overlay, sheet, caption, camera)  # type: ignore[arg-type]
-    view: View = stage.view
+    title_block = TitleBlock(scene.title_block.title, "S", 1.0, (0.0, 1.0), "m", METRE)
+    annotate(overlay, layout, title_block, camera)  # type: ignore[arg-type]
+    view: View = scene.view
     turn = math.radians(view.azimuth)
     ends = [[0, 0, 0], [0, unit, 0], [-unit * math.cos(turn), unit * math.sin(turn), 0]]
     start, north, across = project(camera, ends, size)
@@ -134,10 +134,10 @@ def examine_annotations(stage: Any, sheet: Any, camera: Any) -> None:
     *_, number, symbol = said
     meters = float(number.replace(",", "")) * (1000.0 if symbol == "km" else 1.0)
     assert abs(meters * pixels - length) < 1e-6 * length, f"{meters} m are {length} pixels"
-    examine_title(overlay, sheet, stage.caption.title)
+    examine_title(overlay, layout, scene.title_block.title)
 
 
-def examine_title(overlay: Recorder, sheet: Any, title: str) -> None:
+def examine_title(overlay: Recorder, layout: Any, title: str) -> None:
     lines = [one for one in overlay.texts if one[4] and one[0] != "N"]
     whole = " ".join(words for words, *_ in lines)
     is_cut = whole.endswith("...")
@@ -145,13 +145,13 @@ def examine_title(overlay: Recorder, sheet: Any, title: str) -> None:
     assert title.replace(" ", "").startswith(kept), "another title"
     assert is_cut or kept == title.replace(" ", ""), "a title is cut and does not show it"
     for words, _, y, size, _ in lines:
-        assert len(words) * LETTER * size <= sheet.width - 88 + 1e-6, "too wide"
-        assert sheet.frame.ymax < y < sheet.height - size / 2, "outside of the header"
+        assert len(words) * LETTER * size <= layout.width - 88 + 1e-6, "too wide"
+        assert layout.frame.ymax < y < layout.height - size / 2, "outside of the header"
 
 
-def examine_strips(stage: Any, sheet: Any) -> None:
-    strips, (right, up, _) = stage.strips, stage.view.axes
-    across, along = stage.points @ right, stage.points @ up
+def examine_strips(scene: Any, layout: Any) -> None:
+    strips, (right, up, _) = scene.strips, scene.view.axes
+    across, along = scene.points @ right, scene.points @ up
     slack = 1e-9 * (np.ptp(across) + np.ptp(along))
     assert strips.edges[0] <= across.min() + slack, "begins too late"
     assert strips.edges[-1] >= across.max() - slack, "ends too early"
@@ -159,7 +159,7 @@ def examine_strips(stage: Any, sheet: Any) -> None:
     strip = np.clip(np.searchsorted(strips.edges, across, side="right") - 1, 0, last)
     assert (along >= strips.lows[strip] - slack).all(), "below its strip"
     assert (along <= strips.highs[strip] + slack).all(), "above its strip"
-    places, frame = place_strips(strips, sheet), sheet.frame
+    places, frame = place_strips(strips, layout), layout.frame
     assert places[0].top <= frame.ymax - STRIP_GAP + 1e-6, "no room for the label"
     assert places[-1].top - places[-1].height >= frame.ymin - 1e-6, "below the frame"
     assert places[0].left >= frame.xmin - 1e-6, "left of the frame"

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.crs import CRS, Unit, require_one_unit, shorten_crs
 from ...base.errors import OptionError
-from ...base.methods import make_card
+from ...base.methods import make_html_repr
 from ...base.ranges import require_degrees
 from ...base.sentences import counted
 from ...base.types import Bounds, Finding, RowSources
@@ -167,7 +167,7 @@ class Survey:
         )
 
     def _repr_html_(self) -> str:
-        return make_card(self)
+        return make_html_repr(self)
 
 
 def _as_lines(name: str, lines: Any) -> Sequence[Any]:

@@ -20,7 +20,7 @@ from ....base.crs import assume_elevation_unit
 from ....base.errors import CrsError, WriteError
 from ....base.notes import warn
 from ....base.sentences import FILE, counted
-from ....terrain.viewer.tints import interpolate_tints
+from ....terrain.palette import interpolate_tints
 from ..common import format_crs, format_unit, require_factor, require_tin
 from ..texture import choose_picture, load_texture
 

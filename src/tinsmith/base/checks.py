@@ -12,6 +12,7 @@ from .sentences import shown
 
 __all__ = [
     "as_flag",
+    "as_number",
     "is_finite_number",
     "is_whole_number",
     "require_count",
@@ -42,6 +43,21 @@ def as_flag(name: str, value: Any) -> bool:
     if not isinstance(value, bool | np.bool_):
         raise OptionError(name, value, "True or False")
     return bool(value)
+
+
+def as_number(
+    name: str,
+    value: Any,
+    allowed: str,
+    *,
+    above: float = -math.inf,
+    least: float = -math.inf,
+    most: float = math.inf,
+) -> float:
+    """Return a finite number within limits; ``allowed`` says in words what they are."""
+    if not (is_finite_number(value) and value > above and least <= value <= most):
+        raise OptionError(name, value, allowed)
+    return float(value)
 
 
 def require_count(name: str, value: Any, *, or_none: bool = False) -> None:

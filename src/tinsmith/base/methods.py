@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-__all__ = ["call_method", "make_card", "register_methods"]
+__all__ = ["call_method", "make_html_repr", "register_methods"]
 
 _FUNCTIONS: dict[str, str] = {}
 
@@ -29,6 +29,6 @@ def call_method(method: str, *given: Any, **options: Any) -> Any:
     return function(*given, **options)
 
 
-def make_card(thing: object) -> str:
+def make_html_repr(thing: object) -> str:
     """Return the HTML that an object shows in a notebook."""
     return str(call_method(f"{type(thing).__name__}._repr_html_", thing))

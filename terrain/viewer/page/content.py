@@ -12,15 +12,15 @@ from ....base.errors import OptionError
 from ....base.georeference.axes import label_axes
 from ....base.georeference.units import find_ellipsoid
 from ....base.sentences import counted
+from ... import palette
 from ...drawing.linework import EDGE_KINDS, find_line_edges
-from ..ramps import choose_ramp
-from ..tints import mix_tints
+from ...palette import choose_ramp, mix_tints, write_hex
 from .packing import pack_counts, pack_rows, pack_triangles, sort_in_morton_order
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ....base.arrays import Float64Array, Int32Array, Int64Array, UInt8Array
+    from ....base.arrays import Float64Array, Int32Array, Int64Array
     from ....base.georeference.units import Ground
     from ....base.policies import Tint
     from ....tin import TIN, Survey
@@ -42,15 +42,12 @@ _SHOWN_DIGITS = 2
 
 
 _PENS: dict[str, tuple[str, str, bool, float]] = {
-    "soft": ("Soft breaklines", "#40444c", True, 2.0),
-    "hard": ("Breaklines", "#222226", False, 2.0),
-    "hole": ("Holes", "#963a22", False, 2.4),
-    "boundary": ("Boundary", "#963a22", False, 2.4),
-    "water": ("Water", "#185c98", False, 3.0),
+    "soft": ("Soft breaklines", palette.LINES["soft"], True, 2.0),
+    "hard": ("Breaklines", palette.LINES["hard"], False, 2.0),
+    "hole": ("Holes", palette.LINES["hole"], False, 2.4),
+    "boundary": ("Boundary", palette.LINES["boundary"], False, 2.4),
+    "water": ("Water", palette.LINES["water"], False, 3.0),
 }
-_CUT_AND_FILL = ((0.50, 0.15, 30.0), (0.72, 0.10, 45.0), (0.96, 0.0, 90.0))
-_FILL = ((0.96, 0.0, 250.0), (0.70, 0.10, 250.0), (0.45, 0.13, 255.0))
-"""Rungs of ramps in Oklch: lightness, chroma, hue in degrees."""
 
 
 class Labels(NamedTuple):
@@ -134,6 +131,7 @@ def describe_page(
         "elevationScale": float(ground.scale[2]),
         **start._asdict(),
         "ramps": _make_ramps(),
+        "colors": palette.PAGE_COLORS,
         "ortho": None if ortho is None else _describe_ortho(ortho, steps),
         "surfaces": described,
     }
@@ -259,11 +257,7 @@ def _describe_labels(labels: Labels, steps: _Steps) -> dict[str, Any]:
 def _make_ramps() -> dict[str, list[str]]:
     tints: tuple[Tint, ...] = ("elevation", "slope", "aspect")
     return {
-        **{tint: _name_colors(choose_ramp(tint, _COLOURS)) for tint in tints},
-        "difference": _name_colors(mix_tints(_CUT_AND_FILL, _COLOURS // 2))
-        + _name_colors(mix_tints(_FILL, _COLOURS // 2)),
+        **{tint: write_hex(choose_ramp(tint, _COLOURS)) for tint in tints},
+        "difference": write_hex(mix_tints(palette.CUT_RUNGS, _COLOURS // 2))
+        + write_hex(mix_tints(palette.FILL_RUNGS, _COLOURS // 2)),
     }
-
-
-def _name_colors(colors: UInt8Array) -> list[str]:
-    return [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in colors.tolist()]

@@ -7,6 +7,8 @@ from html import escape
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
+from ...palette import PAGE, SAMPLE_FRAME
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -25,6 +27,7 @@ def make_document(content: Mapping[str, Any]) -> str:
         "title": escape(content["title"]),
         "subtitle": escape(content["subtitle"]),
         "notes": escape(content["notes"]),
+        "colors": _write_colors(),
         "style": folder.joinpath("style.css").read_text("utf-8"),
         "payload": _write_json(content),
         "viewer": folder.joinpath("viewer.js").read_text("utf-8"),
@@ -35,6 +38,16 @@ def make_document(content: Mapping[str, Any]) -> str:
         name, _, rest = piece.partition("}}")
         filled += [parts[name], rest]
     return "".join(filled)
+
+
+def _write_colors() -> str:
+    """Return the colours of both themes as variables of CSS."""
+    themes = ((":root", "light"), (':root[data-theme="dark"]', "dark"))
+    rules = [
+        f"{selector} {{ {' '.join(f'--{name}: {code};' for name, code in PAGE[theme].items())} }}"
+        for selector, theme in themes
+    ]
+    return "\n".join([f":root {{ --sample: {SAMPLE_FRAME}; }}", *rules])
 
 
 def _write_json(content: Mapping[str, Any]) -> str:

@@ -13,7 +13,7 @@ from pyproj import Transformer
 
 import tinsmith as ts
 from tinsmith.base.georeference.axes import find_axes
-from tinsmith.terrain.viewer.card import draw_map
+from tinsmith.terrain.viewer.html_repr import draw_map
 
 LO19 = "+proj=tmerc +lat_0=0 +lon_0=19 +k=1 +x_0=0 +y_0=0 +ellps=WGS84 +units=m +type=crs"
 TWINS = {

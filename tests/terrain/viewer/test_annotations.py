@@ -11,9 +11,11 @@ import pytest
 
 from tinsmith import triangulate
 from tinsmith.base.georeference.units import METRE, find_ground
+from tinsmith.terrain.palette import Palette, interpolate_tints
+from tinsmith.terrain.viewer.actors import add_lights, place_vertices
 from tinsmith.terrain.viewer.annotations import (
-    Caption,
-    Sheet,
+    Layout,
+    TitleBlock,
     annotate,
     scale_bar_length,
 )
@@ -25,15 +27,12 @@ from tinsmith.terrain.viewer.camera import (
     project_ground_axes,
 )
 from tinsmith.terrain.viewer.overlay import Overlay, _find_wide_font
-from tinsmith.terrain.viewer.palette import Palette
-from tinsmith.terrain.viewer.scene import add_lights, place_vertices
-from tinsmith.terrain.viewer.tints import interpolate_tints
 from tinsmith.tin import Bounds
 
 pv = pytest.importorskip("pyvista")
 
 INK, GREY, PAPER, WARNING = Palette()
-SHEET = Sheet(1400.0, 900.0)
+LAYOUT = Layout(1400.0, 900.0)
 EXTENT = 500.0
 
 
@@ -77,9 +76,9 @@ def annotated(view, *, extent=EXTENT, elevations=(312.4, 398.6), exaggeration=2.
     """The annotations of a view of a square, and its camera."""
     camera, overlay = pv.Camera(), Recorder()
     square = np.array([[x, y, 0.0] for x in (0, extent) for y in (0, extent)])
-    aim(camera, square, view=view, frame=SHEET.frame, size=(SHEET.width, SHEET.height))
-    caption = Caption("Title", "Subtitle", exaggeration, elevations, "m", METRE)
-    annotate(overlay, SHEET, caption, camera)
+    aim(camera, square, view=view, frame=LAYOUT.frame, size=(LAYOUT.width, LAYOUT.height))
+    title_block = TitleBlock("Title", "Subtitle", exaggeration, elevations, "m", METRE)
+    annotate(overlay, LAYOUT, title_block, camera)
     return overlay, camera
 
 
@@ -121,7 +120,7 @@ def test_the_caption_states_the_exaggeration_that_is_drawn(factor):
 @pytest.mark.parametrize("extent", [0.7, 37.0, 500.0, 8_300.0, 120_000.0])
 def test_the_scale_bar_is_as_long_as_it_says(extent):
     overlay, camera = annotated(VIEWS["top"], extent=extent)
-    pixels = measure_pixels_per_unit(camera, SHEET.height)
+    pixels = measure_pixels_per_unit(camera, LAYOUT.height)
     length, shown, symbol = scale_bar_length(METRE, pixels)
     parts = [r for r in overlay.rectangles if r[3] == 7.0]
     assert [color for *_, color in parts] == [INK, PAPER, INK, PAPER]
@@ -215,27 +214,27 @@ def test_the_legend_of_level_ground_has_one_number():
     assert overlay.place_of("Elevation (m)")[1] > 62.0
 
 
-# -------------------------------------------------------------------- the sheet
+# -------------------------------------------------------------------- the layout
 
 
 def test_the_margins_keep_the_terrain_from_the_words():
     overlay, _ = annotated(VIEWS["top"])
-    frame = SHEET.frame
+    frame = LAYOUT.frame
     assert isinstance(frame, Bounds)
     below, above = overlay.rectangles[:2]
     assert below[:2] == (0.0, 0.0)
-    assert below[2] == above[2] == SHEET.width
+    assert below[2] == above[2] == LAYOUT.width
     assert frame.ymin - 20 < below[3] <= frame.ymin
     assert frame.ymax <= above[1] < frame.ymax + 20
-    assert above[1] + above[3] >= SHEET.height
+    assert above[1] + above[3] >= LAYOUT.height
     assert overlay.place_of("Title")[1] > overlay.place_of("Subtitle")[1] > above[1]
 
 
 def written_title(title, subtitle="short"):
     """The lines of a title as an overlay is asked to write them, with their sizes."""
     overlay, camera = Recorder(), pv.Camera()
-    aim(camera, np.eye(3), view=VIEWS["top"], frame=SHEET.frame, size=(1400, 900))
-    annotate(overlay, SHEET, Caption(title, subtitle, 1.0, (0.0, 1.0), "m", METRE), camera)
+    aim(camera, np.eye(3), view=VIEWS["top"], frame=LAYOUT.frame, size=(1400, 900))
+    annotate(overlay, LAYOUT, TitleBlock(title, subtitle, 1.0, (0.0, 1.0), "m", METRE), camera)
     written = zip(overlay.texts, overlay.styles, strict=True)
     lines = [(said, y, size) for (said, _, y, _), (_, size, bold) in written if bold]
     return overlay, [line for line in lines if line[0] != "N"]
@@ -252,8 +251,8 @@ def test_a_long_title_is_written_whole_in_smaller_letters_and_more_lines(count):
     for (said, y, size), below in zip(lines, heights[1:], strict=True):
         assert overlay.measure_text(said, size=size) <= 1312
         assert y - below >= 1.2 * min(size, 17.0)
-        assert y + size < SHEET.height
-    assert heights[-1] > SHEET.frame.ymax + 8.0
+        assert y + size < LAYOUT.height
+    assert heights[-1] > LAYOUT.frame.ymax + 8.0
 
 
 @pytest.mark.parametrize("words", ["word " * 200, "x" * 10_000, "x " * 5_000])
@@ -277,9 +276,9 @@ def test_a_subtitle_is_cut_to_the_last_letter_that_fits():
 
 
 def test_every_word_stands_where_the_layout_has_it():
-    """The sheet as a whole, so that nothing moves, is lost or says something else unseen."""
+    """The layout as a whole, so that nothing moves, is lost or says something else unseen."""
     overlay, camera = annotated(VIEWS["oblique"])
-    pixels = measure_pixels_per_unit(camera, SHEET.height)
+    pixels = measure_pixels_per_unit(camera, LAYOUT.height)
     assert 100 * pixels <= 260 < 200 * pixels
     tip = overlay.polygons[0][0][0]
     north = project_ground_axes(camera)[1]

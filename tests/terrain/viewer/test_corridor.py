@@ -12,7 +12,7 @@ from PIL import Image
 from tinsmith import triangulate
 from tinsmith.base.georeference.units import find_ground
 from tinsmith.terrain import preview
-from tinsmith.terrain.viewer.annotations import Sheet
+from tinsmith.terrain.viewer.annotations import Layout
 from tinsmith.terrain.viewer.camera import View
 from tinsmith.terrain.viewer.corridor import (
     STRIP_GAP,
@@ -20,11 +20,11 @@ from tinsmith.terrain.viewer.corridor import (
     find_corridor,
     measure_mean_width,
 )
-from tinsmith.terrain.viewer.look import make_look
-from tinsmith.terrain.viewer.stage import make_stage
+from tinsmith.terrain.viewer.options import PreviewOptions
+from tinsmith.terrain.viewer.scene import make_scene
 from tinsmith.terrain.viewer.strips import place_strips
 
-SHEET = Sheet(1600.0, 1000.0)
+LAYOUT = Layout(1600.0, 1000.0)
 
 
 def corridor(length=20_000.0, width=40.0, azimuth=55.0, *, count=900, relief=80.0, seed=1):
@@ -88,17 +88,17 @@ def test_the_mean_width_is_that_of_a_strip():
 @pytest.mark.parametrize("elongation", [12.0, 30.0, 500.0])
 def test_strips_hold_all_ground_and_fit_the_sheet(elongation):
     tin = corridor(width=20_000 / elongation)
-    stage = make_stage(tin, make_look())
-    strips, (right, up, _) = stage.strips, stage.view.axes
+    scene = make_scene(tin, PreviewOptions.of())
+    strips, (right, up, _) = scene.strips, scene.view.axes
     assert len(strips.lows) > 1
-    across, along = stage.points @ right, stage.points @ up
+    across, along = scene.points @ right, scene.points @ up
     assert strips.edges[0] == pytest.approx(across.min())
     assert strips.edges[-1] == pytest.approx(across.max())
     strip = np.clip(np.searchsorted(strips.edges, across, "right") - 1, 0, len(strips.lows) - 1)
     assert (along >= strips.lows[strip] - 1e-9).all()
     assert (along <= strips.highs[strip] + 1e-9).all()
-    places = place_strips(strips, SHEET)
-    frame = SHEET.frame
+    places = place_strips(strips, LAYOUT)
+    frame = LAYOUT.frame
     assert places[0].top <= frame.ymax - STRIP_GAP + 1e-9
     assert places[-1].top - places[-1].height >= frame.ymin - 1e-6
     for upper, lower in itertools.pairwise(places):
@@ -109,16 +109,16 @@ def test_strips_hold_all_ground_and_fit_the_sheet(elongation):
 
 def test_strips_are_larger_than_one_picture_would_be():
     tin = corridor()
-    stage = make_stage(tin, make_look())
-    single = SHEET.frame.width / 20_000
-    assert stage.strips.scale > 8 * single
+    scene = make_scene(tin, PreviewOptions.of())
+    single = LAYOUT.frame.width / 20_000
+    assert scene.strips.scale > 8 * single
 
 
 def test_ground_between_points_far_apart_is_within_its_strip():
     """Two triangles from end to end: the strips between have edges, and no point."""
     points = np.array([[0, 0, 0], [1000, 0, 0], [1000, 20, 0], [0, 20, 0]], float)
     edges = np.array([[0, 1], [1, 2], [2, 3], [3, 0], [0, 2]], np.int32)
-    strips = cut_into_strips(points, edges, View(180.0, 90.0), SHEET.frame)
+    strips = cut_into_strips(points, edges, View(180.0, 90.0), LAYOUT.frame)
     assert len(strips.lows) > 3
     np.testing.assert_allclose(strips.lows, 0.0, atol=1e-9)
     np.testing.assert_allclose(strips.highs, 20.0)
@@ -128,25 +128,25 @@ def test_ground_between_points_far_apart_is_within_its_strip():
     ("options", "azimuth"), [({}, 145.0), ({"azimuth": 60.0}, 60.0), ({"view": "top"}, 145.0)]
 )
 def test_who_chooses_where_to_look_from_gets_one_picture(options, azimuth):
-    stage = make_stage(corridor(), make_look(**options))
-    assert stage.view.azimuth == pytest.approx(azimuth, abs=0.01)
-    assert (stage.strips is None) == ("azimuth" in options)
-    assert not stage.has_block
-    assert ("strips of" in stage.caption.subtitle) == (stage.strips is not None)
+    scene = make_scene(corridor(), PreviewOptions.of(**options))
+    assert scene.view.azimuth == pytest.approx(azimuth, abs=0.01)
+    assert (scene.strips is None) == ("azimuth" in options)
+    assert not scene.has_block
+    assert ("strips of" in scene.title_block.subtitle) == (scene.strips is not None)
 
 
 @pytest.mark.parametrize(("width", "has_block"), [(1000.0, True), (100.0, True), (40.0, False)])
 def test_ground_narrower_than_its_block_is_high_stands_on_none(width, has_block):
     tin = corridor(length=1000.0, width=width)
-    assert make_stage(tin, make_look(azimuth=0.0)).has_block == has_block
+    assert make_scene(tin, PreviewOptions.of(azimuth=0.0)).has_block == has_block
 
 
 def test_the_exaggeration_of_strips_goes_by_the_relief_within_one():
-    stage = make_stage(corridor(relief=80.0), make_look())
-    within = 80.0 / len(stage.strips.lows)
-    assert stage.exaggeration * within >= 0.5 * 39.9
-    assert stage.exaggeration * within <= 40.0
-    assert make_stage(corridor(), make_look(exaggeration=7.0)).exaggeration == 7.0
+    scene = make_scene(corridor(relief=80.0), PreviewOptions.of())
+    within = 80.0 / len(scene.strips.lows)
+    assert scene.exaggeration * within >= 0.5 * 39.9
+    assert scene.exaggeration * within <= 40.0
+    assert make_scene(corridor(), PreviewOptions.of(exaggeration=7.0)).exaggeration == 7.0
 
 
 @pytest.mark.usefixtures("can_draw")
@@ -157,11 +157,11 @@ def test_each_strip_shows_its_own_part(tmp_path):
     path = preview(tin, output=tmp_path / "a.png", size=(1600, 1000), view="top", lines=False)
     with Image.open(path) as image:
         pixels = np.asarray(image.convert("RGB")).astype(int)
-    stage = make_stage(tin, make_look(view="top"))
+    scene = make_scene(tin, PreviewOptions.of(view="top"))
     means = []
-    for place in place_strips(stage.strips, SHEET):
+    for place in place_strips(scene.strips, LAYOUT):
         row, left = round(1000 - place.top), round(place.left)
-        width = round(stage.strips.length * stage.strips.scale)
+        width = round(scene.strips.length * scene.strips.scale)
         band = pixels[row : row + round(place.height), left : left + width]
         colored = np.ptp(band, axis=2) > 15
         assert colored[3:-3].mean() > 0.9
@@ -175,7 +175,7 @@ def test_each_strip_shows_its_own_part(tmp_path):
 def test_level_strips_seen_from_the_horizon_stay_on_the_sheet():
     """They have no height at all, so that no number of them would be too many."""
     tin = corridor(relief=0.0)
-    stage = make_stage(tin, make_look(tilt=0.0))
-    places = place_strips(stage.strips, SHEET)
+    scene = make_scene(tin, PreviewOptions.of(tilt=0.0))
+    places = place_strips(scene.strips, LAYOUT)
     assert len(places) > 5
-    assert places[-1].top - places[-1].height >= SHEET.frame.ymin
+    assert places[-1].top - places[-1].height >= LAYOUT.frame.ymin

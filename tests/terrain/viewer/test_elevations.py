@@ -8,8 +8,8 @@ import pytest
 from tinsmith import triangulate
 from tinsmith.terrain import preview
 from tinsmith.terrain.viewer.elevations import find_elevation_range
-from tinsmith.terrain.viewer.look import make_look
-from tinsmith.terrain.viewer.stage import make_stage
+from tinsmith.terrain.viewer.options import PreviewOptions
+from tinsmith.terrain.viewer.scene import make_scene
 
 pytest.importorskip("pyvista")
 
@@ -27,16 +27,16 @@ def hill(blunders=(), *, level=False):
 @pytest.mark.parametrize("rows", [(300,), (0,), (17, 300, 471)])
 def test_a_blunder_changes_neither_tints_nor_exaggeration_nor_frame(value, rows):
     sound, wrong = (
-        make_stage(hill([(row, z) for row in rows]), make_look()) for z in (310.0, value)
+        make_scene(hill([(row, z) for row in rows]), PreviewOptions.of()) for z in (310.0, value)
     )
     assert wrong.exaggeration == sound.exaggeration
-    assert wrong.caption.elevations == pytest.approx(sound.caption.elevations, abs=0.2)
+    assert wrong.title_block.elevations == pytest.approx(sound.title_block.elevations, abs=0.2)
     assert np.flatnonzero(wrong.shown.is_far_off).tolist() == sorted(rows)
-    assert f"{value:,g}" in wrong.caption.warning
-    assert sound.caption.warning == ""
+    assert f"{value:,g}" in wrong.title_block.warning
+    assert sound.title_block.warning == ""
     count = "1 elevation" if len(rows) == 1 else f"{len(rows)} elevations"
-    assert wrong.caption.warning.startswith(count)
-    assert preview(wrong.tin).notes[-1] == wrong.caption.warning + "."
+    assert wrong.title_block.warning.startswith(count)
+    assert preview(wrong.tin).notes[-1] == wrong.title_block.warning + "."
     assert not any("far off" in note for note in preview(sound.tin).notes)
 
 
@@ -75,11 +75,11 @@ def test_blunders_at_both_ends_are_left_out():
 
 def test_a_range_asked_for_is_that_of_the_tints_and_the_legend_says_what_is_outside():
     tin = hill()
-    stage = make_stage(tin, make_look(elevations=(305.0, 312.0)))
-    assert stage.caption.elevations == (305.0, 312.0)
+    scene = make_scene(tin, PreviewOptions.of(elevations=(305.0, 312.0)))
+    assert scene.title_block.elevations == (305.0, 312.0)
     z = tin.points[:, 2]
     count = int(((z < 305) | (z > 312)).sum())
-    assert stage.caption.warning == f"{count} elevations out of this range"
-    wide = make_stage(tin, make_look(elevations=(300.0, 320.0)))
-    assert wide.caption.warning == ""
-    assert wide.exaggeration == stage.exaggeration
+    assert scene.title_block.warning == f"{count} elevations out of this range"
+    wide = make_scene(tin, PreviewOptions.of(elevations=(300.0, 320.0)))
+    assert wide.title_block.warning == ""
+    assert wide.exaggeration == scene.exaggeration

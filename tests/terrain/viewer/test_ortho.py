@@ -308,16 +308,17 @@ def test_what_is_no_file(tmp_path):
 # ------------------------------------------------------------------ where it is seen
 
 READ = """(places) => window.terrain.then((p) => {
-  const gl = p.stage.renderer.getContext(), o = p.payload.origin;
-  const [width, height] = [p.view.width, p.view.height], all = new Uint8Array(4 * width * height);
-  const ratio = p.view.width / p.view.clientWidth;
-  const surface = p.stage.models[0].surface;
+  const gl = p.scene.renderer.getContext(), o = p.payload.origin;
+  const [width, height] = [p.scene.canvas.width, p.scene.canvas.height],
+    all = new Uint8Array(4 * width * height);
+  const ratio = p.scene.canvas.width / p.scene.canvas.clientWidth;
+  const surface = p.scene.models[0].surface;
   document.getElementById("shading").click();
-  p.stage.draw();
+  p.scene.draw();
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, all);
   const seen = places.map(([x, y, z]) => {
     const s = p.payload.scale;
-    const at = p.stage.project((x - o[0]) * s[0], (y - o[1]) * s[1], z - o[2]);
+    const at = p.scene.project((x - o[0]) * s[0], (y - o[1]) * s[1], z - o[2]);
     const at_pixel = Math.floor(height - at[1] * ratio) * width + Math.floor(at[0] * ratio);
     return [...all.slice(4 * at_pixel, 4 * at_pixel + 4)]; });
   document.getElementById("shading").click();
@@ -349,8 +350,8 @@ def test_the_page_shows_each_colour_at_its_place(tmp_path, crs):
         assert page.input_value("#tint") == "ortho"
         for azimuth, tilt, factor in [(180, 90, 1), (195, 50, 2), (40, 70, 0.5)]:
             page.evaluate(
-                f"window.terrain.then((p) => {{ p.setExaggeration({factor});"
-                f" p.stage.look({azimuth}, {tilt}); }})"
+                f"window.terrain.then((p) => {{ p.settings.setExaggeration({factor});"
+                f" p.scene.look({azimuth}, {tilt}); }})"
             )
             assert np.abs(read_canvas(page, tin, places) - colors).max() <= NEAR
         page.select_option("#tint", "elevation")
@@ -367,7 +368,7 @@ def test_the_tints_stay_where_there_is_no_picture(tmp_path):
     places, colors = list_places()
     upper = places[:, 1] > NORTH - SIDE / 2
     with open_page(made.save(tmp_path / "a.html")) as page:
-        page.evaluate("window.terrain.then((p) => p.stage.look(180, 90))")
+        page.evaluate("window.terrain.then((p) => p.scene.look(180, 90))")
         draped = read_canvas(page, tin, places)
         page.select_option("#tint", "elevation")
         tinted = read_canvas(page, tin, places)
@@ -389,7 +390,7 @@ def test_all_surfaces_of_a_page_are_draped(tmp_path):
         for shown, surface in [(0, tin), (1, raised)]:
             for k in range(3):
                 page.set_checked(f"#surface-{k}", k == shown)
-            page.evaluate("window.terrain.then((p) => p.stage.look(180, 90))")
+            page.evaluate("window.terrain.then((p) => p.scene.look(180, 90))")
             assert np.abs(read_canvas(page, surface, places) - colors).max() <= NEAR
 
 

@@ -106,8 +106,8 @@ def test_one_blunder_hides_no_relief(tmp_path):
     with open_page(shown.save(tmp_path / "a.html")) as opened:
         away, tint, interval = run(
             opened,
-            """const c = p.stage.camera.position.distanceTo(p.stage.controls.target);
-          return [c, p.tint, document.getElementById("interval").value];""",
+            """const c = p.scene.camera.position.distanceTo(p.scene.controls.target);
+          return [c, p.legend.tint, document.getElementById("interval").value];""",
         )
         assert opened.is_checked("#contours")
     assert away < 2000
@@ -129,7 +129,7 @@ def test_hostile_names_stay_words(title, tmp_path):
     )
     path = ts.preview({title: tin}, title=title).save(tmp_path / "a.html")
     with open_page(path) as page:
-        assert page.evaluate("window.terrain.then((p) => p.stage.models.length)") == 1
+        assert page.evaluate("window.terrain.then((p) => p.scene.models.length)") == 1
         assert page.evaluate("document.querySelectorAll('script').length") == 2
 
 
@@ -164,8 +164,8 @@ def test_the_canvas_is_not_blank(opened):
     colours = run(
         page,
         """
-      p.stage.draw();
-      const gl = p.stage.renderer.getContext(), seen = new Set(), c = new Uint8Array(4);
+      p.scene.draw();
+      const gl = p.scene.renderer.getContext(), seen = new Set(), c = new Uint8Array(4);
       for (let x = 0; x < gl.drawingBufferWidth; x += 9)
         for (let y = 0; y < gl.drawingBufferHeight; y += 9) {
           gl.readPixels(x, y, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, c); seen.add(c.join()); }
@@ -181,7 +181,7 @@ def test_a_pick_is_what_the_surface_says(opened):
         """
       const picks = [];
       for (let x = 300; x < 900; x += 37) for (let y = 200; y < 700; y += 41) {
-        const f = p.stage.pick(x, y);
+        const f = p.scene.pick(x, y);
         if (f !== null) picks.push([f.hit.x, f.hit.y, f.hit.z]); }
       return [p.payload.origin, picks];""",
     )
@@ -193,7 +193,7 @@ def test_a_pick_is_what_the_surface_says(opened):
 
 def test_the_words_under_the_pointer(opened):
     page, tin = opened
-    words = run(page, "p.read(600, 420); return p.readout.textContent;")
+    words = run(page, "p.tool.read(600, 420); return p.tool.readout.textContent;")
     number = r"(-?[\d.]+)"
     pattern = f"Easting {number} m   Northing {number} m   Elevation {number} m   Slope {number}°"
     found = re.match(pattern, words)
@@ -208,11 +208,11 @@ def test_distance_and_profile(opened):
     length, pieces, marked, words = run(
         page,
         """
-      p.choose("distance"); p.mark(450, 400); p.mark(800, 430);
-      const [a, b] = p.marked.map((m) => m.hit);
-      const pieces = p.stage.models[0].surface.profile([a.x, a.y], [b.x, b.y]);
+      p.tool.choose("distance"); p.tool.mark(450, 400); p.tool.mark(800, 430);
+      const [a, b] = p.tool.marked.map((m) => m.hit);
+      const pieces = p.scene.models[0].surface.profile([a.x, a.y], [b.x, b.y]);
       const words = document.getElementById("measured").textContent;
-      p.clear();
+      p.tool.clear();
       return [Math.hypot(b.x - a.x, b.y - a.y), pieces, [a, b], words];""",
     )
     assert f"Distance {length:.3f} m" in words
@@ -232,10 +232,11 @@ def test_area_of_a_polygon(opened):
     area, corners = run(
         page,
         """
-      p.choose("area"); p.mark(500, 380); p.mark(700, 390); p.mark(690, 480); p.mark(480, 470);
+      p.tool.choose("area"); p.tool.mark(500, 380); p.tool.mark(700, 390);
+      p.tool.mark(690, 480); p.tool.mark(480, 470);
       const words = document.getElementById("measured").textContent;
-      const corners = p.marked.map((m) => [m.hit.x, m.hit.y]);
-      p.clear();
+      const corners = p.tool.marked.map((m) => [m.hit.x, m.hit.y]);
+      p.tool.clear();
       return [parseFloat(words.replace("Area ", "")), corners];""",
     )
     import shapely
@@ -249,7 +250,7 @@ def test_switches_change_the_picture(opened, switch):
     pictures = run(
         page,
         f"""
-      const take = () => p.takePicture();
+      const take = () => p.furniture.takePicture();
       const before = take(); document.getElementById("{switch}").click();
       const during = take(); document.getElementById("{switch}").click();
       return [before, during, take()];""",
@@ -264,8 +265,8 @@ def test_every_tint_is_another_picture(opened):
         page,
         """
       const taken = ["elevation", "slope", "aspect", "plain"].map((t) => {
-        p.setTint(t); return p.takePicture(); });
-      p.setTint("elevation"); return taken;""",
+        p.legend.setTint(t); return p.furniture.takePicture(); });
+      p.legend.setTint("elevation"); return taken;""",
     )
     assert len(set(pictures)) == 4
 
@@ -275,9 +276,10 @@ def test_exaggeration_moves_the_ground(opened):
     heights = run(
         page,
         """
-      const at = () => p.stage.project(0, 0, p.stage.models[0].surface.high[2])[1];
-      p.setExaggeration(1); const low = at(); p.setExaggeration(4); const high = at();
-      p.setExaggeration(p.payload.exaggeration); return [low, high];""",
+      const at = () => p.scene.project(0, 0, p.scene.models[0].surface.high[2])[1];
+      p.settings.setExaggeration(1); const low = at(); p.settings.setExaggeration(4);
+      const high = at();
+      p.settings.setExaggeration(p.payload.exaggeration); return [low, high];""",
     )
     assert heights[0] != pytest.approx(heights[1], abs=3)
 
@@ -285,14 +287,14 @@ def test_exaggeration_moves_the_ground(opened):
 def test_keys_turn_move_and_look_from_above(opened):
     page, _ = opened
     page.focus("#view")
-    before = run(page, "return [p.stage.heading, p.stage.controls.target.x];")
+    before = run(page, "return [p.scene.heading, p.scene.controls.target.x];")
     page.keyboard.press("ArrowLeft")
     page.keyboard.press("Shift+ArrowRight")
-    after = run(page, "return [p.stage.heading, p.stage.controls.target.x];")
+    after = run(page, "return [p.scene.heading, p.scene.controls.target.x];")
     assert before[0] != after[0]
     assert before[1] != after[1]
     page.keyboard.press("t")
-    assert run(page, "return p.stage.camera.position.z / p.stage.camera.position.length();") > 0.99
+    assert run(page, "return p.scene.camera.position.z / p.scene.camera.position.length();") > 0.99
     page.keyboard.press("h")
 
 
@@ -305,8 +307,8 @@ def test_two_surfaces_have_cut_and_fill(tmp_path):
         names, most = run(
             page,
             """
-          const d = p.stage.models[2].surface.difference;
-          return [p.stage.models.map((m) => m.surface.data.name), Math.max(...d)];""",
+          const d = p.scene.models[2].surface.difference;
+          return [p.scene.models.map((m) => m.surface.data.name), Math.max(...d)];""",
         )
     assert names == ["Existing", "Design", "Cut and fill"]
     assert most == pytest.approx(1.5, abs=0.001)

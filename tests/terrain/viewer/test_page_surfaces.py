@@ -13,14 +13,14 @@ import tinsmith as ts
 READ = """window.terrain.then((p) => {
   const found = [];
   for (const [azimuth, tilt, factor] of [[195, 35, null], [180, 90, null], [40, 60, 3]]) {
-    if (factor !== null) p.setExaggeration(factor);
-    p.stage.look(azimuth, tilt); p.stage.draw(); p.stage.camera.updateMatrixWorld();
+    if (factor !== null) p.settings.setExaggeration(factor);
+    p.scene.look(azimuth, tilt); p.scene.draw(); p.scene.camera.updateMatrixWorld();
     for (let x = 250; x < 1000; x += 83) for (let y = 120; y < 720; y += 67) {
-      const m = p.stage.pick(x, y);
+      const m = p.scene.pick(x, y);
       if (m === null) continue;
-      p.read(x, y);
+      p.tool.read(x, y);
       found.push([m.hit.x, m.hit.y, m.hit.z, m.model.surface.slope(m.hit.triangle),
-                  p.readout.textContent, p.stage.models.indexOf(m.model)]); } }
+                  p.tool.readout.textContent, p.scene.models.indexOf(m.model)]); } }
   return [p.payload.origin, p.payload.scale, found]; })"""
 
 
@@ -118,14 +118,15 @@ def test_readouts_of_the_second_surface(tmp_path):
 
 
 MEASURE = """window.terrain.then((p) => {
-  const at = (x, y) => ({ model: p.stage.models[0], hit: { triangle: 0, x, y, z: 0 } });
+  const at = (x, y) => ({ model: p.scene.models[0], hit: { triangle: 0, x, y, z: 0 } });
   const s = p.payload.scale, o = p.payload.origin;
-  p.choose("TOOL"); p.marked = PLACES.map(([x, y]) => at((x - o[0]) * s[0], (y - o[1]) * s[1]));
-  p.showMeasured();
+  p.tool.choose("TOOL");
+  p.tool.marked = PLACES.map(([x, y]) => at((x - o[0]) * s[0], (y - o[1]) * s[1]));
+  p.tool.showMeasured();
   const box = document.getElementById("measured");
   const words = box.firstChild.textContent, svg = box.querySelector("svg");
   const curves = svg === null ? 0 : svg.querySelectorAll("polyline").length;
-  p.clear();
+  p.tool.clear();
   return [words, curves]; })"""
 
 
@@ -195,7 +196,7 @@ def test_hostile_names_of_surfaces_and_points(name, tmp_path):
     path = ts.preview({name: tin, "b": tin}, survey=survey, title=name).save(tmp_path / "a.html")
     with open_page(path) as page:
         page.check("#points")
-        page.evaluate("window.terrain.then((p) => { p.stage.draw(); p.read(500, 400); })")
+        page.evaluate("window.terrain.then((p) => { p.scene.draw(); p.tool.read(500, 400); })")
         box = page.locator("#panel").bounding_box()
         assert box["width"] < 260
         assert page.locator("label[for='surface-0'], #surfaces label").first.inner_text().strip()
@@ -210,7 +211,7 @@ def test_long_triangles_aslant_fill_few_cells(tmp_path):
     tin = ts.triangulate(np.vstack([curve, [[0, 1000, 0]]]))
     with open_page(ts.preview(tin).save(tmp_path / "a.html")) as page:
         cells = page.evaluate(
-            "window.terrain.then((p) => p.stage.models[0].surface.members.length)"
+            "window.terrain.then((p) => p.scene.models[0].surface.members.length)"
         )
         origin, scale, found = page.evaluate(READ)
     assert cells < 60 * len(tin.triangles)
@@ -236,13 +237,13 @@ def test_a_slow_machine_draws_fewer_triangles_while_the_view_moves(tmp_path):
     path = ts.preview(tin).save(tmp_path / "a.html")
     with open_page(path) as page:
         counts = page.evaluate("""window.terrain.then(async (p) => {
-          const { stage } = p, count = () => stage.models[0].geometry.index.count / 3;
+          const { scene } = p, count = () => scene.models[0].geometry.index.count / 3;
           const wait = () => new Promise((done) => setTimeout(done, 50));
           const counts = [count()], start = performance.now();
-          stage.pace.note(start - 400); stage.pace.note(start - 200); stage.pace.note(start);
-          stage.setDetail();
+          scene.pace.note(start - 400); scene.pace.note(start - 200); scene.pace.note(start);
+          scene.setDetail();
           counts.push(count());
-          while (stage.isCoarse) await wait();
+          while (scene.isCoarse) await wait();
           return [...counts, count()]; })""")
     assert counts[0] == counts[2] == len(tin.triangles)
     assert 20_000 < counts[1] < 125_000

@@ -14,9 +14,9 @@ from support.pages import open_page
 import tinsmith as ts
 
 STATE = """window.terrain.then((p) => ({
-  heading: p.stage.heading, away: p.stage.camera.position.distanceTo(p.stage.controls.target),
-  target: p.stage.controls.target.toArray(), marked: p.marked.length,
-  readout: p.readout.textContent }))"""
+  heading: p.scene.heading, away: p.scene.camera.position.distanceTo(p.scene.controls.target),
+  target: p.scene.controls.target.toArray(), marked: p.tool.marked.length,
+  readout: p.tool.readout.textContent }))"""
 
 
 @pytest.fixture(scope="module")
@@ -131,7 +131,9 @@ def test_words_stand_out(saved, theme):
     with open_page(saved, color_scheme=theme) as page:
         assert page.get_attribute("html", "data-theme") == theme
         page.click("#distance")
-        page.evaluate("window.terrain.then((p) => { p.mark(500, 400); p.mark(640, 420); })")
+        page.evaluate(
+            "window.terrain.then((p) => { p.tool.mark(500, 400); p.tool.mark(640, 420); })"
+        )
         found = page.evaluate("""() => [...document.querySelectorAll(
             "h1, header p, label, button, legend, figcaption, #ticks span, #measured span, "
             + "#measured div, #measured svg text, #readout")]
@@ -214,7 +216,7 @@ def test_a_tap_reads_a_place(touched):
 
 def test_taps_measure_and_two_fingers_do_not(touched):
     page, fingers = touched
-    page.evaluate("window.terrain.then((p) => p.choose('distance'))")
+    page.evaluate("window.terrain.then((p) => p.tool.choose('distance'))")
     fingers.drag(((380, 450), (380, 450)), steps=1)
     fingers.drag(((300, 500), (300, 500)), ((400, 500), (440, 500)))
     fingers.drag(((300, 450), (360, 450)))
@@ -228,8 +230,8 @@ def test_taps_measure_and_two_fingers_do_not(touched):
 
 def test_the_saved_picture_has_title_legend_and_arrow(page, tmp_path):
     pil = pytest.importorskip("PIL.Image")
-    text = page.evaluate("window.terrain.then((p) => { p.setTint('elevation');"
-                         " return p.takePicture(); })")  # fmt: skip
+    text = page.evaluate("window.terrain.then((p) => { p.legend.setTint('elevation');"
+                         " return p.furniture.takePicture(); })")  # fmt: skip
     picture = np.asarray(pil.open(io.BytesIO(base64.b64decode(text.partition(",")[2]))))[..., :3]
     assert picture.shape[:2] == (800, 1200)
     paper = picture[400, 2].astype(int)

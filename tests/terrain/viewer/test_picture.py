@@ -16,11 +16,11 @@ from tinsmith.base.crs import FOOT, METRE
 from tinsmith.base.georeference.units import NOT_KNOWN, find_ground
 from tinsmith.terrain import OptionError, RenderError, preview, slope
 from tinsmith.terrain.drawing.rounding import choose_ticks, format_number, round_down
+from tinsmith.terrain.palette import compute_lightness, interpolate_tints
 from tinsmith.terrain.viewer import opengl
-from tinsmith.terrain.viewer.annotations import Sheet, scale_bar_length
+from tinsmith.terrain.viewer.actors import choose_exaggeration, measure_relief
+from tinsmith.terrain.viewer.annotations import Layout, scale_bar_length
 from tinsmith.terrain.viewer.picture import PICTURE_SUFFIXES
-from tinsmith.terrain.viewer.scene import choose_exaggeration, measure_relief
-from tinsmith.terrain.viewer.tints import compute_lightness, interpolate_tints
 
 pv = pytest.importorskip("pyvista")
 
@@ -46,7 +46,7 @@ def in_frame(pixels):
     """The part of a picture in which only terrain is drawn."""
     height, width = pixels.shape[:2]
     factor = min(width / 1600, height / 1000)
-    frame = Sheet(width / factor, height / factor).frame
+    frame = Layout(width / factor, height / factor).frame
     bottom, top = (height - factor * side for side in (frame.ymin, frame.ymax))
     return pixels[
         round(top) : round(bottom), round(factor * frame.xmin) : round(factor * frame.xmax)
@@ -79,7 +79,7 @@ class TestPicture:
         tin = hill(relief=200.0)
         bare = read_pixels(preview(tin, output=tmp_path / "a.png", size=(800, 500)))
         height, width = bare.shape[:2]
-        frame = Sheet(1600, 1000).frame
+        frame = Layout(1600, 1000).frame
         header = bare[: int(height - frame.ymax / 2) - 3]
         assert not is_colored(header).any()
         footer = bare[int(height - frame.ymin / 2) + 3 :]
@@ -134,7 +134,7 @@ class TestPicture:
         tinted = is_colored(in_frame(read_pixels(path)))
         height, width = (np.ptp(np.flatnonzero(tinted.any(axis=k))) for k in (1, 0))
         assert height == pytest.approx(width, abs=2)
-        assert height == pytest.approx(Sheet(1600, 1000).frame.height / 2, abs=3)
+        assert height == pytest.approx(Layout(1600, 1000).frame.height / 2, abs=3)
 
     def test_light_comes_from_the_northwest(self, tmp_path):
         brightness = {}
@@ -189,7 +189,7 @@ class TestPicture:
         assert list(tmp_path.iterdir()) == [path]
 
     def test_annotations_follow_the_camera(self, monkeypatch):
-        module = sys.modules["tinsmith.terrain.viewer.stage"]
+        module = sys.modules["tinsmith.terrain.viewer.scene"]
         written = []
         monkeypatch.setattr(opengl, "require_window", lambda: None)
         monkeypatch.setattr(opengl, "require_on_screen", lambda kind: None)

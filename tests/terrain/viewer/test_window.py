@@ -7,9 +7,9 @@ import pytest
 
 import tinsmith as ts
 from tinsmith.terrain.viewer.camera import measure_pixels_per_unit
-from tinsmith.terrain.viewer.look import make_look
+from tinsmith.terrain.viewer.options import PreviewOptions
 from tinsmith.terrain.viewer.picture import keep_vtk_plain
-from tinsmith.terrain.viewer.stage import place_on_stage
+from tinsmith.terrain.viewer.scene import place_in_scene
 from tinsmith.terrain.viewer.window import Window
 
 pv = pytest.importorskip("pyvista")
@@ -32,22 +32,22 @@ def opened():
     made = []
 
     def open_one(tin, **options):
-        made.append(Window(tin, make_look(size=SIZE, **options), off_screen=True))
+        made.append(Window(tin, PreviewOptions.of(size=SIZE, **options), off_screen=True))
         made[-1].connect()
-        made[-1].show.plotter.render()
+        made[-1].drawn.plotter.render()
         return made[-1]
 
     with keep_vtk_plain():
         yield open_one
         for window in made:
-            window.show.plotter.close()
+            window.drawn.plotter.close()
 
 
 def find_pixel(window, place):
     """Where in the window a point of the surface is drawn, by the camera's own axes."""
-    camera = window.show.plotter.camera
-    drawn = place_on_stage(window.stage, np.array([place]))[0]
-    right, up, _ = window.stage.view.axes
+    camera = window.drawn.plotter.camera
+    drawn = place_in_scene(window.scene, np.array([place]))[0]
+    right, up, _ = window.scene.view.axes
     pixels = measure_pixels_per_unit(camera, SIZE[1])
     away = (drawn - np.array(camera.focal_point)) * pixels
     return SIZE[0] / 2 + away @ right, SIZE[1] / 2 + away @ up
@@ -145,29 +145,29 @@ def test_a_section_is_the_profile_between_the_last_two_places(opened):
     mark = window._marks[-1].mapper.dataset
     assert np.ptp(mark.points[:, :2] @ (np.subtract(*ends) / length)) == pytest.approx(length)
     window.cut_section()
-    assert len(list(window.show.plotter.renderer._charts)) == 1
+    assert len(list(window.drawn.plotter.renderer._charts)) == 1
 
 
 # ------------------------------------------------------------------ drawing
 
 
 def heights_of(window):
-    return window.show.surfaces[0].mapper.dataset.points[:, 2]
+    return window.drawn.surfaces[0].mapper.dataset.points[:, 2]
 
 
 def test_the_slider_exaggerates_surface_caption_and_marks(opened):
     tin = hills()
     window = opened(tin, exaggeration=2.0)
-    before, camera = np.ptp(heights_of(window)), window.show.plotter.camera_position
+    before, camera = np.ptp(heights_of(window)), window.drawn.plotter.camera_position
     x, y = find_pixel(window, tin.points[tin.triangles[100]].mean(axis=0))
     found = window.pick(x, y)
     window._slide(5.04)
     assert np.ptp(heights_of(window)) == pytest.approx(2.5 * before)
-    assert window.stage.caption.exaggeration == 5.0
-    assert window.show.plotter.camera_position == camera
+    assert window.scene.title_block.exaggeration == 5.0
+    assert window.drawn.plotter.camera_position == camera
     mark = window._marks[0].mapper.dataset.points[0]
     place = (found.easting, found.northing, found.elevation)
-    np.testing.assert_allclose(mark, place_on_stage(window.stage, np.array([place]))[0], rtol=1e-6)
+    np.testing.assert_allclose(mark, place_in_scene(window.scene, np.array([place]))[0], rtol=1e-6)
     again = window.pick(*find_pixel(window, place))
     assert again.elevation == tin.interpolate([[again.easting, again.northing]])[0]
     assert np.hypot(again.easting - found.easting, again.northing - found.northing) < 1.5
@@ -179,11 +179,11 @@ def test_tints_go_around_and_have_the_colours_of_the_page(opened):
     pages = ts.preview(tin).to_html()
     for tint in ("slope", "aspect", "plain", "elevation"):
         window.change_tint()
-        assert window.stage.look.tint == tint
-        assert window.stage.caption.has_tints == (tint != "plain")
+        assert window.scene.options.tint == tint
+        assert window.scene.title_block.has_tints == (tint != "plain")
         if tint == "plain":
             continue
-        table = window.show.surfaces[0].mapper.lookup_table
+        table = window.drawn.surfaces[0].mapper.lookup_table
         ends = [table.values[k, :3] for k in (0, -1)]
         low, high = ("#" + "".join(f"{part:02x}" for part in end) for end in ends)
         assert low in pages
@@ -197,47 +197,47 @@ def test_tints_go_around_and_have_the_colours_of_the_page(opened):
 def test_contours_are_switched_on_and_off(opened):
     tin = hills()
     window = opened(tin)
-    count = len(window.show.plotter.renderer.actors)
+    count = len(window.drawn.plotter.renderer.actors)
     window.toggle_contours()
-    interval = window.stage.look.contours
+    interval = window.scene.options.contours
     lines = [
         actor.mapper.dataset
-        for actor in window.show.plotter.renderer.actors.values()
+        for actor in window.drawn.plotter.renderer.actors.values()
         if isinstance(actor, pv.Actor) and actor.mapper.dataset.n_lines
     ]
     heights = np.concatenate([one.points[:, 2] for one in lines])
-    scale = window.stage.exaggeration
-    origin = place_on_stage(window.stage, np.zeros((1, 3)))[0, 2]
+    scale = window.scene.exaggeration
+    origin = place_in_scene(window.scene, np.zeros((1, 3)))[0, 2]
     levels = (heights - origin) / scale / interval
     np.testing.assert_allclose(levels, np.round(levels), atol=1e-4)
     assert 4 <= np.ptp(tin.points[:, 2]) / interval <= 30
     window.toggle_contours()
-    assert window.stage.look.contours is None
-    assert len(window.show.plotter.renderer.actors) == count
+    assert window.scene.options.contours is None
+    assert len(window.drawn.plotter.renderer.actors) == count
 
 
 def test_keys_do_what_the_foot_says(opened):
     tin = hills()
     window = opened(tin)
-    interactor = window.show.plotter.iren.interactor
+    interactor = window.drawn.plotter.iren.interactor
     x, y = (round(value) for value in find_pixel(window, tin.points.mean(axis=0)))
     for key in "tcp":
         interactor.SetEventInformation(x, y, 0, 0, key, 0, key)
         interactor.InvokeEvent("KeyPressEvent")
-    assert window.stage.look.tint == "slope"
-    assert window.stage.look.contours is not None
+    assert window.scene.options.tint == "slope"
+    assert window.scene.options.contours is not None
     assert len(window.readings) == 1
 
 
 def test_a_corridor_is_one_piece_in_a_window(opened):
     xy = np.random.default_rng(1).random((300, 2)) * [3000, 60]
     window = opened(ts.triangulate(np.column_stack([xy, xy[:, 0] / 100])))
-    assert window.stage.strips is None
-    assert not window.stage.has_block
-    assert window.stage.view.azimuth == pytest.approx(180.0, abs=0.5)
+    assert window.scene.strips is None
+    assert not window.scene.has_block
+    assert window.scene.view.azimuth == pytest.approx(180.0, abs=0.5)
 
 
 def test_level_ground_has_no_contours(opened):
     window = opened(ts.triangulate([[0, 0, 5], [9, 0, 5], [9, 9, 5], [0, 9, 5]]))
     window.toggle_contours()
-    assert window.stage.look.contours is None
+    assert window.scene.options.contours is None

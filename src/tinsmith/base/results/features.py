@@ -9,7 +9,7 @@ import numpy as np
 
 from ..crs import CRS, Unit, require_one_unit, shorten_crs
 from ..errors import OptionError
-from ..methods import make_card
+from ..methods import make_html_repr
 from ..notes import as_notes, join_notes
 from ..ranges import require_degrees
 from ..sentences import counted
@@ -278,7 +278,7 @@ class Features(Frozen):
         return f"<Features{title}: {self._count()}{names}, crs {shorten_crs(self.crs)}>"
 
     def _repr_html_(self) -> str:
-        return make_card(self)
+        return make_html_repr(self)
 
     def _count(self) -> str:
         noun = self.kind[:-1]

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..crs import CRS, shorten_crs
 from ..errors import OptionError
-from ..methods import make_card
+from ..methods import make_html_repr
 from ..notes import as_notes, join_notes
 from ..ranges import require_degrees
 from ..sentences import counted
@@ -146,7 +146,7 @@ class Raster(Frozen):
         )
 
     def _repr_html_(self) -> str:
-        return make_card(self)
+        return make_html_repr(self)
 
 
 def _list_corner_cells(grid: Grid) -> Float64Array:

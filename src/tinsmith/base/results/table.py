@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from .. import optional
 from ..errors import OptionError
-from ..methods import make_card
+from ..methods import make_html_repr
 from ..notes import as_notes, join_notes
 from ..sentences import counted
 from ..types import Frozen
@@ -117,7 +117,7 @@ class Table(Frozen):
         return f"<Table{title}: {counted(len(self), 'row')}, columns {', '.join(self.columns)}>"
 
     def _repr_html_(self) -> str:
-        return make_card(self)
+        return make_html_repr(self)
 
 
 def tabulate_columns(features: FeatureParts) -> Table:

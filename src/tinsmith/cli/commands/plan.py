@@ -139,7 +139,7 @@ def _list_inputs(file: Path, how: Triangulating, axis: Path | None) -> list[Name
 
 def _require_plans(outputs: Sequence[Path], inputs: Sequence[Named]) -> None:
     """Refuse outputs of another suffix, and such as would overwrite an input."""
-    from ...terrain.sheets.files import PLAN_SUFFIXES
+    from ...terrain.plans.files import PLAN_SUFFIXES
 
     require_separate(inputs, [Named(path, "--output") for path in outputs])
     for path in outputs:

@@ -1,6 +1,6 @@
 /** What is written over the picture: labels of points, what is measured, scale bar, north arrow. */
 
-import type { Model, Stage } from "./scene";
+import type { Model, TerrainScene } from "./scene";
 import type { Hit } from "./surface";
 
 export interface Marked {
@@ -12,17 +12,17 @@ const LABEL_CELL = [72, 16];
 const MOST_LABELS = 400;
 
 /** Draw the labels that have room, the nearest first. */
-export function drawLabels(pen: CanvasRenderingContext2D, stage: Stage, ink: string, halo: string): void {
+export function drawLabels(pen: CanvasRenderingContext2D, scene: TerrainScene, ink: string, halo: string): void {
   pen.font = "11px system-ui, sans-serif";
   pen.textBaseline = "middle";
   pen.lineWidth = 3;
   pen.strokeStyle = halo;
   pen.fillStyle = ink;
   const taken = new Set<string>();
-  for (const model of stage.models) {
+  for (const model of scene.models) {
     const { labels } = model;
     if (labels === null || !labels.marks.visible || !model.group.visible) continue;
-    for (const [x, y, text] of placeLabels(stage, labels.places, labels.texts, taken)) {
+    for (const [x, y, text] of placeLabels(scene, labels.places, labels.texts, taken)) {
       pen.strokeText(text, x + 5, y - 5);
       pen.fillText(text, x + 5, y - 5);
     }
@@ -30,15 +30,15 @@ export function drawLabels(pen: CanvasRenderingContext2D, stage: Stage, ink: str
 }
 
 function placeLabels(
-  stage: Stage,
+  scene: TerrainScene,
   places: Float64Array,
   texts: string[],
   taken: Set<string>,
 ): [number, number, string][] {
-  const { clientWidth: width, clientHeight: height } = stage.canvas;
+  const { clientWidth: width, clientHeight: height } = scene.canvas;
   const seen: [number, number, number, string][] = [];
   texts.forEach((text, k) => {
-    const at = stage.project(places[3 * k], places[3 * k + 1], places[3 * k + 2]);
+    const at = scene.project(places[3 * k], places[3 * k + 1], places[3 * k + 2]);
     if (at === null || at[0] < 0 || at[1] < 0 || at[0] > width || at[1] > height) return;
     seen.push([at[2], at[0], at[1], text]);
   });
@@ -57,19 +57,19 @@ function placeLabels(
 /** Draw the places that were picked and the line between them, along the ground. */
 export function drawMeasured(
   pen: CanvasRenderingContext2D,
-  stage: Stage,
+  scene: TerrainScene,
   marked: Marked[],
   closed: boolean,
+  color: string,
 ): void {
   if (marked.length === 0) return;
-  const color = "#c2185b";
   pen.strokeStyle = color;
   pen.fillStyle = color;
   pen.lineWidth = 2.5;
   const ring = closed && marked.length > 2 ? [...marked, marked[0]] : marked;
-  for (let k = 0; k + 1 < ring.length; k += 1) drawAlong(pen, stage, ring[k], ring[k + 1]);
+  for (let k = 0; k + 1 < ring.length; k += 1) drawAlong(pen, scene, ring[k], ring[k + 1]);
   for (const { hit } of marked) {
-    const at = stage.project(hit.x, hit.y, hit.z);
+    const at = scene.project(hit.x, hit.y, hit.z);
     if (at === null) continue;
     pen.beginPath();
     pen.arc(at[0], at[1], 4.5, 0, 2 * Math.PI);
@@ -77,7 +77,7 @@ export function drawMeasured(
   }
 }
 
-function drawAlong(pen: CanvasRenderingContext2D, stage: Stage, from: Marked, to: Marked): void {
+function drawAlong(pen: CanvasRenderingContext2D, scene: TerrainScene, from: Marked, to: Marked): void {
   const [a, b] = [from.hit, to.hit];
   const length = Math.hypot(b.x - a.x, b.y - a.y) || 1;
   const pieces = from.model.surface.profile([a.x, a.y], [b.x, b.y]);
@@ -85,7 +85,7 @@ function drawAlong(pen: CanvasRenderingContext2D, stage: Stage, from: Marked, to
     pen.beginPath();
     piece.forEach(([distance, z], k) => {
       const share = distance / length;
-      const at = stage.project(a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), z);
+      const at = scene.project(a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), z);
       if (at !== null) pen[k === 0 ? "moveTo" : "lineTo"](at[0], at[1]);
     });
     pen.stroke();

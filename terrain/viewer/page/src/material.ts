@@ -2,12 +2,13 @@
 
 import { Color, DataTexture, DoubleSide, LinearFilter, RGBAFormat, ShaderMaterial, SRGBColorSpace, Vector3 } from "three";
 
+import type { Colors } from "./payload";
+
 export const TINTS = ["elevation", "slope", "aspect", "difference", "plain", "ortho"] as const;
 export type Tint = (typeof TINTS)[number];
 
 /** Light from the northwest at 45 degrees, as on printed maps. */
 const LIGHT = new Vector3(-1, 1, Math.SQRT2).normalize();
-const PLAIN = "#b9b3a6";
 
 const VERTEX = /* glsl */ `
 attribute float change;
@@ -96,7 +97,7 @@ export function makeRamp(colors: string[]): DataTexture {
   return texture;
 }
 
-export function makeTerrainMaterial(elevationScale: number): ShaderMaterial {
+export function makeTerrainMaterial(elevationScale: number, colors: Colors): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: VERTEX,
     fragmentShader: FRAGMENT,
@@ -112,8 +113,8 @@ export function makeTerrainMaterial(elevationScale: number): ShaderMaterial {
       interval: { value: 0 },
       base: { value: 0 },
       light: { value: LIGHT },
-      plain: { value: new Color(PLAIN) },
-      ink: { value: new Color("#3b2c1a") },
+      plain: { value: new Color(colors.plain) },
+      ink: { value: new Color(colors.contours) },
       shading: { value: 1 },
       ortho: { value: null },
       across: { value: new Vector3() },

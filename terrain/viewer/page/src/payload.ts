@@ -60,7 +60,25 @@ export interface OrthoData {
   data: string;
 }
 
+/** Colours of a theme. */
+export interface ThemeColors {
+  ground: string;
+  ink: string;
+  halo: string;
+  curves: string[];
+}
+
+export interface Colors {
+  themes: { light: ThemeColors; dark: ThemeColors };
+  plain: string;
+  contours: string;
+  /** Edges of triangles, and points. */
+  objects: string;
+  measured: string;
+}
+
 export interface Payload {
+  colors: Colors;
   title: string;
   subtitle: string;
   crs: string;

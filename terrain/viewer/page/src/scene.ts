@@ -50,7 +50,7 @@ export class Model {
     readonly surface: Surface,
     readonly payload: Payload,
   ) {
-    this.material = makeTerrainMaterial(payload.elevationScale);
+    this.material = makeTerrainMaterial(payload.elevationScale, payload.colors);
     this.material.uniforms.base.value = payload.origin[2];
     this.geometry = makeGeometry(surface);
     this.fine = this.geometry.index!;
@@ -81,7 +81,7 @@ export class Model {
     const places = Float64Array.from(numbers, (n, i) => n * (i % 3 === 2 ? up : across));
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(new Float32Array(places), 3));
-    const material = new PointsMaterial({ size: 4, sizeAttenuation: false, color: "#20262b" });
+    const material = new PointsMaterial({ size: 4, sizeAttenuation: false, color: this.payload.colors.objects });
     const marks = new Points(geometry, material);
     marks.visible = false;
     this.labels = { places, texts: labels.texts, marks };
@@ -90,7 +90,7 @@ export class Model {
 
   showEdges(shown: boolean): void {
     if (shown && this.edges === null) {
-      this.edges = drawEdges(this.surface);
+      this.edges = drawEdges(this.surface, this.payload.colors.objects);
       this.group.add(this.edges);
     }
     if (this.edges !== null) this.edges.visible = shown;
@@ -105,7 +105,7 @@ export class Model {
 }
 
 /** Renderer, camera and controls; drawn again only when something has changed. */
-export class Stage {
+export class TerrainScene {
   readonly scene = new Scene();
   readonly camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 1, 1000);
   readonly renderer: WebGLRenderer;
@@ -414,7 +414,7 @@ function averageNormals(surface: Surface): Float32Array {
 }
 
 /** Draw each edge once: of the two triangles at it, the one in which its ends ascend. */
-function drawEdges(surface: Surface): LineSegments {
+function drawEdges(surface: Surface, color: string): LineSegments {
   const { triangles } = surface;
   const seen = new Set<number>();
   const count = surface.positions.length / 3;
@@ -430,7 +430,7 @@ function drawEdges(surface: Surface): LineSegments {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(new Float32Array(surface.positions), 3));
   geometry.setIndex(new BufferAttribute(new Uint32Array(ends), 1));
-  const material = new LineBasicMaterial({ color: "#20262b", transparent: true, opacity: 0.35 });
+  const material = new LineBasicMaterial({ color, transparent: true, opacity: 0.35 });
   const object = new LineSegments(geometry, material);
   object.frustumCulled = false;
   return object;

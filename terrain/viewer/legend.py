@@ -1,26 +1,21 @@
-"""Ramps: the colours of elevations, slopes and directions, the same in pages and pictures."""
+"""Legend: the quantity that colours show in a 3D picture, and what is written beside its ramp."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ..palette import choose_ramp
 from ..relief.gradients import aspect, slope
-from .tints import interpolate_tints, mix_tints
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, UInt8Array
     from ...base.policies import Tint
     from ...tin import TIN
 
-__all__ = ["PLAIN", "STEEPEST", "Legend", "choose_ramp", "measure_tint"]
+__all__ = ["STEEPEST", "Legend", "measure_tint"]
 
-PLAIN = (185, 179, 166)
 STEEPEST = 60.0
 """Slope, degrees, from which on the colour is the same."""
-
-_SLOPE = ((0.93, 0.02, 110.0), (0.83, 0.12, 95.0), (0.66, 0.17, 55.0), (0.42, 0.15, 25.0))
-_CIRCLE = tuple((0.72, 0.11, float(hue)) for hue in range(250, 250 + 361, 20))
-"""Rungs of ramps in Oklch: lightness, chroma, hue in degrees."""
 
 
 class Legend(NamedTuple):
@@ -33,13 +28,6 @@ class Legend(NamedTuple):
     """Values of the first and the last colour."""
     ticks: tuple[tuple[float, str], ...] = ()
     """Values and words below the ramp; none for round numbers."""
-
-
-def choose_ramp(tint: Tint, count: int) -> UInt8Array:
-    """Return a ramp of two colours or more, (count, 3)."""
-    if tint == "slope":
-        return mix_tints(_SLOPE, count)
-    return mix_tints(_CIRCLE, count) if tint == "aspect" else interpolate_tints(count)
 
 
 def measure_tint(

@@ -1,4 +1,4 @@
-"""Cards of a survey, and of the report of what became of its rows."""
+"""HTML representations of a survey, and of the report of what became of its rows."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ....base.georeference.axes import find_axes
 from ....base.sentences import counted
 from ....tin.report import word_reason
 from .drawings import Canvas
-from .frame import describe_bounds, name_crs, name_units, write_card
+from .frame import describe_bounds, name_crs, name_units, write_html
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ....base.arrays import Float64Array, UInt8Array
     from ....tin import Report, Survey
 
-__all__ = ["list_notes", "make_report_card", "make_survey_card"]
+__all__ = ["list_notes", "make_report_html", "make_survey_html"]
 
 _GIVEN = {
     "breaklines": ("breakline", "breaklines"),
@@ -33,11 +33,11 @@ _LINE = (196, 78, 38)
 _MOST_NOTES = 5
 
 
-def make_survey_card(survey: Survey) -> str:
-    """Return the HTML of a card: points, lines, columns, CRS, notes, and a map of the points."""
+def make_survey_html(survey: Survey) -> str:
+    """Return HTML: points, lines, columns, CRS, notes, and a map of the points."""
     picture = _draw(survey) if len(survey) else None
     alt = "Map of the points, north up"
-    return write_card("Survey", _describe_survey(survey), picture=picture, alt=alt)
+    return write_html("Survey", _describe_survey(survey), picture=picture, alt=alt)
 
 
 def _describe_survey(survey: Survey) -> Iterator[tuple[str, str]]:
@@ -89,9 +89,9 @@ def list_notes(notes: Sequence[str]) -> Iterator[tuple[str, str]]:
         yield "", f"and {counted(len(notes) - _MOST_NOTES, 'other note')}"
 
 
-def make_report_card(report: Report) -> str:
-    """Return the HTML of a card: what became of the rows, and where lines meet."""
-    return write_card("Report", _describe_report(report))
+def make_report_html(report: Report) -> str:
+    """Return HTML: what became of the rows, and where lines meet."""
+    return write_html("Report", _describe_report(report))
 
 
 def _describe_report(report: Report) -> Iterator[tuple[str, str]]:

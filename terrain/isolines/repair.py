@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array, Int64Array, ObjectArray
     from ...tin import TIN
 
-__all__ = ["PolygonParts", "as_parts", "is_whole", "mend_polygons", "require_whole", "turn"]
+__all__ = ["PolygonParts", "as_parts", "is_whole", "repair_polygons", "require_whole", "turn"]
 
 _ROUNDINGS = 32.0
 """So many roundings the boundary of a polygon may be off."""
@@ -34,7 +34,7 @@ class PolygonParts(NamedTuple):
     """(k,), of each polygon."""
 
 
-def mend_polygons(
+def repair_polygons(
     parts: PolygonParts, *, together: bool = False
 ) -> tuple[PolygonParts, tuple[str, ...]]:
     """Make polygons valid that meet themselves, or with ``together`` others of theirs; say so."""

@@ -14,7 +14,7 @@ from PIL import Image
 from support.printed import read_pdf, read_svg
 
 import tinsmith as ts
-from tinsmith.terrain.sheets.contents import find_lines
+from tinsmith.terrain.plans.contents import find_lines
 
 SQUARE = [[500000, 4e6, 5], [500040, 4e6, 6], [500040, 4e6 + 30, 7], [500000, 4e6 + 30, 9]]
 
@@ -433,7 +433,7 @@ def test_paths_that_cannot_be_written(name, error, tmp_path):
 
 
 def test_a_failed_drawing_leaves_the_old_file(tmp_path, monkeypatch):
-    from tinsmith.terrain.sheets import production
+    from tinsmith.terrain.plans import production
 
     file = tmp_path / "plan.pdf"
     file.write_bytes(b"old")

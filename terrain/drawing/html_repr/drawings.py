@@ -1,4 +1,4 @@
-"""Drawings for cards: points, lines and cells as pixels, north up, clear where there is nothing."""
+"""Thumbnails: points, lines and cells as pixels, north up, clear where there is nothing."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...viewer.tints import interpolate_tints
+from ...palette import interpolate_tints
 from .frame import SIZE
 
 if TYPE_CHECKING:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...base import optional
 from ...base.results import Features
+from .. import palette
 from ..isolines import contour_labels
 from .canvas import Canvas, Pen
 from .clipping import Paths, clip_paths, join_paths
@@ -29,25 +30,26 @@ __all__ = [
     "LINE_PENS",
     "MATCH_PEN",
     "OUTLINE_PEN",
-    "WATER",
     "Drawn",
     "draw_map",
     "draw_outline",
 ]
 
-CONTOUR_PENS = {False: Pen("#8a5a33", 0.13), True: Pen("#7a4a23", 0.35)}
-LINE_PENS = {
-    "soft": Pen("#40444a", 0.25, (2.0, 1.0)),
-    "hard": Pen("#222226", 0.35),
-    "hole": Pen("#963a22", 0.35, (4.0, 1.0, 0.8, 1.0)),
-    "boundary": Pen("#963a22", 0.5),
-    "water": Pen("#185c98", 0.35),
+CONTOUR_PENS = {
+    False: Pen(palette.CONTOURS_PLAN, 0.13),
+    True: Pen(palette.INDEX_CONTOURS_PLAN, 0.35),
 }
-OUTLINE_PEN = Pen("#888888", 0.25)
-MATCH_PEN = Pen("#b0006d", 0.5, (6.0, 2.0))
-WATER = "#cfe5f5"
-_FRAME_PEN = Pen("#222222", 0.35)
-_MARK_PEN = Pen("#222222", 0.18)
+LINE_PENS = {
+    "soft": Pen(palette.LINES["soft"], 0.25, (2.0, 1.0)),
+    "hard": Pen(palette.LINES["hard"], 0.35),
+    "hole": Pen(palette.LINES["hole"], 0.35, (4.0, 1.0, 0.8, 1.0)),
+    "boundary": Pen(palette.LINES["boundary"], 0.5),
+    "water": Pen(palette.LINES["water"], 0.35),
+}
+OUTLINE_PEN = Pen(palette.OUTLINE_PLAN, 0.25)
+MATCH_PEN = Pen(palette.MATCH_LINE, 0.5, (6.0, 2.0))
+_FRAME_PEN = Pen(palette.INK_PLAN, 0.35)
+_MARK_PEN = Pen(palette.INK_PLAN, 0.18)
 _MARK = 0.7
 """Half a point's cross, millimetres."""
 _LETTERS = 2.0
@@ -158,7 +160,7 @@ def _fill_water(canvas: Canvas, window: Window, contents: Contents, drawn: Drawn
         for part in shapely.get_parts(shapely.intersection(moved, box)):
             if shapely.area(part) > 0:
                 rings = [shapely.get_coordinates(ring) for ring in shapely.get_rings(part)]
-                canvas.fill(rings, WATER, "water")
+                canvas.fill(rings, palette.WATER, "water")
                 drawn.kinds.add("water area")
 
 

@@ -1,4 +1,4 @@
-"""Cards of results: features, rasters, tables."""
+"""HTML representations of results: features, rasters, tables."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .frame import (
     name_crs,
     name_unit,
     name_units,
-    write_card,
+    write_html,
     write_range,
     write_table,
 )
@@ -32,19 +32,19 @@ if TYPE_CHECKING:
     from ....base.results import Features, Raster, Table
     from ....base.results.columns import Units
 
-__all__ = ["make_features_card", "make_raster_card", "make_table_card"]
+__all__ = ["make_features_html", "make_raster_html", "make_table_html"]
 
 _MOST_ROWS = 8
 _MOST_COLUMNS = 12
 _MOST_WRITTEN = 1e12
 
 
-def make_features_card(features: Features) -> str:
-    """Return the HTML of a card: counts, columns, CRS, and a map of the geometries."""
+def make_features_html(features: Features) -> str:
+    """Return HTML: counts, columns, CRS, and a map of the geometries."""
     picture = _draw_features(features) if len(features.coordinates) else None
     title = f"Features: {features.name}" if features.name else "Features"
     rows = _describe_features(features)
-    return write_card(title, rows, picture=picture, alt=f"Map of the {features.kind}, north up")
+    return write_html(title, rows, picture=picture, alt=f"Map of the {features.kind}, north up")
 
 
 def _describe_features(features: Features) -> Iterator[tuple[str, str]]:
@@ -86,10 +86,10 @@ def _draw_features(features: Features) -> UInt8Array:
 # ----------------------------------------------------------------------------------- raster
 
 
-def make_raster_card(raster: Raster) -> str:
-    """Return the HTML of a card: cells, bands, CRS, range, and a picture of the first band.
+def make_raster_html(raster: Raster) -> str:
+    """Return HTML: cells, bands, CRS, range, and a picture of the first band.
 
-    A band that is computed as it is written is not computed for the card.
+    A band that is computed as it is written is not computed for it.
     """
     name, band = next(iter(raster.bands.items()))
     sample = None
@@ -99,11 +99,11 @@ def make_raster_card(raster: Raster) -> str:
     title = f"Raster: {raster.name}" if raster.name else "Raster"
     picture = None if sample is None else draw_cells(sample)
     rows = _describe_raster(raster, name)
-    return write_card(title, rows, picture=picture, alt=f"Picture of {name}, north up")
+    return write_html(title, rows, picture=picture, alt=f"Picture of {name}, north up")
 
 
 def _sample(band: AnyArray, nodata: float) -> Float64Array:
-    """Return every n-th row and column, so that they fit a card; NaN where there is nothing."""
+    """Return every n-th row and column, so that they fit; NaN where there is nothing."""
     step = max(1, -(-band.shape[0] // SIZE[1]), -(-band.shape[1] // SIZE[0]))
     values = np.asarray(band[::step, ::step], np.float64)
     return np.where(values == nodata, np.nan, values)
@@ -133,15 +133,15 @@ def _describe_raster(raster: Raster, shown: str) -> Iterator[tuple[str, str]]:
 # ------------------------------------------------------------------------------------ table
 
 
-def make_table_card(table: Table) -> str:
-    """Return the HTML of a card: the first rows, with units in the header."""
+def make_table_html(table: Table) -> str:
+    """Return HTML: the first rows, with units in the header."""
     names = list(table.columns)[:_MOST_COLUMNS]
     count = min(len(table), _MOST_ROWS)
     cells = [[_write_value(table[name][row]) for name in names] for row in range(count)]
     header = [_with_unit(name, table.units) for name in names]
     title = f"Table: {table.name}" if table.name else "Table"
     rows = [*_count_rest(table), *list_notes(table.notes)]
-    return write_card(title, rows, below=write_table(header, cells))
+    return write_html(title, rows, below=write_table(header, cells))
 
 
 def _count_rest(table: Table) -> Iterator[tuple[str, str]]:

@@ -8,14 +8,14 @@ import re
 import numpy as np
 import pytest
 from PIL import Image
-from support.cards import picture_of, read
+from support.html_reprs import picture_of, read
 from support.pages import open_page
 from support.processes import run_alone
 
 import tinsmith as ts
-from tinsmith.terrain.drawing.cards.frame import encode_png
-from tinsmith.terrain.viewer.card import draw_map
-from tinsmith.terrain.viewer.tints import compute_lightness
+from tinsmith.terrain.drawing.html_repr.frame import encode_png
+from tinsmith.terrain.palette import compute_lightness
+from tinsmith.terrain.viewer.html_repr import draw_map
 
 CORNER = np.array([742_000.0, 4_030_000.0])
 
@@ -183,5 +183,5 @@ def test_an_exported_notebook_shows_card_and_page_without_a_network(tmp_path):
         sizes = page.evaluate("[...document.images].map((i) => [i.naturalWidth, i.naturalHeight])")
         assert sizes == [[picture_of(outputs[0]).shape[1], picture_of(outputs[0]).shape[0]]]
         (inner,) = [frame for frame in page.frames if frame != page.main_frame]
-        assert inner.evaluate("window.terrain.then((p) => p.stage.models.length)") == 1
+        assert inner.evaluate("window.terrain.then((p) => p.scene.models.length)") == 1
         assert inner.title() == 'Site & "survey"'

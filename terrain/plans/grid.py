@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...base.georeference.axes import label_axes
+from .. import palette
 from ..drawing.rounding import round_down
 from .canvas import Pen
 from .clipping import clip_paths, join_paths
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Label", "draw_grid", "find_cross_places", "find_labels", "find_spacing"]
 
-PEN = Pen("#7a7a7a", 0.13)
-_TICK = Pen("#222222", 0.18)
+PEN = Pen(palette.GRID_PLAN, 0.13)
+_TICK = Pen(palette.INK_PLAN, 0.18)
 _WIDEST = 100.0
 """Millimetres between lines of the grid at most."""
 _ARM = 2.5

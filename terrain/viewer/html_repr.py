@@ -1,4 +1,4 @@
-"""Card: what a notebook shows of a TIN - its figures, and a small map of its relief."""
+"""HTML representation of a TIN for notebooks: its figures, and a small map of its relief."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import numpy as np
 from ...base.georeference.units import find_ground
 from ...base.products import product
 from ...base.sentences import counted
-from ..drawing.cards.frame import SIZE, describe_bounds, name_crs, name_units, write_card
+from ..drawing.html_repr.frame import SIZE, describe_bounds, name_crs, name_units, write_html
 from ..drawing.north_up import draw_north_up
-from .scene import NORTHWEST, choose_exaggeration, measure_relief
-from .tints import interpolate_tints
+from ..palette import interpolate_tints
+from .actors import NORTHWEST, choose_exaggeration, measure_relief
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ...base.georeference.units import Ground
     from ...tin import TIN
 
-__all__ = ["draw_map", "make_card"]
+__all__ = ["draw_map", "make_html_repr"]
 
 _TINTS = 256
 _AMBIENT, _BRIGHTEST = 0.42, 1.35
@@ -33,18 +33,18 @@ _STEEPEST = 1e6
 
 
 @product
-def make_card(tin: TIN) -> str:
-    """Return the HTML of a card: counts, CRS, units, bounds, and a map with hillshade.
+def make_html_repr(tin: TIN) -> str:
+    """Return HTML: counts, CRS, units, bounds, and a map with hillshade.
 
     It is of one element, with the map as a PNG within; nothing is asked for. Colours of words are
     those of the notebook's theme.
     """
     picture = draw_map(tin)
-    return write_card("TIN", _describe(tin), picture=picture, alt="Map of the surface, north up")
+    return write_html("TIN", _describe(tin), picture=picture, alt="Map of the surface, north up")
 
 
 def _describe(tin: TIN) -> Iterator[tuple[str, str]]:
-    """Return the rows of the card: names and values."""
+    """Return the rows: names and values."""
     counts = counted(len(tin.points), "vertex", "vertices")
     yield "Surface", f"{counts}, {counted(len(tin.triangles), 'triangle')}"
     if len(tin.lines.kinds):

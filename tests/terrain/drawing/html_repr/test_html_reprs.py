@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import shapely
-from support.cards import picture_of, read
+from support.html_reprs import picture_of, read
 from support.processes import run_alone
 
 import tinsmith as ts
-from tinsmith.terrain.drawing.cards.drawings import Canvas, draw_cells
-from tinsmith.terrain.drawing.cards.frame import write_card
+from tinsmith.terrain.drawing.html_repr.drawings import Canvas, draw_cells
+from tinsmith.terrain.drawing.html_repr.frame import write_html
 
 CRS = "EPSG:32616"
 HOSTILE = '</td><script>alert("x")</script>&amp;'
@@ -261,7 +261,7 @@ def test_cards_are_small_whatever_they_show():
 
 
 def test_a_picture_of_any_size_is_one_that_browsers_show():
-    card = write_card("A", [], picture=np.full((1, 1, 4), 255, np.uint8))
+    card = write_html("A", [], picture=np.full((1, 1, 4), 255, np.uint8))
     assert picture_of(card).shape == (1, 1, 4)
 
 

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...tin import Bounds
+from .. import palette
 from ..drawing.rounding import format_number, round_down
 from .canvas import INK, Pen
 from .grid import PEN as GRID_PEN
 from .lettering import fit_text
-from .mapping import CONTOUR_PENS, LINE_PENS, MATCH_PEN, OUTLINE_PEN, WATER
+from .mapping import CONTOUR_PENS, LINE_PENS, MATCH_PEN, OUTLINE_PEN
 from .windows import list_corners, turn
 
 if TYPE_CHECKING:
@@ -27,7 +28,6 @@ __all__ = ["Caption", "draw_title_block"]
 _BORDER = Pen(INK, 0.5)
 _RULE = Pen(INK, 0.25)
 _THIN = Pen(INK, 0.13)
-_GRAY = "#666666"
 _LEGEND = {
     "contour": "contour",
     "index contour": "index contour",
@@ -137,7 +137,9 @@ def _draw_foot(canvas: Canvas, layout: Layout, caption: Caption, height: float) 
     ):
         left, width = float(shares[number]) + factor, float(np.diff(shares)[number]) - 2 * factor
         if head:
-            canvas.write((left, top - 2.4 * factor), head, size=1.6 * factor, color=_GRAY)
+            canvas.write(
+                (left, top - 2.4 * factor), head, size=1.6 * factor, color=palette.GREY_PLAN
+            )
         fitted = fit_text(text, width, size=3.0 * factor, least=1.5 * factor)
         canvas.write(
             (left, cell.ymin + 2.0 * factor), fitted.lines[0], size=fitted.size, name="fact"
@@ -211,7 +213,9 @@ def _draw_legend(canvas: Canvas, layout: Layout, kinds: Sequence[str]) -> None:
     columns = max(1, -(-len(listed) // rows))
     width = min(46.0 * factor, (cell.width - 2 * factor) / columns)
     left, top = cell.xmin + 2.5 * factor, cell.ymax - head
-    canvas.write((left, cell.ymax - 3.8 * factor), "Legend", size=2.2 * factor, color=_GRAY)
+    canvas.write(
+        (left, cell.ymax - 3.8 * factor), "Legend", size=2.2 * factor, color=palette.GREY_PLAN
+    )
     for number, kind in enumerate(listed):
         x = left + (number // rows) * width
         y = top - (number % rows + 0.5) * step
@@ -226,7 +230,7 @@ def _draw_sample(canvas: Canvas, kind: str, x: float, y: float, factor: float) -
     width = 9.5 * factor
     if kind == "water area":
         box = list_corners(Bounds(x, y - 1.3 * factor, x + width, y + 1.3 * factor))
-        canvas.fill([box[[0, 1, 2, 3, 0]]], WATER, "legend-sample")
+        canvas.fill([box[[0, 1, 2, 3, 0]]], palette.WATER, "legend-sample")
         return
     if kind in ("point", "grid"):
         arm, pen = (0.7, _THIN) if kind == "point" else (2.0, GRID_PEN)

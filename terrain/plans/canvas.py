@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...base import optional
+from .. import palette
 from .lettering import FONT, PURPOSE
 from .papers import MM_PER_INCH
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["INK", "METADATA", "POINTS_PER_MM", "Canvas", "Pen", "drawing_rules"]
 
-INK = "#222222"
+INK = palette.INK_PLAN
 POINTS_PER_MM = 72.0 / MM_PER_INCH
 
 _RULES = {

@@ -1,4 +1,4 @@
-"""Frame of a card: a title, rows of names and values, a picture; all words escaped."""
+"""Frame of HTML: a title, rows of names and values, a picture; all words escaped."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ __all__ = [
     "name_crs",
     "name_unit",
     "name_units",
-    "write_card",
+    "write_html",
     "write_range",
     "write_table",
 ]
@@ -47,7 +47,7 @@ _LEFT = "text-align: left"
 _CELL = "text-align: right; padding: 2px 8px; white-space: nowrap"
 
 
-def write_card(
+def write_html(
     title: str,
     rows: Iterable[tuple[str, str]],
     *,
@@ -55,7 +55,7 @@ def write_card(
     alt: str = "",
     below: str = "",
 ) -> str:
-    """Return the HTML of a card, of one element that asks for nothing.
+    """Return HTML, of one element that asks for nothing.
 
     ``rows`` are names and values, of any letters; the picture is (height, width, 4), and ``alt``
     what it shows; ``below`` is HTML that follows the rows. Colours of words are those of the
@@ -111,12 +111,12 @@ def _write_image(picture: UInt8Array, alt: str) -> str:
 
 
 def name_crs(crs: CRS | None) -> str:
-    """Return what a card calls a CRS."""
+    """Return the name of a CRS."""
     return "not known" if crs is None else crs.caption
 
 
 def name_unit(crs: CRS | None) -> str:
-    """Return what a card calls the unit of eastings and northings."""
+    """Return the name of the unit of eastings and northings."""
     return _name(crs.horizontal_unit if crs is not None else None)
 
 

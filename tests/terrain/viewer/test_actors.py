@@ -11,7 +11,8 @@ import pytest
 from tinsmith import TIN, Breakline, Water, triangulate
 from tinsmith.base.georeference.units import find_ground
 from tinsmith.terrain.drawing.linework import add_lines
-from tinsmith.terrain.viewer.scene import (
+from tinsmith.terrain.palette import interpolate_tints
+from tinsmith.terrain.viewer.actors import (
     _average_normals,
     add_terrain,
     choose_exaggeration,
@@ -19,7 +20,6 @@ from tinsmith.terrain.viewer.scene import (
     measure_relief,
     place_vertices,
 )
-from tinsmith.terrain.viewer.tints import interpolate_tints
 
 pv = pytest.importorskip("pyvista")
 

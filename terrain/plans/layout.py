@@ -43,7 +43,7 @@ def arrange_sheet(paper: Paper) -> Layout:
 
     Examples
     --------
-    >>> from tinsmith.terrain.sheets.papers import Paper
+    >>> from tinsmith.terrain.plans.papers import Paper
     >>> frame = arrange_sheet(Paper.choices("A4", "landscape")[0]).frame
     >>> frame.width, frame.height
     (269.0, 142.0)

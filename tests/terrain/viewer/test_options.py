@@ -12,12 +12,11 @@ from support.pictures import make_dipping_plane, read_pixels
 from tinsmith import triangulate
 from tinsmith.base.georeference.units import METRE
 from tinsmith.terrain import OptionError, preview
-from tinsmith.terrain.viewer.annotations import Caption, Sheet, annotate
+from tinsmith.terrain.palette import choose_palette, compute_lightness
+from tinsmith.terrain.viewer.actors import add_lights
+from tinsmith.terrain.viewer.annotations import Layout, TitleBlock, annotate
 from tinsmith.terrain.viewer.camera import View, aim, measure_pixels_per_unit, project_ground_axes
-from tinsmith.terrain.viewer.look import make_look
-from tinsmith.terrain.viewer.palette import choose_palette
-from tinsmith.terrain.viewer.scene import add_lights
-from tinsmith.terrain.viewer.tints import compute_lightness
+from tinsmith.terrain.viewer.options import PreviewOptions
 
 pv = pytest.importorskip("pyvista")
 
@@ -56,8 +55,8 @@ def test_options_out_of_range_are_refused(tmp_path, option, values):
 
 def test_a_map_has_no_tilt():
     with pytest.raises(OptionError, match="90, or left out: the view 'top' is from above"):
-        make_look(view="top", tilt=35.0)
-    assert make_look(view="top", tilt=90).seen_from == View(180.0, 90.0)
+        PreviewOptions.of(view="top", tilt=35.0)
+    assert PreviewOptions.of(view="top", tilt=90).seen_from == View(180.0, 90.0)
 
 
 def test_an_unknown_option_is_refused():
@@ -77,13 +76,13 @@ def test_none_is_the_usual_value():
         "title",
         "contours",
     )
-    assert make_look(**dict.fromkeys(options)) == make_look()
+    assert PreviewOptions.of(**dict.fromkeys(options)) == PreviewOptions.of()
 
 
 def test_azimuths_go_around():
-    assert make_look(azimuth=-30).seen_from == View(330.0, 35.0)
-    assert make_look(azimuth=720.0, tilt=0).seen_from == View(0.0, 0.0)
-    assert make_look(sun=(405, 10)).sun == (45.0, 10.0)
+    assert PreviewOptions.of(azimuth=-30).seen_from == View(330.0, 35.0)
+    assert PreviewOptions.of(azimuth=720.0, tilt=0).seen_from == View(0.0, 0.0)
+    assert PreviewOptions.of(sun=(405, 10)).sun == (45.0, 10.0)
 
 
 # ------------------------------------------------------------------ what is drawn
@@ -93,24 +92,24 @@ def test_azimuths_go_around():
 @pytest.mark.parametrize("tilt", [0.0, 5.0, 35.0, 80.0, 90.0])
 def test_north_arrow_and_scale_bar_are_those_of_the_projection(azimuth, tilt):
     """Against VTK's own matrix: where a step to the north, and one across, land in the picture."""
-    camera, sheet = pv.Camera(), Sheet(1600.0, 1000.0)
+    camera, layout = pv.Camera(), Layout(1600.0, 1000.0)
     corners = np.array([[x, y, z] for x in (0, 300) for y in (0, 200) for z in (0, 40)], float)
-    look = make_look(azimuth=azimuth, tilt=tilt)
-    view = look.seen_from
+    options = PreviewOptions.of(azimuth=azimuth, tilt=tilt)
+    view = options.seen_from
     size = (1600, 1000)
-    aim(camera, corners, view=view, frame=sheet.frame, size=size)
+    aim(camera, corners, view=view, frame=layout.frame, size=size)
     start, north, across = project(camera, [[0, 0, 0], [0, 1, 0], view.axes[0]], size)
     pixels = measure_pixels_per_unit(camera, 1000.0)
     np.testing.assert_allclose(across - start, [pixels, 0.0], atol=1e-6)
     np.testing.assert_allclose((north - start) / pixels, project_ground_axes(camera)[1], atol=1e-9)
-    caption = Caption("T", "S", 1.0, (0.0, 1.0), "m", METRE)
-    drawn = record(sheet, caption, camera)
+    title_block = TitleBlock("T", "S", 1.0, (0.0, 1.0), "m", METRE)
+    drawn = record(layout, title_block, camera)
     tip, center = drawn["tip"], drawn["center"]
     np.testing.assert_allclose((tip - center) / 40.0, (north - start) / pixels, atol=1e-6)
     assert drawn["bar"] == pytest.approx(drawn["length"] * pixels)
     shown = project(camera, corners, size)
-    assert (shown.min(axis=0) >= (sheet.frame.xmin - 1e-6, sheet.frame.ymin - 1e-6)).all()
-    assert (shown.max(axis=0) <= (sheet.frame.xmax + 1e-6, sheet.frame.ymax + 1e-6)).all()
+    assert (shown.min(axis=0) >= (layout.frame.xmin - 1e-6, layout.frame.ymin - 1e-6)).all()
+    assert (shown.max(axis=0) <= (layout.frame.xmax + 1e-6, layout.frame.ymax + 1e-6)).all()
 
 
 def project(camera, points, size):
@@ -127,7 +126,7 @@ class WithoutScale:
         """Draw nothing: nobody asks for the legend's."""
 
 
-def record(sheet, caption, camera):
+def record(layout, title_block, camera):
     """Where the compass and the scale bar are drawn, and the length that it says."""
     found = {}
 
@@ -154,7 +153,7 @@ def record(sheet, caption, camera):
         def measure_text(self, words, *, size, bold=False):
             return 0.5 * size * len(words)
 
-    annotate(Recorder(), sheet, caption, camera)
+    annotate(Recorder(), layout, title_block, camera)
     return found
 
 
@@ -178,16 +177,18 @@ def test_the_caption_says_where_the_light_comes_from(sun, words):
             texts.append(said)
 
     camera = pv.Camera()
-    aim(camera, np.eye(3), view=View(0, 40), frame=Sheet(1600, 1000).frame, size=(1600, 1000))
-    caption = Caption("T", "S", 1.0, (0.0, 1.0), "m", METRE, sun=make_look(sun=sun).sun)
-    annotate(Recorder(), Sheet(1600.0, 1000.0), caption, camera)
+    aim(camera, np.eye(3), view=View(0, 40), frame=Layout(1600, 1000).frame, size=(1600, 1000))
+    title_block = TitleBlock(
+        "T", "S", 1.0, (0.0, 1.0), "m", METRE, sun=PreviewOptions.of(sun=sun).sun
+    )
+    annotate(Recorder(), Layout(1600.0, 1000.0), title_block, camera)
     assert words in texts
 
 
 @pytest.mark.parametrize("altitude", [0.0, 10.0, 30.0, 45.0, 60.0, 80.0, 90.0])
 def test_level_ground_is_lit_alike_by_every_sun(altitude):
     plotter = pv.Plotter(off_screen=True)
-    add_lights(plotter, make_look(sun=(70.0, altitude)).sun)
+    add_lights(plotter, PreviewOptions.of(sun=(70.0, altitude)).sun)
     total = sum(light.intensity * light.position[2] for light in plotter.renderer.lights)
     usual = 0.58 * math.sin(math.pi / 4) + 0.1 + 0.16 * math.sin(math.radians(50))
     assert total == pytest.approx(usual, abs=1e-6)
@@ -225,7 +226,7 @@ def test_words_can_be_read_on_every_background(tmp_path, background):
         title="X" * 9,
     )
     pixels = read_pixels(path)
-    paper = make_look(background=background).palette.paper
+    paper = PreviewOptions.of(background=background).palette.paper
     assert (pixels[[0, -1]] == paper).all()
     assert (pixels[:, [0, -1]] == paper).all()
     title = pixels[15:35, 20:200].astype(np.uint8).reshape(-1, 3)

@@ -1,1 +1,0 @@
-"""Cards: what a notebook shows of surveys, reports and results."""

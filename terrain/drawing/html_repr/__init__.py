@@ -1,0 +1,1 @@
+"""HTML representations: what a notebook shows of surveys, reports and results."""
