@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...base.crs import FOOT, Unit
+from ...base.crs import Unit
 from ...base.errors import ReadError
 from ...base.sentences import counted, inflect, shown
 from ...tin.screening.nodata import find_suspect_elevations
@@ -35,6 +35,7 @@ __all__ = [
     "require_no_split_decimals",
 ]
 
+_FOOT = 0.3048
 _LOWEST, _HIGHEST = -37_000.0, 30_000.0
 """Feet of the deepest trench and the highest summit, in whatever unit: nothing lies beyond."""
 
@@ -266,7 +267,7 @@ def _find_signs_of_numbers(columns: Sequence[Column]) -> Iterator[str]:
 def are_plausible_elevations(z: Float64Array, unit: Unit | None = None) -> bool:
     """Whether at least half of some elevations are such as the earth has, in metres or feet."""
     if unit is not None and unit.metres is not None:
-        z = z * (unit.metres / FOOT.metres)
+        z = z * (unit.metres / _FOOT)  # as feet are the smallest unit that limits are given in
     return bool(2 * ((z >= _LOWEST) & (z <= _HIGHEST)).sum() >= len(z))
 
 
