@@ -14,7 +14,7 @@ import tinsmith as ts
 from tinsmith.cli import main
 from tinsmith.cli.commands.compare import _sample_points
 from tinsmith.terrain import comparison_picture
-from tinsmith.terrain.charts.comparison import _GAP, _SOUND, _VIOLATING
+from tinsmith.terrain.palette import TRIANGULATIONS
 
 SAMPLES = Path(__file__).parents[2] / "sample_data"
 SURVEY = SAMPLES / "site_survey.csv"
@@ -92,13 +92,17 @@ def test_picture_marks_what_is_at_fault(tmp_path):
     upper, lower = np.array_split(pixels, 2)
     original, improved, only_one = np.array_split(upper, 3, axis=1)
     ties, exact, _ = np.array_split(lower[: int(0.9 * len(lower))], 3, axis=1)
-    assert share(original, _VIOLATING) == share(exact, _VIOLATING) == 0.0
-    assert share(ties, _VIOLATING) == share(ties, _GAP) == 0.0
-    assert share(ties, _SOUND) > 0.5
-    assert share(improved, _VIOLATING) > 0.001
-    assert share(only_one, _GAP) > 0.5
-    assert share(exact, _GAP) == 0.0
-    assert share(exact, _SOUND) > 0.5
+    assert (
+        share(original, TRIANGULATIONS["violating"])
+        == share(exact, TRIANGULATIONS["violating"])
+        == 0.0
+    )
+    assert share(ties, TRIANGULATIONS["violating"]) == share(ties, TRIANGULATIONS["gap"]) == 0.0
+    assert share(ties, TRIANGULATIONS["sound"]) > 0.5
+    assert share(improved, TRIANGULATIONS["violating"]) > 0.001
+    assert share(only_one, TRIANGULATIONS["gap"]) > 0.5
+    assert share(exact, TRIANGULATIONS["gap"]) == 0.0
+    assert share(exact, TRIANGULATIONS["sound"]) > 0.5
 
 
 def share(pixels, color):

@@ -183,7 +183,7 @@ class TestPicture:
             raise OSError(28, "No space left on device")
 
         monkeypatch.setattr(Image.Image, "save", full)
-        with pytest.raises(RenderError, match="No space left on device"):
+        with pytest.raises(RenderError, match="no space is left on the disk"):
             preview(hill(steps=4), output=path, size=(400, 250))
         assert path.read_bytes() == b"old"
         assert list(tmp_path.iterdir()) == [path]
