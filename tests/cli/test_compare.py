@@ -90,18 +90,15 @@ def test_picture_marks_what_is_at_fault(tmp_path):
     assert f"Written     {picture}" in run(table, "-o", picture).stdout
     pixels = (matplotlib.image.imread(picture)[..., :3] * 255).round().astype(int)
     upper, lower = np.array_split(pixels, 2)
+    violating, gap = TRIANGULATIONS["violating"], TRIANGULATIONS["gap"]
     original, improved, only_one = np.array_split(upper, 3, axis=1)
     ties, exact, _ = np.array_split(lower[: int(0.9 * len(lower))], 3, axis=1)
-    assert (
-        share(original, TRIANGULATIONS["violating"])
-        == share(exact, TRIANGULATIONS["violating"])
-        == 0.0
-    )
-    assert share(ties, TRIANGULATIONS["violating"]) == share(ties, TRIANGULATIONS["gap"]) == 0.0
+    assert share(original, violating) == share(exact, violating) == 0.0
+    assert share(ties, violating) == share(ties, gap) == 0.0
     assert share(ties, TRIANGULATIONS["sound"]) > 0.5
-    assert share(improved, TRIANGULATIONS["violating"]) > 0.001
-    assert share(only_one, TRIANGULATIONS["gap"]) > 0.5
-    assert share(exact, TRIANGULATIONS["gap"]) == 0.0
+    assert share(improved, violating) > 0.001
+    assert share(only_one, gap) > 0.5
+    assert share(exact, gap) == 0.0
     assert share(exact, TRIANGULATIONS["sound"]) > 0.5
 
 
