@@ -94,16 +94,6 @@ class Merge(NamedTuple):
     shifts: tuple[float, ...]
     elevation: float
 
-    @property
-    def heights(self) -> tuple[float, ...]:
-        """The same as ``elevations``."""
-        return self.elevations
-
-    @property
-    def height(self) -> float:
-        """The same as ``elevation``."""
-        return self.elevation
-
     def to_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON.
 
@@ -115,9 +105,9 @@ class Merge(NamedTuple):
         return {
             "vertex": self.vertex,
             "rows": self.rows,
-            "heights": self.elevations,
+            "elevations": self.elevations,
             "shifts": self.shifts,
-            "height": self.elevation,
+            "elevation": self.elevation,
         }
 
 
@@ -171,16 +161,6 @@ class Crossings(NamedTuple):
     elevations: Float64Array
     vertex_elevations: Float64Array
 
-    @property
-    def heights(self) -> Float64Array:
-        """The same as ``elevations``."""
-        return self.elevations
-
-    @property
-    def taken(self) -> Float64Array:
-        """The same as ``vertex_elevations``."""
-        return self.vertex_elevations
-
     @classmethod
     def none(cls) -> Crossings:
         """Return no crossings."""
@@ -206,16 +186,6 @@ class Overruled(NamedTuple):
     lines: Int32Array
     elevations: Float64Array
     vertex_elevations: Float64Array
-
-    @property
-    def heights(self) -> Float64Array:
-        """The same as ``elevations``."""
-        return self.elevations
-
-    @property
-    def taken(self) -> Float64Array:
-        """The same as ``vertex_elevations``."""
-        return self.vertex_elevations
 
 
 class Unmended(NamedTuple):
@@ -587,16 +557,6 @@ class Report(Frozen):
         """
         return replace(self, n_lines=len(labels), line_labels=tuple(labels))
 
-    @property
-    def merged_heights(self) -> Float64Array:
-        """The same as ``merged_elevations``."""
-        return self.merged_elevations
-
-    @property
-    def vertex_heights(self) -> Float64Array:
-        """The same as ``vertex_elevations``."""
-        return self.vertex_elevations
-
     def describe_crossings(self, label: str) -> list[str]:
         """Return where a line crosses others, a sentence each.
 
@@ -611,8 +571,6 @@ class Report(Frozen):
         own = [i for i, name in enumerate(self.line_labels) if name == label]
         is_own = np.isin(self.crossings.lines, own).any(axis=1)
         return [self._describe_crossing(row, own) for row in np.flatnonzero(is_own).tolist()]
-
-    met_by = describe_crossings
 
     def _describe_crossing(self, row: int, own: list[int]) -> str:
         lines = self.crossings.lines[row]
@@ -720,8 +678,8 @@ class Report(Frozen):
                 "vertex": vertex,
                 "place": place,
                 "lines": [self.line_labels[line] for line in lines],
-                "heights": elevations,
-                "height": elevation,
+                "elevations": elevations,
+                "elevation": elevation,
             }
             for vertex, place, lines, elevations, elevation in zip(
                 *(array.tolist() for array in self.crossings), strict=True
@@ -733,7 +691,7 @@ class Report(Frozen):
             {
                 "vertex": vertex,
                 "of": "points" if line < 0 else self.line_labels[line],
-                "height": elevation,
+                "elevation": elevation,
                 "taken": vertex_elevation,
             }
             for vertex, line, elevation, vertex_elevation in zip(

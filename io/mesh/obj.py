@@ -28,7 +28,7 @@ from .text_rows import (
     write_batches,
     write_reference,
 )
-from .texture import choose_picture, load_texture
+from .texture import load_texture
 
 if TYPE_CHECKING:
     import os
@@ -106,14 +106,13 @@ def write(
     path: Path,
     *,
     drape: str | os.PathLike[str] | None = None,
-    texture: str | os.PathLike[str] | None = None,
     progress: Tell | None = None,
 ) -> None:
     """Write a TIN as OBJ; :func:`read` gives the same vertices and triangles back.
 
     Parameters
     ----------
-    drape, texture : path-like, optional
+    drape : path-like, optional
         Picture to lay over it, as :func:`.gltf.writing.write` takes it. The material (``.mtl``) and
         the picture are written beside the file, under its name.
 
@@ -121,20 +120,17 @@ def write(
     ------
     ReadError
         If the picture cannot be read, or shows nothing of the surface.
-    OptionError
-        If two pictures are named.
     WriteError
         Also if the texture itself would be overwritten.
     """
     tin = common.require_tin(surface, format_name="OBJ")
-    source = choose_picture(drape, texture)
-    if source is None:
+    if drape is None:
         with replacing(path, binary=False) as file:
             _write_body(file, tin, None, progress)
         return
-    draped = load_texture(source, tin)
+    draped = load_texture(drape, tin)
     picture = path.with_name(f"{path.stem}{_PICTURE}{draped.suffix}")
-    _require_other_file(source, (picture, path, path.with_suffix(".mtl")))
+    _require_other_file(drape, (picture, path, path.with_suffix(".mtl")))
     with replacing_data_set(path, "obj") as beside:
         beside.with_name(picture.name).write_bytes(draped.content)
         material = f"newmtl {_MATERIAL}\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nmap_Kd {picture.name}\n"

@@ -10,7 +10,7 @@ import struct
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ...base.errors import OptionError, ReadError
+from ...base.errors import ReadError
 from ...base.notes import warn
 from ...terrain.viewer.ortho import Ortho
 from ..raster.ortho import as_picture_path, read_ortho
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...tin import TIN
 
-__all__ = ["MOST_PIXELS", "Texture", "choose_picture", "load_texture"]
+__all__ = ["MOST_PIXELS", "Texture", "load_texture"]
 
 MOST_PIXELS = 8192
 """Widest and highest picture that graphics cards and WebGL take everywhere."""
@@ -67,21 +67,6 @@ def load_texture(source: str | os.PathLike[str], tin: TIN) -> Texture:
         if gap := ortho.measure_gap([tin]):
             warn(f"'{path}' does not reach over {gap:.1%} of the vertices: {_BEYOND}.")
     return Texture(ortho.content, ortho.kind, ortho.place(tin.points))
-
-
-def choose_picture(
-    drape: str | os.PathLike[str] | None, texture: str | os.PathLike[str] | None
-) -> str | os.PathLike[str] | None:
-    """Return the picture that is named, by the name of the option or by its former one.
-
-    Raises
-    ------
-    OptionError
-        If both are given.
-    """
-    if drape is not None and texture is not None:
-        raise OptionError("texture", texture, "left out where drape names the picture")
-    return texture if drape is None else drape
 
 
 def _find_kind(path: Path) -> str | None:

@@ -175,7 +175,7 @@ def test_build_report_file_equals_the_report(folder):
 def test_build_duplicates_and_snap_are_passed_on(folder):
     arguments = ("build", "sample_data/site_survey.csv", "--json", "-q", "-o", "out.ply")
     lowest = json.loads(run(*arguments, "--duplicates", "lowest").stdout)
-    assert lowest["report"]["merges"][0]["height"] == 327.766
+    assert lowest["report"]["merges"][0]["elevation"] == 327.766
     snapped = json.loads(run(*arguments, "--snap", "3").stdout)
     assert snapped["tin"]["vertices"] == len(ts.triangulate(ts.io.read(SURVEY), snap=3).points)
     assert snapped["tin"]["vertices"] < 2121

@@ -68,7 +68,7 @@ def test_report_of_a_run_is_a_script(folder):
         ([{"op": "explode"}], "Edit 0 has op 'explode'"),
         ([{"op": "remove", "vertices": [99]}], "no vertex 99"),
         ([{"op": "remove"}], "wrong arguments"),
-        ([{"op": "set_z", "vertices": [0], "z": "high"}], "Edit 0"),
+        ([{"op": "set_elevation", "vertices": [0], "z": "high"}], "Edit 0"),
         ([{"op": "insert", "points": "here"}], "Edit 0"),
     ],
 )

@@ -134,7 +134,7 @@ def test_a_crossing_is_told_with_both_heights_or_refused(points, files, tmp_path
     assert "at 1 place, elevations differ most by 1.000 at x" in words
     assert "breakline 0 'kerb' at 301.000, breakline 1 'wall' at 302.000, taken 301.000" in words
     (crossing,) = facts(*arguments)["report"]["crossings"]
-    assert (crossing["heights"], crossing["height"]) == ([301.0, 302.0], 301.0)
+    assert (crossing["elevations"], crossing["elevation"]) == ([301.0, 302.0], 301.0)
     refused = run(*arguments[:-2], "--crossing", "error", "-o", tmp_path / "no.ply", code=1)
     assert "kerb" in refused.stderr
     assert "wall" in refused.stderr

@@ -76,9 +76,9 @@ def test_tiles_are_a_folder_that_is_replaced(site, tmp_path):
 def test_the_texture_cannot_be_the_output(site, tmp_path):
     picture = tmp_path / "a.glb"
     picture.write_bytes(b"\x89PNG\r\n\x1a\n")
-    done = run("convert", site, "-o", picture, "--texture", picture)
+    done = run("convert", site, "-o", picture, "--ortho", picture)
     assert done.exit_code == 2
-    assert "the texture: it cannot be the output too" in " ".join(done.stderr.split())
+    assert "--ortho: it cannot be the output too" in " ".join(done.stderr.split())
     assert picture.read_bytes() == b"\x89PNG\r\n\x1a\n"
 
 
@@ -86,9 +86,9 @@ def test_the_texture_cannot_be_the_output(site, tmp_path):
     ("arguments", "code", "sentence"),
     [
         (("-o", "a.off", "--solid"), 2, "only stl can"),
-        (("-o", "a.2dm", "--texture", "x.png"), 2, "only glb, obj can|only obj, glb can"),
+        (("-o", "a.2dm", "--ortho", "x.png"), 2, "only glb, obj can|only obj, glb can"),
         (("-o", "a.stl", "--scale", "500", "--size", "9"), 2, "Invalid --size"),
-        (("-o", "a.glb", "--texture", "none.tif"), 1, "Cannot read"),
+        (("-o", "a.glb", "--ortho", "none.tif"), 1, "Cannot read"),
         (("-o", "a.city.json", "--precision", "0.3"), 2, "Invalid --precision"),
     ],
 )

@@ -32,7 +32,9 @@ RESULTS = {
     "cross_sections": lambda tin: ts.cross_sections(tin, LINE, interval=20.0, width=20.0),
     "depressions": ts.depressions,
     "difference": lambda tin: ts.difference(tin, ts.triangulate(HILL.points, crs=HILL.crs)),
-    "drape": lambda tin: ts.drape(tin, ts.Features.of_lines(LINE, [0, 2], crs=HILL.crs)),
+    "drape": lambda tin: ts.drape(
+        tin, ts.Features.of_lines(LINE, [0, 2], crs=HILL.crs), outside="nan"
+    ),
     "flats": ts.flats,
     "flow_accumulation": ts.flow_accumulation,
     "flow_path": lambda tin: ts.flow_path(tin, [PLACE]),

@@ -281,8 +281,6 @@ class Editable:
         if lent is None or not lent.set_elevation_of_one(vertices, z):
             self._edit("set_elevation", vertices=vertices, z=z)
 
-    set_z = set_elevation
-
     def flip(self, a: int, b: int) -> None:
         """Swap the diagonal of the two triangles at an edge, in place.
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ...base.errors import PointsError, TinsmithError
 from ...base.sentences import shown
 from ..report import Edit
-from .operations import FORMER_NAMES, OPERATIONS
+from .operations import OPERATIONS
 
 if TYPE_CHECKING:
     from .editable import Editable
@@ -50,7 +50,7 @@ def _take_apart(edit: Edit | Mapping[str, Any], number: int) -> tuple[str, dict[
         return edit.operation, edit.arguments
     arguments = {name: value for name, value in edit.items() if name not in ("op", "notes")}
     name = edit.get("op")
-    operation = FORMER_NAMES.get(name, name) if isinstance(name, str) else ""
+    operation = name if isinstance(name, str) else ""
     if operation not in OPERATIONS:
         raise PointsError(
             f"Edit {number} has op {shown(name)}: one of {', '.join(OPERATIONS)} is needed."

@@ -328,9 +328,6 @@ OPERATIONS: dict[str, type[Operation]] = {
 }
 """The operations by the names of the methods of a TIN that do them."""
 
-FORMER_NAMES = {"set_z": SetElevation.operation}
-"""Names that edits may have in scripts of earlier versions."""
-
 
 def _flip_line(state: State, a: int, b: int) -> LineChange:
     """Return the line to be added, or those to be dropped."""

@@ -22,7 +22,7 @@ from ....base.notes import warn
 from ....base.sentences import FILE, counted
 from ....terrain.palette import interpolate_tints
 from ..common import format_crs, format_unit, require_factor, require_tin
-from ..texture import choose_picture, load_texture
+from ..texture import load_texture
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -71,7 +71,6 @@ def write(
     path: Path,
     *,
     drape: str | os.PathLike[str] | None = None,
-    texture: str | os.PathLike[str] | None = None,
     exaggeration: float = 1.0,
     progress: Tell | None = None,
 ) -> None:
@@ -82,8 +81,6 @@ def write(
     drape : path-like, optional
         Picture to lay over it: a GeoTIFF in any CRS, or a PNG or JPEG file with a world file beside
         it. Default colours by elevation.
-    texture : path-like, optional
-        The former name of ``drape``.
     exaggeration : float
         Factor on the elevations, which ``extras`` tells.
 
@@ -92,7 +89,7 @@ def write(
     CrsError
         If coordinates are longitude and latitude.
     OptionError
-        If the exaggeration is not positive, or two pictures are named.
+        If the exaggeration is not positive.
     ReadError
         If the picture cannot be read, or shows nothing of the surface.
     WriteError
@@ -112,8 +109,7 @@ def write(
             "TIN in a projected CRS.",
             crs=tin.crs,
         )
-    picture = choose_picture(drape, texture)
-    draped = None if picture is None else load_texture(picture, tin)
+    draped = None if drape is None else load_texture(drape, tin)
     origin = np.floor(tin.points.min(axis=0))
     scale = _choose_scale(tin) * (1.0, 1.0, exaggeration)
     mesh = _make_mesh(tin, origin, scale, draped)

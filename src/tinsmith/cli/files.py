@@ -291,8 +291,8 @@ def plan_outputs(
     outputs += _list_layered(placed, inputs)
     if report is not None:
         outputs.append(Named(report, "--report"))
-    texture = writing.options.get("texture")
-    pictures = [] if texture is None else [Named(texture, "the texture")]
+    drape = writing.options.get("drape")
+    pictures = [] if drape is None else [Named(drape, "--ortho")]
     require_separate([*inputs, *pictures], outputs)
     console.note(describe_leftovers(path for path, _ in placed))
     given = {name: value for name, value in writing.options.items() if value not in (None, False)}
@@ -395,7 +395,7 @@ def _describe_option_not_taken(name: str) -> click.UsageError:
     from ..io import known_formats
 
     takers = [one.name for one in known_formats() if name in one.options("write")]
-    flag = "--name" if name == "surface" else f"--{name.replace('_', '-')}"
+    flag = {"surface": "--name", "drape": "--ortho"}.get(name, f"--{name.replace('_', '-')}")
     return click.UsageError(
         f"No output takes the option {flag}: "
         + (f"only {', '.join(takers)} can." if takers else "no format can.")

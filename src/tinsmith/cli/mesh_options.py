@@ -36,8 +36,6 @@ MESH_WRITING = (
     ),
     click.option(
         "--ortho",
-        "--texture",
-        "texture",
         metavar="FILE",
         type=INPUT,
         help="Drape an image over a GLB or OBJ file: a GeoTIFF in any CRS, or a PNG or JPEG file "

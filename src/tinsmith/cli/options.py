@@ -185,7 +185,7 @@ class SurfaceWriting(Writing):
     """How a surface is written; some other commands have flags of these names for themselves."""
 
     multipatch: bool = False
-    texture: Path | None = None
+    ortho: Path | None = None
     surface_name: str | None = None
     solid: bool = False
     thickness: float | None = None
@@ -200,7 +200,7 @@ class SurfaceWriting(Writing):
     def options(self) -> dict[str, Any]:
         """All that a writer may take, by the names of its options."""
         found = super().options
-        return found | {"surface": found.pop("surface_name")}
+        return found | {"surface": found.pop("surface_name"), "drape": found.pop("ortho")}
 
 
 def _gather(name: str, factory: type, *options: Decorator) -> Callable[[Function], Function]:

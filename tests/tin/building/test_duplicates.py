@@ -121,9 +121,9 @@ def test_report_is_plain_data():
             {
                 "vertex": 2,
                 "rows": (2, 4),
-                "heights": (3.0, 5.0),
+                "elevations": (3.0, 5.0),
                 "shifts": (0.0, 0.0),
-                "height": 5.0,
+                "elevation": 5.0,
             }
         ],
         "left_out": {},
@@ -337,20 +337,3 @@ def test_means_of_elevations_of_any_size_are_the_exact_ones_rounded(seed):
         found = Fraction(float(tin.points[tin.vertex_of[3 + np.argmax(place == one)], 2]))
         rounding = Fraction(float(np.spacing(np.abs(own).max() / 2)))
         assert abs(found - exact) <= 32 * rounding
-
-
-def test_merges_crossings_and_the_report_keep_their_first_names():
-    tin = ts.triangulate(
-        [*FOUR_CORNERS, FOUR_CORNERS[0]],
-        breaklines=[[[0.2, 0.1, 1], [0.8, 0.9, 2]], [[0.2, 0.9, 3], [0.8, 0.1, 4]]],
-    )
-    (merge,) = tin.report.merges()
-    assert (merge.heights, merge.height) == (merge.elevations, merge.elevation)
-    assert tin.report.merged_heights is tin.report.merged_elevations
-    assert tin.report.vertex_heights is tin.report.vertex_elevations
-    assert len(tin.report.crossings.taken) == 1
-    for record in (tin.report.crossings, tin.report.overruled):
-        assert record.heights is record.elevations
-        assert record.taken is record.vertex_elevations
-    label = tin.report.line_labels[0]
-    assert tin.report.met_by(label) == tin.report.describe_crossings(label) != []

@@ -128,10 +128,10 @@ def test_crossing_takes_the_higher_priority_or_the_first_and_reports_both(priori
     tin = ts.triangulate(terrain(), breaklines=lines)
     (met,) = tin.report.to_dict()["crossings"]
     assert met["lines"] == ["breakline 0", "breakline 1"]
-    assert met["heights"] == pytest.approx([10, 12])
-    assert met["height"] == pytest.approx(taken)
+    assert met["elevations"] == pytest.approx([10, 12])
+    assert met["elevation"] == pytest.approx(taken)
     vertex = tin.points[met["vertex"]]
-    assert vertex.tolist() == [*met["place"], met["height"]]
+    assert vertex.tolist() == [*met["place"], met["elevation"]]
     wanted = shapely.LineString(cross_of()[0]).intersection(shapely.LineString(cross_of()[1]))
     assert vertex[:2] == pytest.approx([wanted.x, wanted.y], abs=1e-9)
     assert all(met["vertex"] in chain for chain in tin.lines.chains())
@@ -150,7 +150,7 @@ def test_line_on_points_takes_them_in_and_reports_their_heights():
     assert tin.points[chain, :2].tolist() == [[0, 0], [3, 3], [5, 5], [10, 10]]
     assert tin.points[chain, 2].tolist() == [1, 2, 7, 1]
     overruled = tin.report.to_dict()["overruled"]
-    told = sorted((one["of"], round(one["height"], 9), one["taken"]) for one in overruled)
+    told = sorted((one["of"], round(one["elevation"], 9), one["taken"]) for one in overruled)
     assert told == [("breakline 0", 1, 2), ("breakline 0", 1, 7)]
 
 
@@ -159,7 +159,7 @@ def test_vertex_of_a_line_on_a_point_gives_it_its_height():
     tin = ts.triangulate(points, breaklines=[[[0, 0, 9], [10, 10, 8]]])
     assert tin.points[:, 2].tolist() == [9, 1, 8, 1]
     overruled = tin.report.to_dict()["overruled"]
-    assert [(one["of"], one["height"], one["taken"]) for one in overruled] == [
+    assert [(one["of"], one["elevation"], one["taken"]) for one in overruled] == [
         ("points", 1, 9),
         ("points", 1, 8),
     ]
@@ -291,7 +291,10 @@ def test_breakline_meets_the_shore_at_the_height_of_the_water():
     line = ts.Breakline([[5, 50, 90], [95, 50, 90]], priority=7)
     tin = ts.triangulate(terrain(), water=[ts.Water(pond, 2.5)], breaklines=[line])
     np.testing.assert_array_equal(tin.interpolate([[40, 50], [60, 50]]), 2.5)
-    assert [met["heights"] for met in tin.report.to_dict()["crossings"]] == [[90, 2.5], [90, 2.5]]
+    assert [met["elevations"] for met in tin.report.to_dict()["crossings"]] == [
+        [90, 2.5],
+        [90, 2.5],
+    ]
 
 
 def test_line_beside_water_within_a_rounding_is_kept():

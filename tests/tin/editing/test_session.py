@@ -587,7 +587,7 @@ def test_bad_scripts_name_the_edit(script, sentence):
 
 def test_edits_of_earlier_versions_are_done_by_their_names_of_now():
     tin = square()
-    apply_edits(tin, [{"op": "set_z", "vertices": 0, "z": 7.5}])
+    apply_edits(tin, [{"op": "set_elevation", "vertices": 0, "z": 7.5}])
     assert tin.points[0, 2] == 7.5
     assert tin.edits[0].to_dict() == {"op": "set_elevation", "vertices": 0, "z": 7.5}
     with pytest.raises(ts.PointsError, match=r"Edit 0 has op \['set_z'\]: one of insert, "):
@@ -721,7 +721,7 @@ def test_a_corner_of_the_boundary_that_moves_takes_the_boundary_along():
         lambda tin: tin.insert([]),
         lambda tin: tin.insert(np.empty((0, 3))),
         lambda tin: tin.set_elevation([], []),
-        lambda tin: tin.set_z((), 5),
+        lambda tin: tin.set_elevation((), 5),
     ],
 )
 def test_an_edit_of_nothing_changes_nothing(edit, lines):

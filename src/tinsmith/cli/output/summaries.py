@@ -309,7 +309,7 @@ def _describe_rows(merge: Merge, survey: Survey) -> str:
     names = merge.rows if numbers is None else [numbers[row] for row in merge.rows]
     shown = ", ".join(
         f"{name} ({height:.3f})"
-        for name, height in list(zip(names, merge.heights, strict=True))[:4]
+        for name, height in list(zip(names, merge.elevations, strict=True))[:4]
     )
     more = "" if len(merge.rows) <= 4 else " ..."
     return f"{'rows' if numbers is None else 'points'} {shown}{more}"
