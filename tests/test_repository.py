@@ -201,9 +201,9 @@ def test_folders_can_be_taken_in_at_a_glance(folder):
 
 
 ROOT_ENTRIES = """
-.ci .clang-format .dockerignore .github .gitignore ARCHITECTURE.md CHANGELOG.md CMakeLists.txt
-LICENSE Makefile README.md benchmarks constraints.txt docs io packaging pyproject.toml qgis
-sample_data src terrain tests tin
+.ci .clang-format .dockerignore .github .gitignore .pre-commit-config.yaml ARCHITECTURE.md
+CHANGELOG.md CMakeLists.txt CONTRIBUTING.md LICENSE Makefile README.md SECURITY.md benchmarks
+constraints.txt docs io packaging pyproject.toml qgis sample_data src terrain tests tin
 """
 
 
