@@ -42,7 +42,7 @@ _IS_CHECKED: ContextVar[bool] = ContextVar("is_checked", default=True)
 
 @contextmanager
 def checking_crs(is_checked: bool) -> Iterator[None]:
-    """Refuse what contradicts its CRS in this block, or tell it only.
+    """Refuse what contradicts its CRS in this block, or tell it only, as in a block around it.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def checking_crs(is_checked: bool) -> Iterator[None]:
     """
     if not isinstance(is_checked, bool):
         raise OptionError("check_crs", is_checked, "True or False")
-    token = _IS_CHECKED.set(is_checked)
+    token = _IS_CHECKED.set(is_checked and _IS_CHECKED.get())
     try:
         yield
     finally:

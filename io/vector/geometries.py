@@ -13,6 +13,7 @@ from ...base.errors import ReadError
 from ...base.notes import naming_file
 from ...base.results import Features
 from ...base.sentences import FILE, counted, inflect
+from ..reprojection.contradictions import checking_crs
 from .features import read_features
 from .parts import Wanted, crs_notes, move_to_crs
 
@@ -38,7 +39,11 @@ _KIND_OF = {
 
 
 def read_geometries(
-    path: str | os.PathLike[str], *, crs: CrsLike | None = None, layer: str | None = None
+    path: str | os.PathLike[str],
+    *,
+    crs: CrsLike | None = None,
+    layer: str | None = None,
+    check_crs: bool = True,
 ) -> Features:
     """Read points, lines or polygons of one kind; elevations are left aside.
 
@@ -49,6 +54,8 @@ def read_geometries(
         CRS wanted; default the file's own.
     layer : str, optional
         Needed if several layers have geometry.
+    check_crs : bool
+        Refuse coordinates that contradict their CRS; False takes them as they are, with a note.
 
     Returns
     -------
@@ -66,7 +73,7 @@ def read_geometries(
         If they cannot be brought into the CRS.
     """
     file = as_path(path)
-    with naming_file(file):
+    with naming_file(file), checking_crs(check_crs):
         shapely = optional.load("shapely")
         read = read_features(file, layer=layer)
         wanted = Wanted(CRS.of(crs))

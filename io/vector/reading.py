@@ -19,6 +19,7 @@ from ...base.policies import BreaklineKind
 from ...base.sentences import FILE, height, inflect
 from ...tin import Breakline, Water
 from ...tin.constraints.breaklines import as_ring
+from ..reprojection.contradictions import checking_crs
 from ..reprojection.placement import settle_unit
 from .elevations import find_named_unit, list_elevation_columns
 from .features import Features, read_features
@@ -50,6 +51,7 @@ class LineOptions(TypedDict, total=False):
     where: str | None
     drape: bool
     notes: list[str] | None
+    check_crs: bool
 
 
 class _Lines(NamedTuple):
@@ -71,10 +73,11 @@ def _reading(
     where: str | None = None,
     drape: bool = False,
     notes: list[str] | None = None,
+    check_crs: bool = True,
 ) -> Iterator[_Lines]:
     """Yield the lines of a file, of which errors speak."""
     file, wanted = as_path(path), Wanted(CRS.of(crs), Unit.of(elevation_unit), Unit.of(z_unit))
-    with naming_file(file):
+    with naming_file(file), checking_crs(check_crs):
         features = read_features(file, layer=layer, where=where, lines_only=True)
         parts = split_into_parts(features, wanted, drape=drape, notes=notes)
         yield _Lines(features, parts, wanted)
@@ -110,6 +113,8 @@ def read_lines(
         Leave heights in the file aside.
     notes : list of str, optional
         What had to be assumed is appended to it, a sentence each.
+    check_crs : bool
+        Refuse coordinates that contradict their CRS; False takes them as they are, with a note.
 
     Returns
     -------

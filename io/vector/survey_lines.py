@@ -48,6 +48,7 @@ def with_lines(
     water_z: float | str | None = None,
     drape: bool = False,
     z_unit: UnitLike | None = None,
+    check_crs: bool = True,
 ) -> Survey:
     """Add the lines of vector files to a survey, in its CRS.
 
@@ -64,6 +65,8 @@ def with_lines(
         say.
     z_unit : Unit or str, optional
         Unit of the elevations in the files, where their CRS has no vertical axis that tells.
+    check_crs : bool
+        Refuse coordinates that contradict their CRS; False takes them as they are, with a note.
 
     Returns
     -------
@@ -88,6 +91,7 @@ def with_lines(
         "crs": survey.crs,
         "elevation_unit": survey.elevation_unit,
         "z_unit": z_unit,
+        "check_crs": check_crs,
     }
 
     def read(reader: Callable[..., list[Any]], sources: Iterable[Source], **how: Any) -> list[Any]:

@@ -6,6 +6,7 @@ format cannot hold it. A format that is missing from a row fails.
 
 from __future__ import annotations
 
+import json
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +23,7 @@ from support.doubtful_files import (
 from support.placed_files import READ, write_points
 
 import tinsmith as ts
+from tinsmith.io.vector.geometries import read_geometries
 
 pytestmark = pytest.mark.filterwarnings("ignore::tinsmith.LossWarning")
 
@@ -301,3 +303,17 @@ def test_a_file_that_names_its_crs_leaves_no_order_open(tmp_path, name):
     given = ts.Survey(points=WARSAW, crs="EPSG:2180", elevation_unit="m")
     path = ts.write(given, tmp_path / f"a{one.suffixes[0]}", format=name)
     assert not any("before the easting" in note for note in ts.read(path).notes)
+
+
+@pytest.mark.parametrize("reader", [ts.io.read_lines, read_geometries])
+def test_what_readers_of_lines_offer_is_an_option_of_theirs(reader, tmp_path):
+    path = tmp_path / "swapped.geojson"
+    places = [[36.3, -84.5, 300], [36.31, -84.49, 301], [36.32, -84.47, 302]]
+    line = {"type": "LineString", "coordinates": places}
+    path.write_text(json.dumps({"type": "Feature", "properties": {}, "geometry": line}))
+    with pytest.raises(ts.CrsError, match="`check_crs=False` takes them"):
+        reader(path, crs="EPSG:32616")
+    assert len(reader(path, crs="EPSG:32616", check_crs=False)) == 1
+    survey = ts.Survey(points=[[0, 0, 1], [1, 0, 2], [0, 1, 3]], crs="EPSG:32616")
+    with pytest.raises(ts.CrsError, match="`check_crs=False` takes them"):
+        ts.with_lines(survey, breaklines=[path])
