@@ -23,7 +23,7 @@ __all__ = [
 
 
 EDITS = 1_000
-WHAT = ("insert", "remove", "move", "set_z")
+WHAT = ("insert", "remove", "move", "set_elevation")
 """The edits, as a script numbers them."""
 INSERT_ALL = 4
 """In a script: insert this point together with all others of this kind, in one call."""
@@ -59,7 +59,7 @@ class EditTask(NamedTuple):
         """Return the points after all edits, in the order of a TIN's vertices."""
         what, number = self.script[:, :2].astype(np.int64).T
         points = self.points.copy()
-        is_moved, is_lifted = what == WHAT.index("move"), what == WHAT.index("set_z")
+        is_moved, is_lifted = what == WHAT.index("move"), what == WHAT.index("set_elevation")
         points[number[is_moved]] = self.script[is_moved, 3:]
         points[number[is_lifted], 2] = self.script[is_lifted, 5]
         left = np.delete(points, number[what == WHAT.index("remove")], axis=0)
@@ -99,7 +99,7 @@ def _make_script(
     xyz = points[number] + rng.uniform(-STRIDE, STRIDE, (len(what), 3))
     is_new = (what == WHAT.index("insert")) | (what == INSERT_ALL)
     xyz[is_new, :2] = corner + side * rng.random((int(is_new.sum()), 2))
-    is_lifted = what == WHAT.index("set_z")
+    is_lifted = what == WHAT.index("set_elevation")
     xyz[is_lifted, :2] = points[number[is_lifted], :2]
     vertex = number - _count_removed_before(what, number)
     return np.column_stack([what, number, vertex, xyz])

@@ -43,7 +43,7 @@ def _list_calls(task: EditTask) -> list[tuple[str, tuple[Any, ...]]]:
             "insert": ([xyz],),
             "remove": (int(vertex),),
             "move": (int(vertex), xyz),
-            "set_z": (int(vertex), xyz[2]),
+            "set_elevation": (int(vertex), xyz[2]),
         }
         name = WHAT[int(what)]
         calls.append((name, arguments[name]))
@@ -155,7 +155,7 @@ def _edit_with_startinpy(state: Any) -> Any:
             made.remove(vertex)
         if what in ("insert", "move"):
             made.insert_one_pt(xyz)
-        elif what == "set_z":
+        elif what == "set_elevation":
             made.update_vertex_z_value(vertex, xyz[2])
     return made
 
