@@ -5,6 +5,7 @@ python docs/make_formats.py
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import tinsmith as ts
@@ -22,6 +23,16 @@ lines or polygons, a **Raster** cells, a **Table** named columns. A reader is ch
 of a file, else by its suffix; a writer by the type of the object and the suffix. `format=`
 (`--format`, `--output-format`) overrides both. [Which format for a TIN](#which-format-for-a-tin)
 compares the main ones.
+
+"""
+
+_OPTIONS = """
+## Options of formats
+
+`ts.read` and `ts.io.write` take them by name, every command as a flag (`z_field` is `--z-field`);
+`tinsmith COMMAND FILE --help` lists those of a file, `tinsmith formats NAME` those of a format. An
+option of writing is `--output-NAME` where the command or the format of its input has one of that
+name. Every reader also takes `crs` and `z_unit`.
 
 """
 
@@ -68,7 +79,7 @@ ifc = "tinsmith_ifc:IFC"
 def write_page() -> str:
     """Return the text of the page."""
     formats = [one for one in ts.known_formats() if one.is_built_in]
-    return _HEAD + _draw_table(formats) + _WHOLE
+    return _HEAD + _draw_table(formats) + _OPTIONS + _draw_options(formats) + _WHOLE
 
 
 def _draw_table(formats: list[ts.Format]) -> str:
@@ -88,6 +99,20 @@ def _draw_table(formats: list[ts.Format]) -> str:
         ]
         rows.append(f"| {' | '.join(cell.replace('|', '/') for cell in cells)} |")
     return "\n".join(rows) + "\n"
+
+
+def _draw_options(formats: list[ts.Format]) -> str:
+    """Return a row for each option, with all formats where the same is said of it."""
+    rows: dict[tuple[str, str, str], list[str]] = {}
+    for way in ("read", "write"):
+        for one in formats:
+            for option in one.describe_options(way):
+                text = re.sub(r":\w+:`\.?(.*?)`", r"`\1`", option.text).replace("``", "`")
+                rows.setdefault((way, option.name, text), []).append(one.name)
+    lines = ["| | option | of | |", "|---|---|---|---|"]
+    for (way, name, text), names in rows.items():
+        lines.append(f"| {way} | `{name}` | {', '.join(names)} | {text.replace('|', '/')} |")
+    return "\n".join(lines) + "\n"
 
 
 if __name__ == "__main__":

@@ -97,10 +97,12 @@ def read(
         (``"PNEZD"``: P point number, N northing, E easting, Z elevation, D description, X
         easting, Y northing, - other), names in their order (``["id", "easting", ...]``, or one
         text with commas), or a mapping from role to name in the header or number from 1
-        (``{"easting": "X_LOCAL", "northing": 3, "elevation": 4}``).
+        (``{"easting": "X_LOCAL", "northing": 3, "elevation": 4}``; on the command line
+        ``easting=X_LOCAL,northing=3,elevation=4``).
     delimiter : str, optional
         One letter, or "comma", "semicolon", "tab", "pipe", "space" (runs of spaces and tabs).
     decimal : {".", ","}, optional
+        Decimal mark of the numbers; found by looking if it is not given.
     comment : str, optional
         What comment lines start with; default by looking (``# // ; ! %``), "" for none.
     skip_bad : bool, optional

@@ -90,7 +90,12 @@ def write_cog(
     overviews: OverviewMethod | None = None,
     progress: Tell | None = None,
 ) -> None:
-    """Write a raster as a cloud optimized GeoTIFF; parameters and errors as :func:`write`.
+    """Write a raster as a cloud optimized GeoTIFF; errors as :func:`write`.
+
+    Parameters
+    ----------
+    overviews : {"average", "nearest", "none"}, optional
+        How the cells of smaller copies for display are found, as :func:`write` chooses it.
 
     Notes
     -----

@@ -10,14 +10,16 @@ from typing import TYPE_CHECKING, Any, Literal
 from ...base import optional
 from ...base.errors import FormatError, UnknownOptionError
 from ...base.plug_ins import describe_failure
+from .options import list_options
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
+    from .options import FormatOption
+
 __all__ = ["KINDS", "SURFACES", "Format", "Loss", "load_function", "require_options"]
 
-_OWN_PARAMETERS = frozenset({"crs", "z_unit", "progress"})
 SURFACES = ("TIN", "Survey")
 """What triangulations and their points can be written as."""
 
@@ -171,7 +173,18 @@ class Format:
         >>> ts.find_format("geojson").options("write")
         ('kind', 'projected')
         """
-        return () if getattr(self, action) is None else _find_options(self.load(action))
+        return tuple(one.name for one in self.describe_options(action))
+
+    def describe_options(self, action: str) -> tuple[FormatOption, ...]:
+        """Return the options of its reader or writer, with their types and texts.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> ts.find_format("stl").describe_options("write")[0].text
+        'Close it with a flat base and walls, for 3D printing.'
+        """
+        return () if getattr(self, action) is None else list_options(self.load(action))
 
     def load(self, action: str) -> Callable[..., Any]:
         """Load its reader or writer (``"read"``, ``"write"``).
@@ -225,15 +238,6 @@ def _find_missing_parameter(function: Callable[..., Any], action: str) -> str:
     return ""
 
 
-def _find_options(function: Callable[..., Any]) -> tuple[str, ...]:
-    parameters = inspect.signature(function).parameters.values()
-    return tuple(
-        one.name
-        for one in parameters
-        if one.kind is one.KEYWORD_ONLY and one.name not in _OWN_PARAMETERS
-    )
-
-
 def takes_progress(function: Callable[..., Any]) -> bool:
     """Whether a reader or writer tells how far it is."""
     return "progress" in inspect.signature(function).parameters
@@ -243,7 +247,7 @@ def require_options(
     chosen: Format, action: str, function: Callable[..., Any], options: Mapping[str, object]
 ) -> None:
     """Refuse options that a reader or writer does not have."""
-    allowed = _find_options(function)
+    allowed = tuple(one.name for one in list_options(function))
     accepted = {*allowed, "progress", "z_unit"} & set(inspect.signature(function).parameters)
     unknown = [name for name in options if name not in accepted]
     if not unknown:

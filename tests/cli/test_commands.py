@@ -90,13 +90,13 @@ def test_version_is_the_package_version():
 
 
 def test_choices_are_those_of_the_library():
-    choices = {
-        one.name: one.type.choices
-        for one in group.main.get_command(None, "build").params
-        if isinstance(one.type, click.Choice)
-    }
+    build = group.main.get_command(None, "build")
+    with click.Context(build) as context:
+        build.parse_args(context, ["a.csv", "-o", "b.geojson", "--kind", "hull"])
+        parameters = build.get_params(context)
+    choices = {one.name: one.type.choices for one in parameters if hasattr(one.type, "choices")}
     assert tuple(choices["duplicates"]) == get_args(DuplicatePolicy)
-    assert tuple(choices["kind"]) == get_args(FeatureKind)
+    assert tuple(choices["write__kind"]) == get_args(FeatureKind)
     assert tuple(choices["crossing"]) == get_args(CrossingPolicy)
     assert tuple(choices["trim"]) == get_args(TrimPolicy)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import sys
 from importlib import import_module
@@ -13,8 +14,8 @@ from support.commands import run_command
 from support.processes import run
 
 from tinsmith.cli import main
+from tinsmith.cli.command import OF_BUILDING, Command
 from tinsmith.cli.command_list import SECTIONS, SUMMARIES
-from tinsmith.cli.parameters import Command
 from tinsmith.io import known_formats
 
 
@@ -113,10 +114,17 @@ def test_every_command_has_its_line_in_the_help():
 def test_every_option_is_listed_once_under_a_subject(name):
     command = main.get_command(click.Context(main), name)
     output = run_command(name, "--help").output
+    of_building = run_command("build", "--help").output
     for option in command.params:
         if isinstance(option, click.Option):
-            flags = ", ".join(option.opts)
-            assert sum(line.strip().startswith(flags) for line in output.splitlines()) >= 1
+            is_elsewhere = getattr(option, "subject", "") in OF_BUILDING and name != "build"
+            place = of_building if is_elsewhere else output
+            assert option.opts[-1] in place
+            assert any(
+                re.match(rf" *(-\w, )?{option.opts[-1]}( |$)", one) for one in place.splitlines()
+            )
+            if is_elsewhere:
+                assert option.subject.lower() in " ".join(output.split())
     headings = [line for line in output.splitlines() if line.endswith(":") and line[:1] != " "]
     assert headings[0] == "Options:"
     assert len(set(headings)) == len(headings)

@@ -90,7 +90,12 @@ def read_sdr(
     source_crs: CrsLike | None = None,
     refraction: float | None = None,
 ) -> Survey:
-    """Read points of an SDR file; ``refraction`` is that of :func:`read_gsi`.
+    """Read points of an SDR file.
+
+    Parameters
+    ----------
+    refraction : float, optional
+        As :func:`read_gsi` takes it: corrects shots for refraction and the earth's curvature.
 
     Returns
     -------

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
@@ -11,7 +10,6 @@ from ..base.sentences import counted
 from .output.failures import Failure
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
     from ..tin import Survey
@@ -20,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["as_contours", "require_contours"]
 
 
-def as_contours(reading: Reading, paths: Sequence[Path]) -> Reading:
+def as_contours(reading: Reading) -> Reading:
     """Return the options of reading that take lines as breaklines, where a format has a choice.
 
     Raises
@@ -28,17 +26,10 @@ def as_contours(reading: Reading, paths: Sequence[Path]) -> Reading:
     click.UsageError
         If they are to be taken as something else.
     """
-    from ..io import known_formats
-
-    if reading.lines_as == "points":
+    given = reading.options.get("lines_as")
+    if given == "points":
         raise click.UsageError("--from-contours takes lines as breaklines, --lines-as as points.")
-    name = paths[0].name.lower()
-    has_choice = any(
-        (one.name == reading.format if reading.format else name.endswith(one.suffixes))
-        and (one.read or "").startswith("tinsmith.io.vector.")
-        for one in known_formats()
-    )
-    return replace(reading, lines_as="breaklines") if has_choice else reading
+    return reading.with_fallback(lines_as="breaklines")
 
 
 def require_contours(survey: Survey, path: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 from inspect import signature
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ import click
 from ..base.atomic import scratch_folder
 from ..base.sentences import counted, suggest
 from .flags import name_flags
+from .format_options import make_flag
 from .output.console import emit_file
 from .output.failures import Failure, note_written
 from .parameters import refuse_value
@@ -54,9 +55,6 @@ __all__ = [
 _TEXT_FORMATS = ("delimited", "geojson", "obj", "off", "2dm", "cityjson", "csv", "json")
 """Formats that a terminal can show."""
 
-_WISHES = ("most_cells", "attributes")
-"""Options of commands, not of users, which count where the format has them."""
-
 
 @dataclass(frozen=True)
 class Output:
@@ -79,20 +77,14 @@ class Output:
 def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
     """Read points or a TIN, showing progress, and reproject them if that is asked for."""
     from ..io import reproject
-    from ..tin import Bounds
 
     _require_format("--format", reading.format)
-    options = {name: value for name, value in asdict(reading).items() if value is not None}
-    target = options.pop("to_crs", None)
-    if reading.length_unit is not None:
-        options["unit"] = options.pop("length_unit")
-    if reading.window is not None:
-        options["window"] = Bounds(*reading.window)
+    target = reading.to_crs
     text = f"Reading {name_file(Path(path.name))}"
     with console.steps() as steps, steps.step(text) as progress:
         if target is None:
-            return _read_once(path, options, progress)
-        return reproject(_read_to_reproject(path, options, target), target)
+            return _read_once(path, reading, progress)
+        return reproject(_read_to_reproject(path, reading, target), target)
 
 
 def read_inputs(paths: Sequence[Path], reading: Reading, console: Console) -> Survey | TIN:
@@ -106,31 +98,31 @@ def read_inputs(paths: Sequence[Path], reading: Reading, console: Console) -> Su
 
 
 def _read_once(
-    path: Path, options: dict[str, Any], progress: Callable[[float], None] | None = None
+    path: Path, reading: Reading, progress: Callable[[float], None] | None = None
 ) -> Survey | TIN:
     from ..io.reading import read_as_wished, read_stream
 
-    asked = {name: value for name, value in options.items() if name not in _WISHES}
-    wishes = {name: value for name, value in options.items() if name in _WISHES}
+    asked = reading.given
+    fallbacks = {
+        name: value for name, value in reading.fallbacks.items() if name not in reading.options
+    }
     if path == STANDARD:
         asked.pop("remote", None)
-        return read_stream(open_standard_input(), name_file(path), wishes, **asked)
-    return read_as_wished(path, wishes, **asked, progress=progress)
+        return read_stream(open_standard_input(), name_file(path), fallbacks, **asked)
+    return read_as_wished(path, fallbacks, **asked, progress=progress)
 
 
-def _read_to_reproject(path: Path, options: dict[str, Any], target: str) -> Survey | TIN:
+def _read_to_reproject(path: Path, reading: Reading, target: str) -> Survey | TIN:
     """Read in the input's own CRS; one in degrees, which no TIN has, in the one that is wanted."""
     from ..io.reprojection.placement import DegreesError
 
     try:
-        return _read_once(path, options)
+        return _read_once(path, reading)
     except DegreesError:
         if path == STANDARD:
             raise  # it is read only once
-        declared = options.pop("crs", None)
-        if declared is not None:
-            options.setdefault("source_crs", declared)
-        return _read_once(path, options | {"crs": target})
+        source = reading.crs if reading.source_crs is None else reading.source_crs
+        return _read_once(path, replace(reading, crs=target, source_crs=source))
 
 
 def open_standard_input() -> IO[bytes]:
@@ -295,7 +287,7 @@ def plan_outputs(
     pictures = [] if drape is None else [Named(drape, "--ortho")]
     require_separate([*inputs, *pictures], outputs)
     console.note(describe_leftovers(path for path, _ in placed))
-    given = {name: value for name, value in writing.options.items() if value not in (None, False)}
+    given = writing.options
     planned = [
         Output(path, formats, given, _choose_suffix(formats, writing), layer)
         for path, layer, formats in (
@@ -395,7 +387,7 @@ def _describe_option_not_taken(name: str) -> click.UsageError:
     from ..io import known_formats
 
     takers = [one.name for one in known_formats() if name in one.options("write")]
-    flag = {"surface": "--name", "drape": "--ortho"}.get(name, f"--{name.replace('_', '-')}")
+    flag = make_flag(name, "write")
     return click.UsageError(
         f"No output takes the option {flag}: "
         + (f"only {', '.join(takers)} can." if takers else "no format can.")

@@ -2,36 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
-
 import click
 from click.core import ParameterSource
 
 from ..base.sentences import name_options
+from .format_options import find_format_flag
 
-__all__ = ["LibraryOption", "find_flag", "find_given_flag", "name_flags", "note_given"]
+__all__ = ["find_flag", "find_given_flag", "name_flags", "note_given"]
 
 _CONTEXT = "tinsmith.context"
-
-
-class LibraryOption(click.Option):
-    """An option of a command that the library calls otherwise.
-
-    Parameters
-    ----------
-    sets : sequence of str
-        Options of the library that have its value, where the command has no flag of that name.
-    instead : str
-        The one for which it stands whatever other flag has that name.
-    """
-
-    def __init__(
-        self, *declared: Any, sets: Sequence[str] = (), instead: str = "", **more: Any
-    ) -> None:
-        super().__init__(*declared, **more)
-        self.sets = tuple(sets)
-        self.instead = instead
 
 
 def name_flags(text: str, **renamed: str) -> str:
@@ -51,12 +30,15 @@ def find_flag(name: str) -> str | None:
     root = click.get_current_context(silent=True)
     if root is None:
         return None
+    context = root.find_root().meta.get(_CONTEXT, root)
+    command = _find_running_command(context)
+    options = _list_options(command, context)
     found = [
-        (rank, option.opts[0])
-        for option in _list_options(_find_running_command(root))
-        if (rank := _rank(option, name)) is not None
+        (rank, option.opts[0]) for option in options if (rank := _rank(option, name)) is not None
     ]
-    return min(found, default=(0, None))[1]
+    if found:
+        return min(found)[1]
+    return find_format_flag(name, getattr(command, "format_ways", ()), options)
 
 
 def note_given(context: click.Context) -> None:
@@ -85,7 +67,7 @@ def find_given_flag(option: str) -> tuple[click.Context, str] | None:
         return None
     given = [
         (rank, one.opts[0])
-        for one in _list_options(context.command)
+        for one in _list_options(context.command, context)
         if (rank := _rank(one, option)) is not None
         and context.get_parameter_source(one.name or "") is ParameterSource.COMMANDLINE
     ]
@@ -103,10 +85,10 @@ def _rank(option: click.Option, name: str) -> int | None:
     return 3 if name in getattr(option, "sets", ()) else None
 
 
-def _list_options(command: click.Command) -> list[click.Option]:
+def _list_options(command: click.Command, context: click.Context) -> list[click.Option]:
     return [
         one
-        for one in command.params
+        for one in command.get_params(context)
         if isinstance(one, click.Option) and one.name and one.opts[0].startswith("--")
     ]
 

@@ -7,8 +7,7 @@ from typing import Any
 import click
 
 from ..base.policies import CodeStyle, CrossingPolicy, ShotOrder, TrimPolicy
-from .flags import LibraryOption
-from .parameters import choice_option, number_option, under
+from .parameters import LibraryOption, choice_option, number_option, under
 from .paths import LINES
 
 __all__ = ["CODE_OPTIONS", "LINE_OPTIONS"]

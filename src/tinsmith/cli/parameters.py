@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, get_args
 
 import click
@@ -11,14 +11,12 @@ from ..base.sentences import suggest
 from .paths import INPUT, LINES, OUTPUT, STANDARD
 
 __all__ = [
-    "Command",
     "Decorator",
     "FormatName",
+    "LibraryOption",
     "Words",
     "choice_option",
-    "command",
     "crs_option",
-    "file_command",
     "file_option",
     "input_file",
     "input_files",
@@ -26,6 +24,8 @@ __all__ = [
     "numbers_option",
     "output_files",
     "output_option",
+    "parse_columns",
+    "parse_crs",
     "picture_option",
     "position_option",
     "refuse_value",
@@ -39,54 +39,26 @@ if TYPE_CHECKING:
 
     from click.shell_completion import CompletionItem
 
-_OWN = "Options"
-
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 
-class Command(click.Command):
-    """A command whose help lists its own options first, then shared ones by subject.
+class LibraryOption(click.Option):
+    """An option of a command that the library calls otherwise.
 
-    Options that take one value are refused when they are given twice: of two pads, or two lines,
-    the first would be lost in silence.
+    Parameters
+    ----------
+    sets : sequence of str
+        Options of the library that have its value, where the command has no flag of that name.
+    instead : str
+        The one for which it stands whatever other flag has that name.
     """
 
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Read the arguments."""
-        if not ctx.resilient_parsing:
-            _require_once(self.make_parser(ctx).parse_args(args=list(args))[2])
-        return super().parse_args(ctx, args)
-
-    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the options under their subjects."""
-        sections: dict[str, list[tuple[str, str]]] = {_OWN: []}
-        for one in self.get_params(ctx):
-            record = one.get_help_record(ctx) if isinstance(one, click.Option) else None
-            if record is not None:
-                sections.setdefault(getattr(one, "subject", _OWN), []).append(record)
-        for heading in sections:
-            with formatter.section(heading):
-                formatter.write_dl(sections[heading])
-
-
-def _require_once(given: list[click.Parameter]) -> None:
-    """Refuse an option that was given more often than it is looked at."""
-    for one in {id(one): one for one in given}.values():
-        is_single = isinstance(one, click.Option) and not (one.multiple or one.is_flag or one.count)
-        if is_single and sum(other is one for other in given) > 1:
-            raise click.UsageError(
-                f"{max(one.opts, key=len)} is given several times: it takes one."
-            )
-
-
-def command(function: Callable[..., Any]) -> click.Command:
-    """Make a command of a function."""
-    return click.command(cls=Command)(function)
-
-
-def file_command(function: Callable[..., Any]) -> click.Command:
-    """Make a command that reads one file, and writes what it makes of it to others."""
-    return command(input_file("file")(output_files(function)))
+    def __init__(
+        self, *declared: Any, sets: Sequence[str] = (), instead: str = "", **more: Any
+    ) -> None:
+        super().__init__(*declared, **more)
+        self.sets = tuple(sets)
+        self.instead = instead
 
 
 def under(subject: str, *options: Decorator) -> tuple[Decorator, ...]:
@@ -200,14 +172,15 @@ def choice_option(
 
 def crs_option(flag: str, help: str) -> Decorator:  # noqa: A002 - click's name
     """Return an option for a CRS; one that does not exist is wrong usage."""
-    return click.option(flag, metavar="CRS", callback=_require_crs, help=help)
+    return click.option(flag, metavar="CRS", callback=parse_crs, help=help)
 
 
-def _require_crs(
+def parse_crs(
     ctx: click.Context,  # noqa: ARG001 - click's signature
     param: click.Parameter,
     value: str | None,
 ) -> str | None:
+    """Return the value, which must be a CRS that exists."""
     from ..base.crs import CRS
     from ..base.errors import CrsError
 
@@ -216,6 +189,23 @@ def _require_crs(
     except CrsError as error:
         raise refuse_value(param.opts[0], error) from error
     return value
+
+
+def parse_columns(
+    ctx: click.Context,  # noqa: ARG001 - click's signature
+    param: click.Parameter,  # noqa: ARG001 - click's signature
+    value: str | None,
+) -> str | dict[str, str | int] | None:
+    """Return roles with the name or number of their columns if there are equals signs."""
+    if value is None or "=" not in value:
+        return value
+    pairs = [pair.partition("=") for pair in value.split(",")]
+    if not all(role.strip() and which.strip() for role, _, which in pairs):
+        raise click.BadParameter(f"'{value}' mixes roles with names: easting=X,northing=Y,...")
+    return {
+        role.strip(): int(which) if which.strip().isdecimal() else which.strip()
+        for role, _, which in pairs
+    }
 
 
 def refuse_value(flag: str, error: Exception, more: str = "") -> click.UsageError:

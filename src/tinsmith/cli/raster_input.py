@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -24,9 +23,10 @@ def read_cells(path: Path, request: Request) -> Raster | None:
     from ..io.raster.elevations import read_raster
     from ..io.raster.formats import FORMATS
 
-    given = {name: value for name, value in asdict(request.reading).items() if value is not None}
+    given = request.reading.given
     is_raster = path.suffix.lower() in FORMATS[0].suffixes and given.pop("format", None) is None
-    if not is_raster or request.how.shaping or set(given) - set(_OF_CELLS):
+    is_moved = request.reading.to_crs is not None
+    if not is_raster or is_moved or request.how.shaping or set(given) - set(_OF_CELLS):
         return None
     try:
         return read_raster(path, **given)

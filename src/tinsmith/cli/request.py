@@ -19,9 +19,9 @@ from .files import (
 from .options import (
     CODE_FLAGS,
     console_options,
-    product_options,
     reading_options,
     triangulating_options,
+    writing_options,
 )
 from .output.failures import Failure
 from .paths import Named
@@ -129,13 +129,10 @@ class Request:
             self.console.emit_record(record)
 
 
-def surface_options(
-    writing_options: Decorator = product_options, reading_options: Decorator = reading_options
-) -> Decorator:
+def surface_options(reading_options: Decorator = reading_options) -> Decorator:
     """Return a decorator that adds the shared options, and hands them over as ``request``.
 
-    The options of writing are those of products, or those that a command has in their place; those
-    of reading likewise.
+    The options of reading may be those that a command has in their place.
     """
     groups = (reading_options, triangulating_options, writing_options, console_options)
 

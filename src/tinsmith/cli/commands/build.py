@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..options import writing_options
-from ..parameters import command, input_files, output_files, report_option
+from ..command import command
+from ..parameters import input_files, output_files, report_option
 from ..paths import describe_inputs, name_files
 from ..request import surface_options
 
@@ -44,7 +44,7 @@ __all__ = ["build"]
     help="POINTS are contour lines, which become breaklines: where they leave the surface flat, "
     "points are added along ridges, valleys, peaks and pits, and marked.",
 )
-@surface_options(writing_options)
+@surface_options()
 def build(
     points: tuple[Path, ...],
     report: Path | None,
@@ -74,7 +74,7 @@ def build(
 
     how, console = request.how, request.console
     planned = request.plan(request.list_inputs(*points), "TIN", report=report)
-    reading = as_contours(request.reading, points) if from_contours else request.reading
+    reading = as_contours(request.reading) if from_contours else request.reading
     survey = _require_survey(read_inputs(points, reading, console), points[0])
     if from_contours:
         require_contours(survey, points[0])

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 import click
 
 from ...base.sentences import counted
+from ..command import command
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import Failure
-from ..parameters import command, input_file
+from ..parameters import input_file
 from ..paths import name_file
 
 if TYPE_CHECKING:

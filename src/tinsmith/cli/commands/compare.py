@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 import click
 
 from ...base.sentences import counted
+from ..command import command
 from ..options import console_options, reading_options
 from ..output.failures import Failure
-from ..parameters import command, input_file, number_option, picture_option
+from ..parameters import input_file, number_option, picture_option
 from ..paths import make_title, name_file
 
 if TYPE_CHECKING:

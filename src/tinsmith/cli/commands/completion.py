@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import click
 
+from ..command import command
 from ..output.console import emit_text
-from ..parameters import Words, command
+from ..parameters import Words
 
 __all__ = ["completion"]
 

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...base.sentences import counted, height
-from ..flags import LibraryOption
-from ..options import vector_options
-from ..parameters import file_command, number_option, numbers_option
+from ..command import file_command
+from ..parameters import LibraryOption, number_option, numbers_option
 from ..paths import make_title
 from ..request import surface_options
 
@@ -55,7 +54,7 @@ __all__ = ["contours"]
     cls=LibraryOption,
     sets=("spacing",),
 )
-@surface_options(vector_options)
+@surface_options()
 def contours(
     file: Path,
     request: Request,

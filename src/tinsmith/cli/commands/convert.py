@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...base.sentences import counted
+from ..command import file_command
 from ..options import console_options, reading_options, writing_options
-from ..parameters import file_command
 from ..paths import name_file
 
 if TYPE_CHECKING:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..parameters import command, input_file, output_files
+from ..command import command
+from ..parameters import input_file, output_files
 from ..paths import make_title
 from ..request import surface_options
 

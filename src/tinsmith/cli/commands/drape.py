@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...base.policies import OutsidePolicy
-from ..parameters import choice_option, command, input_file, output_files
+from ..command import command
+from ..parameters import choice_option, input_file, output_files
 from ..paths import LINES, Named
 from ..request import surface_options
 

@@ -7,8 +7,8 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 from ...base.sentences import counted
-from ..options import writing_options
-from ..parameters import command, input_file, output_files, report_option
+from ..command import command
+from ..parameters import input_file, output_files, report_option
 from ..paths import STANDARD, Named, name_file
 from ..request import surface_options
 
@@ -26,7 +26,7 @@ __all__ = ["edit"]
 @input_file("script")
 @output_files
 @report_option("JSON file that accounts for every row and every edit.")
-@surface_options(writing_options)
+@surface_options()
 def edit(
     file: Path,
     script: Path,

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...base.policies import FlowProduct
-from ..parameters import choice_option, file_command, file_option, number_option, position_option
+from ..command import file_command
+from ..parameters import choice_option, file_option, number_option, position_option
 from ..places import name_places, read_places
 from ..request import surface_options
 

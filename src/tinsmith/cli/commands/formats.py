@@ -5,35 +5,105 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
+import click
+
+from ..command import command
+from ..format_options import list_flags_of
 from ..options import console_options
 from ..output.console import format_json
-from ..parameters import command
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ...io import Format
     from ..output.console import Console
 
 __all__ = ["formats"]
 
+_OF_OUTPUT = (
+    "An option of writing is --output-NAME where the command, or the format of its input, has one "
+    "of that name."
+)
+
 
 @command
+@click.argument("names", metavar="[NAME]...", nargs=-1)
 @console_options
-def formats(console: Console) -> None:
+def formats(names: tuple[str, ...], console: Console) -> None:
     """List the formats: what each reads and writes, what it needs, and whether that is installed.
 
-    A TIN is a surface, a Survey points with their lines, Features are points, lines or polygons.
-    Formats of plug-ins come last. docs/formats.md describes what each format keeps.
+    With the NAME or suffix of a format all that is known of it: its options for reading and
+    writing, which every command takes that reads or writes such a file, to which digit coordinates
+    come back, and what is lost. A TIN is a surface, a Survey points with their lines, Features are
+    points, lines or polygons. Formats of plug-ins come last.
 
     \b
     Example:
       tinsmith formats
+      tinsmith formats csv gpkg
     """  # noqa: D301 - click reads the control character
     from ...io import known_formats
 
+    chosen = known_formats() if not names else _choose(names)
     if console.as_json:
-        console.emit(format_json({"formats": [_describe_format(one) for one in known_formats()]}))
+        console.emit(format_json({"formats": [_describe_format(one) for one in chosen]}))
+    elif names:
+        console.emit("\n\n".join(map(_describe_in_full, chosen)))
     else:
-        console.emit(_draw_table(known_formats()))
+        console.emit(_draw_table(chosen))
+
+
+def _choose(names: Sequence[str]) -> tuple[Format, ...]:
+    """Return the formats that have one of the names or suffixes."""
+    from ...base.errors import FormatError
+    from ...base.sentences import suggest
+    from ...io import known_formats
+    from ...io.registry.lookup import find_format
+
+    found: list[Format] = []
+    for name in names:
+        try:
+            find_format(name)
+        except FormatError as error:
+            raise click.UsageError(f"{error}{suggest(name, error.known)}") from error
+        plain = name.strip().lower().lstrip(".")
+        found += [
+            one for one in known_formats() if one.name == plain or f".{plain}" in one.suffixes
+        ]
+    return tuple(dict.fromkeys(found))
+
+
+def _describe_in_full(one: Format) -> str:
+    """Return what is known of a format, with the flags of its options."""
+    heading = f"{one.name}: {one.description}"
+    facts = {
+        "Suffixes": " ".join(one.suffixes),
+        "Reads": ", ".join(one.reads) if one.read else "",
+        "Writes": ", ".join(one.writes) if one.write else "",
+        "Needs": _describe_needs(one).replace("\n", ", ") if one.needs else "",
+        "Precision": one.precision if one.write else "",
+        "Not kept": one.losses if one.write else "",
+        "From": "" if one.is_built_in else one.distribution,
+    }
+    formatter = click.HelpFormatter(width=_find_width())
+    formatter.write_heading(heading)
+    with formatter.indentation():
+        formatter.write_dl([(f"{name}:", text) for name, text in facts.items() if text])
+    options = list_flags_of(one)
+    for heading, records in options.items():
+        with formatter.indentation(), formatter.section(heading):
+            formatter.write_dl(records)
+    if "Writing" in options:
+        formatter.write_paragraph()
+        with formatter.indentation():
+            formatter.write_text(_OF_OUTPUT)
+    return formatter.getvalue().rstrip("\n")
+
+
+def _find_width() -> int:
+    from shutil import get_terminal_size
+
+    return max(min(get_terminal_size().columns, 100) - 2, 50)
 
 
 def _describe_format(one: Format) -> dict[str, Any]:
@@ -50,6 +120,13 @@ def _describe_format(one: Format) -> dict[str, Any]:
         "extra": one.extra,
         "needs": one.needs,
         "installed": one.is_installed,
+        "options": {
+            way: [
+                {"name": option.name, "type": option.kind, "text": option.text}
+                for option in one.describe_options(way)
+            ]
+            for way in ("read", "write")
+        },
         "from": one.distribution,
     }
 

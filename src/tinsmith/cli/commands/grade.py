@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ...base.sentences import counted
-from ..options import writing_options
+from ..command import file_command
 from ..output.failures import Failure
-from ..parameters import file_command, file_option, number_option
+from ..parameters import file_option, number_option
 from ..paths import Named
 from ..request import surface_options
 
@@ -33,7 +33,7 @@ __all__ = ["grade"]
     "--cut-slope", "RATIO", "Slope of cuts, horizontal over vertical: 2 is 2:1.", required=True
 )
 @number_option("--fill-slope", "RATIO", "Slope of fills, horizontal over vertical.", required=True)
-@surface_options(writing_options)
+@surface_options()
 def grade(
     file: Path,
     pad: Path,

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ...base.sentences import counted
-from ..options import writing_options
-from ..parameters import command, input_files, number_option, output_files
+from ..command import command
+from ..parameters import input_files, number_option, output_files
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -94,7 +93,7 @@ _PARAMETERS = (
     is_flag=True,
     help="Write ground points instead of their TIN.",
 )
-@surface_options(writing_options)
+@surface_options()
 def ground(points: tuple[Path, ...], request: Request, **options: Any) -> None:
     """Classify the ground among POINTS by progressive densification of a TIN.
 
@@ -109,7 +108,7 @@ def ground(points: tuple[Path, ...], request: Request, **options: Any) -> None:
     from ..files import add_lines, note_found, read_inputs
 
     planned = _plan(request, points, options["as_points"])
-    reading = replace(request.reading, attributes="all")
+    reading = request.reading.with_fallback(attributes="all")
     found = read_inputs(points, reading, request.console)
     survey = add_lines(_require_survey(found, points[0]), request.how, request.console)
     note_found(survey, request.console)

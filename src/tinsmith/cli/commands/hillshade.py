@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from ..parameters import file_command, number_option, smooth_option
+from ..command import file_command
+from ..parameters import number_option, smooth_option
 from ..request import surface_options
 
 if TYPE_CHECKING:

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..command import command
 from ..options import coding_options, console_options, reading_options
 from ..output.failures import Failure
-from ..parameters import command, input_files
+from ..parameters import input_files
 from ..paths import OUTPUT, describe_inputs, make_title, name_file, name_files
 
 if TYPE_CHECKING:

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..parameters import command, input_files, output_option
+from ..command import command
+from ..parameters import input_files, output_option
 from ..paths import describe_inputs, make_title, name_files
 from ..request import surface_options
 

@@ -8,8 +8,9 @@ import click
 
 from ...base.policies import Extrapolation, InterpolationMethod
 from ...base.sentences import counted
+from ..command import command
 from ..output.failures import Failure
-from ..parameters import choice_option, command, crs_option, file_option, input_file, output_files
+from ..parameters import choice_option, crs_option, file_option, input_file, output_files
 from ..paths import Named
 from ..request import surface_options
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..options import writing_options
-from ..parameters import command, input_file, output_files
+from ..command import command
+from ..parameters import input_file, output_files
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ __all__ = ["paste"]
 @input_file("base")
 @input_file("patch")
 @output_files
-@surface_options(writing_options)
+@surface_options()
 def paste(base: Path, patch: Path, request: Request) -> None:
     """Replace a part of the TIN in BASE by the TIN in PATCH.
 

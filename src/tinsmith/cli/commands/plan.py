@@ -15,16 +15,10 @@ from ...base.policies import (
     SheetLayout,
 )
 from ...base.sentences import counted
+from ..command import command
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import Failure, note_written
-from ..parameters import (
-    choice_option,
-    command,
-    file_option,
-    input_file,
-    number_option,
-    output_option,
-)
+from ..parameters import choice_option, file_option, input_file, number_option, output_option
 from ..paths import Named, make_title, require_separate
 
 if TYPE_CHECKING:

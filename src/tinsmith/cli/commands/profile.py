@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...base.sentences import counted
-from ..flags import LibraryOption
+from ..command import command
 from ..output.failures import Failure
-from ..parameters import command, file_option, number_option, output_files, position_option
+from ..parameters import LibraryOption, file_option, number_option, output_files, position_option
 from ..paths import INPUT, Named, make_title
 from ..request import surface_options
 

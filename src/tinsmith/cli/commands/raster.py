@@ -8,8 +8,8 @@ import click
 
 from ...base.policies import InterpolationMethod, RasterSample, RasterValue
 from ...base.sentences import coordinate
-from ..options import format_options
-from ..parameters import choice_option, file_command, file_option, number_option, smooth_option
+from ..command import file_command
+from ..parameters import choice_option, file_option, number_option, smooth_option
 from ..paths import Named
 from ..request import surface_options
 
@@ -48,7 +48,7 @@ __all__ = ["raster"]
 @number_option("--azimuth", "DEGREES", "Of the light of hillshade.", default=315.0)
 @number_option("--altitude", "DEGREES", "Of the light of hillshade.", default=45.0)
 @smooth_option
-@surface_options(format_options)
+@surface_options()
 def raster(
     file: Path,
     spacing: float | None,

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ...base.sentences import counted
+from ..command import file_command
 from ..flags import name_flags
-from ..options import writing_options
 from ..output.failures import Failure, refuse_option
-from ..parameters import file_command, number_option
+from ..parameters import number_option
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ __all__ = ["refine"]
     "Longest side of a triangle, in CRS units. (--max-edge trims the TIN before.)",
 )
 @number_option("--max-vertices", "N", "Largest number of vertices.", type=int, default=10_000_000)
-@surface_options(writing_options)
+@surface_options()
 def refine(
     file: Path,
     min_angle: float,

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..parameters import file_command, file_option, number_option, position_option
+from ..command import file_command
+from ..parameters import file_option, number_option, position_option
 from ..places import name_places, read_places
 from ..request import surface_options
 

@@ -8,9 +8,9 @@ import click
 
 from ...base.policies import SimplificationHold
 from ...base.sentences import coordinate, counted
-from ..options import writing_options
+from ..command import file_command
 from ..output.failures import Failure
-from ..parameters import choice_option, file_command, file_option, number_option
+from ..parameters import choice_option, file_option, number_option
 from ..paths import INPUT, Named
 from ..request import surface_options
 
@@ -45,7 +45,7 @@ __all__ = ["simplify"]
     "File of points to keep, such as benchmarks: each must be a vertex of the surface.",
     type=INPUT,
 )
-@surface_options(writing_options)
+@surface_options()
 def simplify(
     file: Path,
     tolerance: float | None,

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...base.policies import SlopeUnit
+from ..command import file_command
 from ..options import make_reading_options
-from ..parameters import choice_option, file_command, numbers_option
+from ..parameters import choice_option, numbers_option
 from ..request import surface_options
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ __all__ = ["slope"]
     "--breaks", "S,S,...", "Limits between the classes, in that unit; default the usual ones."
 )
 @click.option("--aspect", is_flag=True, help="Classes of aspect instead of slope.")
-@surface_options(reading_options=make_reading_options(unit_flag="--length-unit"))
+@surface_options(make_reading_options(unit_flag="--length-unit"))
 def slope(
     file: Path,
     slope_unit: SlopeUnit,

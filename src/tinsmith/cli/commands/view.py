@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ...base.policies import Tint
+from ..command import command
 from ..options import console_options, reading_options, triangulating_options
 from ..output.failures import note_written, tell_warning
 from ..parameters import (
     choice_option,
-    command,
     file_option,
     input_files,
     number_option,
@@ -133,8 +132,8 @@ def view(
     if output is not None:
         require_picture(output, place="--output", inputs=inputs, suffixes=PREVIEW_SUFFIXES)
 
-    if not full and reading.stride is None:
-        reading = replace(reading, most_cells=_choose_most_cells(output))
+    if not full and "stride" not in reading.options:
+        reading = reading.with_fallback(most_cells=_choose_most_cells(output))
     tin, survey = read_tin_of_files(files, reading, how, console)
     sample = None if survey is None else _describe_sample(survey)
     top = drawing.pop("top")

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..parameters import command, file_option, number_option, output_option
+from ..command import command
+from ..parameters import file_option, number_option, output_option
 from ..paths import INPUT, Named, make_title
 from ..request import surface_options
 

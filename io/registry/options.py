@@ -1,0 +1,107 @@
+"""Options of readers and writers, as their signatures and docstrings say."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["FormatOption", "describe_parameters", "list_options"]
+
+_OWN_PARAMETERS = frozenset({"crs", "z_unit", "progress"})
+"""What every reader or writer may take, which is no option of its format."""
+
+
+@dataclass(frozen=True, slots=True)
+class FormatOption:
+    """An option of a reader or writer.
+
+    Attributes
+    ----------
+    name : str
+        As ``read`` and ``write`` take it.
+    annotation : str
+        Its type as the signature has it, such as ``"float | None"``; empty if it has none.
+    default : object
+    kind : str
+        Its type as the docstring has it, such as ``"(4,) sequence of int, optional"``.
+    text : str
+        What the docstring says of it, on one line.
+    """
+
+    name: str
+    annotation: str
+    default: Any
+    kind: str
+    text: str
+
+
+_SHARED = {
+    "faces": (
+        'FacePolicy = "most"',
+        "Triangles of a mesh to read, where some make no surface, because they have no area seen "
+        'from above or overlap larger ones: "surface" leaves them out, "most" does so up to one '
+        'percent of the area, "all" refuses the file.',
+    ),
+    "encoding": ("str, optional", "Encoding of the text; found by looking if it is not given."),
+    "source_crs": ("CRS, str or int, optional", "CRS of the coordinates, if it is not ``crs``."),
+    "nodata": (
+        "float or sequence of float, optional",
+        "Elevations that stand for none, besides those that the file declares.",
+    ),
+}
+"""Options of several readers, which their docstrings need not say again."""
+
+
+def list_options(function: Callable[..., Any]) -> tuple[FormatOption, ...]:
+    """Return the options of a reader or writer in the order of its signature."""
+    documented = _SHARED | describe_parameters(inspect.getdoc(function) or "")
+    return tuple(
+        FormatOption(
+            one.name,
+            one.annotation if isinstance(one.annotation, str) else "",
+            one.default,
+            *documented.get(one.name, ("", "")),
+        )
+        for one in inspect.signature(function).parameters.values()
+        if one.kind is one.KEYWORD_ONLY and one.name not in _OWN_PARAMETERS
+    )
+
+
+def describe_parameters(docstring: str) -> dict[str, tuple[str, str]]:
+    """Return the types and the texts of the parameters of a numpydoc docstring, by name.
+
+    Examples
+    --------
+    >>> describe_parameters('''Read.
+    ...
+    ... Parameters
+    ... ----------
+    ... band : int, optional
+    ...     Band to read,
+    ...     from 1.
+    ...
+    ... Returns
+    ... -------
+    ... Survey
+    ... ''')
+    {'band': ('int, optional', 'Band to read, from 1.')}
+    """
+    found: dict[str, tuple[str, str]] = {}
+    _, _, section = docstring.partition("Parameters\n----------\n")
+    names: list[str] = []
+    parameters = re.split(r"^\S.*\n---", section, maxsplit=1, flags=re.MULTILINE)[0]
+    for line in parameters.splitlines():
+        if line.startswith(" "):
+            for name in names:
+                kind, text = found[name]
+                found[name] = kind, f"{text} {line.strip()}".strip()
+        elif line:
+            given, _, kind = line.partition(" : ")
+            names = [name.strip() for name in given.split(",")]
+            found.update(dict.fromkeys(names, (kind, "")))
+    return found
