@@ -570,7 +570,7 @@ def folder(tmp_path, monkeypatch):
 @pytest.fixture
 def figures(monkeypatch):
     """Return the list of figures that commands write, filled as they do."""
-    from tinsmith.cli import files, products
+    from tinsmith.cli import files, job
 
     drawn, write = [], files.write_figure
 
@@ -578,7 +578,7 @@ def figures(monkeypatch):
         drawn.append(figure)
         write(figure, path, **how)
 
-    for module in (files, products):
+    for module in (files, job):
         monkeypatch.setattr(module, "write_figure", keep)
     return drawn
 

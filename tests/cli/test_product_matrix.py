@@ -16,7 +16,7 @@ from support.product_calls import HILL, LINE, PLACE, RESULTS, RING, add_height
 
 import tinsmith as ts
 from tinsmith.cli.command_list import SUMMARIES
-from tinsmith.cli.request import Request
+from tinsmith.cli.job import Job
 from tinsmith.io.registry.lookup import known_formats
 from tinsmith.io.vector.geometries import read_geometries
 
@@ -168,9 +168,9 @@ def test_every_command_is_here_or_says_what_it_writes():
 def test_every_command_writes_every_format_of_what_it_makes(files, tmp_path, monkeypatch, name):
     line, expected = COMMANDS[name]
     planned = []
-    plan = Request.plan_products
+    plan = Job.plan_products
     monkeypatch.setattr(
-        Request,
+        Job,
         "plan_products",
         lambda self, inputs, *kinds: planned.extend(kinds) or plan(self, inputs, *kinds),
     )

@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from functools import partial
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from ..command import command
+from ..job import surface_options
 from ..parameters import input_files, output_files, report_option
 from ..paths import describe_inputs, name_files
-from ..request import surface_options
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
     from ...tin import TIN, Survey
+    from ..job import Job
     from ..output.blunder_summaries import Suspects
     from ..output.console import Row
-    from ..products import Products
-    from ..request import Request
+    from ..output.facts import Facts
 
 __all__ = ["build"]
 
@@ -49,7 +48,7 @@ def build(
     points: tuple[Path, ...],
     report: Path | None,
     drop_blunders: bool,
-    request: Request,
+    job: Job,
     from_contours: bool,
 ) -> None:
     """Build the exact Delaunay TIN of elevation points and lines.
@@ -66,42 +65,52 @@ def build(
       tinsmith build --from-contours contours.gpkg --z-field elevation -o hills.gpkg
     """  # noqa: D301 - click reads the control character
     from ...terrain import mend_flats
-    from ..contour_input import as_contours, require_contours
     from ..files import add_lines, build_tin, note_surfaces, read_inputs, write_text
+    from ..inputs import as_contours, require_contours
     from ..output.blunder_summaries import describe_suspects, tell_suspects
     from ..output.console import format_json
     from ..output.summaries import describe_report
 
-    how, console = request.how, request.console
-    planned = request.plan(request.list_inputs(*points), "TIN", report=report)
-    reading = as_contours(request.reading) if from_contours else request.reading
+    how, console = job.how, job.console
+    planned = job.plan(job.list_inputs(*points), "TIN", report=report)
+    reading = as_contours(job.reading) if from_contours else job.reading
     survey = _require_survey(read_inputs(points, reading, console), points[0])
     if from_contours:
         require_contours(survey, points[0])
     survey = add_lines(survey, how, console)
     tin = build_tin(survey, how, console)
-    tin, suspects = _find_blunders(tin, request, drop=drop_blunders)
+    tin, suspects = _find_blunders(tin, job, drop=drop_blunders)
     if from_contours:
-        with request.step("Mending flat triangles") as progress:
+        with job.step("Mending flat triangles") as progress:
             tin = mend_flats(tin, progress=progress)
     note_surfaces([tin], console)
     planned.write("TIN", tin)
     account = describe_report(tin.report, survey, console.notes) | describe_suspects(suspects)
     if report is not None:
         write_text(report, format_json(account) + "\n")
-    told = tell_suspects(suspects)
-    rows = _summarise_build(points, survey, tin, told, is_mended=from_contours)
-    describe = partial(_describe_build, points, survey, tin, account, planned, request.started)
-    request.finish(planned, rows, describe)
+    facts = _list_facts(points, survey, tin, tell_suspects(suspects), is_mended=from_contours)
+    facts.record(
+        report=account,
+        outputs=lambda: [
+            {
+                "path": str(one.path),
+                "format": one.formats["TIN"].name,
+                "bytes": one.path.stat().st_size,
+            }
+            for one in planned.outputs["TIN"]
+        ],
+        seconds=lambda: round(perf_counter() - job.started, 3),
+    )
+    job.finish(planned, facts)
 
 
-def _find_blunders(tin: TIN, request: Request, *, drop: bool) -> tuple[TIN, Suspects]:
+def _find_blunders(tin: TIN, job: Job, *, drop: bool) -> tuple[TIN, Suspects]:
     """Look for points that look like blunders, and leave them out where that is asked for."""
     from ...terrain.inspection.dropping import drop_blunders
     from ...terrain.inspection.findings import blunders, screen
     from ..output.blunder_summaries import Suspects
 
-    with request.step("Checking points") as progress:
+    with job.step("Checking points") as progress:
         if not drop:
             return tin, Suspects(screen(tin), None)
         table = blunders(tin, progress=progress)
@@ -120,28 +129,31 @@ def _require_survey(found: Survey | TIN, path: Path) -> Survey:
     return found
 
 
-def _summarise_build(
+def _list_facts(
     points: Sequence[Path], survey: Survey, tin: TIN, told: list[Row], *, is_mended: bool
-) -> list[Row]:
-    from ..output.line_summaries import describe_counts, summarise_lines
+) -> Facts:
+    from ..output.facts import Facts
+    from ..output.line_summaries import count_lines, describe_counts, summarise_lines
     from ..output.summaries import (
+        describe_survey,
+        describe_tin,
         summarise_crs,
         summarise_extent,
         summarise_merges,
         summarise_reading,
     )
 
-    return [
-        ("Points", f"{len(survey):,} from {name_files(points)}"),
-        *summarise_reading(survey),
-        *summarise_merges(tin.report, survey),
-        *summarise_lines(survey, tin),
-        ("TIN", describe_counts(tin)),
-        *told,
-        *_summarise_flats(tin, is_mended=is_mended),
-        *summarise_extent(tin),
-        summarise_crs(tin.crs),
-    ]
+    facts = Facts()
+    facts.record(input=describe_inputs(points), survey=lambda: describe_survey(survey))
+    facts.add("Points", f"{len(survey):,} from {name_files(points)}")
+    facts.tell(summarise_reading(survey))
+    facts.tell(summarise_merges(tin.report, survey))
+    facts.tell(summarise_lines(survey, tin))
+    facts.add("TIN", describe_counts(tin), tin=lambda: describe_tin(tin))
+    facts.record(counts=lambda: count_lines(tin.report))
+    facts.tell([*told, *_summarise_flats(tin, is_mended=is_mended)])
+    facts.tell([*summarise_extent(tin), summarise_crs(tin.crs)])
+    return facts
 
 
 def _summarise_flats(tin: TIN, *, is_mended: bool) -> list[Row]:
@@ -152,32 +164,3 @@ def _summarise_flats(tin: TIN, *, is_mended: bool) -> list[Row]:
         return [("Contours", tin.report.notes[-1])]
     advice = "'tinsmith build --from-contours' takes contour lines and mends them."
     return [("Flats", f"{sentence}: {advice}") for sentence in describe_flats(tin)]
-
-
-def _describe_build(
-    points: Sequence[Path],
-    survey: Survey,
-    tin: TIN,
-    account: dict[str, Any],
-    planned: Products,
-    started: float,
-) -> dict[str, Any]:
-    from ..output.line_summaries import count_lines
-    from ..output.summaries import describe_survey, describe_tin
-
-    return {
-        "input": describe_inputs(points),
-        "survey": describe_survey(survey),
-        "tin": describe_tin(tin),
-        "counts": count_lines(tin.report),
-        "report": account,
-        "outputs": [
-            {
-                "path": str(one.path),
-                "format": one.formats["TIN"].name,
-                "bytes": one.path.stat().st_size,
-            }
-            for one in planned.outputs["TIN"]
-        ],
-        "seconds": round(perf_counter() - started, 3),
-    }

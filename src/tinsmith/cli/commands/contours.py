@@ -8,9 +8,9 @@ import click
 
 from ...base.sentences import counted, height
 from ..command import file_command
+from ..job import surface_options
 from ..parameters import LibraryOption, number_option, numbers_option
 from ..paths import make_title
-from ..request import surface_options
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...terrain import Features
     from ...tin import TIN
-    from ..output.console import Row
-    from ..request import Request
+    from ..job import Job
+    from ..output.facts import Facts
 
 __all__ = ["contours"]
 
@@ -57,7 +57,7 @@ __all__ = ["contours"]
 @surface_options()
 def contours(
     file: Path,
-    request: Request,
+    job: Job,
     **options: Any,
 ) -> None:
     """Draw contours of the TIN in FILE, or built from the points in it.
@@ -73,14 +73,13 @@ def contours(
       tinsmith contours sample_data/site_survey.csv --crs EPSG:32616 --interval 1 --bands -o b.gpkg
     """  # noqa: D301 - click reads the control character
     _require_one_product(options)
-    planned = request.plan_products(request.list_inputs(file), "Features", "picture")
-    tin = request.read_tin(file)
-    with request.step("Tracing contours") as progress:
+    planned = job.plan_products(job.list_inputs(file), "Features", "picture")
+    tin = job.read_tin(file)
+    with job.step("Tracing contours") as progress:
         made = _make_product(tin, options, progress)
     planned.write("Features", made)
     planned.draw(lambda: _draw(tin, made, options, make_title(file)))
-    rows = [*_summarise_contours(made), *(("Note", note) for note in made.notes)]
-    request.finish(planned, rows, lambda: _describe_contours(file, made))
+    job.finish(planned, _list_facts(file, made))
 
 
 def _require_one_product(options: dict[str, Any]) -> None:
@@ -129,53 +128,33 @@ def _draw(tin: TIN, made: Features, options: dict[str, Any], title: str) -> Any:
     return contour_map(tin, lines, labels=labels, title=title)
 
 
-def _summarise_contours(made: Features) -> list[Row]:
+def _list_facts(file: Path, made: Features) -> Facts:
+    from ..output.facts import Facts, list_rows, name_units
+
+    facts = Facts(file)
+    facts.record(kind=made.name, features=len(made), points=len(made.coordinates))
+    facts.record(units=name_units(made.units, made.columns))
+    facts.note(made.notes)
     if made.kind == "polygons":
-        return [("Bands", counted(len(made), "band"))]
-    if made.kind == "points":
-        return [("Labels", counted(len(made), "label"))]
-    closed = int(made.columns["is_closed"].sum())
-    counts = f"{counted(len(made), 'line')}, {closed:,} of them closed"
-    return [
-        ("Contours", counts),
-        ("Points", f"{len(made.coordinates):,}"),
-        *_summarise_levels(made),
-    ]
+        bands = list_rows({name: made.columns[name] for name in ("from", "to", "area")})
+        facts.add("Bands", counted(len(made), "band"), bands=bands)
+    elif made.kind == "points":
+        facts.add("Labels", counted(len(made), "label"))
+    else:
+        closed = int(made.columns["is_closed"].sum())
+        told = f"{counted(len(made), 'line')}, {closed:,} of them closed"
+        facts.add("Contours", told, closed=closed, length=float(made.columns["length"].sum()))
+        facts.add("Points", f"{len(made.coordinates):,}")
+        _add_levels(facts, made)
+    return facts
 
 
-def _summarise_levels(made: Features) -> list[Row]:
-    from ...base.results.columns import unit_text
+def _add_levels(facts: Facts, made: Features) -> None:
+    from ..output.line_summaries import name_unit
 
     levels = sorted(set(made.columns["elevation"].tolist()))
-    if not levels:
-        return []
-    unit = unit_text(made.units, "elevation")
-    shown = f" {unit}" if unit and unit != "unknown" else ""
-    return [
-        (
-            "Levels",
-            f"{len(levels):,}, from {height(levels[0])} to {height(levels[-1])}{shown}",
-        )
-    ]
-
-
-def _describe_contours(file: Path, made: Features) -> dict[str, Any]:
-    from ...base.results.columns import unit_text
-
-    record: dict[str, Any] = {
-        "input": str(file),
-        "kind": made.name,
-        "features": len(made),
-        "points": len(made.coordinates),
-        "units": {name: unit_text(made.units, name) for name in made.columns},
-        "notes": list(made.notes),
-    }
-    if made.kind == "lines":
-        record["levels"] = sorted(set(made.columns["elevation"].tolist()))
-        record["length"] = float(made.columns["length"].sum())
-        record["closed"] = int(made.columns["is_closed"].sum())
-    if made.kind == "polygons":
-        names = ("from", "to", "area")
-        rows = zip(*(made.columns[name].tolist() for name in names), strict=True)
-        record["bands"] = [dict(zip(names, row, strict=True)) for row in rows]
-    return record
+    facts.record(levels=levels)
+    if levels:
+        unit = name_unit(made.units, "elevation")
+        ends = f"from {height(levels[0])} to {height(levels[-1])}"
+        facts.add("Levels", f"{len(levels):,}, {ends} {unit}".rstrip())

@@ -8,18 +8,17 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..command import command
+from ..job import surface_options
 from ..parameters import input_file, output_files
 from ..paths import make_title
-from ..request import surface_options
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...terrain import Difference, Table
     from ...tin import TIN
-    from ..output.console import Row
-    from ..products import Products
-    from ..request import Request
+    from ..job import Job
+    from ..output.facts import Facts
 
 __all__ = ["diff"]
 
@@ -40,7 +39,7 @@ def diff(
     other: Path,
     zero_line: bool,
     title: str | None,
-    request: Request,
+    job: Job,
 ) -> None:
     """Subtract the TIN in FILE from that in OTHER, exactly, where both exist.
 
@@ -52,69 +51,48 @@ def diff(
     Example:
       tinsmith diff sample_data/site_survey.csv sample_data/design_pad.csv --codes -o pad.ply
     """  # noqa: D301 - click reads the control character
-    from ...terrain import difference
+    from ...terrain import difference, earthwork_map
 
     files = (file, other)
-    inputs = request.list_inputs(*files)
-    planned = request.plan_products(inputs, "TIN", "Table", "Features", "picture")
-    surfaces = request.read_tins(files)
-    with request.step("Overlaying") as progress:
+    inputs = job.list_inputs(*files)
+    planned = job.plan_products(inputs, "TIN", "Table", "Features", "picture")
+    surfaces = job.read_tins(files)
+    with job.step("Overlaying") as progress:
         found = difference(*surfaces, progress=progress)
-    _write(found, surfaces[0], planned, zero_line, title or _make_title(files))
-    rows = _summarise_difference(found, surfaces)
-    request.finish(planned, rows, lambda: _describe_difference(files, found))
-
-
-def _make_title(files: Sequence[Path]) -> str:
-    return f"Difference: {make_title(files[1])} less {make_title(files[0])}"
-
-
-def _write(found: Difference, ground: TIN, planned: Products, zero_line: bool, title: str) -> None:
-    from ...terrain import earthwork_map
-
     planned.write("TIN", found.tin)
-    if planned.holds("Table"):
-        planned.write("Table", found.statistics)
-    if planned.holds("Features"):
-        planned.write("Features", found.zero_line if zero_line else found.zones)
-    planned.draw(lambda: earthwork_map(found, ground=ground, title=title))
+    planned.write("Table", lambda: found.statistics)
+    planned.write("Features", lambda: found.zero_line if zero_line else found.zones)
+    title = title or f"Difference: {make_title(other)} less {make_title(file)}"
+    planned.draw(lambda: earthwork_map(found, ground=surfaces[0], title=title))
+    job.finish(planned, _list_facts(files, found, surfaces))
 
 
-def _summarise_difference(found: Difference, surfaces: Sequence[TIN]) -> list[Row]:
+def _list_facts(files: Sequence[Path], found: Difference, surfaces: Sequence[TIN]) -> Facts:
+    from ..output.facts import Facts, name_units
     from ..output.line_summaries import mesh_counts
 
-    table = found.statistics
-    return [
-        *zip(("First", "Other"), map(mesh_counts, surfaces), strict=True),
-        ("Difference", mesh_counts(found.tin)),
-        ("Mean", f"{_format(table, 'mean')}, root mean square {_format(table, 'rms')}"),
-        ("Range", f"{_format(table, 'lowest')} to {_format(table, 'highest')}"),
-        (
-            "Middle",
-            f"{_format(table, 'median')}, 90 % {_format(table, 'p05')} to {_format(table, 'p95')}",
-        ),
-        ("Area", _format(table, "area")),
-        *(("Note", note) for note in found.notes),
-    ]
+    table, tin = found.statistics, found.tin
+    facts = Facts(*files)
+    facts.tell(zip(("First", "Other"), map(mesh_counts, surfaces), strict=True))
+    facts.add(
+        "Difference", mesh_counts(tin), vertices=len(tin.points), triangles=len(tin.triangles)
+    )
+    facts.add("Mean", f"{_format(table, 'mean')}, root mean square {_format(table, 'rms')}")
+    facts.add("Range", f"{_format(table, 'lowest')} to {_format(table, 'highest')}")
+    middle = f"{_format(table, 'median')}, 90 % {_format(table, 'p05')} to {_format(table, 'p95')}"
+    facts.add("Middle", middle)
+    facts.add("Area", _format(table, "area"))
+    facts.record(
+        statistics={name: values[0] for name, values in table.columns.items()},
+        units=name_units(table.units),
+        cut=found.cut,
+        fill=found.fill,
+    )
+    facts.note(found.notes)
+    return facts
 
 
 def _format(table: Table, name: str) -> str:
     unit: Any = table.units.get(name)
     digits = 2 if name == "area" else 4
     return f"{table[name][0]:,.{digits}f} {getattr(unit, 'symbol', unit) or ''}".rstrip()
-
-
-def _describe_difference(files: Sequence[Path], found: Difference) -> dict[str, Any]:
-    from ...base.results.columns import unit_text
-
-    table = found.statistics
-    return {
-        "inputs": [str(file) for file in files],
-        "statistics": {name: values[0] for name, values in table.columns.items()},
-        "units": {name: unit_text(table.units, name) for name in table.units},
-        "cut": found.cut,
-        "fill": found.fill,
-        "vertices": len(found.tin.points),
-        "triangles": len(found.tin.triangles),
-        "notes": list(found.notes),
-    }

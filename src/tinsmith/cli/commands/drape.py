@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 
 from ...base.policies import OutsidePolicy
 from ..command import command
+from ..inputs import name_features, read_features
+from ..job import surface_options
 from ..parameters import choice_option, input_file, output_files
-from ..paths import LINES, Named
-from ..request import surface_options
+from ..paths import LINES
 
 if TYPE_CHECKING:
     from ...terrain import Features
-    from ..request import Request
+    from ..job import Job
 
 __all__ = ["drape"]
 
@@ -33,7 +34,7 @@ def drape(
     file: Path,
     features: Path,
     outside: str,
-    request: Request,
+    job: Job,
 ) -> None:
     """Drape the FEATURES of a vector file on the TIN in FILE, or built from the points in it.
 
@@ -44,35 +45,30 @@ def drape(
     Example:
       tinsmith drape site.ply roads.gpkg --outside cut -o roads_3d.gpkg
     """  # noqa: D301 - click reads the control character
-    from ...io.vector.geometries import read_geometries
-    from ...io.vector.survey_lines import split_layer
     from ...terrain import drape as drape_features
+    from ..output.facts import Facts
     from ..output.line_summaries import mesh_counts
 
-    path, layer = split_layer(features)
-    inputs = request.list_inputs(file, more=[Named(path, "the file of features")])
-    planned = request.plan_products(inputs, "Features")
-    tin = request.read_tin(file)
-    with request.step("Draping"):
-        given = read_geometries(path, crs=tin.crs, layer=layer)
+    inputs = job.list_inputs(file, more=name_features(features, "the file of features"))
+    planned = job.plan_products(inputs, "Features")
+    tin = job.read_tin(file)
+    with job.step("Draping"):
+        given = read_features(features, tin)
         draped = drape_features(tin, given, outside=outside)  # type: ignore[arg-type]
     planned.write("Features", draped)
-    rows = [
-        ("Surface", mesh_counts(tin)),
-        ("Draped", _count_draped(given, draped)),
-        *[("Note", note) for note in draped.notes],
-    ]
-    record = {
-        "input": str(file),
-        "features": str(features),
-        "kind": draped.kind,
-        "given": len(given),
-        "draped": len(draped),
-        "vertices_given": len(given.coordinates),
-        "vertices_draped": len(draped.coordinates),
-        "notes": list(draped.notes),
-    }
-    request.finish(planned, rows, lambda: record)
+    facts = Facts(file)
+    facts.add("Surface", mesh_counts(tin), features=str(features))
+    facts.add(
+        "Draped",
+        _count_draped(given, draped),
+        kind=draped.kind,
+        given=len(given),
+        draped=len(draped),
+        vertices_given=len(given.coordinates),
+        vertices_draped=len(draped.coordinates),
+    )
+    facts.note(draped.notes)
+    job.finish(planned, facts)
 
 
 def _count_draped(given: Features, draped: Features) -> str:

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 from ...base.sentences import counted
 from ..command import command
+from ..job import surface_options
 from ..parameters import input_file, output_files, report_option
 from ..paths import STANDARD, Named, name_file
-from ..request import surface_options
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...tin import TIN
-    from ..request import Request
+    from ..job import Job
 
 __all__ = ["edit"]
 
@@ -31,7 +31,7 @@ def edit(
     file: Path,
     script: Path,
     report: Path | None,
-    request: Request,
+    job: Job,
 ) -> None:
     """Edit the TIN in FILE, or built from the points in it, by the edits in SCRIPT.
 
@@ -55,42 +55,32 @@ def edit(
     from ...tin.editing.history import apply_edits
     from ..files import write_text
     from ..output.console import format_json
+    from ..output.facts import Facts
     from ..output.line_summaries import mesh_counts
+    from ..output.summaries import describe_tin
 
-    inputs = request.list_inputs(file, more=[Named(script, "the script")])
-    planned = request.plan(inputs, "TIN", report=report)
+    inputs = job.list_inputs(file, more=[Named(script, "the script")])
+    planned = job.plan(inputs, "TIN", report=report)
     edits = _read_script(script)
-    tin = request.read_tin(file)
+    tin = job.read_tin(file)
     before = mesh_counts(tin)
-    with request.step(f"Making {counted(len(edits), 'edit')}"):
+    with job.step(f"Making {counted(len(edits), 'edit')}"):
         apply_edits(tin, edits)
     planned.write("TIN", tin)
     if report is not None:
         write_text(report, format_json(tin.report.to_dict()) + "\n")
-    rows = [
-        ("Read", f"a TIN of {before} from {name_file(file)}"),
-        ("Edits", _count_edits(tin)),
-        ("TIN", mesh_counts(tin)),
-        *(("Note", note) for one in tin.edits for note in one.notes),
-    ]
-    request.finish(planned, rows, lambda: _describe_edits(file, script, tin))
+    facts = Facts(file)
+    facts.add("Read", f"a TIN of {before} from {name_file(file)}", script=str(script))
+    facts.add("Edits", _count_edits(tin), report=tin.report.to_dict)
+    facts.add("TIN", mesh_counts(tin), tin=lambda: describe_tin(tin))
+    facts.note(note for one in tin.edits for note in one.notes)
+    job.finish(planned, facts)
 
 
 def _count_edits(tin: TIN) -> str:
     counts = Counter(one.operation for one in tin.edits)
     named = ", ".join(f"{count} {operation}" for operation, count in counts.items())
     return f"{len(tin.edits):,} ({named})" if named else "none"
-
-
-def _describe_edits(file: Path, script: Path, tin: TIN) -> dict[str, Any]:
-    from ..output.summaries import describe_tin
-
-    return {
-        "input": str(file),
-        "script": str(script),
-        "tin": describe_tin(tin),
-        "report": tin.report.to_dict(),
-    }
 
 
 def _read_script(path: Path) -> list[dict[str, Any]]:

@@ -8,9 +8,9 @@ import click
 
 from ...base.policies import FlowProduct
 from ..command import file_command
+from ..inputs import name_features, read_places
+from ..job import surface_options
 from ..parameters import choice_option, file_option, number_option, position_option
-from ..places import name_places, read_places
-from ..request import surface_options
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...terrain import Features
     from ...tin import TIN
-    from ..output.console import Row
-    from ..request import Request
+    from ..job import Job
 
 __all__ = ["flow"]
 
@@ -61,7 +60,7 @@ _FLAGS = {
     help="Continue from the spill points of full depressions, to the boundary.",
 )
 @surface_options()
-def flow(file: Path, find: FlowProduct, request: Request, **asked: Any) -> None:
+def flow(file: Path, find: FlowProduct, job: Job, **asked: Any) -> None:
     """Find where water flows on the TIN in FILE, or built from the points in it.
 
     Finds paths of steepest descent, pits, depressions with their volume, ponds at a level, ridges
@@ -79,16 +78,18 @@ def flow(file: Path, find: FlowProduct, request: Request, **asked: Any) -> None:
     from ..output.line_summaries import describe_features
 
     _require_fitting(find, asked)
-    inputs = request.list_inputs(file, more=name_places(asked["points"], "--points"))
-    planned = request.plan_products(inputs, "Features", "Table")
-    tin = request.read_tin(file)
-    with request.step("Finding") as progress:
+    inputs = job.list_inputs(file, more=name_features(asked["points"], "the file of --points"))
+    planned = job.plan_products(inputs, "Features", "Table")
+    tin = job.read_tin(file)
+    with job.step("Finding") as progress:
         found = _find(tin, find, asked, progress)
     planned.write("Features", found)
     planned.write("Table", tabulate_columns(found))
-    request.finish(
-        planned, _summarise(tin, found), lambda: describe_features(file, found, find=find)
-    )
+    facts = describe_features(file, tin, found)
+    facts.add("Found", f"{found.name}: {len(found):,}", find=find)
+    for row in range(min(len(found), _SHOWN) if "angle" not in found.columns else 0):
+        facts.add("" if row else "First", _describe_row(found, row))
+    job.finish(planned, facts)
 
 
 def _require_fitting(find: str, asked: dict[str, Any]) -> None:
@@ -135,15 +136,6 @@ def _list_places(tin: TIN, asked: dict[str, Any]) -> Any:
 
 
 # ---------------------------------------------------------------- for people
-
-
-def _summarise(tin: TIN, found: Features) -> list[Row]:
-    from ..output.line_summaries import describe_counts
-
-    rows: list[Row] = [("TIN", describe_counts(tin)), ("Found", f"{found.name}: {len(found):,}")]
-    for row in range(min(len(found), _SHOWN) if "angle" not in found.columns else 0):
-        rows.append(("" if row else "First", _describe_row(found, row)))
-    return [*rows, *(("Note", note) for note in found.notes)]
 
 
 def _describe_row(found: Features, row: int) -> str:

@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING, Any
 
 from ...base.sentences import counted
 from ..command import file_command
+from ..inputs import name_features
+from ..job import surface_options
 from ..output.failures import Failure
 from ..parameters import file_option, number_option
-from ..paths import Named
-from ..request import surface_options
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...terrain import Table
     from ...tin import TIN
-    from ..output.console import Row
-    from ..request import Request
+    from ..job import Job
+    from ..output.facts import Facts
 
 __all__ = ["grade"]
 
@@ -40,7 +40,7 @@ def grade(
     elevation: float | None,
     cut_slope: float,
     fill_slope: float,
-    request: Request,
+    job: Job,
 ) -> None:
     """Grade a level pad into the TIN in FILE, or built from the points in it.
 
@@ -55,11 +55,11 @@ def grade(
     from ...terrain import grade as grade_tin
     from ...terrain import volume
 
-    planned = request.plan(request.list_inputs(file, more=[_name_pad(pad)]), "TIN")
-    tin = request.read_tin(file)
+    planned = job.plan(job.list_inputs(file, more=name_features(pad, "--pad")), "TIN")
+    tin = job.read_tin(file)
     notes: list[str] = []
-    ring = _read_pad(pad, tin, elevation, request.how.lines_z_unit, notes)
-    with request.step("Grading") as progress:
+    ring = _read_pad(pad, tin, elevation, job.how.lines_z_unit, notes)
+    with job.step("Grading") as progress:
         graded = grade_tin(
             tin,
             ring,
@@ -70,15 +70,7 @@ def grade(
         )
         table = volume(tin, graded)
     planned.write("TIN", graded)
-    notes += table.notes
-    rows = _summarise_grading(tin, graded, table, notes)
-    request.finish(planned, rows, lambda: _describe_grading(file, graded, table, notes))
-
-
-def _name_pad(pad: Path) -> Named:
-    from ...io.vector.survey_lines import split_layer
-
-    return Named(split_layer(pad)[0], "--pad")
+    job.finish(planned, _list_facts(file, tin, graded, table, [*notes, *table.notes]))
 
 
 def _read_pad(
@@ -105,17 +97,17 @@ def _read_pad(
     return found[0][0]
 
 
-def _summarise_grading(tin: TIN, graded: TIN, table: Table, notes: list[str]) -> list[Row]:
+def _list_facts(file: Path, tin: TIN, graded: TIN, table: Table, notes: list[str]) -> Facts:
+    from ..output.facts import Facts
     from ..output.line_summaries import mesh_counts
-
-    unit = table.units.get("cut") or "cubic units of the CRS"
-    volumes = [(name.capitalize(), f"{table[name][0]:,.1f} {unit}") for name in ("cut", "fill")]
-    counts = [("Ground", mesh_counts(tin)), ("Graded", mesh_counts(graded))]
-    return [*counts, *volumes, *(("Note", note) for note in notes)]
-
-
-def _describe_grading(file: Path, graded: TIN, table: Table, notes: list[str]) -> dict[str, Any]:
     from ..output.summaries import describe_tin
 
-    volumes = {name: float(table[name][0]) for name in ("cut", "fill", "cut_area", "fill_area")}
-    return {"input": str(file), "tin": describe_tin(graded), "volume": volumes, "notes": notes}
+    unit = table.units.get("cut") or "cubic units of the CRS"
+    names = ("cut", "fill", "cut_area", "fill_area")
+    facts = Facts(file)
+    facts.add("Ground", mesh_counts(tin))
+    facts.add("Graded", mesh_counts(graded), tin=lambda: describe_tin(graded))
+    facts.tell((name.capitalize(), f"{table[name][0]:,.1f} {unit}") for name in names[:2])
+    facts.record(volume={name: float(table[name][0]) for name in names})
+    facts.note(notes)
+    return facts

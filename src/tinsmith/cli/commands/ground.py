@@ -8,8 +8,8 @@ import click
 
 from ...base.sentences import counted
 from ..command import command
+from ..job import surface_options
 from ..parameters import input_files, number_option, output_files
-from ..request import surface_options
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,9 +19,8 @@ if TYPE_CHECKING:
     from ...terrain import GroundPoints
     from ...tin import Survey
     from ..files import Output
-    from ..output.console import Row
-    from ..products import Products
-    from ..request import Request
+    from ..job import Job, Products
+    from ..output.facts import Facts
 
 __all__ = ["ground"]
 
@@ -94,7 +93,7 @@ _PARAMETERS = (
     help="Write ground points instead of their TIN.",
 )
 @surface_options()
-def ground(points: tuple[Path, ...], request: Request, **options: Any) -> None:
+def ground(points: tuple[Path, ...], job: Job, **options: Any) -> None:
     """Classify the ground among POINTS by progressive densification of a TIN.
 
     LAS and LAZ files get all points with their classes (2 ground, 1 others, 7 low noise) and
@@ -107,18 +106,17 @@ def ground(points: tuple[Path, ...], request: Request, **options: Any) -> None:
     from ...terrain import ground as find_ground
     from ..files import add_lines, note_found, read_inputs
 
-    planned = _plan(request, points, options["as_points"])
-    reading = request.reading.with_fallback(attributes="all")
-    found = read_inputs(points, reading, request.console)
-    survey = add_lines(_require_survey(found, points[0]), request.how, request.console)
-    note_found(survey, request.console)
-    with request.step(f"Finding the ground among {counted(len(survey), 'point')}") as progress:
+    planned = _plan(job, points, options["as_points"])
+    reading = job.reading.with_fallback(attributes="all")
+    found = read_inputs(points, reading, job.console)
+    survey = add_lines(_require_survey(found, points[0]), job.how, job.console)
+    note_found(survey, job.console)
+    with job.step(f"Finding the ground among {counted(len(survey), 'point')}") as progress:
         given = {name: options[name] for name in _PARAMETERS}
         returns: GroundReturns = "all" if options["any_return"] else "last"
         made = find_ground(survey, **given, returns=returns, progress=progress)
-    _write(made, planned, request, is_ground_only=options["ground_only"])
-    rows = _summarise(points, made)
-    request.finish(planned, rows, lambda: _describe(points, made))
+    _write(made, planned, job, is_ground_only=options["ground_only"])
+    job.finish(planned, _list_facts(points, made))
 
 
 def _require_survey(found: Any, path: Path) -> Survey:
@@ -130,21 +128,21 @@ def _require_survey(found: Any, path: Path) -> Survey:
     return found  # type: ignore[no-any-return]
 
 
-def _plan(request: Request, points: Sequence[Path], is_as_points: bool) -> Products:
+def _plan(job: Job, points: Sequence[Path], is_as_points: bool) -> Products:
     """Choose what each output holds: all points, those of the ground, or their TIN."""
     from ..files import plan_outputs
-    from ..products import Products
+    from ..job import Products
 
     planned = plan_outputs(
-        request.outputs,
-        request.writing,
-        inputs=request.list_inputs(*points),
-        console=request.console,
+        job.outputs,
+        job.writing,
+        inputs=job.list_inputs(*points),
+        console=job.console,
     )
     groups: dict[str, list[Output]] = {}
     for one in planned:
         groups.setdefault(_choose_content(one, is_as_points), []).append(one)
-    return Products(console=request.console, outputs=groups)
+    return Products(console=job.console, outputs=groups)
 
 
 def _choose_content(output: Output, is_as_points: bool) -> str:
@@ -155,41 +153,26 @@ def _choose_content(output: Output, is_as_points: bool) -> str:
     return "TIN" if holds_tin and not (is_as_points and survey is not None) else "Survey"
 
 
-def _write(
-    made: GroundPoints, planned: Products, request: Request, *, is_ground_only: bool
-) -> None:
+def _write(made: GroundPoints, planned: Products, job: Job, *, is_ground_only: bool) -> None:
     from ..files import build_tin
 
-    if planned.holds("classes"):
-        planned.write("classes", made.survey if is_ground_only else made.classified)
-    if planned.holds("Survey"):
-        planned.write("Survey", made.survey)
-    if planned.holds("TIN"):
-        planned.write("TIN", build_tin(made.survey, request.how, request.console))
+    planned.write("classes", lambda: made.survey if is_ground_only else made.classified)
+    planned.write("Survey", lambda: made.survey)
+    planned.write("TIN", lambda: build_tin(made.survey, job.how, job.console))
 
 
-def _summarise(points: Sequence[Path], made: GroundPoints) -> list[Row]:
-    from ..output.summaries import summarise_reading
-    from ..paths import name_files
+def _list_facts(points: Sequence[Path], made: GroundPoints) -> Facts:
+    from ..output.facts import Facts
+    from ..output.summaries import describe_survey, summarise_reading
+    from ..paths import describe_inputs, name_files
 
     total = len(made.given)
-    rows = [
-        ("Points", f"{total:,} from {name_files(points)}"),
-        *summarise_reading(made.given),
-    ]
+    facts = Facts()
+    facts.record(input=describe_inputs(points), classes=made.counts)
+    facts.record(survey=lambda: describe_survey(made.given), parameters=dict(made.parameters))
+    facts.add("Points", f"{total:,} from {name_files(points)}")
+    facts.tell(summarise_reading(made.given))
     for what, count in made.counts.items():
-        rows.append((what.capitalize(), f"{counted(count, 'point')}, {count / total:.1%}"))
-    return rows + [("Note", note) for note in made.notes]
-
-
-def _describe(points: Sequence[Path], made: GroundPoints) -> dict[str, Any]:
-    from ..output.summaries import describe_survey
-    from ..paths import describe_inputs
-
-    return {
-        "input": describe_inputs(points),
-        "survey": describe_survey(made.given),
-        "classes": made.counts,
-        "parameters": dict(made.parameters),
-        "notes": list(made.notes),
-    }
+        facts.add(what.capitalize(), f"{counted(count, 'point')}, {count / total:.1%}")
+    facts.note(made.notes)
+    return facts

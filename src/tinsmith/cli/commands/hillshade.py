@@ -6,13 +6,13 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from ..command import file_command
+from ..job import surface_options
 from ..parameters import number_option, smooth_option
-from ..request import surface_options
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ..request import Request
+    from ..job import Job
 
 __all__ = ["hillshade"]
 
@@ -33,7 +33,7 @@ def hillshade(
     altitude: float,
     exaggeration: float,
     smooth: bool | None,
-    request: Request,
+    job: Job,
 ) -> None:
     """Write a georeferenced hillshade raster of the TIN in FILE, or built from the points in it.
 
@@ -44,11 +44,12 @@ def hillshade(
       tinsmith hillshade sample_data/site_survey.csv --crs EPSG:32616 --spacing 0.5 -o shade.tif
     """  # noqa: D301 - click reads the control character
     from ... import terrain
+    from ..output.facts import Facts
     from ..output.summaries import describe_raster_size
 
-    planned = request.plan(request.list_inputs(file), "Raster")
-    tin = request.read_tin(file)
-    with request.step("Shading"):
+    planned = job.plan(job.list_inputs(file), "Raster")
+    tin = job.read_tin(file)
+    with job.step("Shading"):
         made = terrain.hillshade(
             tin,
             spacing=spacing,
@@ -59,7 +60,9 @@ def hillshade(
         )
     planned.write("Raster", made)
     raster = {"shape": list(made.shape), "spacing": made.grid.spacing}
-    raster["bounds"] = asdict(made.grid.bounds)
-    rows = [("Raster", describe_raster_size(made)), *(("Note", note) for note in made.notes)]
-    record = {"input": str(file), "raster": raster, "notes": list(made.notes)}
-    request.finish(planned, rows, lambda: record)
+    facts = Facts(file)
+    facts.add(
+        "Raster", describe_raster_size(made), raster=raster | {"bounds": asdict(made.grid.bounds)}
+    )
+    facts.note(made.notes)
+    job.finish(planned, facts)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from ..command import command
+from ..job import surface_options
 from ..parameters import input_files, output_option
 from ..paths import describe_inputs, make_title, name_files
-from ..request import surface_options
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from ...terrain import Features, Table
     from ...tin import TIN
-    from ..output.console import Row
-    from ..request import Request
+    from ..job import Job
+    from ..output.facts import Facts
 
 __all__ = ["inspect"]
 
@@ -30,7 +30,7 @@ _SHOWN = 12
 @output_option("Table (.csv, .json), points (.gpkg, .geojson, .shp, .fgb) or map (.png) to write.")
 @click.option("--title", metavar="TEXT", help="Title of the map; default the name of the file.")
 @surface_options()
-def inspect(points: tuple[Path, ...], title: str | None, request: Request) -> None:
+def inspect(points: tuple[Path, ...], title: str | None, job: Job) -> None:
     """Find points in POINTS that look like blunders, with the reason.
 
     Each point is compared with the surface of all others. Reported are spikes and pits, codes for
@@ -47,17 +47,15 @@ def inspect(points: tuple[Path, ...], title: str | None, request: Request) -> No
     from ...terrain import blunder_map, blunders
     from ..files import read_tin_of_files
 
-    planned = request.plan_products(request.list_inputs(*points), "Table", "Features", "picture")
-    tin = read_tin_of_files(points, request.reading, request.how, request.console)[0]
-    with request.step("Checking points") as progress:
+    planned = job.plan_products(job.list_inputs(*points), "Table", "Features", "picture")
+    tin = read_tin_of_files(points, job.reading, job.how, job.console)[0]
+    with job.step("Checking points") as progress:
         table = blunders(tin, progress=progress)
     planned.write("Table", table)
-    if planned.holds("Features"):
-        planned.write("Features", _place_suspects(table, tin))
+    planned.write("Features", lambda: _place_suspects(table, tin))
     title = title or f"{make_title(points[0])}: points that look like blunders"
     planned.draw(lambda: blunder_map(tin, table, title=title))
-    rows = _summarise_blunders(points, tin, table)
-    request.finish(planned, rows, lambda: _describe_inspection(points, table))
+    job.finish(planned, _list_facts(points, tin, table))
 
 
 def _place_suspects(table: Table, tin: TIN) -> Features:
@@ -78,26 +76,16 @@ def _place_suspects(table: Table, tin: TIN) -> Features:
     )
 
 
-def _summarise_blunders(points: Sequence[Path], tin: TIN, table: Table) -> list[Row]:
+def _list_facts(points: Sequence[Path], tin: TIN, table: Table) -> Facts:
     from ..output.blunder_summaries import count_reasons, list_findings
+    from ..output.facts import Facts, list_rows, name_units
     from ..output.line_summaries import describe_counts
 
-    return [
-        ("Points", f"{len(tin.vertex_of):,} from {name_files(points)}"),
-        ("TIN", describe_counts(tin)),
-        ("Findings", count_reasons(table)),
-        *list_findings(table, _SHOWN),
-        *(("Note", note) for note in table.notes),
-    ]
-
-
-def _describe_inspection(points: Sequence[Path], table: Table) -> dict[str, Any]:
-    from ...base.results.columns import unit_text
-    from ..output.blunder_summaries import list_records
-
-    return {
-        "input": describe_inputs(points),
-        "blunders": list_records(table),
-        "units": {name: unit_text(table.units, name) for name in table.units},
-        "notes": list(table.notes),
-    }
+    facts = Facts()
+    facts.record(input=describe_inputs(points), units=name_units(table.units))
+    facts.add("Points", f"{len(tin.vertex_of):,} from {name_files(points)}")
+    facts.add("TIN", describe_counts(tin))
+    facts.add("Findings", count_reasons(table), blunders=lambda: list_rows(table.columns))
+    facts.tell(list_findings(table, _SHOWN))
+    facts.note(table.notes)
+    return facts

@@ -9,10 +9,10 @@ import click
 from ...base.policies import Extrapolation, InterpolationMethod
 from ...base.sentences import counted
 from ..command import command
+from ..job import surface_options
 from ..output.failures import Failure
 from ..parameters import choice_option, crs_option, file_option, input_file, output_files
 from ..paths import Named
-from ..request import surface_options
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from ...io.delimited.query_points import QueryPoints
     from ...terrain import Table
     from ...tin import TIN
-    from ..output.console import Row
-    from ..request import Request
+    from ..job import Job
 
 __all__ = ["interpolate"]
 
@@ -62,7 +61,7 @@ __all__ = ["interpolate"]
 def interpolate(
     file: Path,
     points_file: Path,
-    request: Request,
+    job: Job,
     **asked: Any,
 ) -> None:
     """Interpolate elevations of the TIN in FILE, or built from its points, at other points.
@@ -75,10 +74,12 @@ def interpolate(
     from ...base.crs import CRS
     from ...base.georeference import describe_unknown
     from ...io.delimited.query_points import read_query_points
+    from ..output.facts import Facts
+    from ..output.line_summaries import mesh_counts
 
-    inputs = request.list_inputs(file, more=[Named(points_file, "the file of --at")])
-    planned = request.plan(inputs, "Table")
-    tin = request.read_tin(file)
+    inputs = job.list_inputs(file, more=[Named(points_file, "the file of --at")])
+    planned = job.plan(inputs, "Table")
+    tin = job.read_tin(file)
     points = read_query_points(
         points_file,
         columns=asked["at_columns"] or None,
@@ -86,14 +87,20 @@ def interpolate(
         crs=CRS.of(asked["at_crs"]) or tin.crs,
     )
     notes = [*describe_unknown(tin.crs, tin.elevation_unit), *points.notes]
-    with request.step(f"Interpolating {counted(len(points.xy), 'point')}"):
-        table = _interpolate(tin, points, notes, request.how.threads, asked)
+    with job.step(f"Interpolating {counted(len(points.xy), 'point')}"):
+        table = _interpolate(tin, points, notes, job.how.threads, asked)
     planned.write("Table", table)
-    outside = _count_outside(table, asked["column"])
-    record = {"input": str(file), "points": len(table), "method": asked["method"]}
-    record |= {"outside": outside, "notes": notes}
-    rows = _summarise(tin, table, outside, notes, asked)
-    request.finish(planned, rows, lambda: record)
+    elevations = table[asked["column"]]
+    outside = int((elevations != elevations).sum())
+    told = f"{outside:,} outside the surface, without elevation" if outside else "all inside"
+    if asked["extrapolate"]:
+        told = "elevations outside are those of the nearest point of the boundary"
+    facts = Facts(file)
+    facts.add("Surface", mesh_counts(tin))
+    facts.add("Points", f"{len(table):,}, {told}", points=len(table), outside=outside)
+    facts.add("Method", asked["method"], method=asked["method"])
+    facts.note(notes)
+    job.finish(planned, facts)
 
 
 def _interpolate(
@@ -140,25 +147,3 @@ def _reproject(tin: TIN, points: QueryPoints, given: str | None, notes: list[str
     notes.append(f"Points were transformed from {source.label} to {tin.crs.label}.")
     flat = np.column_stack([points.xy, np.zeros(len(points.xy))])
     return transform_points(flat, source.horizontal, tin.crs.horizontal)[:, :2]
-
-
-def _count_outside(table: Table, column: str) -> int:
-    import numpy as np
-
-    return int(np.isnan(table[column]).sum())
-
-
-def _summarise(
-    tin: TIN, table: Table, outside: int, notes: list[str], asked: dict[str, Any]
-) -> list[Row]:
-    from ..output.line_summaries import mesh_counts
-
-    told = f"{outside:,} outside the surface, without elevation" if outside else "all inside"
-    if asked["extrapolate"]:
-        told = "elevations outside are those of the nearest point of the boundary"
-    return [
-        ("Surface", mesh_counts(tin)),
-        ("Points", f"{len(table):,}, {told}"),
-        ("Method", asked["method"]),
-        *[("Note", note) for note in notes],
-    ]

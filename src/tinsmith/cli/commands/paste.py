@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..command import command
+from ..job import surface_options
 from ..parameters import input_file, output_files
-from ..request import surface_options
 
 if TYPE_CHECKING:
-    from ...tin import TIN
-    from ..output.console import Row
-    from ..request import Request
+    from ..job import Job
 
 __all__ = ["paste"]
 
@@ -22,7 +20,7 @@ __all__ = ["paste"]
 @input_file("patch")
 @output_files
 @surface_options()
-def paste(base: Path, patch: Path, request: Request) -> None:
+def paste(base: Path, patch: Path, job: Job) -> None:
     """Replace a part of the TIN in BASE by the TIN in PATCH.
 
     Within the boundary of PATCH the surface is that of PATCH, elsewhere that of BASE: a new survey
@@ -35,30 +33,19 @@ def paste(base: Path, patch: Path, request: Request) -> None:
       tinsmith paste sample_data/site_survey.csv sample_data/design_pad.csv --codes -o site.gpkg
     """  # noqa: D301 - click reads the control character
     from ...terrain import paste as paste_tin
-
-    files = (base, patch)
-    planned = request.plan(request.list_inputs(*files), "TIN")
-    surfaces = request.read_tins(files)
-    with request.step("Pasting"):
-        pasted = paste_tin(*surfaces)
-    planned.write("TIN", pasted)
-    rows = _summarise_pasting([*surfaces, pasted])
-    request.finish(planned, rows, lambda: _describe_pasting(files, pasted))
-
-
-def _summarise_pasting(surfaces: list[TIN]) -> list[Row]:
+    from ..output.facts import Facts
     from ..output.line_summaries import mesh_counts
-
-    names = ("Base", "Patch", "Pasted")
-    counts = zip(names, map(mesh_counts, surfaces), strict=True)
-    return [*counts, *(("Note", note) for note in surfaces[-1].report.notes)]
-
-
-def _describe_pasting(files: tuple[Path, ...], pasted: TIN) -> dict[str, Any]:
     from ..output.summaries import describe_tin
 
-    return {
-        "inputs": [str(file) for file in files],
-        "tin": describe_tin(pasted),
-        "report": pasted.report.to_dict(),
-    }
+    files = (base, patch)
+    planned = job.plan(job.list_inputs(*files), "TIN")
+    surfaces = job.read_tins(files)
+    with job.step("Pasting"):
+        pasted = paste_tin(*surfaces)
+    planned.write("TIN", pasted)
+    facts = Facts(*files)
+    counts = map(mesh_counts, (*surfaces, pasted))
+    facts.tell(zip(("Base", "Patch", "Pasted"), counts, strict=True))
+    facts.record(tin=lambda: describe_tin(pasted), report=pasted.report.to_dict)
+    facts.note(pasted.report.notes)
+    job.finish(planned, facts)

@@ -16,8 +16,9 @@ from ...base.policies import (
 )
 from ...base.sentences import counted
 from ..command import command
+from ..inputs import name_features, read_lines
 from ..options import console_options, reading_options, triangulating_options
-from ..output.failures import Failure, note_written
+from ..output.failures import note_written
 from ..parameters import choice_option, file_option, input_file, number_option, output_option
 from ..paths import Named, make_title, require_separate
 
@@ -25,9 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...terrain import Plan
-    from ...tin import TIN
     from ..options import Reading, Triangulating
-    from ..output.console import Console, Row
+    from ..output.console import Console
 
 __all__ = ["plan"]
 
@@ -101,34 +101,36 @@ def plan(
       tinsmith plan sample_data/site_survey.csv --crs EPSG:32616 --codes --scale 1000 -o plan.pdf
     """  # noqa: D301 - click reads the control character
     from ... import terrain
-    from ..files import read_tin
+    from ..files import list_inputs, read_tin
+    from ..output.facts import Facts
+    from ..output.summaries import describe_file_size
 
     if asked["scale"] is None and asked["layout"] != "single":
         raise click.UsageError(f"--layout {asked['layout']} needs --scale.")
-    inputs = _list_inputs(file, how, asked["axis_file"])
+    axis_file = asked.pop("axis_file")
+    inputs = [*list_inputs(file, how=how), *name_features(axis_file, "the file of --axis")]
     _require_plans(outputs, inputs)
     tin, survey = read_tin(file, reading, how, console)
     asked["title"] = asked["title"] or make_title(file)
     asked["paper"] = _parse_paper(asked["paper"])
-    axis, notes = _read_axis(asked.pop("axis_file"), tin)
+    axis = None if axis_file is None else read_lines(axis_file, tin, "an axis is a line")
     with console.step("Drawing"):
         made = terrain.plan(tin, axis=axis, survey=survey, **asked)
     written = [path for output in outputs for path in _save(made, output, dpi, inputs, console)]
-    notes += made.notes
-    console.summarise(_summarise_plan(made, written, notes))
+    facts = Facts(file)
+    facts.add("Scale", made.scale_text, scale=made.scale)
+    sheets = f"{counted(len(made), 'sheet')}, {made.paper_name}"
+    facts.add("Sheets", sheets, paper=list(made.paper), sheets=len(made))
+    facts.add("Contours", f"every {made.interval:.12g}", interval=made.interval)
+    facts.record(frames=made.frames.tolist(), outputs=[str(path) for path in written])
+    facts.note([*getattr(axis, "notes", ()), *made.notes])
+    files = "\n".join(f"{path} ({describe_file_size(path)})" for path in written)
+    console.summarise([*facts.lines, ("Written", files)])
     if console.as_json:
-        console.answer([], _describe_plan(file, made, written, notes))
+        console.emit_record(facts.values)
 
 
 # ---------------------------------------------------------------- what is given
-
-
-def _list_inputs(file: Path, how: Triangulating, axis: Path | None) -> list[Named]:
-    from ...io.vector.survey_lines import split_layer
-    from ..files import list_inputs
-
-    more = [] if axis is None else [Named(split_layer(axis)[0], "the file of --axis")]
-    return [*list_inputs(file, how=how), *more]
 
 
 def _require_plans(outputs: Sequence[Path], inputs: Sequence[Named]) -> None:
@@ -153,21 +155,6 @@ def _parse_paper(text: str) -> str | tuple[float, float]:
     return width, height
 
 
-def _read_axis(path: Path | None, tin: TIN) -> tuple[Any, list[str]]:
-    """Return the line that strips follow, in the CRS of the TIN, and notes on it."""
-    from ...io.vector.geometries import read_geometries
-    from ...io.vector.survey_lines import split_layer
-    from ...terrain import Features
-
-    if path is None:
-        return None, []
-    name, layer = split_layer(path)
-    found = read_geometries(name, crs=tin.crs, layer=layer)
-    if found.kind == "points":
-        raise Failure(f"'{name}' has points: an axis is a line.")
-    return Features.of_lines(found.coordinates, found.offsets[0], crs=found.crs), list(found.notes)
-
-
 # ---------------------------------------------------------------- what is made
 
 
@@ -181,31 +168,3 @@ def _save(
     for path in written:
         note_written(path)
     return written
-
-
-def _summarise_plan(made: Plan, written: Sequence[Path], notes: Sequence[str]) -> list[Row]:
-    from ..output.summaries import describe_file_size
-
-    files = [f"{path} ({describe_file_size(path)})" for path in written]
-    return [
-        ("Scale", made.scale_text),
-        ("Sheets", f"{counted(len(made), 'sheet')}, {made.paper_name}"),
-        ("Contours", f"every {made.interval:.12g}"),
-        *[("Note", note) for note in notes],
-        ("Written", "\n".join(files)),
-    ]
-
-
-def _describe_plan(
-    file: Path, made: Plan, written: Sequence[Path], notes: Sequence[str]
-) -> dict[str, Any]:
-    return {
-        "input": str(file),
-        "scale": made.scale,
-        "paper": list(made.paper),
-        "sheets": len(made),
-        "interval": made.interval,
-        "frames": made.frames.tolist(),
-        "notes": list(notes),
-        "outputs": [str(path) for path in written],
-    }

@@ -10,18 +10,17 @@ import click
 
 from ...base.sentences import counted
 from ..command import command
-from ..output.failures import Failure
+from ..inputs import name_features, read_lines
+from ..job import surface_options
 from ..parameters import LibraryOption, file_option, number_option, output_files, position_option
-from ..paths import INPUT, Named, make_title
-from ..request import surface_options
+from ..paths import INPUT, make_title
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...terrain import Features, Table
     from ...tin import TIN
-    from ..products import Products
-    from ..request import Request
+    from ..job import Job
 
 __all__ = ["profile"]
 
@@ -41,6 +40,12 @@ class _Line:
         ends = (self.start is not None) + (self.end is not None)
         if (self.file is None) == (ends == 0) or ends == 1:
             raise click.UsageError("A line is needed: --line FILE, or --from X Y and --to X Y.")
+
+    def read(self, tin: TIN) -> Any:
+        """Return the lines to cut along, in the CRS of the TIN."""
+        if self.file is None:
+            return [self.start, self.end]
+        return read_lines(self.file, tin, "a profile runs along lines")
 
 
 @command
@@ -78,7 +83,7 @@ def profile(
     begin: Pair | None,
     end: Pair | None,
     names: tuple[str, ...],
-    request: Request,
+    job: Job,
     **asked: Any,
 ) -> None:
     """Compute profiles of the TINs in FILES, or built from the points in them, along a line.
@@ -92,28 +97,31 @@ def profile(
       tinsmith profile sample_data/site_survey.csv --crs EPSG:32616 --codes
         --from 752690 4024225 --to 752850 4024330 -o profile.csv -o profile.png
     """  # noqa: D301 - click reads the control character
+    from ..output.facts import Facts
     from ..output.line_summaries import mesh_counts
 
     line = _Line(file=line_file, start=begin, end=end)
     line.require_one()
     chosen, asked["is_named"] = _choose_names(files, names), bool(names)
-    planned = _plan(request, files, line_file, asked["sections"])
-    surfaces = dict(zip(chosen, request.read_tins(files), strict=True))
-    notes: list[str] = []
-    lines = _read_lines(line, next(iter(surfaces.values())), notes)
-    with request.step("Cutting"):
+    inputs = job.list_inputs(*files, more=name_features(line_file, "the file of --line"))
+    with_sections = () if asked["sections"] is None else ("Features",)
+    planned = job.plan_products(inputs, "Table", *with_sections, "picture")
+    surfaces = dict(zip(chosen, job.read_tins(files), strict=True))
+    lines = line.read(next(iter(surfaces.values())))
+    with job.step("Cutting"):
         table, sections = _cut(surfaces, lines, planned.holds("Features"), asked)
     figure = _draw(table, surfaces, files, asked) if planned.holds("picture") else None
     planned.write("Table", table)
     planned.write("Features", sections)
     planned.draw(lambda: figure)
-    notes += table.notes
-    rows = [
-        *[("Surface", f"{name}: {mesh_counts(tin)}") for name, tin in surfaces.items()],
-        ("Rows", f"{len(table):,}"),
-        *[("Note", note) for note in notes],
-    ]
-    request.finish(planned, rows, lambda: _describe_profile(files, table, notes))
+    measured = [name for name, values in table.columns.items() if values.dtype.kind == "f"]
+    facts = Facts()
+    facts.record(inputs=[str(file) for file in files])
+    facts.tell(("Surface", f"{name}: {mesh_counts(tin)}") for name, tin in surfaces.items())
+    facts.add("Rows", f"{len(table):,}", rows=len(table), columns=list(table.columns))
+    facts.record(ranges={name: _find_range(table[name]) for name in measured})
+    facts.note([*getattr(lines, "notes", ()), *table.notes])
+    job.finish(planned, facts)
 
 
 # ---------------------------------------------------------------- what is given
@@ -130,35 +138,6 @@ def _choose_names(files: Sequence[Path], given: Sequence[str]) -> list[str]:
     if repeated is not None:
         raise click.UsageError(f"Two surfaces are called '{repeated}': --name tells them apart.")
     return names
-
-
-def _plan(
-    request: Request, files: Sequence[Path], line_file: Path | None, sections: Pair | None
-) -> Products:
-    """Choose what each output holds, before any work is done."""
-    from ...io.vector.survey_lines import split_layer
-
-    more = []
-    if line_file is not None:
-        more.append(Named(split_layer(line_file)[0], "the file of --line"))
-    kinds = ("Table", "picture") if sections is None else ("Table", "Features", "picture")
-    return request.plan_products(request.list_inputs(*files, more=more), *kinds)
-
-
-def _read_lines(line: _Line, tin: TIN, notes: list[str]) -> Any:
-    """Return the lines to cut along; those of a file, also the rings of polygons, with its CRS."""
-    from ...io.vector.geometries import read_geometries
-    from ...io.vector.survey_lines import split_layer
-    from ...terrain import Features
-
-    if line.file is None:
-        return [line.start, line.end]
-    path, layer = split_layer(line.file)
-    found = read_geometries(path, crs=tin.crs, layer=layer)
-    notes += found.notes
-    if found.kind == "points":
-        raise Failure(f"'{path}' has points: a profile runs along lines.")
-    return Features.of_lines(found.coordinates, found.offsets[0], crs=found.crs)
 
 
 # ---------------------------------------------------------------- what is made
@@ -192,18 +171,6 @@ def _draw(
     what, draw = ("Profile", profile_picture) if is_profile else ("Cross sections", section_picture)
     title = asked["title"] or f"{what}: {make_title(files[0])}"
     return draw(table, exaggeration=asked["exaggeration"], title=title, crs=crs)
-
-
-def _describe_profile(files: Sequence[Path], table: Table, notes: Sequence[str]) -> dict[str, Any]:
-    """Describe the table: its columns, and the least and largest of those that are measured."""
-    measured = [name for name, values in table.columns.items() if values.dtype.kind == "f"]
-    return {
-        "inputs": [str(file) for file in files],
-        "rows": len(table),
-        "columns": list(table.columns),
-        "ranges": {name: _find_range(table[name]) for name in measured},
-        "notes": list(notes),
-    }
 
 
 def _find_range(values: Any) -> list[float | None]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -9,17 +10,14 @@ import click
 from ...base.policies import InterpolationMethod, RasterSample, RasterValue
 from ...base.sentences import coordinate
 from ..command import file_command
+from ..job import surface_options
 from ..parameters import choice_option, file_option, number_option, smooth_option
 from ..paths import Named
-from ..request import surface_options
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...terrain import Raster
-    from ...tin import TIN
-    from ..output.console import Row
-    from ..request import Request
+    from ..job import Job
 
 __all__ = ["raster"]
 
@@ -53,7 +51,7 @@ def raster(
     file: Path,
     spacing: float | None,
     like: Path | None,
-    request: Request,
+    job: Job,
     **asked: Any,
 ) -> None:
     """Rasterize the TIN in FILE, or built from the points in it.
@@ -66,61 +64,33 @@ def raster(
         --spacing 0.5 -o site.tif
     """  # noqa: D301 - click reads the control character
     from ...io.raster.cells import read_cells
+    from ...terrain import rasterize
+    from ..output.facts import Facts
+    from ..output.line_summaries import mesh_counts
+    from ..output.summaries import describe_raster_size
 
     if (spacing is None) == (like is None):
         raise click.UsageError("One of --spacing and --like is needed.")
     more = [] if like is None else [Named(like, "the raster of --like")]
-    planned = request.plan(request.list_inputs(file, more=more), "Raster")
+    planned = job.plan(job.list_inputs(file, more=more), "Raster")
     cells = None if like is None else read_cells(like)
-    tin = request.read_tin(file)
-    made = _rasterize(tin, spacing, cells, request.how.threads, asked)
+    tin = job.read_tin(file)
+    asked["at"] = asked.pop("sample")
+    made = rasterize(tin, spacing=spacing, like=cells, lazy=True, threads=job.how.threads, **asked)
     planned.write("Raster", made)
-    request.finish(planned, _summarise_raster(tin, made), lambda: _describe_raster(file, made))
-
-
-def _rasterize(
-    tin: TIN, spacing: float | None, cells: Any, threads: int | None, asked: dict[str, Any]
-) -> Raster:
-    from ...terrain import rasterize
-
-    return rasterize(
-        tin,
-        spacing=spacing,
-        like=cells,
-        value=asked["value"],
-        method=asked["method"],
-        at=asked["sample"],
-        smooth=asked["smooth"],
-        azimuth=asked["azimuth"],
-        altitude=asked["altitude"],
-        lazy=True,
-        threads=threads,
-    )
-
-
-def _summarise_raster(tin: TIN, made: Raster) -> list[Row]:
-    from ..output.line_summaries import mesh_counts
-    from ..output.summaries import describe_raster_size
-
     box = made.grid.bounds
-    return [
-        ("Surface", mesh_counts(tin)),
-        ("Raster", describe_raster_size(made)),
-        ("", f"west {coordinate(box.xmin)}, north {coordinate(box.ymax)}"),
-        *(("Note", note) for note in made.notes),
-    ]
-
-
-def _describe_raster(file: Path, made: Raster) -> dict[str, Any]:
-    from dataclasses import asdict
-
-    return {
-        "input": str(file),
-        "rows": made.shape[0],
-        "columns": made.shape[1],
-        "spacing": made.grid.spacing,
-        "bounds": asdict(made.grid.bounds),
-        "bands": list(made.bands),
-        "crs": None if made.crs is None else str(made.crs),
-        "notes": list(made.notes),
-    }
+    facts = Facts(file)
+    facts.add("Surface", mesh_counts(tin))
+    facts.add(
+        "Raster",
+        describe_raster_size(made),
+        rows=made.shape[0],
+        columns=made.shape[1],
+        spacing=made.grid.spacing,
+        bands=list(made.bands),
+        crs=None if made.crs is None else str(made.crs),
+    )
+    place = f"west {coordinate(box.xmin)}, north {coordinate(box.ymax)}"
+    facts.add("", place, bounds=asdict(box))
+    facts.note(made.notes)
+    job.finish(planned, facts)

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ...base.sentences import counted
 from ..command import file_command
 from ..flags import name_flags
+from ..job import surface_options
 from ..output.failures import Failure, refuse_option
 from ..parameters import number_option
-from ..request import surface_options
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...tin import TIN, Quality
-    from ...tin.report import Unmended
-    from ..output.console import Row
-    from ..request import Request
+    from ...tin import TIN
+    from ..job import Job
 
 __all__ = ["refine"]
 
@@ -38,7 +36,7 @@ def refine(
     max_area: float | None,
     max_side: float | None,
     max_vertices: int,
-    request: Request,
+    job: Job,
 ) -> None:
     """Refine the TIN in FILE, or built from the points in it, for finite elements.
 
@@ -53,13 +51,15 @@ def refine(
     from ...tin import quality
     from ...tin import refine as refine_tin
     from ...tin.meshing.flips import describe_flips
+    from ..output.facts import Facts
     from ..output.line_summaries import mesh_counts
+    from ..output.summaries import describe_tin
 
-    planned = request.plan(request.list_inputs(file), "TIN")
-    tin = request.read_tin(file)
+    planned = job.plan(job.list_inputs(file), "TIN")
+    tin = job.read_tin(file)
     _require_lengths(tin, file)
     triangles = counted(len(tin.triangles), "triangle")
-    with request.step(f"Refining {triangles}") as progress:
+    with job.step(f"Refining {triangles}") as progress:
         try:
             refined = refine_tin(
                 tin,
@@ -67,7 +67,7 @@ def refine(
                 max_area=max_area,
                 max_edge=max_side,
                 max_vertices=max_vertices,
-                threads=request.how.threads,
+                threads=job.how.threads,
                 progress=progress,
             )
         except OptionError as error:  # its max_edge is not --max-edge, which trims
@@ -76,13 +76,19 @@ def refine(
             raise Failure(name_flags(str(error), max_edge="--max-side")) from error
     planned.write("TIN", refined)
     shapes = quality(refined)
-    rows = [
-        ("Read", mesh_counts(tin)),
-        ("Mesh", mesh_counts(refined)),
-        *_summarise_angles(quality(tin), shapes, refined.report.unmended),
-        *(("Note", note) for note in describe_flips(tin)),
-    ]
-    request.finish(planned, rows, lambda: _describe_refinement(file, refined, shapes))
+    least, before = shapes.min_angle.min(), quality(tin).min_angle.min()
+    facts = Facts(file)
+    facts.add("Read", mesh_counts(tin))
+    facts.add(
+        "Mesh",
+        mesh_counts(refined),
+        tin=lambda: describe_tin(refined) | {"quality": shapes.summary()},
+        report=refined.report.to_dict,
+    )
+    facts.add("Angles", f"from {least:.1f}° on, before from {before:.1f}°")
+    facts.tell(("", sentence) for sentence in refined.report.unmended.sentences())
+    facts.tell(("Note", note) for note in describe_flips(tin))
+    job.finish(planned, facts)
 
 
 def _require_lengths(tin: TIN, file: Path) -> None:
@@ -93,19 +99,3 @@ def _require_lengths(tin: TIN, file: Path) -> None:
             f"'{file}' is in degrees, where angles and areas are not those on the ground: build "
             "the TIN in a projected CRS, such as EPSG:32616."
         )
-
-
-def _summarise_angles(given: Quality, refined: Quality, unmended: Unmended) -> list[Row]:
-    before, after = given.min_angle, refined.min_angle
-    rows = [("Angles", f"from {after.min():.1f}° on, before from {before.min():.1f}°")]
-    return rows + [("", sentence) for sentence in unmended.sentences()]
-
-
-def _describe_refinement(file: Path, refined: TIN, shapes: Quality) -> dict[str, Any]:
-    from ..output.summaries import describe_tin
-
-    return {
-        "input": str(file),
-        "tin": describe_tin(refined) | {"quality": shapes.summary()},
-        "report": refined.report.to_dict(),
-    }

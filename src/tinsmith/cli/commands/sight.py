@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..command import file_command
+from ..inputs import name_features, read_places
+from ..job import surface_options
 from ..parameters import file_option, number_option, position_option
-from ..places import name_places, read_places
-from ..request import surface_options
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from ...terrain import Features
     from ...tin import TIN
+    from ..job import Job
     from ..output.console import Row
-    from ..request import Request
 
 __all__ = ["sight"]
 
@@ -53,7 +53,7 @@ _SHOWN = 12
     help="Classify whole triangles by their corners, without dividing them.",
 )
 @surface_options()
-def sight(file: Path, request: Request, **asked: Any) -> None:
+def sight(file: Path, job: Job, **asked: Any) -> None:
     """Find what is visible from a point on the TIN in FILE, or built from the points in it.
 
     Without targets the result is the viewshed: the visible and the hidden part, as polygons that
@@ -70,14 +70,18 @@ def sight(file: Path, request: Request, **asked: Any) -> None:
     from ..output.line_summaries import describe_features
 
     _require_fitting(asked)
-    more = name_places(asked["eyes"], "--eye") + name_places(asked["points"], "--targets")
-    planned = request.plan_products(request.list_inputs(file, more=more), "Features", "Table")
-    tin = request.read_tin(file)
-    with request.step("Looking") as progress:
+    more = name_features(asked["eyes"], "the file of --eye")
+    more += name_features(asked["points"], "the file of --targets")
+    planned = job.plan_products(job.list_inputs(file, more=more), "Features", "Table")
+    tin = job.read_tin(file)
+    with job.step("Looking") as progress:
         found = _look(tin, asked, progress)
     planned.write("Features", found)
     planned.write("Table", tabulate_columns(found))
-    request.finish(planned, _summarise(tin, found), lambda: describe_features(file, found))
+    facts = describe_features(file, tin, found)
+    tell = _tell_line if "visible" in found.columns else _tell_class
+    facts.tell(tell(found, row) for row in range(min(len(found), _SHOWN)))
+    job.finish(planned, facts)
 
 
 def _require_fitting(asked: dict[str, Any]) -> None:
@@ -116,16 +120,6 @@ def _look(tin: TIN, asked: dict[str, Any], progress: Callable[[float], None]) ->
         return terrain.line_of_sight(tin, eye, targets, **how)
     of_viewshed = {name: asked[name] for name in ("radius", "whole_triangles")}
     return terrain.viewshed(tin, eye, progress=progress, **of_viewshed, **how)
-
-
-def _summarise(tin: TIN, found: Features) -> list[Row]:
-    from ..output.line_summaries import describe_counts
-
-    rows: list[Row] = [("TIN", describe_counts(tin))]
-    tell = _tell_line if "visible" in found.columns else _tell_class
-    for row in range(min(len(found), _SHOWN)):
-        rows.append(tell(found, row))
-    return [*rows, *(("Note", note) for note in found.notes)]
 
 
 def _tell_line(found: Features, row: int) -> Row:

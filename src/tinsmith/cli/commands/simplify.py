@@ -9,10 +9,10 @@ import click
 from ...base.policies import SimplificationHold
 from ...base.sentences import coordinate, counted
 from ..command import file_command
+from ..job import surface_options
 from ..output.failures import Failure
 from ..parameters import choice_option, file_option, number_option
 from ..paths import INPUT, Named
-from ..request import surface_options
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray
     from ...terrain import Raster
     from ...tin import TIN
-    from ..output.console import Row
-    from ..request import Request
+    from ..job import Job
+    from ..output.facts import Facts
 
 __all__ = ["simplify"]
 
@@ -52,7 +52,7 @@ def simplify(
     points: int | None,
     hold: SimplificationHold | None,
     keep: Path | None,
-    request: Request,
+    job: Job,
 ) -> None:
     """Leave out points of the TIN in FILE, or built from the points in it, within a tolerance.
 
@@ -65,43 +65,44 @@ def simplify(
       tinsmith simplify sample_data/jacksboro.tif --tolerance 2 -o hills.ply
     """  # noqa: D301 - click reads the control character
     from ...terrain import simplify as simplify_surface
+    from ..inputs import find_cells, read_cells
+    from ..output.facts import Facts
     from ..output.line_summaries import mesh_counts
-    from ..raster_input import find_cells, read_cells
+    from ..output.summaries import describe_tin
 
     if (tolerance is None) == (points is None):
         wrong = "give one of them" if points is None else "not both"
         raise click.UsageError(f"The options are --tolerance or --points: {wrong}.")
     more = [] if keep is None else [Named(keep, "--keep")]
-    planned = request.plan(request.list_inputs(file, more=more), "TIN")
-    raster = read_cells(file, request)
-    given = request.read_tin(file) if raster is None else raster
+    planned = job.plan(job.list_inputs(file, more=more), "TIN")
+    raster = read_cells(file, job)
+    given = job.read_tin(file) if raster is None else raster
     find = _find_vertices if raster is None else find_cells
-    kept = () if keep is None else _find_kept(given, find, keep, request)
+    kept = () if keep is None else _find_kept(given, find, keep, job)
     size, counts = _count(given)
-    with request.step(f"Simplifying {size}") as progress:
+    with job.step(f"Simplifying {size}") as progress:
         simple = simplify_surface(
             given,
             tolerance=tolerance,
             points=points,
             keep=kept,
             hold=hold,
-            threads=request.how.threads,
+            threads=job.how.threads,
             progress=progress,
         )
     planned.write("TIN", simple)
-    rows = [
-        ("Read", counts),
-        ("Left", mesh_counts(simple)),
-        *_summarise_errors(simple, given),
-    ]
-    request.finish(planned, rows, lambda: _describe_simplification(file, simple))
+    facts = Facts(file)
+    facts.add("Read", counts)
+    facts.add("Left", mesh_counts(simple), tin=lambda: describe_tin(simple), simplification=None)
+    _add_errors(facts, simple, given)
+    job.finish(planned, facts)
 
 
 def _count(given: TIN | Raster) -> tuple[str, str]:
     """Return what there is to simplify, and what was read, in words."""
     from ...terrain import Raster
+    from ..inputs import count_cells
     from ..output.line_summaries import mesh_counts
-    from ..raster_input import count_cells
 
     if isinstance(given, Raster):
         return count_cells(given), count_cells(given)
@@ -115,14 +116,14 @@ def _find_vertices(tin: TIN, places: AnyArray) -> list[int]:
 
 
 def _find_kept(
-    surface: Any, find: Callable[[Any, AnyArray], list[int]], path: Path, request: Request
+    surface: Any, find: Callable[[Any, AnyArray], list[int]], path: Path, job: Job
 ) -> AnyArray:
     """Return the vertices or cells at the points of a file."""
     import numpy as np
 
     from ..files import read_input
 
-    places = read_input(path, request.reading, request.console).points[:, :2]
+    places = read_input(path, job.reading, job.console).points[:, :2]
     found = find(surface, places)
     missing = [row for row, vertex in enumerate(found) if vertex < 0]
     if missing:
@@ -135,31 +136,19 @@ def _find_kept(
     return np.array(found, np.int64)
 
 
-def _summarise_errors(simple: TIN, given: TIN | Raster) -> list[Row]:
+def _add_errors(facts: Facts, simple: TIN, given: TIN | Raster) -> None:
     from ...terrain import Raster
     from ..output.line_summaries import summarise_news
 
     found = simple.report.simplification
     if found is None:
-        return []
+        return
     before = given.notes if isinstance(given, Raster) else given.report.notes
-    return [
-        (
-            "Errors",
-            f"largest {found.largest_error:.4g}, RMS {found.rms_error:.4g}, at all points\n"
-            f"{found.describe_surface()}",
-        ),
-        ("Kept", f"{counted(found.required, 'point')} of lines, boundary and those to be kept"),
-        *summarise_news(simple, [*before, found.sentence()]),
-    ]
-
-
-def _describe_simplification(file: Path, simple: TIN) -> dict[str, Any]:
-    from ..output.summaries import describe_tin
-
-    found = simple.report.simplification
-    return {
-        "input": str(file),
-        "tin": describe_tin(simple),
-        "simplification": None if found is None else found.to_dict(),
-    }
+    facts.add(
+        "Errors",
+        f"largest {found.largest_error:.4g}, RMS {found.rms_error:.4g}, at all points\n"
+        f"{found.describe_surface()}",
+        simplification=found.to_dict(),
+    )
+    facts.add("Kept", f"{counted(found.required, 'point')} of lines, boundary and those to be kept")
+    facts.tell(summarise_news(simple, [*before, found.sentence()]))

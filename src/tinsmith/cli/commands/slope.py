@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from ...base.policies import SlopeUnit
 from ..command import file_command
+from ..job import surface_options
 from ..options import make_reading_options
 from ..parameters import choice_option, numbers_option
-from ..request import surface_options
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...terrain import Features, Table
     from ...tin import TIN
-    from ..output.console import Row
-    from ..request import Request
+    from ..job import Job
+    from ..output.facts import Facts
 
 __all__ = ["slope"]
 
@@ -41,7 +41,7 @@ def slope(
     slope_unit: SlopeUnit,
     breaks: list[float] | None,
     aspect: bool,
-    request: Request,
+    job: Job,
 ) -> None:
     """Divide the TIN in FILE, or built from the points in it, into classes of slope.
 
@@ -58,50 +58,41 @@ def slope(
 
     if aspect and breaks is not None:
         raise click.UsageError("--breaks is for slopes: aspects have the eight directions.")
-    planned = request.plan_products(request.list_inputs(file), "Features", "Table")
-    tin = request.read_tin(file)
-    with request.step("Classifying"):
+    planned = job.plan_products(job.list_inputs(file), "Features", "Table")
+    tin = job.read_tin(file)
+    with job.step("Classifying"):
         made = aspect_classes(tin) if aspect else slope_classes(tin, breaks=breaks, unit=slope_unit)
         statistics = slope_statistics(tin, unit=slope_unit)
     planned.write("Features", made)
     planned.write("Table", tabulate_columns(made))
-    rows = _summarise_classes(tin, made, statistics)
-    request.finish(planned, rows, lambda: _describe_classes(file, made, statistics))
+    job.finish(planned, _list_facts(file, tin, made, statistics))
 
 
-def _summarise_classes(tin: TIN, made: Features, statistics: Table) -> list[Row]:
+def _list_facts(file: Path, tin: TIN, made: Features, statistics: Table) -> Facts:
+    from ..output.facts import Facts, list_rows, name_units
     from ..output.line_summaries import describe_counts
 
     found = {name: f"{statistics[name][0]:.1f}" for name in statistics.columns}
     mark = str(statistics.units["mean"])
     behind = mark if mark == "°" else f" {mark}"
-    rows = zip(made.columns["label"], made.columns["area"], made.columns["share"], strict=True)
-    area = made.units["area"] or "units²"
-    classes = "\n".join(
-        f"{label}: {size:,.1f} {area}, {share:.1f} %" for label, size, share in rows
+    facts = Facts(file)
+    facts.add("TIN", describe_counts(tin))
+    facts.add(
+        "Slope",
+        f"{found['minimum']} to {found['maximum']}{behind}, mean {found['mean']}{behind}, "
+        f"median {found['p50']}{behind}",
+        slope={name: column[0] for name, column in statistics.columns.items()},
+        slope_units=name_units(statistics.units),
     )
-    return [
-        ("TIN", describe_counts(tin)),
-        (
-            "Slope",
-            f"{found['minimum']} to {found['maximum']}{behind}, mean {found['mean']}{behind}, "
-            f"median {found['p50']}{behind}",
+    area = made.units["area"] or "units²"
+    classes = list_rows(made.columns)
+    facts.add(
+        "Classes",
+        "\n".join(
+            f"{one['label']}: {one['area']:,.1f} {area}, {one['share']:.1f} %" for one in classes
         ),
-        ("Classes", classes),
-        *(("Note", note) for note in made.notes),
-    ]
-
-
-def _describe_classes(file: Path, made: Features, statistics: Table) -> dict[str, Any]:
-    from ...base.results.columns import unit_text
-
-    names = list(made.columns)
-    rows = zip(*(column.tolist() for column in made.columns.values()), strict=True)
-    return {
-        "input": str(file),
-        "slope": {name: column[0] for name, column in statistics.columns.items()},
-        "slope_units": {name: unit_text(statistics.units, name) for name in statistics.units},
-        "classes": [dict(zip(names, row, strict=True)) for row in rows],
-        "class_units": {name: unit_text(made.units, name) for name in made.units},
-        "notes": list(made.notes),
-    }
+        classes=classes,
+        class_units=name_units(made.units),
+    )
+    facts.note(made.notes)
+    return facts

@@ -8,18 +8,20 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..command import command
+from ..inputs import name_features, read_features
+from ..job import surface_options
 from ..parameters import file_option, number_option, output_option
-from ..paths import INPUT, Named, make_title
-from ..request import surface_options
+from ..paths import INPUT, make_title
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...base.progress import Tell
-    from ...terrain import Difference, Features, Table
+    from ...terrain import Difference, Table
     from ...tin import TIN
+    from ..job import Job
     from ..output.console import Row
-    from ..request import Request
+    from ..output.facts import Facts
 
 __all__ = ["volume"]
 
@@ -55,7 +57,7 @@ _LEAST_AREA = 0.005
 def volume(
     files: tuple[Path, ...],
     regions: Path | None,
-    request: Request,
+    job: Job,
     **asked: Any,
 ) -> None:
     """Compute cut and fill from the TIN in GROUND to that in DESIGN, or to a level.
@@ -70,23 +72,20 @@ def volume(
       tinsmith volume sample_data/site_survey.csv --stage-storage --interval 0.5 -o stages.csv
     """  # noqa: D301 - click reads the control character
     _require_one_base(files, asked)
-    inputs = request.list_inputs(*files, more=[] if regions is None else [_name_regions(regions)])
+    inputs = job.list_inputs(*files, more=name_features(regions, "the file of --regions"))
     kinds = ["Table"] if asked["stage_storage"] else ["Table", "Features", "picture"]
-    planned = request.plan_products(inputs, *kinds)
-    surfaces = request.read_tins(files)
-    with request.step("Measuring") as progress:
+    planned = job.plan_products(inputs, *kinds)
+    surfaces = job.read_tins(files)
+    with job.step("Measuring") as progress:
         if planned.holds("Features") or planned.holds("picture"):
             found = _overlay(surfaces, regions, asked, progress)
             table = found.volumes
         else:
             table = _measure(surfaces, regions, asked, progress)
     planned.write("Table", table)
-    if planned.holds("Features"):
-        planned.write("Features", found.zones)
+    planned.write("Features", lambda: found.zones)
     planned.draw(lambda: _draw_map(found, surfaces[0], files, asked["title"]))
-    request.finish(
-        planned, _summarise_volumes(table, surfaces), lambda: _describe_volumes(files, table)
-    )
+    job.finish(planned, _list_facts(files, table, surfaces))
 
 
 # ---------------------------------------------------------------- what is given
@@ -108,21 +107,6 @@ def _require_one_base(files: Sequence[Path], asked: dict[str, Any]) -> None:
         raise click.UsageError("--level and --interval are both given: choose one.")
 
 
-def _name_regions(regions: Path) -> Named:
-    from ...io.vector.survey_lines import split_layer
-
-    return Named(split_layer(regions)[0], "the file of --regions")
-
-
-def _read_regions(path: Path, tin: TIN) -> Features:
-    """Read polygons with their columns, in the CRS of the TIN."""
-    from ...io.vector.geometries import read_geometries
-    from ...io.vector.survey_lines import split_layer
-
-    file, layer = split_layer(path)
-    return read_geometries(file, crs=tin.crs, layer=layer)
-
-
 # ---------------------------------------------------------------- what is made
 
 
@@ -133,7 +117,7 @@ def _measure(
     from ...terrain import volume as measure
 
     tin = surfaces[0]
-    chosen = None if regions is None else _read_regions(regions, tin)
+    chosen = None if regions is None else read_features(regions, tin)
     if not asked["stage_storage"]:
         base = asked["base"] if len(surfaces) == 1 else None
         return measure(tin, *surfaces[1:], base=base, regions=chosen, progress=progress)
@@ -148,7 +132,7 @@ def _overlay(
     """Subtract the ground from the design or a level; its volumes are of the same overlay."""
     from ...terrain import difference
 
-    chosen = None if regions is None else _read_regions(regions, surfaces[0])
+    chosen = None if regions is None else read_features(regions, surfaces[0])
     base = asked["base"] if len(surfaces) == 1 else None
     return difference(*surfaces, base=base, regions=chosen, progress=progress)
 
@@ -163,14 +147,19 @@ def _draw_map(found: Difference, ground: TIN, files: Sequence[Path], title: str 
 # ---------------------------------------------------------------- for people
 
 
-def _summarise_volumes(table: Table, surfaces: Sequence[TIN]) -> list[Row]:
+def _list_facts(files: Sequence[Path], table: Table, surfaces: Sequence[TIN]) -> Facts:
+    from ..output.facts import Facts, list_rows, name_units
     from ..output.line_summaries import mesh_counts
 
-    names = ["Ground", "Design"]
-    given = [(name, mesh_counts(tin)) for name, tin in zip(names, surfaces, strict=False)]
-    found = _list_stages(table) if "level" in table.columns else _list_volumes(table)
-    more = [("", f"... {len(table) - _SHOWN} more")] if len(table) > _SHOWN else []
-    return [*given, *found, *more, *(("Note", note) for note in table.notes)]
+    facts = Facts()
+    facts.record(inputs=[str(file) for file in files])
+    facts.record(rows=list_rows(table.columns), units=name_units(table.units))
+    facts.tell(zip(("Ground", "Design"), map(mesh_counts, surfaces)))  # noqa: B905 - one or both
+    facts.tell(_list_stages(table) if "level" in table.columns else _list_volumes(table))
+    if len(table) > _SHOWN:
+        facts.add("", f"... {len(table) - _SHOWN} more")
+    facts.note(table.notes)
+    return facts
 
 
 def _list_volumes(table: Table) -> list[Row]:
@@ -212,17 +201,3 @@ def _format_quantity(table: Table, name: str, row: int) -> str:
     if symbol in _FEET:
         text += f" ({value / _CUBIC_YARD:,.2f} yd³)"
     return text
-
-
-def _describe_volumes(files: Sequence[Path], table: Table) -> dict[str, Any]:
-    from ...base.results.columns import unit_text
-
-    columns = {name: values.tolist() for name, values in table.columns.items()}
-    return {
-        "inputs": [str(file) for file in files],
-        "rows": [
-            dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)
-        ],
-        "units": {name: unit_text(table.units, name) for name in table.units},
-        "notes": list(table.notes),
-    }

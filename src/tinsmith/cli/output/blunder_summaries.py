@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...base.sentences import counted, height
+from .facts import list_rows
 
 if TYPE_CHECKING:
     from ...base.arrays import Int64Array
@@ -18,7 +19,6 @@ __all__ = [
     "count_reasons",
     "describe_suspects",
     "list_findings",
-    "list_records",
     "tell_suspects",
 ]
 
@@ -59,15 +59,6 @@ def _name_point(table: Table, i: int) -> str:
     return place[:1].upper() + place[1:] or f"Row {row}"
 
 
-def list_records(table: Table) -> list[dict[str, Any]]:
-    """Return the rows of a table as mappings; NaN, which JSON has not, as None."""
-    columns = {name: values.tolist() for name, values in table.columns.items()}
-    return [
-        {name: None if value != value else value for name, value in zip(columns, row, strict=True)}
-        for row in zip(*columns.values(), strict=True)
-    ]
-
-
 class Suspects(NamedTuple):
     """What a build found."""
 
@@ -103,5 +94,5 @@ def tell_suspects(found: Suspects) -> list[Row]:
 def describe_suspects(found: Suspects) -> dict[str, Any]:
     """Return the part of a build's report on points that look like blunders."""
     dropped = set() if found.dropped is None else set(found.dropped.tolist())
-    records = list_records(found.table)
+    records = list_rows(found.table.columns)
     return {"blunders": [one | {"dropped": one["row"] in dropped} for one in records]}

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ...terrain import Features
     from ...tin import TIN, Report, Survey
     from .console import Row
+    from .facts import Facts
 
 __all__ = [
     "count_constrained_edges",
@@ -156,16 +157,12 @@ def _describe_overruled(report: Report, survey: Survey) -> str:
     return f"{number:,} overruled by lines of higher priority, the most by {most:.3f}{up}"
 
 
-def describe_features(file: Path, found: Features, **more: Any) -> dict[str, Any]:
-    """Return what ``--json`` tells of features: a record for each, without its geometry."""
-    from ...base.results.columns import unit_text
+def describe_features(file: Path, tin: TIN, found: Features) -> Facts:
+    """Return what there is to tell of features of a TIN: a record each, without geometry."""
+    from .facts import Facts, list_rows, name_units
 
-    names = list(found.columns)
-    rows = zip(*(column.tolist() for column in found.columns.values()), strict=True)
-    return {
-        "input": str(file),
-        **more,
-        "found": [dict(zip(names, row, strict=True)) for row in rows],
-        "units": {name: unit_text(found.units, name) for name in found.units},
-        "notes": list(found.notes),
-    }
+    facts = Facts(file)
+    facts.add("TIN", describe_counts(tin))
+    facts.record(found=lambda: list_rows(found.columns), units=name_units(found.units))
+    facts.note(found.notes)
+    return facts
