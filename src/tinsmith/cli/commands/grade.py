@@ -14,10 +14,8 @@ from ..parameters import file_option, number_option
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...terrain import Table
     from ...tin import TIN
     from ..job import Job
-    from ..output.facts import Facts
 
 __all__ = ["grade"]
 
@@ -54,6 +52,9 @@ def grade(
     """  # noqa: D301 - click reads the control character
     from ...terrain import grade as grade_tin
     from ...terrain import volume
+    from ..output.facts import Facts
+    from ..output.line_summaries import mesh_counts
+    from ..output.summaries import describe_tin
 
     planned = job.plan(job.list_inputs(file, more=name_features(pad, "--pad")), "TIN")
     tin = job.read_tin(file)
@@ -70,7 +71,15 @@ def grade(
         )
         table = volume(tin, graded)
     planned.write("TIN", graded)
-    job.finish(planned, _list_facts(file, tin, graded, table, [*notes, *table.notes]))
+    unit = table.units.get("cut") or "cubic units of the CRS"
+    volumes = {name: float(table[name][0]) for name in ("cut", "fill", "cut_area", "fill_area")}
+    facts = Facts(file)
+    facts.add("Ground", mesh_counts(tin))
+    facts.add("Graded", mesh_counts(graded), tin=lambda: describe_tin(graded), volume=volumes)
+    for name in ("cut", "fill"):
+        facts.add(name.capitalize(), f"{volumes[name]:,.1f} {unit}")
+    facts.note([*notes, *table.notes])
+    job.finish(planned, facts)
 
 
 def _read_pad(
@@ -95,19 +104,3 @@ def _read_pad(
         held = f"{counted(len(found), 'polygon')} of {counted(rings, 'ring')}"
         raise Failure(f"'{file}' holds {held}: a pad is one ring.")
     return found[0][0]
-
-
-def _list_facts(file: Path, tin: TIN, graded: TIN, table: Table, notes: list[str]) -> Facts:
-    from ..output.facts import Facts
-    from ..output.line_summaries import mesh_counts
-    from ..output.summaries import describe_tin
-
-    unit = table.units.get("cut") or "cubic units of the CRS"
-    names = ("cut", "fill", "cut_area", "fill_area")
-    facts = Facts(file)
-    facts.add("Ground", mesh_counts(tin))
-    facts.add("Graded", mesh_counts(graded), tin=lambda: describe_tin(graded))
-    facts.tell((name.capitalize(), f"{table[name][0]:,.1f} {unit}") for name in names[:2])
-    facts.record(volume={name: float(table[name][0]) for name in names})
-    facts.note(notes)
-    return facts
