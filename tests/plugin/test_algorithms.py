@@ -31,6 +31,7 @@ from support.qgis_plugin import drive
 
 import tinsmith as ts
 from tinsmith.cli import main
+from tinsmith.cli.format_options import list_format_options
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -244,6 +245,7 @@ def wait(*_):
 
 pathlib.Path.replace = wait
 from tinsmith.cli import main
+from tinsmith.cli.format_options import list_format_options
 main()
 """
 """The command itself, which waits where it would put its file in the place of the old one."""
@@ -313,7 +315,8 @@ def compare_options(algorithms):
 
 def find_option(verb, flag):
     command = main.get_command(None, verb)
-    (found,) = [one for one in command.params if flag in one.opts]
+    of_formats = list_format_options(command.params, command.format_ways, [flag], lists=False)
+    (found,) = [one for one in (*command.params, *of_formats) if flag in one.opts]
     return found
 
 
