@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, Unpack
 
 import numpy as np
 
@@ -33,6 +33,17 @@ _NAMES = {"points": "Point", "lines": "LineString", "polygons": "Polygon"}
 _PARTS = {"points": "points", "lines": "lines", "polygons": "rings"}
 _LEAST = {"lines": 2, "polygons": 4}
 """Points of a line, and of a closed ring with its first point repeated."""
+
+
+class FeatureKeywords(TypedDict, total=False):
+    """The keywords of :meth:`Features.of_points` and its like: fields of Features."""
+
+    columns: Mapping[str, ArrayLike] | None
+    units: Units | None
+    crs: CrsLike | None
+    elevation_unit: UnitLike | None
+    name: str
+    notes: Sequence[str]
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -106,13 +117,7 @@ class Features(Frozen):
     def of_points(
         cls,
         coordinates: ArrayLike,
-        *,
-        columns: Mapping[str, ArrayLike] | None = None,
-        units: Units | None = None,
-        crs: CrsLike | None = None,
-        elevation_unit: UnitLike | None = None,
-        name: str = "",
-        notes: Sequence[str] = (),
+        **options: Unpack[FeatureKeywords],
     ) -> Features:
         """Return points as features.
 
@@ -139,9 +144,7 @@ class Features(Frozen):
         >>> ts.Features.of_points([[0, 0], [4, 3]], columns={"label": ["a", "b"]})
         <Features: 2 points, columns label, crs unknown>
         """
-        return _make(
-            cls, "points", coordinates, (), columns, units, crs, elevation_unit, name, notes
-        )
+        return cls._of("points", coordinates, (), options)
 
     @classmethod
     def of_lines(
@@ -149,13 +152,7 @@ class Features(Frozen):
         coordinates: ArrayLike,
         offsets: ArrayLike,
         feature_offsets: ArrayLike | None = None,
-        *,
-        columns: Mapping[str, ArrayLike] | None = None,
-        units: Units | None = None,
-        crs: CrsLike | None = None,
-        elevation_unit: UnitLike | None = None,
-        name: str = "",
-        notes: Sequence[str] = (),
+        **options: Unpack[FeatureKeywords],
     ) -> Features:
         """Return polylines as features.
 
@@ -181,10 +178,7 @@ class Features(Frozen):
         >>> ts.Features.of_lines([[0, 0], [1, 0], [1, 1], [2, 2]], [0, 2, 4], [0, 2])
         <Features: 1 feature of 2 lines, crs unknown>
         """
-        levels = _list_levels(offsets, feature_offsets)
-        return _make(
-            cls, "lines", coordinates, levels, columns, units, crs, elevation_unit, name, notes
-        )
+        return cls._of("lines", coordinates, (offsets, feature_offsets), options)
 
     @classmethod
     def of_polygons(
@@ -193,13 +187,7 @@ class Features(Frozen):
         ring_offsets: ArrayLike,
         polygon_offsets: ArrayLike,
         feature_offsets: ArrayLike | None = None,
-        *,
-        columns: Mapping[str, ArrayLike] | None = None,
-        units: Units | None = None,
-        crs: CrsLike | None = None,
-        elevation_unit: UnitLike | None = None,
-        name: str = "",
-        notes: Sequence[str] = (),
+        **options: Unpack[FeatureKeywords],
     ) -> Features:
         """Return polygons as features.
 
@@ -230,10 +218,17 @@ class Features(Frozen):
         >>> ts.Features.of_polygons(ring, [0, 4], [0, 1])
         <Features: 1 polygon, crs unknown>
         """
-        levels = _list_levels(ring_offsets, polygon_offsets, feature_offsets)
-        return _make(
-            cls, "polygons", coordinates, levels, columns, units, crs, elevation_unit, name, notes
+        return cls._of(
+            "polygons", coordinates, (ring_offsets, polygon_offsets, feature_offsets), options
         )
+
+    @classmethod
+    def _of(
+        cls, kind: Kind, coordinates: Any, offsets: tuple[Any, ...], options: FeatureKeywords
+    ) -> Features:
+        given: dict[str, Any] = {name: one for name, one in options.items() if one is not None}
+        levels = tuple(level for level in offsets if level is not None)
+        return cls(kind=kind, coordinates=coordinates, offsets=levels, **given)
 
     def with_notes(self, notes: Sequence[str]) -> Features:
         """Return the same with further notes in front of its own, each once.
@@ -347,27 +342,6 @@ class Features(Frozen):
 
         stream: object = build_table(self).__arrow_c_stream__(requested_schema)
         return stream
-
-
-def _list_levels(*offsets: ArrayLike | None) -> tuple[Any, ...]:
-    return tuple(level for level in offsets if level is not None)
-
-
-def _make(
-    cls: type[Features], kind: Kind, coordinates: Any, offsets: tuple[Any, ...], *rest: Any
-) -> Features:
-    columns, units, crs, elevation_unit, name, notes = rest
-    return cls(
-        kind=kind,
-        coordinates=coordinates,
-        offsets=offsets,
-        columns=columns or {},
-        units=units or {},
-        crs=crs,
-        elevation_unit=elevation_unit,
-        name=name,
-        notes=notes,
-    )
 
 
 # ------------------------------------------------------------------------ validation
