@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from ..base.progress import Progress
 from .building.assembly import assemble
 from .building.inputs import gather_inputs
+from .building.options import BuildOptions
 from .building.survey import Survey
 from .surface import TIN
 
@@ -144,13 +145,7 @@ def triangulate(
     <Lines: 1 hard, 0 soft, 0 boundary, 0 hole, 0 water; 2 vertices>
     """
     done = Progress(progress)
-    inputs = gather_inputs(
-        points,
-        breaklines=breaklines,
-        boundary=boundary,
-        holes=holes,
-        erase=erase,
-        water=water,
+    options = BuildOptions(
         max_edge=max_edge,
         trim=trim,
         crossing=crossing,
@@ -158,19 +153,24 @@ def triangulate(
         duplicates=duplicates,
         snap=snap,
         threads=threads,
+    )
+    inputs = gather_inputs(
+        points,
+        options,
+        breaklines=breaklines,
+        boundary=boundary,
+        holes=holes,
+        erase=erase,
+        water=water,
         crs=crs,
         z_unit=z_unit,
     )
-    built = assemble(inputs, done)
-    tin = TIN(
-        **built.surface._asdict(),
-        vertex_of=built.vertex_of,
-        report=built.report,
-        lines=built.lines,
+    tin = TIN._of(
+        assemble(inputs, done),
+        inputs,
         crs=inputs.crs,
         elevation_unit=inputs.elevation_unit,
-        row_attributes=points.attributes if isinstance(points, Survey) else None,
-        inputs=inputs,
+        row_attributes=points.attributes if isinstance(points, Survey) else {},
     )
     done.end()
     return tin

@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..base.methods import make_html_repr
+from ..base.lazy import make_html_repr
+from ..base.records import require, require_finite, require_indices, require_offsets
 from ..base.sentences import counted, height
 from ..base.types import Frozen, RowSources
 
 if TYPE_CHECKING:
     from ..base.arrays import Float64Array, Int8Array, Int32Array, Int64Array
+    from ..base.policies import DuplicatePolicy, SimplificationHold
 
 __all__ = [
     "LEFT_OUT",
@@ -266,7 +268,7 @@ class Simplification(NamedTuple):
     tolerance: float | None
     largest_error: float
     rms_error: float
-    hold: str | None = None
+    hold: SimplificationHold | None = None
     surface_error: float | None = None
     forced_edges: int = 0
 
@@ -396,7 +398,7 @@ class Report(Frozen):
     n_rows: int
     n_vertices: int
     n_triangles: int
-    duplicates: str = "mean"
+    duplicates: DuplicatePolicy = "mean"
     snap: float = 0.0
     merged_vertices: Int32Array = field(default_factory=_make_no_rows)
     merged_offsets: Int32Array = field(default_factory=lambda: np.zeros(1, np.int32))
@@ -418,6 +420,39 @@ class Report(Frozen):
     simplification: Simplification | None = None
     row_sources: RowSources | None = None
     source: str = ""
+
+    def _require_sound(self, n_rows: int, n_vertices: int, n_triangles: int) -> None:
+        """Refuse a stored report of other than so many rows, vertices and triangles."""
+        counts = (self.n_rows, self.n_vertices, self.n_triangles)
+        require(counts == (n_rows, n_vertices, n_triangles), "counts of the report")
+        require(self.snap >= 0, "snap")
+        groups, rows = len(self.merged_vertices), len(self.merged_rows)
+        require_indices(self.merged_vertices, n_vertices, "merged vertices", least=-1)
+        require_indices(self.merged_rows, n_rows, "merged rows")
+        require_offsets(self.merged_offsets, groups, rows, "merged rows")
+        for array, count in (
+            (self.merged_elevations, rows),
+            (self.merged_shifts, rows),
+            (self.vertex_elevations, groups),
+        ):
+            require_finite(array, (count,), "merged elevations")
+        require_indices(self.left_out_rows, n_rows, "rows left out")
+        require_indices(self.left_out_why, len(LEFT_OUT), "rows left out")
+        require(len(self.left_out_why) == len(self.left_out_rows), "rows left out")
+        for account, axes in ((self.crossings, (2,)), (self.overruled, ())):
+            require_indices(account.vertices, n_vertices, "crossings", least=-1)
+            shape = (len(account.vertices), *axes)
+            labels = len(self.line_labels)
+            require(account.lines.shape == shape, "crossings")
+            require_indices(account.lines.ravel(), labels, "crossings", least=-1)
+            require_finite(account.elevations, shape, "crossings")
+            require_finite(account.vertex_elevations, shape[:1], "crossings")
+        require_finite(self.crossings.xy, (len(self.crossings.vertices), 2), "crossings")
+        count = len(self.unmended.triangles)
+        require_indices(self.unmended.triangles, 2**31 - 1, "triangles that are not mended")
+        require_indices(self.unmended.why, len(UNMENDED_WHY), "triangles that are not mended")
+        require(len(self.unmended.why) == count, "triangles that are not mended")
+        require_finite(self.unmended.angles, (count,), "triangles that are not mended")
 
     def sentences(self) -> tuple[str, ...]:
         """Return what who uses the surface should know of its making.

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import Field, FrozenInstanceError, make_dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Never, Self, cast, overload
+from dataclasses import FrozenInstanceError, fields, replace
+from typing import TYPE_CHECKING, Any, Never, Self, cast, overload
 
 import numpy as np
 
 from ..base.crs import CRS, Unit, require_lengths, require_one_unit, scale_elevations, shorten_crs
 from ..base.errors import choice
-from ..base.methods import call_method, make_html_repr
+from ..base.lazy import call_method, make_html_repr
 from ..base.policies import Extrapolation, FeatureKind, InterpolationMethod
 from ..base.ranges import describe_span, require_degrees
 from ..base.sentences import counted
@@ -19,10 +19,10 @@ from .building.assembly import assemble
 from .building.attributes import Attributes, as_columns, as_row_attributes
 from .building.moving import move_inputs, move_points, require_move
 from .building.reference import require_crs
+from .building.version import Version
 from .constraints.breaklines import Lines
 from .editing.editable import Editable
 from .editing.origin import Origin
-from .editing.version import Version
 from .report import Report
 from .triangulation import Triangulation
 from .validation.points import as_pairs, as_places, as_points, as_xy
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ..base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
+    from ..base.arrays import AnyArray, BoolArray, Float64Array, Int32Array
     from ..base.crs import CrsLike, UnitLike
     from ..base.types import Bounds, PointsLike
     from .building.inputs import BuildInputs
@@ -43,19 +43,6 @@ if TYPE_CHECKING:
 
 
 __all__ = ["TIN", "Snapshot", "Surface"]
-
-_ARGUMENTS = (
-    "points",
-    "triangles",
-    "neighbors",
-    "constrained",
-    "vertex_of",
-    "report",
-    "lines",
-    "crs",
-    "elevation_unit",
-    "row_attributes",
-)
 
 
 class Surface:
@@ -160,7 +147,7 @@ class Surface:
         version = still._current
         if version.notes is None:
             inputs = still._gather_inputs()
-            is_trimmed = inputs is not None and bool(np.isfinite(inputs.max_edge))
+            is_trimmed = inputs is not None and inputs.is_trimmed
             with np.errstate(over="ignore", invalid="ignore"):  # of elevations beyond all real ones
                 found = call_method("Surface.findings", still, gaps=not is_trimmed)
             version.keep_notes(tuple(dict.fromkeys([*version.report.sentences(), *found])))
@@ -439,15 +426,6 @@ class Surface:
     def interpolate(
         self,
         xy: PointsLike,
-        y: InterpolationMethod = ...,
-        *,
-        extrapolate: Extrapolation | None = ...,
-        threads: int | None = ...,
-    ) -> Float64Array: ...
-    @overload
-    def interpolate(
-        self,
-        xy: PointsLike,
         y: ArrayLike | None = ...,
         *,
         method: InterpolationMethod = ...,
@@ -459,7 +437,7 @@ class Surface:
         xy: Any,
         y: Any = None,
         *,
-        method: InterpolationMethod | None = None,
+        method: InterpolationMethod = "linear",
         extrapolate: Extrapolation | None = None,
         threads: int | None = None,
     ) -> Any:
@@ -470,8 +448,7 @@ class Surface:
         xy : (k, 2) array, CRS units
             Or (2,), one place; with ``y`` eastings alone, a number or an array.
         y : float or array, optional
-            Northings, of the same shape, or that broadcasts with it. The word of a method
-            is taken for ``method``.
+            Northings, of the same shape, or that broadcasts with it.
         method : {"linear", "nearest", "laplace", "natural", "c1"}
             What lies between the vertices:
 
@@ -544,29 +521,21 @@ class Surface:
         >>> tin.interpolate(1, 1)
         1.75
         """
-        if method is None and np.asarray(y).dtype.kind == "U":  # one word, or a list of them
-            y, method = None, y
-        if y is not None:
-            return self._interpolate_pairs(xy, y, method, extrapolate, threads)
-        method = "linear" if method is None else method
         choice("method", method, InterpolationMethod)
         if extrapolate is not None:
             choice("extrapolate", extrapolate, Extrapolation)
-        require_crs(xy, self._crs, "points")
-        places, is_one = as_places(xy)
+        is_one, shape = False, None
+        if y is None:
+            require_crs(xy, self._crs, "points")
+            places, is_one = as_places(xy)
+        else:
+            places, shape = as_pairs(xy, y)
         elevations = self._current.interpolator.interpolate(
             places, method, extrapolate=extrapolate is not None, threads=threads
         )
+        if shape is not None:
+            return elevations.reshape(shape) if shape else float(elevations.reshape(()))
         return elevations.reshape(())[()] if is_one else elevations
-
-    def _interpolate_pairs(self, x: Any, y: Any, *options: Any) -> Any:
-        """Interpolate at eastings and northings given apart."""
-        method, extrapolate, threads = options
-        places, shape = as_pairs(x, y)
-        found = self.interpolate(
-            places, method=method, extrapolate=extrapolate, threads=threads
-        ).reshape(shape)
-        return found if shape else float(found)
 
     def closest_vertex(self, xy: ArrayLike) -> Int32Array:
         """Find the vertex nearest to each place, in the plane.
@@ -938,11 +907,6 @@ class TIN(Editable, Surface):
 
     __slots__ = ("__weakref__", "_crs", "_elevation_unit", "_name", "_row_attributes", "_source")
 
-    # ``dataclasses.replace(tin, crs=...)`` makes a TIN that differs in some arguments.
-    __dataclass_fields__: ClassVar[dict[str, Field[Any]]] = vars(
-        make_dataclass("Arguments", _ARGUMENTS, kw_only=True)
-    )["__dataclass_fields__"]
-
     def __init__(
         self,
         *,
@@ -956,27 +920,44 @@ class TIN(Editable, Surface):
         crs: CrsLike | None = None,
         elevation_unit: UnitLike | None = None,
         row_attributes: Mapping[str, ArrayLike] | None = None,
-        inputs: BuildInputs | None = None,
     ) -> None:
-        system = CRS.of(crs)
-        unit = require_one_unit(system, Unit.of(elevation_unit))
-        triangulation = Triangulation(
-            points=points, triangles=triangles, neighbors=neighbors, constrained=constrained
-        )
-        require_degrees(triangulation.points, system, "Points")
-        describe_span(triangulation.points, system, "Points")
         version = Version(
-            triangulation=triangulation,
+            triangulation=Triangulation(points, triangles, neighbors, constrained),
             vertex_of=vertex_of,
             report=report,
             lines=Lines() if lines is None else lines,
         )
+        self._begin(version, None, CRS.of(crs), Unit.of(elevation_unit), row_attributes or {})
+
+    @classmethod
+    def _of(
+        cls,
+        version: Version,
+        inputs: BuildInputs | None = None,
+        *,
+        crs: CRS | None,
+        elevation_unit: Unit | None,
+        row_attributes: Mapping[str, ArrayLike],
+    ) -> Self:
+        """Return the TIN of a version, and of what it was built from."""
+        made = cls.__new__(cls)
+        made._begin(version, inputs, crs, elevation_unit, row_attributes)
+        return made
+
+    def _begin(
+        self,
+        version: Version,
+        inputs: BuildInputs | None,
+        crs: CRS | None,
+        unit: Unit | None,
+        row_attributes: Mapping[str, ArrayLike],
+    ) -> None:
+        self._crs, self._elevation_unit = crs, require_one_unit(crs, unit)
+        require_degrees(version.triangulation.points, crs, "Points")
+        describe_span(version.triangulation.points, crs, "Points")
         super().__init__(version, inputs)
-        self._crs = system
-        self._elevation_unit = unit
-        self._row_attributes = as_row_attributes(row_attributes or {}, len(vertex_of))
-        self._source = ""
-        self._name = ""
+        self._row_attributes = as_row_attributes(row_attributes, len(version.vertex_of))
+        self._source = self._name = ""
 
     @classmethod
     def from_triangles(
@@ -1114,8 +1095,9 @@ class TIN(Editable, Surface):
 
     def _replace(self, changes: dict[str, Any]) -> TIN:
         version = self._current
-        given = {name: getattr(version.triangulation, name) for name in _ARGUMENTS[:4]}
-        given |= {name: getattr(version, name) for name in _ARGUMENTS[4:7]}
+        surface = version.triangulation
+        given = {one.name: getattr(surface, one.name) for one in fields(surface)}
+        given |= {"vertex_of": version.vertex_of, "report": version.report, "lines": version.lines}
         made = type(self)(**(given | self._reference | changes))
         made._source, made._name = self._source, self._name
         return made
@@ -1137,23 +1119,12 @@ class TIN(Editable, Surface):
         rows = self._list_rows()
         inputs = inputs.with_sources_of(rows)
         inputs = move_inputs(inputs, function, length=length, crs=system, elevation_unit=unit)
-        built = assemble(inputs)
-        return type(self)(
-            **built.surface._asdict(),
-            vertex_of=built.vertex_of,
-            report=built.report,
-            lines=built.lines,
-            crs=system,
-            elevation_unit=unit,
-            row_attributes=self._choose_attributes(rows),
-            inputs=inputs,
+        attributes = self._row_attributes
+        if rows is not None:  # those left after edits
+            attributes = dict(Attributes(attributes, lambda: rows))
+        return type(self)._of(
+            assemble(inputs), inputs, crs=system, elevation_unit=unit, row_attributes=attributes
         )
-
-    def _choose_attributes(self, rows: Int64Array | None) -> Mapping[str, AnyArray]:
-        """Return the attributes of some rows, None for all."""
-        if rows is None:
-            return self._row_attributes
-        return dict(Attributes(self._row_attributes, lambda: rows))
 
     def _keep_triangles(self, points: Float64Array, crs: CRS | None, unit: Unit | None) -> TIN:
         """Return the same triangles at other places, all turned round where the map is mirrored."""

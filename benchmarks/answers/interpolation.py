@@ -80,7 +80,7 @@ def _centers(grid: ts.Grid) -> Float64Array:
 def _ours(method: Any) -> Callable[[TIN], Answer]:
     def prepare(tin: TIN) -> Answer:
         fresh = ts.triangulate(tin.points)
-        return lambda xy: fresh.interpolate(xy, method, threads=1)
+        return lambda xy: fresh.interpolate(xy, method=method, threads=1)
 
     return prepare
 

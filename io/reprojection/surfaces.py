@@ -117,15 +117,9 @@ def _move_tin(tin: TIN, source: CRS, target: CRS, unit: Unit | None) -> TIN:
     moved = tin.transform(
         move, crs=target, z_unit=told.unit, length=find_conversion_factor(along, across)
     )
-    return _add_notes(moved, told.notes)
-
-
-def _add_notes(tin: TIN, notes: tuple[str, ...]) -> TIN:
-    """Add notes to the report, without making another TIN of one that has none to add."""
-    if not notes:
-        return tin
-    report = replace(tin.report, notes=[*tin.report.notes, *notes])
-    return tin.replace(report=report, inputs=tin._gather_inputs())
+    if not told.notes:
+        return moved
+    return moved._with_report(notes=(*moved.report.notes, *told.notes))
 
 
 def _move_survey(survey: Survey, source: CRS, target: CRS, unit: Unit | None) -> Survey:

@@ -6,8 +6,7 @@
 array([6.5])
 """
 
-from .base.lazy import lazy_names
-from .base.methods import register_methods
+from .base.lazy import lazy_names, register_methods
 
 # What tin cannot do itself, for it knows no pictures, features and files.
 register_methods(

@@ -125,7 +125,7 @@ class SurfaceBand:
         xy = np.empty((len(y), len(x), 2))
         xy[..., 0], xy[..., 1] = x, y[:, None]
         places = xy.reshape(-1, 2)
-        found = self._tin.interpolate(places, self._method, threads=self._threads)
+        found = self._tin.interpolate(places, method=self._method, threads=self._threads)
         return found.reshape(len(y), len(x))
 
 

@@ -79,7 +79,7 @@ def height_above(
     """
     require_tin(tin)
     points, notes = _place_points(cloud, tin)
-    ground = tin.interpolate(points[:, :2], method, extrapolate=extrapolate, threads=threads)
+    ground = tin.interpolate(points[:, :2], method=method, extrapolate=extrapolate, threads=threads)
     x, y, z = points.T
     vertical = dict.fromkeys(("elevation", "ground", "height_above_ground"), tin.elevation_unit)
     across = None if tin.crs is None else tin.crs.horizontal_unit

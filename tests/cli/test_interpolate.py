@@ -86,7 +86,7 @@ def test_method_extrapolation_name_and_json(tmp_path, surface):
     assert (facts["points"], facts["outside"], facts["method"]) == (3, 0, "natural")
     rows = json.loads((tmp_path / "out.json").read_text())["rows"]
     wanted = ts.read(surface).interpolate(
-        [[50.5, 40], [60, 70], [-5, 0]], "natural", extrapolate="nearest"
+        [[50.5, 40], [60, 70], [-5, 0]], method="natural", extrapolate="nearest"
     )
     np.testing.assert_array_equal([row["z"] for row in rows], wanted)
 

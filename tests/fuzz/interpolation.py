@@ -98,12 +98,12 @@ def require_bounds(tin: Any, xy: Float64Array) -> None:
     inside = tin.locate(xy) >= 0
     low, high = tin.points[:, 2].min(), tin.points[:, 2].max()
     for method in METHODS:
-        found = tin.interpolate(xy, method)
+        found = tin.interpolate(xy, method=method)
         assert (np.isnan(found) == ~inside).all(), f"{method}: {found}"
         if method != "c1":
             assert (found[inside] >= low).all(), method
             assert (found[inside] <= high).all(), method
-        again = tin.interpolate(xy, method, extrapolate="nearest", threads=2)
+        again = tin.interpolate(xy, method=method, extrapolate="nearest", threads=2)
         assert np.isfinite(again).all(), f"{method} outside: {again}"
         assert (again[inside] == found[inside]).all(), f"{method} with threads"
 
@@ -112,7 +112,7 @@ def require_vertices(tin: Any) -> None:
     """Vertices of triangles keep their elevations."""
     used = np.unique(tin.triangles)
     for method in METHODS:
-        found = tin.interpolate(tin.points[used, :2], method)
+        found = tin.interpolate(tin.points[used, :2], method=method)
         assert (found == tin.points[used, 2]).all(), method
 
 
@@ -147,7 +147,7 @@ def require_line(tin: Any) -> None:
     on_line = ~np.isnan(wanted)
     spread = np.ptp(tin.points[:, 2])
     for method in ("laplace", "natural", "c1"):
-        found = tin.interpolate(np.ascontiguousarray(middle[on_line][:, :2]), method)
+        found = tin.interpolate(np.ascontiguousarray(middle[on_line][:, :2]), method=method)
         off = np.abs(found - wanted[on_line])
         assert (off <= _ROUNDING * spread).all(), f"{method} on a line: {off}"
 
@@ -181,7 +181,7 @@ def require_definition(tin: Any, place: list[float]) -> None:
     z = [Fraction(float(value)) for value in tin.points[:, 2]]
     for method, weigh in (("natural", sibson_weights), ("laplace", laplace_weights)):
         wanted = sum(w * v for w, v in zip(weigh(sites, oracles.place(place)), z, strict=True))
-        found = float(tin.interpolate([place], method)[0])
+        found = float(tin.interpolate([place], method=method)[0])
         off = abs(found - float(wanted))
         assert off <= _ROUNDING * float(max(z) - min(z)), f"{method} at {place}: {off}"
 

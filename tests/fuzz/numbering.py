@@ -82,11 +82,11 @@ def require_outside(tin: Any, other: Any, places: Float64Array) -> None:
     """The westernmost of the nearest places, of several of these the southernmost."""
     for method in ("linear", "nearest"):
         found, again = (
-            one.interpolate(places, method, extrapolate="nearest") for one in (tin, other)
+            one.interpolate(places, method=method, extrapolate="nearest") for one in (tin, other)
         )
         assert np.allclose(found, again, rtol=0, atol=1e-9), f"{method} by another numbering"
     inside = tin.locate(places) >= 0
-    nearest = tin.interpolate(places, "nearest", extrapolate="nearest")
+    nearest = tin.interpolate(places, method="nearest", extrapolate="nearest")
     linear = tin.interpolate(places, extrapolate="nearest")
     rows = [tuple(map(Fraction, row)) for row in tin.points.tolist()]
     for place, is_inside, z, z_nearest in zip(

@@ -144,7 +144,7 @@ def require_centers(tin: Any, raster: Any, case: Case) -> None:
     if case["value"] == "elevation":
         method = case["method"]
         again = ts.rasterize(tin, grid=raster.grid, method=method, threads=case["threads"])
-        wanted = tin.interpolate(places, method)
+        wanted = tin.interpolate(places, method=method)
         assert np.array_equal(again.bands["elevation"].ravel(), wanted, equal_nan=True), method
         return
     name = case["value"]

@@ -71,7 +71,7 @@ def test_values_follow_their_rows_through_edits(seed):
         require_columns(other)
         other.insert([[50.5, 50.25, 9.0]])
         require_columns(other)
-    require_columns(dataclasses.replace(tin, crs=None))
+    require_columns(tin.replace(crs=None))
     moved = tin.transform(lambda points: points + SITE, crs="EPSG:32616")
     require_columns(moved)
     assert sorted(moved.attributes["code"]) == sorted(tin.attributes["code"])

@@ -91,7 +91,7 @@ def test_one_place_gives_a_number_and_two_arrays_their_shape():
     x, y = np.random.default_rng(1).random((2, 4, 5)) * 10
     places = np.stack([x, y], axis=-1)
     for method in ("linear", "natural", "nearest"):
-        wanted = tin.interpolate(places.reshape(-1, 2), method).reshape(4, 5)
+        wanted = tin.interpolate(places.reshape(-1, 2), method=method).reshape(4, 5)
         np.testing.assert_array_equal(tin.interpolate(x, y, method=method), wanted)
     one = tin.interpolate(5.0, 5.0)
     assert type(one) is float

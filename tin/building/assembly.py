@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -10,40 +11,27 @@ from ...base.progress import Progress
 from ...base.sentences import counted
 from .. import _kernel
 from ..constraints.breaklines import Lines
-from ..constraints.clipping import BOUNDARY, EXTENT, HOLES, Surface, in_rings
+from ..constraints.clipping import BOUNDARY, EXTENT, HOLES, in_rings
 from ..constraints.constraint_set import LineSet
 from ..constraints.draping import drape
 from ..constraints.pslg import Clip, Pslg, find_lines_in
 from ..report import LEFT_OUT, Crossings, Overruled, Report
 from ..topology import find_offsets
+from ..triangulation import Triangulation
 from ..validation.points import require_three
 from .constrained import ConstrainedTriangulation, triangulate_constrained
 from .duplicates import merge_rows
+from .version import LineVertices, Version
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
     from ...base.progress import Tell
     from .inputs import BuildInputs
 
-__all__ = ["Built", "assemble"]
+__all__ = ["assemble"]
 
 
-class Built(NamedTuple):
-    """What a build gives; ``vertex_of`` has the vertex of each row, -1 for none.
-
-    ``line_xy`` has the vertices of the lines as they were merged with the rows, (k, 2), draped ones
-    laid on the surface; ``line_vertices`` the vertex of each, -1 for none.
-    """
-
-    surface: Surface
-    vertex_of: Int32Array
-    lines: Lines
-    report: Report
-    line_xy: Float64Array
-    line_vertices: Int32Array
-
-
-def assemble(inputs: BuildInputs, progress: Progress | None = None) -> Built:
+def assemble(inputs: BuildInputs, progress: Progress | None = None) -> Version:
     """Build all that a TIN holds, and tell how far it is."""
     progress = progress or Progress(None)
     return _assemble_plain(inputs, progress) if inputs.is_plain else _with_lines(inputs, progress)
@@ -52,25 +40,23 @@ def assemble(inputs: BuildInputs, progress: Progress | None = None) -> Built:
 # ------------------------------------------------------------------ points alone
 
 
-def _assemble_plain(inputs: BuildInputs, progress: Progress) -> Built:
+def _assemble_plain(inputs: BuildInputs, progress: Progress) -> Version:
     xyz, options = inputs.points, inputs.options
     require_three(len(xyz))  # edits may have removed the others
     kept_row = _kernel.snap(xyz, options.snap) if options.snap > 0 else None
     growth = _kernel.grow(
         xyz if kept_row is None else _choose_kept(xyz, kept_row),
-        threads=options.threads,
+        threads=inputs.threads,
         progress=progress.stage(0.1, 0.9),
     )
     progress(0.9)
     merged = merge_rows(xyz, growth.kept_row if kept_row is None else kept_row, options.duplicates)
     fixed = np.zeros(growth.triangles.shape, np.bool_)
-    return Built(
-        Surface(merged.points, growth.triangles, growth.neighbors, fixed),
-        merged.vertex_of,
-        Lines(),
-        _report(inputs, len(merged.points), len(growth.triangles), merged.account),
-        np.empty((0, 2)),
-        np.empty(0, np.int32),
+    return Version(
+        triangulation=Triangulation(merged.points, growth.triangles, growth.neighbors, fixed),
+        vertex_of=merged.vertex_of,
+        lines=Lines(),
+        report=_report(inputs, len(merged.points), len(growth.triangles), merged.account),
     )
 
 
@@ -113,7 +99,7 @@ class _Ground(NamedTuple):
         )
 
 
-def _with_lines(inputs: BuildInputs, progress: Progress) -> Built:
+def _with_lines(inputs: BuildInputs, progress: Progress) -> Version:
     is_erased = _find_erased(inputs)
     rows = np.flatnonzero(~is_erased)
     ground = _drape_lines(rows, inputs, progress.stage(0.1, 0.4))
@@ -128,13 +114,16 @@ def _with_lines(inputs: BuildInputs, progress: Progress) -> Built:
     vertex_of = _renumber(pslg.vertex_of, number_of)
     account = _gather_account(inputs, made, number_of, is_erased, vertex_of, ground)
     is_whole = surface is made.surface
-    return Built(
-        surface,
-        vertex_of,
-        find_lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=is_whole),
-        _report(inputs, len(surface.points), len(surface.triangles), account),
-        ground.lines.xy,
-        _renumber(made.line_vertices, number_of),
+    lines = find_lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=is_whole)
+    is_snapped = inputs.options.snap > 0
+    return Version(
+        triangulation=surface,
+        vertex_of=vertex_of,
+        lines=lines,
+        report=_report(inputs, len(surface.points), len(surface.triangles), account),
+        snapped=LineVertices(ground.lines.xy, _renumber(made.line_vertices, number_of))
+        if is_snapped
+        else None,
     )
 
 
@@ -145,12 +134,7 @@ def _triangulate_with_lines(
     progress: Tell | None = None,
 ) -> tuple[ConstrainedTriangulation, Pslg]:
     made = triangulate_constrained(
-        inputs.points,
-        rows,
-        ground.lines,
-        inputs.options,
-        conforming=inputs.conforming,
-        progress=progress,
+        inputs.points, rows, ground.lines, inputs.options, progress=progress
     )
     return made, _gather_pslg(inputs, ground, made, rows)
 
@@ -171,8 +155,8 @@ def _gather_pslg(
             extent=inputs.extent,
             holes=inputs.holes,
             has_own_boundary=ground.has_own_boundary or inputs.has_own_boundary,
-            max_edge=inputs.max_edge,
-            is_trimmed_everywhere=inputs.trim == "everywhere",
+            max_edge=inputs.options.max_edge,
+            is_trimmed_everywhere=inputs.options.trim == "everywhere",
         ),
         vertex_of=vertex_of,
     )
@@ -218,9 +202,13 @@ def _drape_lines(rows: Int64Array, inputs: BuildInputs, progress: Tell | None) -
     if not is_draped.any():
         return _Ground(lines, False, [])
     base = triangulate_constrained(
-        inputs.points, rows, lines.choose(~is_draped), inputs.options, progress=progress
+        inputs.points,
+        rows,
+        lines.choose(~is_draped),
+        replace(inputs.options, conforming=False),
+        progress=progress,
     )
-    laid = drape(base.surface, lines.choose(is_draped), threads=inputs.options.threads)
+    laid = drape(base.surface, lines.choose(is_draped), threads=inputs.threads)
     notes = []
     if laid.n_cut:
         notes.append(

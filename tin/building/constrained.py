@@ -10,33 +10,26 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...base.policies import CrossingPolicy, DuplicatePolicy
 from .. import _kernel
-from ..constraints.clipping import Surface
 from ..constraints.conforming import conform
 from ..constraints.constraint_set import ABOVE_ALL, BELOW_ALL, LineSet
 from ..constraints.noding import Noded, accept_noded, node
 from ..constraints.polylines import Polylines
 from ..constraints.pslg import build_mesh, build_mesh_of_growth, force
 from ..report import Overruled
+from ..triangulation import Triangulation
 from ..validation.points import require_three
+from ..validation.threads import thread_count
 from .duplicates import merge_rows
 from .water import leave_out_water
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array, Int64Array
+    from ...base.policies import DuplicatePolicy
     from ...base.progress import Tell
+    from .options import BuildOptions
 
-__all__ = ["ConstrainedTriangulation", "CrossingPolicy", "LineOptions", "triangulate_constrained"]
-
-
-class LineOptions(NamedTuple):
-    """How rows are merged and lines cut."""
-
-    threads: int
-    duplicates: DuplicatePolicy = "mean"
-    snap: float = 0.0
-    crossing: CrossingPolicy = "split"
+__all__ = ["ConstrainedTriangulation", "triangulate_constrained"]
 
 
 class ConstrainedTriangulation(NamedTuple):
@@ -44,7 +37,7 @@ class ConstrainedTriangulation(NamedTuple):
 
     Attributes
     ----------
-    surface : Surface
+    surface : Triangulation
     vertex_of : (n,) int32 array
         The vertex of each row of points, -1 for rows in water.
     line_vertices : (k,) int32 array
@@ -61,7 +54,7 @@ class ConstrainedTriangulation(NamedTuple):
         The vertex of the surface for each vertex before water took its share, -1 for none.
     """
 
-    surface: Surface
+    surface: Triangulation
     vertex_of: Int32Array
     line_vertices: Int32Array
     polylines: Polylines
@@ -84,9 +77,8 @@ def triangulate_constrained(
     points: Float64Array,
     rows: Int64Array,
     lines: LineSet,
-    options: LineOptions,
+    options: BuildOptions,
     *,
-    conforming: bool = False,
     progress: Tell | None = None,
 ) -> ConstrainedTriangulation:
     """Triangulate rows of points, and lines; all lines have elevations.
@@ -103,14 +95,23 @@ def triangulate_constrained(
     LinesError
         If lines cross that must not.
     """
-    xyz = points[rows]
-    merged = _merge(xyz, rows, lines, options, progress)
+    xyz, threads = points[rows], thread_count(options.threads, len(points))
+    merged = _merge(xyz, rows, lines, options, threads, progress)
     mesh = build_mesh_of_growth(merged.points, merged.growth)
     noded = accept_noded(merged.polylines, lines.elevations)
     is_simple = options.snap == 0.0 and not (lines.priorities == ABOVE_ALL).any()
     is_forced = is_simple and _is_forced(mesh, noded.polylines)
     if not is_forced:
-        noded = _node(merged, lines, options)
+        noded = node(
+            np.ascontiguousarray(merged.points[:, :2]),
+            merged.polylines,
+            lines.elevations,
+            lines.priorities,
+            snap=options.snap,
+            crossing=options.crossing,
+            threads=threads,
+            names=lines.labels(),
+        )
         if is_simple:  # edges were fixed in vain
             mesh = build_mesh_of_growth(merged.points, merged.growth)
         if len(noded.new_points):
@@ -118,22 +119,21 @@ def triangulate_constrained(
     points = np.concatenate([merged.points, noded.new_points])
     overruled = _add_touches(points, noded, merged.overruled)
     polylines, wet, overruled = leave_out_water(
-        points, noded.polylines, lines, overruled, threads=options.threads
+        points, noded.polylines, lines, overruled, threads=threads
     )
     if not is_forced:
         mesh.remove(np.flatnonzero(wet).astype(np.int32))
         force(mesh, polylines)
     number_of = np.where(wet, -1, np.cumsum(~wet) - 1).astype(np.int32)
     points, polylines = points[~wet], polylines.renumber(number_of)
-    if conforming:
+    if options.conforming:
         if wet.any():  # numbers without gaps
-            mesh = build_mesh(points, polylines, threads=options.threads)
+            mesh = build_mesh(points, polylines, threads=threads)
         mesh, points, polylines = conform(
-            mesh, points, polylines, lines.priorities, threads=options.threads
+            mesh, points, polylines, lines.priorities, threads=threads
         )
-    triangles, neighbors, constrained = mesh.arrays(options.threads)
     return ConstrainedTriangulation(
-        Surface(points, triangles, neighbors, constrained),
+        Triangulation(points, *mesh.arrays(threads)),
         number_of[merged.vertex_of[: len(xyz)]],
         number_of[merged.vertex_of[len(xyz) :]],
         polylines,
@@ -150,19 +150,6 @@ def _is_forced(mesh: _kernel.Mesh, polylines: Polylines) -> bool:
     return not (len(passed) or len(blocked))
 
 
-def _node(merged: _Merged, lines: LineSet, options: LineOptions) -> Noded:
-    return node(
-        np.ascontiguousarray(merged.points[:, :2]),
-        merged.polylines,
-        lines.elevations,
-        lines.priorities,
-        snap=options.snap,
-        crossing=options.crossing,
-        threads=options.threads,
-        names=lines.labels(),
-    )
-
-
 # ------------------------------------------------------------------------- rows
 
 
@@ -170,7 +157,8 @@ def _merge(
     xyz: Float64Array,
     rows_of: Int64Array,
     lines: LineSet,
-    options: LineOptions,
+    options: BuildOptions,
+    threads: int,
     progress: Tell | None,
 ) -> _Merged:
     """Make one vertex of all rows at one place; a line's elevation counts more than a point's."""
@@ -180,7 +168,7 @@ def _merge(
     place = _kernel.snap(rows, options.snap) if options.snap > 0 else None
     own = np.arange(len(rows), dtype=np.int32)
     kept = rows if place is None else rows[place == own]
-    growth = _kernel.grow(kept, threads=options.threads, progress=progress)
+    growth = _kernel.grow(kept, threads=threads, progress=progress)
     place = growth.kept_row if place is None else place
     place = own if place is None else place
     is_kept = place == own

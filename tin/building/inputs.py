@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.checks import as_flag, require_distance, require_positive
 from ...base.crs import CRS, Unit, require_one_unit, require_same_unit
-from ...base.errors import CrsError, LinesError, choice
-from ...base.policies import CrossingPolicy, DuplicatePolicy, TrimPolicy
+from ...base.errors import CrsError, LinesError
 from ...base.ranges import describe_span, require_degrees
+from ...base.records import require, require_finite
 from ...base.sentences import coordinate, counted, height
 from .. import _kernel
 from ..constraints.constraint_set import (
@@ -28,7 +27,6 @@ from ..constraints.constraint_set import (
 from ..constraints.polygons import starts_with_elevations
 from ..validation.points import as_masked_points, require_three
 from ..validation.threads import thread_count
-from .constrained import LineOptions
 from .reference import adds_to, settle_crs
 from .survey import Survey
 
@@ -39,8 +37,9 @@ if TYPE_CHECKING:
     from ...base.crs import CrsLike, UnitLike
     from ...base.types import GeometriesLike, PointsLike, RowSources
     from ..constraints.breaklines import Breakline, Water
+    from .options import BuildOptions
 
-__all__ = ["BuildInputs", "TrimPolicy", "gather_inputs"]
+__all__ = ["BuildInputs", "gather_inputs"]
 
 _NAMES = ("points", "breaklines", "boundary", "holes", "erase", "water")
 
@@ -59,8 +58,7 @@ class BuildInputs:
         Rings, the first corner not repeated.
     holes, erase : list of lists of (k, 2) float64 arrays
         The rings of each region: the outer one, then its islands.
-    max_edge : float
-        Infinity for none.
+    options : BuildOptions
     has_own_boundary : bool
         Whether some of the lines are edges of the boundary of existing triangles.
     source : str
@@ -74,10 +72,7 @@ class BuildInputs:
     extent: list[Float64Array]
     holes: list[list[Float64Array]]
     erase: list[list[Float64Array]]
-    max_edge: float
-    trim: TrimPolicy
-    conforming: bool
-    options: LineOptions
+    options: BuildOptions
     crs: CRS | None
     elevation_unit: Unit | None = None
     has_own_boundary: bool = False
@@ -87,17 +82,43 @@ class BuildInputs:
     notes: Sequence[str] = ()
     source: str = ""
 
+    def _require_sound(self, n_rows: int) -> None:
+        """Refuse stored inputs of other than so many rows, whose points are still missing."""
+        self.lines._require_sound()
+        if self.is_masked is not None:
+            require(self.is_masked.shape == (n_rows,), "masked rows")
+        for rings in (self.boundary, self.extent, *self.holes, *self.erase):
+            for ring in rings:
+                require(ring.ndim == 2 and ring.shape[1] in (2, 3) and len(ring) >= 3, "a ring")
+                require_finite(ring, ring.shape, "a ring")
+        if self.has_own_boundary:
+            return  # of existing triangles, whose rings are those of the surface
+        n_holes = sum(map(len, self.holes))
+        count = {"boundary": len(self.boundary) + len(self.extent), "hole": n_holes}
+        for kind, source in zip(self.lines.kinds, self.lines.sources.tolist(), strict=True):
+            require(source < count.get(kind, source + 1), "rings of lines")
+
     @property
     def is_plain(self) -> bool:
         """Whether there are only points, all of which count, and all of the hull is the surface."""
-        is_whole = not (self.lines.kinds or self.erase or np.isfinite(self.max_edge))
+        is_whole = not (self.lines.kinds or self.erase or self.is_trimmed)
         return is_whole and self.is_masked is None
 
     @property
     def is_clipped(self) -> bool:
         """Whether only a part of the hull may be the surface."""
         has_rings = bool(self.boundary or self.extent or self.holes or self.has_own_boundary)
-        return has_rings or bool(np.isfinite(self.max_edge))
+        return has_rings or self.is_trimmed
+
+    @property
+    def is_trimmed(self) -> bool:
+        """Whether triangles at long edges are dropped."""
+        return self.options.max_edge is not None
+
+    @property
+    def threads(self) -> int:
+        """How many threads build it."""
+        return thread_count(self.options.threads, len(self.points))
 
     def with_sources_of(self, rows: Int64Array | None) -> BuildInputs:
         """Return the same inputs, whose rows are these of all rows ever given; None for all."""
@@ -149,19 +170,13 @@ def _make_empty_survey() -> Survey:
 
 def gather_inputs(
     points: Survey | PointsLike,
+    options: BuildOptions,
     *,
     breaklines: Sequence[Breakline | ArrayLike] | GeometriesLike,
     boundary: Sequence[Any] | GeometriesLike,
     holes: Sequence[Any] | GeometriesLike,
     erase: Sequence[Any] | GeometriesLike,
     water: Sequence[Water] | GeometriesLike,
-    max_edge: float | None,
-    trim: TrimPolicy,
-    crossing: CrossingPolicy,
-    conforming: bool,
-    duplicates: DuplicatePolicy,
-    snap: float,
-    threads: int | None,
     crs: CrsLike | None,
     z_unit: UnitLike | None,
 ) -> BuildInputs:
@@ -172,13 +187,12 @@ def gather_inputs(
     PointsError, LinesError, CrsError, OptionError
         As :func:`tinsmith.triangulate`.
     """
-    _require_options(duplicates, snap, trim, crossing, max_edge)
     own = points if isinstance(points, Survey) else _make_empty_survey()
     system, unit = _settle_reference(own, CRS.of(crs), Unit.of(z_unit))
     given = zip(_NAMES, (points, breaklines, boundary, holes, erase, water), strict=True)
     system, told = settle_crs(system, dict(given))
     rows = points.points if isinstance(points, Survey) else points
-    xyz, is_masked = as_masked_points(rows, threads=threads)
+    xyz, is_masked = as_masked_points(rows, threads=options.threads)
     told += _look_at_degrees(xyz, is_masked, system)
     outer = [*own.boundary, *as_sequence(boundary, "boundary")]
     inner = [*own.holes, *as_sequence(holes, "holes")]
@@ -200,10 +214,7 @@ def gather_inputs(
         extent=gather_rings(own.extent, "extent"),
         holes=gather_regions(inner, "hole"),
         erase=gather_regions([*own.erase, *as_sequence(erase, "erase")], "erase"),
-        max_edge=np.inf if max_edge is None else float(max_edge),
-        trim=trim,
-        conforming=as_flag("conforming", conforming),
-        options=LineOptions(thread_count(threads, len(xyz)), duplicates, float(snap), crossing),
+        options=options,
         crs=system,
         elevation_unit=require_one_unit(system, unit),
         from_raster=own.from_raster,
@@ -248,19 +259,6 @@ def _settle_reference(
         require_same_unit(own.elevation_unit, unit, "that of the survey")
     system = own.crs if crs is None else crs
     return system, require_one_unit(system, unit or own.elevation_unit)
-
-
-def _require_options(
-    duplicates: str, snap: float, trim: str, crossing: str, max_edge: float | None
-) -> None:
-    for name, value, kind in (
-        ("duplicates", duplicates, DuplicatePolicy),
-        ("trim", trim, TrimPolicy),
-        ("crossing", crossing, CrossingPolicy),
-    ):
-        choice(name, value, kind)
-    require_distance("snap", snap)
-    require_positive("max_edge", max_edge)
 
 
 def _require_simple_rings(lines: LineSet) -> None:

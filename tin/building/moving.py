@@ -55,8 +55,7 @@ def move_inputs(
         inputs,
         points=_move_places(inputs.points, move),
         erase=[[_move_ring(ring, move) for ring in region] for region in inputs.erase],
-        max_edge=inputs.max_edge * length,
-        options=inputs.options._replace(snap=inputs.options.snap * length),
+        options=inputs.options.scale(length),
         crs=crs,
         elevation_unit=elevation_unit,
     )

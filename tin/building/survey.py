@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.crs import CRS, Unit, require_one_unit, shorten_crs
 from ...base.errors import OptionError
-from ...base.methods import make_html_repr
+from ...base.lazy import make_html_repr
 from ...base.ranges import require_degrees
 from ...base.sentences import counted
 from ...base.types import Bounds, Finding, RowSources

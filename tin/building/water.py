@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .. import _kernel
-from ..constraints.clipping import Surface
 from ..constraints.constraint_set import ABOVE_ALL, LineSet
 from ..constraints.polylines import Polylines
 from ..constraints.pslg import build_mesh
@@ -16,6 +14,7 @@ from ..constraints.ring_cover import find_crossings, gather_odd, walk_regions
 from ..predicates import orientation
 from ..report import Overruled
 from ..topology import edge_keys
+from ..triangulation import Triangulation
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -122,7 +121,7 @@ class _Cover:
         edges = own[self._is_own]
         lines = Polylines.whole(edges.ravel(), np.arange(0, edges.size + 1, 2))
         mesh = build_mesh(points[self._used], lines, threads=threads)
-        self._surface = Surface(points[self._used], *mesh.arrays(threads))
+        self._surface = Triangulation(points[self._used], *mesh.arrays(threads))
         self._keys = edge_keys(own, len(self._used))
         self._shores = np.unique(np.stack([self._keys[along], waters], axis=1), axis=0)
         self._divide(gather_odd(self._keys[along], waters))
@@ -134,7 +133,7 @@ class _Cover:
         corners = surface.triangles[:, [1, 2, 2, 0, 0, 1]].reshape(-1, 2)
         keys = edge_keys(corners, len(self._used))
         is_barrier = np.isin(keys, np.fromiter(toggles, np.int64, len(toggles)))
-        self._region = _kernel.regions(*surface[:3], is_barrier.reshape(-1, 3))[0]
+        self._region = surface.find_regions(is_barrier.reshape(-1, 3))[0]
         here, across = np.repeat(self._region, 3), surface.neighbors.ravel()
         there = np.where(across < 0, _OUTSIDE, self._region[across])
         is_hull, is_left = across < 0, is_barrier & (across >= 0)
@@ -160,7 +159,7 @@ class _Cover:
         near = ((xy >= shores.min(axis=0)) & (xy <= shores.max(axis=0))).all(axis=1)
         near[self._used] = False
         places = np.full(len(points), _OUTSIDE, np.int32)
-        locator = _kernel.Locator(*self._surface[:3])
+        locator = self._surface.locator
         triangle = locator.locate(np.ascontiguousarray(xy[near]))
         places[near] = np.where(triangle < 0, _OUTSIDE, self._region[triangle])
         places[self._used] = self._around

@@ -11,6 +11,7 @@ import numpy as np
 from ...base.checks import is_finite_number, is_whole_number
 from ...base.errors import LinesError, OptionError, PointsError, choice
 from ...base.policies import BreaklineKind, LineKind
+from ...base.records import require, require_indices, require_offsets
 from ...base.sentences import counted, height, inflect, shown
 from ...base.types import Frozen
 from ..validation.geometries import find_geometries
@@ -174,6 +175,13 @@ class Lines(Frozen):
 
     def __len__(self) -> int:
         return len(self.kinds)
+
+    def _require_sound(self, n_vertices: int) -> None:
+        """Refuse stored lines whose chains are not of so many vertices."""
+        require_indices(self.vertices, n_vertices, "vertices of lines")
+        require_offsets(self.offsets, len(self), len(self.vertices), "lines")
+        require_indices(self.sources, 2**31, "sources of lines", least=-1)
+        require(len(self.sources) == len(self.names) == len(self), "sources of lines")
 
     def chains(self) -> Iterator[Int32Array]:
         """Walk the chains, as vertex numbers.

@@ -10,6 +10,7 @@ import numpy as np
 from ...base.errors import LinesError
 from .. import _kernel, topology
 from ..topology import edge_keys, find_offsets
+from ..triangulation import Triangulation
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
@@ -20,21 +21,11 @@ __all__ = [
     "HOLES",
     "OWN_BOUNDARY",
     "RingSegments",
-    "Surface",
     "clip",
     "in_rings",
     "is_inside",
     "trim",
 ]
-
-
-class Surface(NamedTuple):
-    """Triangles over vertices, as in a TIN."""
-
-    points: Float64Array
-    triangles: Int32Array
-    neighbors: Int32Array
-    constrained: BoolArray
 
 
 def in_rings(xy: Float64Array, rings: Sequence[Float64Array]) -> Int8Array:
@@ -65,7 +56,7 @@ class RingSegments(NamedTuple):
 
 
 def is_inside(
-    surface: Surface,
+    surface: Triangulation,
     segments: RingSegments,
     boundary: Sequence[Float64Array],
     extent: Sequence[Float64Array],
@@ -115,7 +106,7 @@ class _HalfEdges(NamedTuple):
     is_behind_own_boundary: BoolArray
 
 
-def _gather_half_edges(surface: Surface, segments: RingSegments) -> _HalfEdges:
+def _gather_half_edges(surface: Triangulation, segments: RingSegments) -> _HalfEdges:
     n = len(surface.points)
     triangle, corner = np.nonzero(surface.constrained)
     start, end = topology.ends(surface.triangles, triangle, corner)
@@ -128,11 +119,10 @@ def _gather_half_edges(surface: Surface, segments: RingSegments) -> _HalfEdges:
     return _HalfEdges(triangle, corner, key, is_behind)
 
 
-def _find_regions(surface: Surface, half: _HalfEdges) -> tuple[Int32Array, Int32Array]:
+def _find_regions(surface: Triangulation, half: _HalfEdges) -> tuple[Int32Array, Int32Array]:
     barrier = np.zeros(surface.constrained.shape, np.bool_)
     barrier[half.triangle, half.corner] = True
-    points = np.ascontiguousarray(surface.points)
-    return _kernel.regions(points, surface.triangles, surface.neighbors, barrier)
+    return surface.find_regions(barrier)
 
 
 def _find_toggles(segments: RingSegments, n_vertices: int) -> dict[int, int]:
@@ -172,7 +162,7 @@ class _Sides:
 
 
 def _spread_bits(
-    surface: Surface,
+    surface: Triangulation,
     region: Int32Array,
     half: _HalfEdges,
     toggles: dict[int, int],
@@ -199,7 +189,7 @@ def _spread_bits(
 
 
 def _find_regions_beside(
-    surface: Surface, region: Int32Array, half: _HalfEdges
+    surface: Triangulation, region: Int32Array, half: _HalfEdges
 ) -> dict[int, list[tuple[int, int]]]:
     """Return for each region those across a ring, with an edge between them."""
     across = surface.neighbors[half.triangle, half.corner]
@@ -214,7 +204,7 @@ def _find_regions_beside(
     return found
 
 
-def _sort_by_size(surface: Surface, largest: Int32Array) -> list[int]:
+def _sort_by_size(surface: Triangulation, largest: Int32Array) -> list[int]:
     a, b, c = (surface.points[surface.triangles[largest, k], :2] for k in range(3))
     (x, y), (u, v) = (b - a).T, (c - a).T
     order: list[int] = np.argsort(-(x * v - y * u), kind="stable").tolist()
@@ -234,13 +224,15 @@ def _require_all_cut(bits: list[int], is_out: BoolArray, side: _Sides) -> None:
             )
 
 
-def _find_middles(surface: Surface, triangles: Int32Array) -> Float64Array:
+def _find_middles(surface: Triangulation, triangles: Int32Array) -> Float64Array:
     a, b, c = (surface.points[surface.triangles[triangles, k], :2] for k in range(3))
     center: Float64Array = a + ((b - a) + (c - a)) / 3.0
     return center
 
 
-def trim(surface: Surface, keep: BoolArray, max_edge: float, *, everywhere: bool) -> BoolArray:
+def trim(
+    surface: Triangulation, keep: BoolArray, max_edge: float, *, everywhere: bool
+) -> BoolArray:
     """Drop triangles at edges longer than ``max_edge`` that are no lines.
 
     From the boundary only the triangles go that lie at a long outer edge, as long as there are
@@ -267,14 +259,14 @@ def trim(surface: Surface, keep: BoolArray, max_edge: float, *, everywhere: bool
     return keep
 
 
-def _find_outer_edges(surface: Surface, chosen: Any, keep: BoolArray) -> BoolArray:
+def _find_outer_edges(surface: Triangulation, chosen: Any, keep: BoolArray) -> BoolArray:
     """Tell which edges of some triangles have no kept triangle beyond them."""
     beside = surface.neighbors[chosen]
     is_outer: BoolArray = (beside == topology.NO_NEIGHBOR) | ~keep[beside]
     return is_outer
 
 
-def _find_long_edges(surface: Surface, chosen: Any, max_edge: float) -> BoolArray:
+def _find_long_edges(surface: Triangulation, chosen: Any, max_edge: float) -> BoolArray:
     """Tell which edges of some triangles are longer, and no lines."""
     a, b, c = (surface.points[surface.triangles[chosen, k], :2] for k in range(3))
     sides = np.stack([np.hypot(*(c - b).T), np.hypot(*(a - c).T), np.hypot(*(b - a).T)], axis=1)
@@ -282,7 +274,7 @@ def _find_long_edges(surface: Surface, chosen: Any, max_edge: float) -> BoolArra
     return is_long
 
 
-def clip(surface: Surface, keep: BoolArray) -> tuple[Surface, Int32Array]:
+def clip(surface: Triangulation, keep: BoolArray) -> tuple[Triangulation, Int32Array]:
     """Return the kept triangles with the vertices that they use, and the new number of each vertex.
 
     Vertices without a triangle have number -1. The new boundary is constrained::
@@ -299,7 +291,7 @@ def clip(surface: Surface, keep: BoolArray) -> tuple[Surface, Int32Array]:
     is_used[corners] = True
     vertex = np.where(is_used, np.cumsum(is_used, dtype=np.int32) - np.int32(1), np.int32(-1))
     return (
-        Surface(
+        Triangulation(
             surface.points[is_used],
             vertex[corners],
             np.where(is_outer, np.int32(topology.NO_NEIGHBOR), number[beside]),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...base.errors import LinesError
+from ...base.records import require, require_finite, require_indices, require_offsets
 from ...base.sentences import coordinate, shown
 from .. import _kernel
 from ..topology import find_offsets, find_owners
@@ -81,6 +82,17 @@ class LineSet(NamedTuple):
     def names(self) -> tuple[str, ...]:
         """The name of each line."""
         return self.table.names
+
+    def _require_sound(self) -> None:
+        """Refuse stored lines whose rows and offsets do not belong together."""
+        count, rows = len(self.kinds), len(self.xy)
+        require_finite(self.xy, (rows, 2), "coordinates of lines")
+        require_offsets(self.offsets, count, rows, "lines")
+        require((np.diff(self.offsets) >= 2).all(), "lines of one vertex")
+        require_indices(self.sources, 2**31, "sources of lines", least=-1)
+        require(len(self.sources) == len(self.names) == count, "sources of lines")
+        require(self.elevations.shape == (rows,), "elevations of lines")
+        require(self.priorities.shape == (count,), "priorities of lines")
 
     @property
     def is_draped(self) -> BoolArray:

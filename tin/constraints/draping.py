@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import _kernel, topology
 from ..topology import find_offsets
-from .clipping import Surface, in_rings
+from .clipping import in_rings
 from .constraint_set import BELOW_ALL, LineSet
 from .constraint_table import ConstraintTable
 from .noding import node
@@ -16,6 +16,7 @@ from .polylines import Polylines
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ..triangulation import Triangulation
 
 __all__ = ["Draped", "drape"]
 
@@ -38,7 +39,7 @@ class Draped(NamedTuple):
     n_cut: int
 
 
-def drape(surface: Surface, lines: LineSet, *, threads: int) -> Draped:
+def drape(surface: Triangulation, lines: LineSet, *, threads: int) -> Draped:
     """Lay lines on a surface that fills its convex hull.
 
     Between its own vertices a line gets one at every edge of the surface that it crosses, so that
@@ -63,7 +64,9 @@ def _find_vertices(lines: LineSet) -> tuple[Float64Array, Polylines]:
     return xy, Polylines.whole(vertex_of.reshape(-1).astype(np.int32), lines.offsets)
 
 
-def _cut_at_boundary(surface: Surface, hull: Int32Array, lines: LineSet, *, threads: int) -> Draped:
+def _cut_at_boundary(
+    surface: Triangulation, hull: Int32Array, lines: LineSet, *, threads: int
+) -> Draped:
     boundary = surface.points[np.append(hull, hull[0])]
     both = np.concatenate([lines.xy, boundary[:, :2]])
     xy, inverse = np.unique(both, axis=0, return_inverse=True)
@@ -164,7 +167,7 @@ def _are_beyond(xy: Float64Array, edge: Float64Array) -> BoolArray:
 
 
 def _take_elevations(
-    surface: Surface,
+    surface: Triangulation,
     points: Float64Array,
     elevations: Float64Array,
     polylines: Polylines,
@@ -200,7 +203,7 @@ def _look_elevations_up(
 
 
 def _follow_surface(
-    surface: Surface, points: Float64Array, polylines: Polylines
+    surface: Triangulation, points: Float64Array, polylines: Polylines
 ) -> tuple[Float64Array, Int64Array]:
     """Return the places along every polyline, with those where it crosses edges, and its number.
 

@@ -15,10 +15,11 @@ from ...base.errors import LinesError
 from .. import _kernel
 from ..topology import edge_keys, edges_at
 from .breaklines import Lines
-from .clipping import BOUNDARY, OWN_BOUNDARY, RingSegments, Surface, clip, is_inside, trim
+from .clipping import BOUNDARY, OWN_BOUNDARY, RingSegments, clip, is_inside, trim
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ..triangulation import Triangulation
     from .constraint_table import ConstraintTable
     from .polylines import Polylines
 
@@ -37,8 +38,7 @@ class Clip:
         The rings of each, the outer one and its islands.
     has_own_boundary : bool
         Whether there are lines of a boundary that is there, beyond which is no surface.
-    max_edge : float
-        Infinity for none.
+    max_edge : float or None
     is_trimmed_everywhere : bool
     """
 
@@ -46,19 +46,19 @@ class Clip:
     extent: list[Float64Array] = field(default_factory=list)
     holes: list[list[Float64Array]] = field(default_factory=list)
     has_own_boundary: bool = False
-    max_edge: float = np.inf
+    max_edge: float | None = None
     is_trimmed_everywhere: bool = False
 
     @property
     def is_none(self) -> bool:
         """Whether all of the hull is the surface."""
-        return not (self._has_rings or np.isfinite(self.max_edge))
+        return not self._has_rings and self.max_edge is None
 
     @property
     def _has_rings(self) -> bool:
         return bool(self.boundary or self.extent or self.holes or self.has_own_boundary)
 
-    def keeps(self, surface: Surface, ring_segments: RingSegments) -> BoolArray:
+    def keeps(self, surface: Triangulation, ring_segments: RingSegments) -> BoolArray:
         """Tell which triangles are kept.
 
         Raises
@@ -70,7 +70,7 @@ class Clip:
         if self._has_rings:
             keep = is_inside(surface, ring_segments, self.boundary, self.extent, self.holes)
             _require_triangles(keep, "The boundary and the holes leave no triangle of the surface")
-        if np.isfinite(self.max_edge):
+        if self.max_edge is not None:
             everywhere = self.is_trimmed_everywhere
             keep = trim(surface, keep, self.max_edge, everywhere=everywhere)
             _require_triangles(keep, f"No triangle is left with `max_edge` {self.max_edge:g}")
@@ -107,7 +107,7 @@ class Pslg:
     clip: Clip
     vertex_of: Int32Array
 
-    def surface(self, hull: Surface) -> tuple[Surface, Int32Array]:
+    def surface(self, hull: Triangulation) -> tuple[Triangulation, Int32Array]:
         """Cut the triangulated hull; return the surface and the new number of each vertex."""
         if self.clip.is_none:
             return hull, np.arange(len(hull.points), dtype=np.int32)
@@ -125,7 +125,7 @@ class Pslg:
         groups = np.where(table.sources < 0, OWN_BOUNDARY, self.groups)
         return np.where(table.is_kind("boundary", "hole"), groups, OWN_BOUNDARY - 1)
 
-    def loses_vertices_at_own_boundary(self, hull: Surface) -> bool:
+    def loses_vertices_at_own_boundary(self, hull: Triangulation) -> bool:
         """Tell whether vertices lie beyond a boundary that is there: only if a rounding bent it.
 
         Rings that end at the boundary need it none the less, to have an inside.
@@ -163,7 +163,7 @@ def find_lines_in(
     polylines: Polylines,
     constraints: ConstraintTable,
     number_of: Int32Array,
-    surface: Surface,
+    surface: Triangulation,
     *,
     is_whole: bool,
 ) -> Lines:
@@ -177,7 +177,7 @@ def find_lines_in(
     return Lines(vertices=left.vertices, offsets=left.offsets, **told)
 
 
-def _are_edges(segments: Int32Array, surface: Surface) -> BoolArray:
+def _are_edges(segments: Int32Array, surface: Triangulation) -> BoolArray:
     n = len(surface.points)
     edges = edges_at(surface.triangles, surface.constrained)
     is_edge = np.asarray((segments >= 0).all(axis=1), np.bool_)

@@ -14,13 +14,16 @@ import numpy as np
 
 from ...base.errors import LinesError
 from ...base.types import Frozen
+from .. import _kernel
+from ..building.assembly import assemble
 from ..constraints.breaklines import Breakline
 from ..constraints.constraint_set import ABOVE_ALL, LineSet, gather_lines
 from ..topology import find_offsets
 
 if TYPE_CHECKING:
-    from ...base.arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..building.inputs import BuildInputs
+    from ..building.version import Version
 
 __all__ = [
     "NO_ROWS",
@@ -130,6 +133,33 @@ class NumberedInputs(Frozen):
         return NumberedInputs(
             build_inputs=build_inputs, rows=np.flatnonzero(is_there), n_rows=n_rows
         )
+
+    def build(self) -> Version:
+        """Build the TIN of the inputs, whose rows have their lasting numbers.
+
+        Raises
+        ------
+        PointsError, LinesError
+            As :func:`tinsmith.triangulate`.
+        """
+        built = assemble(self.build_inputs)
+        vertex_of = np.full(self.n_rows, -1, np.int32)
+        vertex_of[self.rows] = built.vertex_of
+        report = built.report.with_rows(self.rows, self.n_rows)
+        return replace(built, vertex_of=vertex_of, report=report)
+
+    def find_line_vertices(self, version: Version) -> Int32Array:
+        """Return the vertex of each given vertex of the lines, -1 for none, in their build."""
+        given = self.build_inputs.lines.xy
+        if not len(given) or self.build_inputs.options.snap == 0.0:
+            found = version.triangulation.vertices_at(given) if len(given) else np.empty(0)
+            return found.astype(np.int32, copy=False)
+        snapped = version.snapped or self.build().snapped
+        if snapped is None or not len(snapped.xy):
+            return np.full(len(given), -1, np.int32)
+        xy, first = np.unique(snapped.xy, axis=0, return_index=True)
+        found = _kernel.vertices_at(np.ascontiguousarray(xy), np.ascontiguousarray(given))
+        return np.where(found < 0, np.int32(-1), snapped.vertices[first[found]])
 
 
 # ------------------------------------------------------------------------- lines

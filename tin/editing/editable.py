@@ -30,12 +30,13 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ...base.arrays import Int32Array, Int64Array
+    from ...base.crs import CRS
     from ...base.policies import BreaklineKind, CrossingPolicy, DuplicatePolicy
     from .._kernel import EditedMesh
     from ..building.inputs import BuildInputs
+    from ..building.version import Version
     from ..report import Edit
     from .session import Session
-    from .version import Version
 
 __all__ = ["Editable"]
 
@@ -60,6 +61,8 @@ class Editable:
 
     __slots__ = ("_inputs", "_lent", "_lock", "_origin", "_session", "_version")
 
+    _crs: CRS | None
+
     def __init__(self, version: Version, inputs: BuildInputs | None) -> None:
         self._version: Version | None = version
         self._session: Session | None = None
@@ -78,11 +81,6 @@ class Editable:
             if self._version is None:
                 self._version = self._open_session().version()
             return self._version
-
-    @property
-    def _reference(self) -> dict[str, Any]:
-        """CRS and unit of the TIN, and attributes of its rows."""
-        raise NotImplementedError
 
     @property
     def edits(self) -> tuple[Edit, ...]:
@@ -409,7 +407,7 @@ class Editable:
     def _edit(self, operation: str, **arguments: Any) -> Any:
         for name in _PLACES.keys() & arguments.keys():
             if not is_plain(arguments[name]):
-                require_crs(arguments[name], self._reference["crs"], f"{name} of the edit")
+                require_crs(arguments[name], self._crs, f"{name} of the edit")
                 arguments[name] = as_array(arguments[name])
             self._require_degrees(arguments[name], name)
         with self._lock:
@@ -423,14 +421,14 @@ class Editable:
 
     @property
     def _is_in_degrees(self) -> bool:
-        return measure_angular_unit(self._reference["crs"]) is not None
+        return measure_angular_unit(self._crs) is not None
 
     def _require_degrees(self, given: Any, name: str) -> None:
         """Refuse what is no longitude and latitude; what is no coordinates, the operation does."""
         if self._is_in_degrees:
             rows = np.array(as_table(given, "Points", least=2).values, ndmin=2)
             if rows.ndim == 2 and rows.shape[1] >= 2:
-                require_degrees(rows, self._reference["crs"], _PLACES[name])
+                require_degrees(rows, self._crs, _PLACES[name])
 
     def _open_session(self) -> Session:
         """Return the session, which nobody else has until the lock is let go."""

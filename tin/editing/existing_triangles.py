@@ -13,24 +13,20 @@ import numpy as np
 from ...base.errors import PointsError, TinsmithError
 from .. import topology
 from ..building.assembly import assemble
-from ..building.constrained import LineOptions
 from ..building.inputs import BuildInputs
-from ..constraints.clipping import Surface
+from ..building.options import BuildOptions
 from ..constraints.constraint_set import BELOW_ALL, LineSet
 from ..constraints.constraint_table import ConstraintTable
 from ..topology import find_offsets
-from ..triangulation import Triangulation
 from ..validation.points import as_points
-from ..validation.threads import thread_count
-from .state import State
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array
     from ...base.policies import LineKind
-    from .changes import NumberedInputs
-    from .version import Version
+    from ..building.version import Version
+    from ..triangulation import Triangulation
 
-__all__ = ["build_state_of_triangles", "gather_inputs_of_triangles"]
+__all__ = ["build_of_triangles", "gather_inputs_of_triangles"]
 
 
 def gather_inputs_of_triangles(version: Version) -> BuildInputs:
@@ -67,10 +63,7 @@ def gather_inputs_of_triangles(version: Version) -> BuildInputs:
         extent=[],
         holes=[],
         erase=[],
-        max_edge=np.inf,
-        trim="perimeter",
-        conforming=False,
-        options=LineOptions(threads=thread_count(None, len(surface.points))),
+        options=BuildOptions(),
         crs=None,
         has_own_boundary=has_own_boundary,
     )
@@ -110,7 +103,7 @@ def _find_edges_of_no_line(version: Version) -> list[Int32Array]:
     return list(edges[~is_segment])
 
 
-def build_state_of_triangles(version: Version, inputs: NumberedInputs) -> State:
+def build_of_triangles(given: Version, inputs: BuildInputs) -> Version:
     """Build existing triangles from their inputs.
 
     Raises
@@ -118,20 +111,16 @@ def build_state_of_triangles(version: Version, inputs: NumberedInputs) -> State:
     PointsError
         If the build has other triangles.
     """
-    given = version.triangulation
     try:
-        built = assemble(inputs.build_inputs)
+        built = assemble(inputs)
     except TinsmithError:
         raise _explain_unfit() from None
-    if not _have_same_triangles(built.surface, given):
+    if not _have_same_triangles(built.triangulation, given.triangulation):
         raise _explain_unfit()
-    lines = built.lines
-    return State(
-        Triangulation(**built.surface._asdict()), built.vertex_of, lines, built.report, None
-    )
+    return built
 
 
-def _have_same_triangles(found: Surface, given: Triangulation) -> bool:
+def _have_same_triangles(found: Triangulation, given: Triangulation) -> bool:
     if len(found.triangles) != len(given.triangles) or len(found.points) != len(given.points):
         return False
     return bool((_as_set(found.triangles) == _as_set(given.triangles)).all())

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Float64Array
     from ..building.inputs import BuildInputs
-    from .state import State
+    from ..building.version import Version
 
 __all__ = ["FLIP", "are_uncut", "make_flipped_edge", "require_inner"]
 
@@ -56,14 +56,14 @@ def make_flipped_edge(points: Float64Array) -> Breakline:
     return Breakline(points[2:], kind="soft", name=FLIP)
 
 
-def are_uncut(state: State, build_inputs: BuildInputs) -> bool:
+def are_uncut(version: Version, build_inputs: BuildInputs) -> bool:
     """Tell whether all lines are breaklines, and run through their given vertices and no others.
 
     Then a build fixes them as they are given, and a further one that meets none changes nothing.
     """
-    given, lines = build_inputs.lines, state.lines
+    given, lines = build_inputs.lines, version.lines
     if not all(kind in ("hard", "soft") for kind in given.kinds):
         return False
     if not np.array_equal(given.offsets, lines.offsets):
         return False
-    return np.array_equal(given.xy, state.triangulation.points[lines.vertices, :2])
+    return np.array_equal(given.xy, version.triangulation.points[lines.vertices, :2])

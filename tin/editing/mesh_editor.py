@@ -15,13 +15,13 @@ from ...base.errors import PointsError
 from ...base.sentences import coordinate, height
 from .. import _kernel
 from ..building.duplicates import merge_rows
+from ..building.version import Version
 from ..report import Edit, Report
 from ..triangulation import Triangulation
 from .changes import AddLine, Change
 from .flipping import are_uncut, make_flipped_edge, require_inner
 from .lazy_mesh import LiveMesh
 from .single_edits import INSERT, REMOVE, take_log
-from .state import State
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -50,7 +50,7 @@ def is_local(build_inputs: BuildInputs) -> bool:
     """Tell whether an edit away from the lines changes the triangulation there alone."""
     lines, options = build_inputs.lines, build_inputs.options
     has_all_rows = not build_inputs.erase and build_inputs.is_masked is None
-    is_simple = options.snap == 0.0 and has_all_rows and not build_inputs.conforming
+    is_simple = options.snap == 0.0 and has_all_rows and not options.conforming
     has_own_elevations = bool(
         np.isfinite(lines.priorities).all() and np.isfinite(lines.elevations).all()
     )
@@ -60,27 +60,27 @@ def is_local(build_inputs: BuildInputs) -> bool:
 class Editor:
     """Mesh and numbers of a TIN that is being edited.
 
-    Vertices are called by slots here, numbers that never change. Those of the state come first: of
-    its rows, then of its lines; those that are inserted follow. A TIN's own numbers put the
+    Vertices are called by slots here, numbers that never change. Those of the version come first:
+    of its rows, then of its lines; those that are inserted follow. A TIN's own numbers put the
     inserted ones between the two, and close the gaps that removed ones leave.
 
     Parameters
     ----------
-    state : State
+    version : Version
         Neither clipped nor with vertices that have been left out.
     inputs : NumberedInputs
-        Of the state.
+        Of the version.
     """
 
-    def __init__(self, state: State, inputs: NumberedInputs) -> None:
-        surface = state.triangulation
-        self._vertex_of_row, self._lines = state.vertex_of_row, state.lines
-        self._report = state.report
+    def __init__(self, version: Version, inputs: NumberedInputs) -> None:
+        surface = version.triangulation
+        self._vertex_of_row, self._lines = version.vertex_of, version.lines
+        self._report = version.report
         self._n_first_rows = inputs.n_rows
         self._is_strict = inputs.build_inputs.options.duplicates == "error"
-        self._threads = inputs.build_inputs.options.threads
+        self._threads = inputs.build_inputs.threads
         self._n_base = len(surface.points)
-        self._base_rows = _group_rows_by_vertex(state.vertex_of_row)
+        self._base_rows = _group_rows_by_vertex(version.vertex_of)
         self._n_rows = self._base_rows.n_vertices
         self._live = LiveMesh(
             surface.points,
@@ -93,9 +93,9 @@ class Editor:
         self._more_rows: dict[int, list[int]] = {}
         self._new_slots = array("i")  # of each row that came since
         self._has_lines = False
-        if self._n_rows < self._n_base or len(state.lines) > 0:
+        if self._n_rows < self._n_base or len(version.lines) > 0:
             self._keep_clear(surface.points)
-        self._has_uncut_lines = are_uncut(state, inputs.build_inputs)
+        self._has_uncut_lines = are_uncut(version, inputs.build_inputs)
 
     # ------------------------------------------------------------------ numbers
 
@@ -373,7 +373,7 @@ class Editor:
 
     # ------------------------------------------------------------------- result
 
-    def state(self, inputs: Callable[[], NumberedInputs]) -> State:
+    def make_version(self, inputs: Callable[[], NumberedInputs]) -> Version:
         """Return what the edits led to; ``inputs()`` are those of now, asked for if needed."""
         number = self.edited.numbers()
         surface = self._make_triangulation()
@@ -390,7 +390,7 @@ class Editor:
         )
         if self._has_lines:
             report = report.with_lines(inputs().build_inputs.lines.labels())
-        return State(surface, vertex_of_row, lines, report, None)
+        return Version(triangulation=surface, vertex_of=vertex_of_row, lines=lines, report=report)
 
     def _make_triangulation(self) -> Triangulation:
         triangles, neighbors, constrained = self._live.arrays(self._threads)

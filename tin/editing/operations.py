@@ -36,13 +36,13 @@ from .changes import (
 )
 from .flipping import FLIP, make_flipped_edge, require_inner
 from .mesh_editor import Editor, explain_occupied, merge_elevations
-from .state import State
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
     from ...base.policies import BreaklineKind
+    from ..building.version import Version
     from ..constraints.breaklines import Lines
 
 __all__ = [
@@ -69,7 +69,7 @@ class Edited(Protocol):
         """Number of vertices."""
         ...
 
-    def now(self) -> State:
+    def now(self) -> Version:
         """Return the TIN as it is."""
         ...
 
@@ -77,16 +77,12 @@ class Edited(Protocol):
         """Return what it is the build of."""
         ...
 
-    def build(self, inputs: NumberedInputs) -> State:
-        """Build the TIN of other inputs; nothing is changed yet."""
-        ...
-
 
 class Done(NamedTuple):
     """What an edit did to the inputs, and where that led; None if the mesh tells."""
 
     change: Change
-    state: State | None = None
+    version: Version | None = None
     result: Any = None
     notes: tuple[str, ...] = ()
 
@@ -144,15 +140,15 @@ class Insert(MeshOperation):
     def apply(self, tin: Edited) -> Done:
         """Build the TIN of the changed inputs."""
         xyz = as_new_points(self.points)
-        state, inputs = tin.now(), tin.inputs()
-        there = state.vertices_at(xyz[:, :2])
-        own = np.where(there < 0, np.nan, state.triangulation.points[there, 2])
+        version, inputs = tin.now(), tin.inputs()
+        there = version.triangulation.vertices_at(xyz[:, :2])
+        own = np.where(there < 0, np.nan, version.triangulation.points[there, 2])
         z = _merge_new_elevations(xyz, own, choice("duplicates", self.duplicates, DuplicatePolicy))
         at_vertex = there >= 0
-        change = _change_elevations(state, inputs, there[at_vertex], z[at_vertex])
+        change = _change_elevations(version, inputs, there[at_vertex], z[at_vertex])
         change = change._replace(added=np.column_stack([xyz[:, :2], z]))
-        found = tin.build(inputs.after([change]))
-        return Done(change, found, found.vertex_of_row[len(found.vertex_of_row) - len(xyz) :])
+        found = inputs.after([change]).build()
+        return Done(change, found, found.vertex_of[len(found.vertex_of) - len(xyz) :])
 
     def apply_to_mesh(self, editor: Editor) -> Done:
         """Change the mesh, if no line is near."""
@@ -173,14 +169,14 @@ class Remove(MeshOperation):
     def apply(self, tin: Edited) -> Done:
         """Build the TIN of the changed inputs."""
         numbers = require_distinct(as_vertices(self.vertices, tin.count))
-        state, inputs = tin.now(), tin.inputs()
-        rows = np.flatnonzero(np.isin(state.vertex_of_row, numbers))
-        of_lines = state.line_vertices(inputs)
+        version, inputs = tin.now(), tin.inputs()
+        rows = np.flatnonzero(np.isin(version.vertex_of, numbers))
+        of_lines = inputs.find_line_vertices(version)
         on_lines = np.flatnonzero(np.isin(of_lines, numbers))
-        _require_given(numbers, state.vertex_of_row[rows], of_lines[on_lines], "removed")
+        _require_given(numbers, version.vertex_of[rows], of_lines[on_lines], "removed")
         lines = (DropVertices(on_lines),) if len(on_lines) else ()
         change = Change(removed=rows, lines=lines)
-        return Done(change, tin.build(inputs.after([change])))
+        return Done(change, inputs.after([change]).build())
 
     def apply_to_mesh(self, editor: Editor) -> Done:
         """Change the mesh, if no line is near."""
@@ -200,20 +196,20 @@ class Move(MeshOperation):
     def apply(self, tin: Edited) -> Done:
         """Build the TIN of the changed inputs."""
         numbers, point = as_vertices([self.vertex], tin.count), as_point(self.point)
-        state, inputs = tin.now(), tin.inputs()
-        (there,) = state.vertices_at(point[None, :2]).tolist()
+        version, inputs = tin.now(), tin.inputs()
+        (there,) = version.triangulation.vertices_at(point[None, :2]).tolist()
         if there >= 0 and there != numbers[0]:
             raise explain_occupied(there, *point[:2].tolist())
-        rows = np.flatnonzero(np.isin(state.vertex_of_row, numbers))
-        of_lines = state.line_vertices(inputs)
+        rows = np.flatnonzero(np.isin(version.vertex_of, numbers))
+        of_lines = inputs.find_line_vertices(version)
         on_lines = np.flatnonzero(of_lines == numbers[0])
-        _require_given(numbers, state.vertex_of_row[rows], of_lines[on_lines], "moved")
+        _require_given(numbers, version.vertex_of[rows], of_lines[on_lines], "moved")
         change = Change(
             moved=rows,
             points=np.tile(point, (len(rows), 1)),
             lines=(PutVertices(on_lines, point),) if len(on_lines) else (),
         )
-        found = tin.build(inputs.after([change]))
+        found = inputs.after([change]).build()
         _require_elevations(found, point[None])
         return Done(change, found)
 
@@ -236,13 +232,13 @@ class SetElevation(MeshOperation):
         """Build the TIN of the changed inputs."""
         numbers = as_vertices(self.vertices, tin.count)
         elevations = np.array(as_vertex_elevations(self.z, len(numbers)))
-        state, inputs = tin.now(), tin.inputs()
-        change = _change_elevations(state, inputs, numbers, elevations)
-        made = numbers[~_has_own_elevation(state, inputs, numbers)]
-        wanted = state.triangulation.points.copy()
+        version, inputs = tin.now(), tin.inputs()
+        change = _change_elevations(version, inputs, numbers, elevations)
+        made = numbers[~_has_own_elevation(version, inputs, numbers)]
+        wanted = version.triangulation.points.copy()
         wanted[numbers, 2] = elevations
         change = change._replace(added=wanted[np.unique(made)])
-        found = tin.build(inputs.after([change]))
+        found = inputs.after([change]).build()
         _require_elevations(found, wanted[np.unique(numbers)])
         return Done(change, found)
 
@@ -266,9 +262,9 @@ class Flip(MeshOperation):
     def apply(self, tin: Edited) -> Done:
         """Build the TIN of the changed inputs."""
         first, second = as_ends(self.a, self.b, tin.count).tolist()
-        state = tin.now()
-        change = Change(lines=(_flip_line(state, first, second),))
-        return Done(change, tin.build(tin.inputs().after([change])))
+        version = tin.now()
+        change = Change(lines=(_flip_line(version, first, second),))
+        return Done(change, tin.inputs().after([change]).build())
 
     def apply_to_mesh(self, editor: Editor) -> Done:
         """Change the mesh, if no line is near."""
@@ -294,7 +290,7 @@ class AddBreakline(Operation):
         choice("crossing", self.crossing, CrossingPolicy)
         change = Change(lines=(AddLine(line),))
         inputs = tin.inputs().after([change])
-        found = tin.build(inputs)
+        found = inputs.build()
         number = count_breaklines(inputs.build_inputs.lines) - 1
         crossings = found.report.describe_crossings(inputs.build_inputs.lines.label(number))
         if crossings and self.crossing == "error":
@@ -319,7 +315,7 @@ class RemoveBreakline(Operation):
         if not 0 <= self.number < count_breaklines(tin.inputs().build_inputs.lines):
             raise LinesError(f"There is no breakline {self.number}.")
         change = Change(lines=(DropLines((int(self.number),)),))
-        return Done(change, tin.build(tin.inputs().after([change])))
+        return Done(change, tin.inputs().after([change]).build())
 
 
 OPERATIONS: dict[str, type[Operation]] = {
@@ -329,17 +325,17 @@ OPERATIONS: dict[str, type[Operation]] = {
 """The operations by the names of the methods of a TIN that do them."""
 
 
-def _flip_line(state: State, a: int, b: int) -> LineChange:
+def _flip_line(version: Version, a: int, b: int) -> LineChange:
     """Return the line to be added, or those to be dropped."""
-    surface = state.triangulation
+    surface = version.triangulation
     holds = (surface.triangles == a).any(axis=1) & (surface.triangles == b).any(axis=1)
     beside = np.flatnonzero(holds)
     require_inner(beside.tolist())
-    own = _find_lines_along(state.lines, a, b)
+    own = _find_lines_along(version.lines, a, b)
     if own:
-        if not all(state.lines.names[line] == FLIP for line in own):
+        if not all(version.lines.names[line] == FLIP for line in own):
             raise LinesError("The edge is one of a line, which must stay.")
-        return DropLines(tuple(sorted({int(state.lines.sources[line]) for line in own})))
+        return DropLines(tuple(sorted({int(version.lines.sources[line]) for line in own})))
     corners = surface.triangles[beside]
     runs = ((corners == a) & (np.roll(corners, -1, axis=1) == b)).any(axis=1)  # its left side
     corners = corners[np.argsort(~runs)]
@@ -367,25 +363,27 @@ def _merge_new_elevations(
 
 
 def _change_elevations(
-    state: State, inputs: NumberedInputs, vertices: AnyArray, elevations: Float64Array
+    version: Version, inputs: NumberedInputs, vertices: AnyArray, elevations: Float64Array
 ) -> Change:
     """Give the rows and the lines at vertices other elevations."""
-    elevation_of = np.full(len(state.triangulation.points) + 1, np.nan)  # the last is of no vertex
+    elevation_of = np.full(
+        len(version.triangulation.points) + 1, np.nan
+    )  # the last is of no vertex
     elevation_of[vertices] = elevations
-    wanted = elevation_of[state.vertex_of_row]
+    wanted = elevation_of[version.vertex_of]
     rows = np.flatnonzero(~np.isnan(wanted))
     points = inputs.build_inputs.points[np.searchsorted(inputs.rows, rows)]
     points[:, 2] = wanted[rows]
-    of_lines = elevation_of[state.line_vertices(inputs)]
+    of_lines = elevation_of[inputs.find_line_vertices(version)]
     on_lines = np.flatnonzero(~np.isnan(of_lines) & has_own_elevations(inputs.build_inputs.lines))
     lines = (SetElevations(on_lines, of_lines[on_lines]),) if len(on_lines) else ()
     return Change(moved=rows, points=points, lines=lines)
 
 
-def _has_own_elevation(state: State, inputs: NumberedInputs, vertices: Int64Array) -> BoolArray:
+def _has_own_elevation(version: Version, inputs: NumberedInputs, vertices: Int64Array) -> BoolArray:
     """Tell which vertices stand for rows or for vertices of lines with elevations."""
-    of_lines = state.line_vertices(inputs)[~np.isnan(inputs.build_inputs.lines.elevations)]
-    return np.isin(vertices, np.append(state.vertex_of_row, of_lines))
+    of_lines = inputs.find_line_vertices(version)[~np.isnan(inputs.build_inputs.lines.elevations)]
+    return np.isin(vertices, np.append(version.vertex_of, of_lines))
 
 
 def _require_given(vertices: Int64Array, rows: Int32Array, lines: Int32Array, what: str) -> None:
@@ -397,9 +395,9 @@ def _require_given(vertices: Int64Array, rows: Int32Array, lines: Int32Array, wh
         )
 
 
-def _require_elevations(found: State, wanted: Float64Array) -> None:
+def _require_elevations(found: Version, wanted: Float64Array) -> None:
     """Refuse an elevation that a water body or a line of higher priority overrules."""
-    there = found.vertices_at(wanted[:, :2])
+    there = found.triangulation.vertices_at(wanted[:, :2])
     points = found.triangulation.points[there]
     wrong = np.flatnonzero((there >= 0) & (points[:, 2] != wanted[:, 2]))
     if len(wrong):

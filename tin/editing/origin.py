@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from ...base.records import require
+from ..report import Edit
+from .operations import OPERATIONS
+
 if TYPE_CHECKING:
     from ..building.inputs import BuildInputs
-    from ..report import Edit
-    from .version import Version
+    from ..building.version import Version
 
 __all__ = ["Origin"]
 
@@ -27,3 +30,9 @@ class Origin(NamedTuple):
     inputs: BuildInputs | None = None
     given: Version | None = None
     edits: tuple[Edit, ...] = ()
+
+    def _require_sound(self, version: Version) -> None:
+        """Refuse stored edits of operations that there are not; arguments are judged when done."""
+        told = (version, self.given or version)
+        for edit in (*self.edits, *(edit for one in told for edit in one.report.edits)):
+            require(isinstance(edit, Edit) and edit.operation in OPERATIONS, "the edits are none")

@@ -13,17 +13,16 @@ from ...base.interrupts import hold_interrupts
 from ...base.sentences import counted, inflect
 from ..report import Edit
 from .changes import Change, NumberedInputs
-from .existing_triangles import build_state_of_triangles, gather_inputs_of_triangles
+from .existing_triangles import build_of_triangles, gather_inputs_of_triangles
 from .mesh_editor import Editor, NotLocal, is_local
 from .operations import OPERATIONS, Done, MeshOperation, Operation
 from .origin import Origin
-from .state import State, build_state
-from .version import Version
 
 if TYPE_CHECKING:
-    from ...base.arrays import AnyArray, Int32Array
+    from ...base.arrays import AnyArray
     from .._kernel import EditedMesh
     from ..building.inputs import BuildInputs
+    from ..building.version import Version
 
 __all__ = ["Session"]
 
@@ -54,13 +53,9 @@ class Session:
         self._given: Version | None = None if build_inputs is not None else version
         if build_inputs is None:
             build_inputs = gather_inputs_of_triangles(version)
-            self._begin = NumberedInputs.of(build_inputs)
-            self._state: State | None = build_state_of_triangles(version, self._begin)
-        else:
-            self._begin = NumberedInputs.of(build_inputs)
-            self._state = State(
-                version.triangulation, version.vertex_of, version.lines, version.report, None
-            )
+            version = build_of_triangles(version, build_inputs)
+        self._begin = NumberedInputs.of(build_inputs)
+        self._version: Version | None = version
         self._inputs, self._n_applied = self._begin, 0
         self._editor: Editor | None = None
 
@@ -81,13 +76,7 @@ class Session:
         """
         given = origin.given
         if origin.inputs is not None:
-            state = build_state(NumberedInputs.of(origin.inputs))
-            given = Version(
-                triangulation=state.triangulation,
-                vertex_of=state.vertex_of_row,
-                lines=state.lines,
-                report=state.report,
-            )
+            given = NumberedInputs.of(origin.inputs).build()
         session = cls(cast("Version", given), origin.inputs)
         for number, edit in enumerate(origin.edits):
             try:
@@ -127,7 +116,7 @@ class Session:
             "_changes": list(self._changes),
             "_given": self._given,
             "_begin": self._begin,
-            "_state": self.now(),
+            "_version": self.now(),
         }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -142,26 +131,15 @@ class Session:
         self.settle()
         if self._given is not None and not self.edits:
             return self._given
-        state, edits = self.now(), tuple(self.edits)
-        vertex_of, report = state.vertex_of_row, replace(state.report, edits=edits)
-        if self._given is not None:
-            vertex_of = self._of_given_rows(vertex_of)
-            surface = state.triangulation
-            report = self._given.report.after_edits(
-                vertex_of, len(surface.points), len(surface.triangles), edits
-            )
-        return Version(
-            triangulation=state.triangulation,
-            vertex_of=vertex_of,
-            lines=state.lines,
-            report=report,
-        )
-
-    def _of_given_rows(self, vertex_of_row: Int32Array) -> Int32Array:
-        """Return the vertices of the rows that existing triangles stand for, and of later ones."""
-        given = cast("Version", self._given).vertex_of
-        none = np.int32(-1)
-        return np.append(np.append(vertex_of_row, none)[given], vertex_of_row[self._begin.n_rows :])
+        found, edits = self.now(), tuple(self.edits)
+        if self._given is None:
+            return replace(found, report=replace(found.report, edits=edits))
+        own = np.append(found.vertex_of, np.int32(-1))  # rows of inputs, the given vertices
+        vertex_of = np.append(own[self._given.vertex_of], own[self._begin.n_rows : -1])
+        surface = found.triangulation
+        counts = len(surface.points), len(surface.triangles)
+        report = self._given.report.after_edits(vertex_of, *counts, edits)
+        return replace(found, vertex_of=vertex_of, report=report)
 
     def do(self, name: str, arguments: dict[str, Any]) -> Any:
         """Do one of ``OPERATIONS`` and remember it; one that fails leaves everything as it was.
@@ -173,7 +151,7 @@ class Session:
         """
         self.settle()
         operation = OPERATIONS[name](**arguments)
-        kept, before = operation.arguments(), self._state
+        kept, before = operation.arguments(), self._version
         try:
             done = self._do_on_mesh(operation)
             if done is None:
@@ -181,12 +159,12 @@ class Session:
         except TinsmithError:
             raise
         except BaseException:  # interrupted: the mesh may be half-way
-            self._editor, self._state = None, before
+            self._editor, self._version = None, before
             raise
         self._changes.append(done.change)
         self.edits.append(Edit(name, kept, done.notes))
-        self._state = done.state
-        if done.state is not None:
+        self._version = done.version
+        if done.version is not None:
             self._editor = None
         return done.result
 
@@ -226,7 +204,7 @@ class Session:
                 for edit, change in editor.take_log():
                     self.edits.append(edit)
                     self._changes.append(change)
-                self._state = None
+                self._version = None
         if not editor.edited.is_sound:
             self._editor = None
 
@@ -247,21 +225,21 @@ class Session:
             raise PointsError(f"{counted(count, 'edit')} cannot be taken back: {made}.")
         left = len(self.edits) - count
         inputs = self._begin.after(self._changes[:left])
-        state = build_state(inputs)
+        version = inputs.build()
         del self.edits[left:], self._changes[left:]
         self._inputs, self._n_applied = inputs, left
-        self._state, self._editor = state, None
+        self._version, self._editor = version, None
 
     # ------------------------------------------------------------- for operations
 
-    def now(self) -> State:
-        """Return the TIN after the edits, and how it hangs together with its inputs."""
-        if self._state is None:
+    def now(self) -> Version:
+        """Return the build of the inputs after the edits."""
+        if self._version is None:
             editor = self._editor
-            self._state = (
-                build_state(self.inputs()) if editor is None else editor.state(self.inputs)
+            self._version = (
+                self.inputs().build() if editor is None else editor.make_version(self.inputs)
             )
-        return self._state
+        return self._version
 
     def inputs(self) -> NumberedInputs:
         """Return what the TIN is the build of now."""
@@ -277,10 +255,6 @@ class Session:
         if self._editor is not None:
             return self._editor.count
         return len(self.now().triangulation.points)
-
-    def build(self, inputs: NumberedInputs) -> State:
-        """Build the TIN of other inputs; nothing is changed yet."""
-        return build_state(inputs)
 
 
 def _is_same(one: AnyArray, other: AnyArray) -> bool:

@@ -18,9 +18,10 @@ from ...base.products import product
 from ...base.progress import Progress
 from ...base.sentences import counted
 from .. import _kernel, topology
-from ..constraints.clipping import Surface
+from ..building.version import Version
 from ..constraints.pslg import build_mesh_of_growth, find_lines_in
 from ..surface import TIN
+from ..triangulation import Triangulation
 from ..validation.threads import thread_count
 from .flips import describe_flips
 from .surface_pslg import gather_pslg, list_rings
@@ -348,7 +349,7 @@ def _build(
     if in_the_way is not None:
         return in_the_way
     done(0.7)
-    surface, number_of = pslg.surface(Surface(points, *mesh.arrays(threads)))
+    surface, number_of = pslg.surface(Triangulation(points, *mesh.arrays(threads)))
     done(0.9)
     if len(surface.points) != len(points) or len(surface.triangles) != found.n_triangles:
         return set()
@@ -378,20 +379,23 @@ def _add_kept_whole(
 
 
 def _make_refined(
-    tin: TIN, pslg: Pslg, surface: Surface, number_of: Int32Array, found: _Found
+    tin: TIN, pslg: Pslg, surface: Triangulation, number_of: Int32Array, found: _Found
 ) -> TIN:
-    return TIN(
-        **surface._asdict(),
+    version = Version(
+        triangulation=surface,
         vertex_of=tin.vertex_of,
         report=_report(tin, surface, found),
         lines=find_lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=False),
+    )
+    return TIN._of(
+        version,
         crs=tin.crs,
         elevation_unit=tin.elevation_unit,
         row_attributes=tin.row_attributes,
     )
 
 
-def _report(tin: TIN, surface: Surface, found: _Found) -> Report:
+def _report(tin: TIN, surface: Triangulation, found: _Found) -> Report:
     unmended = find_unmended(surface.points, surface.triangles, found.left)
     added = _note(len(found.xy), len(found.splits.middle))
     return replace(

@@ -16,10 +16,11 @@ from ...base.errors import LinesError, OptionError, PointsError, choice
 from ...base.policies import SimplificationHold
 from ...base.progress import Progress
 from .. import _kernel, topology
-from ..constraints.clipping import Surface
+from ..building.version import Version
 from ..constraints.pslg import build_mesh_of_growth, find_lines_in
 from ..report import Simplification
 from ..surface import TIN
+from ..triangulation import Triangulation
 from ..validation.threads import thread_count
 from ..validation.vertices import as_vertex_array
 from .flips import count_flips, describe_flips
@@ -302,14 +303,14 @@ class _Part:
         followed = self._follow(ring[:-1])
         return [*followed, followed[0]]
 
-    def _build(self, points: Float64Array) -> tuple[Surface, Int32Array]:
+    def _build(self, points: Float64Array) -> tuple[Triangulation, Int32Array]:
         growth = _kernel.grow(points, threads=self.threads)
         mesh = build_mesh_of_growth(points, growth)
         passed, blocked = mesh.force(self._pslg.polylines.segments())
         if growth.kept_row is not None or len(passed) or len(blocked):
             raise _describe_overlap()
         try:
-            hull = Surface(points, *mesh.arrays(self.threads))
+            hull = Triangulation(points, *mesh.arrays(self.threads))
             surface, order = self._pslg.surface(hull)
         except LinesError:
             raise _describe_overlap() from None
@@ -355,11 +356,14 @@ class _Part:
         """Return the TIN with its lines, and with an account of all rows."""
         tin, surface = self.tin, self.surface
         vertex_of = self._number_of[tin.vertex_of]
-        return TIN(
-            **surface._replace(constrained=self._find_constrained())._asdict(),
+        version = Version(
+            triangulation=replace(surface, constrained=self._find_constrained()),
             vertex_of=vertex_of,
             report=self._report(found, vertex_of),
             lines=self._find_lines(),
+        )
+        return TIN._of(
+            version,
             crs=tin.crs,
             elevation_unit=tin.elevation_unit,
             row_attributes=tin.row_attributes,

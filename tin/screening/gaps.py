@@ -9,13 +9,14 @@ import numpy as np
 from ...base.crs import assume_elevation_unit, scale_elevations
 from ...base.sentences import counted
 from .. import _kernel
-from ..constraints.clipping import Surface, trim
+from ..constraints.clipping import trim
 from ..topology import NO_NEIGHBOR
 from .parts import find_parts
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ..surface import TIN
+    from ..triangulation import Triangulation
 
 __all__ = ["describe_gaps"]
 
@@ -84,14 +85,14 @@ def describe_gaps(tin: TIN, *, slivers: bool = True) -> list[str]:
     >>> describe_gaps(triangulate(square))
     []
     """
-    surface = Surface(tin.points, tin.triangles, tin.neighbors, tin.constrained)
+    surface = tin.triangulation
     if len(surface.triangles) == 0:
         return []
     with np.errstate(all="ignore"):
         return _describe_gaps(tin, surface, slivers=slivers)
 
 
-def _describe_gaps(tin: TIN, surface: Surface, *, slivers: bool) -> list[str]:
+def _describe_gaps(tin: TIN, surface: Triangulation, *, slivers: bool) -> list[str]:
     limit = _find_limit(surface)
     stays = np.ones(len(surface.triangles), np.bool_)
     if not 0.0 < limit.length < np.inf:
@@ -123,7 +124,7 @@ def _describe_gaps(tin: TIN, surface: Surface, *, slivers: bool) -> list[str]:
 # ---------------------------------------------------------------- how long edges may be
 
 
-def _find_limit(surface: Surface) -> _Limit:
+def _find_limit(surface: Triangulation) -> _Limit:
     some = slice(None, None, max(1, len(surface.triangles) // _SAMPLE))
     areas = _measure_areas(surface, some)
     is_wide = areas > _FLAT * np.median(areas)  # not those along a hull that is straight but for
@@ -138,7 +139,7 @@ def _find_limit(surface: Surface) -> _Limit:
     return _Limit(_round_up(far * usual), _round_up(inside * usual), usual)
 
 
-def _square_lengths(surface: Surface, chosen: Any) -> Float64Array:
+def _square_lengths(surface: Triangulation, chosen: Any) -> Float64Array:
     """Return the squares of the lengths of the edges opposite the corners, (k, 3), in the plane."""
     corners = surface.points[surface.triangles[chosen], :2]
     sides = corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]]
@@ -146,7 +147,7 @@ def _square_lengths(surface: Surface, chosen: Any) -> Float64Array:
     return squares
 
 
-def _find_longest(surface: Surface, chosen: Int64Array) -> Float64Array:
+def _find_longest(surface: Triangulation, chosen: Int64Array) -> Float64Array:
     """Return the length of the longest edge of some triangles that is on no line."""
     squares = np.where(surface.constrained[chosen], 0.0, _square_lengths(surface, chosen))
     longest: Float64Array = np.sqrt(squares.max(axis=1, initial=0.0))
@@ -164,7 +165,7 @@ def _round_up(length: float) -> float:
 # ---------------------------------------------------------------- what is a gap
 
 
-def _matter(surface: Surface, chosen: Int64Array, limit: _Limit, *, is_bay: bool) -> bool:
+def _matter(surface: Triangulation, chosen: Int64Array, limit: _Limit, *, is_bay: bool) -> bool:
     """Tell whether some triangles make gaps that are worth telling."""
     if len(chosen) == 0:
         return False
@@ -181,14 +182,14 @@ def _matter(surface: Surface, chosen: Int64Array, limit: _Limit, *, is_bay: bool
     return bool(is_large) or _measure_share(surface, areas[is_gap].sum()) >= _SHARE
 
 
-def _measure_areas(surface: Surface, chosen: Any) -> Float64Array:
+def _measure_areas(surface: Triangulation, chosen: Any) -> Float64Array:
     a, b, c = (surface.points[surface.triangles[chosen, k], :2] for k in range(3))
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
     areas: Float64Array = (ux * vy - uy * vx) / 2.0
     return areas
 
 
-def _measure_share(surface: Surface, area: float) -> float:
+def _measure_share(surface: Triangulation, area: float) -> float:
     """Return the share of the whole area, of which a sample of triangles tells."""
     some = slice(None, None, max(1, len(surface.triangles) // _SAMPLE))
     mean = float(_measure_areas(surface, some).mean())
@@ -199,7 +200,7 @@ def _measure_share(surface: Surface, area: float) -> float:
 
 
 def _describe(
-    surface: Surface, chosen: Int64Array, unit: str, where: str, what: str, limit: _Limit
+    surface: Triangulation, chosen: Int64Array, unit: str, where: str, what: str, limit: _Limit
 ) -> str:
     """Tell of triangles with long edges: where they are, and what to do."""
     longest = _find_longest(surface, chosen).max()
@@ -211,7 +212,7 @@ def _describe(
     )
 
 
-def _describe_slivers(tin: TIN, surface: Surface, stays: BoolArray) -> list[str]:
+def _describe_slivers(tin: TIN, surface: Triangulation, stays: BoolArray) -> list[str]:
     """Tell of triangles along the hull that are far steeper than the ground."""
     is_outer = (surface.neighbors == NO_NEIGHBOR) & ~surface.constrained
     first, second, third = is_outer.T
@@ -232,13 +233,13 @@ def _describe_slivers(tin: TIN, surface: Surface, stays: BoolArray) -> list[str]
     ]
 
 
-def _measure_relief(surface: Surface, chosen: Any) -> float:
+def _measure_relief(surface: Triangulation, chosen: Any) -> float:
     """Return what half of some triangles do not rise by."""
     z = surface.points[surface.triangles[chosen], 2]
     return float(np.median(np.ptp(z, axis=1)))
 
 
-def _measure_rises(surface: Surface, chosen: Int64Array) -> Float64Array:
+def _measure_rises(surface: Triangulation, chosen: Int64Array) -> Float64Array:
     """Return how far some triangles rise, or fall, from their longest edges to the third corner."""
     apex = _square_lengths(surface, chosen).argmax(axis=1)
     corners = surface.points[surface.triangles[chosen]]
@@ -249,7 +250,7 @@ def _measure_rises(surface: Surface, chosen: Int64Array) -> Float64Array:
     return rises
 
 
-def _compute_gradients(surface: Surface, chosen: Any) -> Float64Array:
+def _compute_gradients(surface: Triangulation, chosen: Any) -> Float64Array:
     """Return the gradients of some triangles, in whatever units there are."""
     a, b, c = (surface.points[surface.triangles[chosen, k]] for k in range(3))
     east, north, up = np.cross(b - a, c - a).T

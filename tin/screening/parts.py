@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...base.arrays import BoolArray, Int32Array, Int64Array
-    from ..constraints.clipping import Surface
 
 __all__ = ["find_clustered", "find_parts", "keep_triangles", "leave_out"]
 
@@ -40,7 +39,7 @@ def leave_out(surface: Triangulation, vertices: Sequence[int] | Int32Array) -> T
     return keep_triangles(surface, ~(first | second | third))
 
 
-def find_parts(surface: Surface | Triangulation, chosen: Int64Array) -> Int32Array:
+def find_parts(surface: Triangulation, chosen: Int64Array) -> Int32Array:
     """Return for each of some triangles, ascending, the connected part of them that it is of."""
     number = np.full(len(surface.triangles) + 1, NO_NEIGHBOR, np.int32)
     number[chosen] = np.arange(len(chosen), dtype=np.int32)

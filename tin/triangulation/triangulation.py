@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["Triangulation"]
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False)
 class Triangulation(Frozen):
     """Triangles over vertices; never changed, all arrays are read-only.
 
@@ -135,6 +135,18 @@ class Triangulation(Frozen):
         """Return the triangles left and right of the edges from a to b, (..., 2) array."""
         sides = [topology.find_triangles(self.half_edges, *ends) for ends in ((a, b), (b, a))]
         return seal(np.stack(sides, axis=-1))
+
+    def find_regions(self, barrier: BoolArray) -> tuple[Int32Array, Int32Array]:
+        """Return the region of each triangle, and the largest triangle of each region.
+
+        ``barrier`` tells which edges no region goes across, (m, 3).
+        """
+        return _kernel.regions(self.points, self.triangles, self.neighbors, barrier)
+
+    def vertices_at(self, xy: Float64Array) -> Int32Array:
+        """Return the vertex at each place, -1 for none."""
+        own = np.ascontiguousarray(self.points[:, :2])
+        return _kernel.vertices_at(own, np.ascontiguousarray(xy))
 
     @cached_property
     def nearest(self) -> NearestVertex:

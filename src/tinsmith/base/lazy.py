@@ -1,4 +1,4 @@
-"""Public names that are loaded when they are first used, as the stub of a package lists them."""
+"""What is loaded when it is first used: public names, and the functions behind methods."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from .optional import describe_missing
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-__all__ = ["lazy_names"]
+__all__ = ["call_method", "lazy_names", "make_html_repr", "register_methods"]
+
+_FUNCTIONS: dict[str, str] = {}
+"""The function behind each method whose work is done by a package above the one of its class."""
 
 
 def lazy_names(
@@ -76,3 +79,27 @@ def _load_stub(package: str) -> bytes:
     spec: Any = find_spec(package)
     data: bytes = spec.loader.get_data(f"{spec.origin.rpartition('.')[0]}.pyi")
     return data
+
+
+def register_methods(functions: dict[str, str]) -> None:
+    """Name the functions that do the work of methods; each is loaded when first called.
+
+    Parameters
+    ----------
+    functions : dict of str to str
+        By class and method (``"TIN.plot"``), the function as ``package.module:name``; it takes the
+        object first.
+    """
+    _FUNCTIONS.update(functions)
+
+
+def call_method(method: str, *given: Any, **options: Any) -> Any:
+    """Call the function that does the work of a method."""
+    module, _, name = _FUNCTIONS[method].partition(":")
+    function: Any = getattr(import_module(module), name)
+    return function(*given, **options)
+
+
+def make_html_repr(thing: object) -> str:
+    """Return the HTML that an object shows in a notebook."""
+    return str(call_method(f"{type(thing).__name__}._repr_html_", thing))

@@ -242,7 +242,7 @@ def test_a_view_in_place_of_a_table_is_refused(path):
         lambda document: document["report"].update(duplicates="any"),
         lambda document: document["report"].update(notes=3),
         lambda document: document["inputs"].update(holes={"list": []}),
-        lambda document: document["inputs"].update(trim="nowhere"),
+        lambda document: document["inputs"]["options"].update(trim="nowhere"),
         lambda document: document["inputs"]["options"].update(threads=0),
         lambda document: document["inputs"]["options"].update(snap=-1.0),
     ],

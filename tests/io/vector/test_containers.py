@@ -203,7 +203,7 @@ def test_one_crs_with_another_number_is_found_again(tmp_path):
         assert geopandas.read_file(path, layer=name).crs == ours.crs.to_wkt()
     assert geopandas.read_file(path, layer="theirs").crs != ours.crs.to_wkt()
     lined = ts.triangulate(TIN.points, breaklines=[TIN.points[[0, 55, 99]]])
-    lined = lined.replace(crs=local.format(7), inputs=None)
+    lined = lined.replace(crs=local.format(7))
     lined.insert([[700_004.5, 4_000_004.5, 9.0]])
     ts.write(lined, path)
     assert ts.read(path).edits == lined.edits

@@ -124,7 +124,7 @@ def test_other_methods_are_those_of_interpolation(method, monkeypatch):
     monkeypatch.setattr(bands, "_STRIP", 100)
     tin = ts.triangulate(uniform(100))
     raster = ts.rasterize(tin, spacing=2.5, method=method)
-    wanted = tin.interpolate(centers_of(raster.grid), method)
+    wanted = tin.interpolate(centers_of(raster.grid), method=method)
     np.testing.assert_array_equal(elevations(raster).ravel(), wanted)
 
 

@@ -44,9 +44,7 @@ def with_lines(tin, **arrays):
     lines = tin.lines
     own = {name: getattr(lines, name) for name in ("vertices", "offsets", "sources")}
     own = {name: array.copy() for name, array in own.items()}
-    return replace(
-        tin, lines=Lines(**(own | {"kinds": lines.kinds, "names": lines.names} | arrays))
-    )
+    return tin.replace(lines=Lines(**(own | {"kinds": lines.kinds, "names": lines.names} | arrays)))
 
 
 def with_chains(tin, chains):
@@ -58,7 +56,7 @@ def with_chains(tin, chains):
         sources=np.arange(len(chains), dtype=np.int32),
         names=("",) * len(chains),
     )
-    return replace(tin, lines=lines)
+    return tin.replace(lines=lines)
 
 
 def surface(points, triangles, segments):
@@ -241,7 +239,7 @@ def left_out(tin, rows, why):
     report = replace(
         tin.report, left_out_rows=np.array(rows, np.int32), left_out_why=np.array(why, np.int8)
     )
-    return replace(tin, report=report)
+    return tin.replace(report=report)
 
 
 def test_rows_left_out_are_named():
@@ -266,7 +264,7 @@ def test_rows_named_as_left_out_are(tin):
 def test_account_of_rows_left_out_that_makes_no_sense(tin, rows, why):
     vertex_of = tin.vertex_of.copy()
     vertex_of[rows[: 1 if rows[0] < 200 else 0]] = -1
-    broken = left_out(replace(tin, vertex_of=vertex_of), rows, why)
+    broken = left_out(tin.replace(vertex_of=vertex_of), rows, why)
     assert "left_out" in kinds(check(broken))
 
 
@@ -298,7 +296,7 @@ def test_constrained_edges_of_no_line(tin):
 
 
 def test_constrained_edges_without_any_lines_are_a_note(tin):
-    result = check(replace(tin, lines=Lines()))
+    result = check(tin.replace(lines=Lines()))
     assert result.ok
     assert [note.kind for note in result.notes] == ["lines"]
     assert result.notes[0].count == len(tin.lines.segments())
@@ -378,7 +376,7 @@ def test_part_of_a_line_that_is_missing_inside():
         sources=np.zeros(2, np.int32),
         names=("", ""),
     )
-    cut = replace(tin, constrained=flags, lines=lines)
+    cut = tin.replace(constrained=flags, lines=lines)
     assert "lines" not in kinds(check(cut))
     result = check(cut, points=given([KERB]))
     assert "missing" in sentences(result)

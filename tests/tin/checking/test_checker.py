@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
-from dataclasses import FrozenInstanceError, replace
+from dataclasses import FrozenInstanceError
 
 import numpy as np
 import pytest
@@ -40,7 +40,7 @@ def damaged(tin, name, at, value):
     """The TIN with one entry of one array overwritten."""
     array = getattr(tin, name).copy()
     array[at] = value
-    return replace(tin, **{name: array})
+    return tin.replace(**{name: array})
 
 
 def inner_edge(tin):
@@ -169,14 +169,14 @@ WRONG_ARRAYS = {
     ("name", "array"), [(name, array) for name, arrays in WRONG_ARRAYS.items() for array in arrays]
 )
 def test_arrays_of_wrong_shape_or_type(tin, name, array):
-    result = check(replace(tin, **{name: array.copy()}))
+    result = check(tin.replace(**{name: array.copy()}))
     assert kinds(result) == {"shape"}
     assert any(name in problem.sentence for problem in result.problems)
 
 
 def test_no_triangles(tin):
     none = np.empty((0, 3), np.int32)
-    result = check(replace(tin, triangles=none, neighbors=none, constrained=none.astype(bool)))
+    result = check(tin.replace(triangles=none, neighbors=none, constrained=none.astype(bool)))
     assert kinds(result) == {"shape"}
     assert "no triangle" in result.problems[0].sentence
 
@@ -198,7 +198,7 @@ def test_triangle_that_is_its_own_neighbor(tin):
 
 
 def test_two_neighbors_exchanged(tin):
-    assert kinds(check(replace(tin, neighbors=np.roll(tin.neighbors, 1, axis=1)))) == {"neighbors"}
+    assert kinds(check(tin.replace(neighbors=np.roll(tin.neighbors, 1, axis=1)))) == {"neighbors"}
 
 
 def test_edge_flagged_on_one_side(tin):
@@ -210,7 +210,7 @@ def test_edge_flagged_on_one_side(tin):
 
 def test_vertex_without_triangle(tin):
     points = np.vstack([tin.points, [50.0, 50.0, 0.0]])
-    result = check(replace(tin, points=points))
+    result = check(tin.replace(points=points))
     assert kinds(result) == {"unused"}
     assert result.problems[0].first == (60,)
 
@@ -235,7 +235,7 @@ def test_edge_with_four_triangles():
 
 
 def test_clockwise_triangles(tin):
-    mirrored = replace(tin, points=tin.points * [-1, 1, 1])
+    mirrored = tin.replace(points=tin.points * [-1, 1, 1])
     result = check(mirrored)
     assert "orientation" in kinds(result)
     assert result.problems[0].count == len(tin.triangles)
@@ -389,7 +389,7 @@ def test_constrained_edges_need_not_be_delaunay(tin):
     ends = np.stack([broken.triangles[:, [1, 2, 0]], broken.triangles[:, [2, 0, 1]]])
     flags = (ends.min(axis=0) == a) & (ends.max(axis=0) == b)
     assert flags.sum() == 2
-    result = check(replace(broken, constrained=flags))
+    result = check(broken.replace(constrained=flags))
     assert result.ok
     assert result.counts["constrained_edges"] == 1
 
@@ -465,7 +465,7 @@ def test_other_number_of_rows(tin):
 
 
 def test_levels_look_at_no_more_than_asked(tin):
-    mirrored = replace(tin, points=tin.points * [-1, 1, 1])
+    mirrored = tin.replace(points=tin.points * [-1, 1, 1])
     assert check(mirrored, level=1).ok
     broken = flipped(tin, *flippable(tin)[0])
     assert check(broken, level=2).ok
@@ -501,7 +501,7 @@ def test_result_is_plain_data(tin):
 
 
 def test_many_faults_are_counted_and_a_few_shown(tin):
-    result = check(replace(tin, neighbors=np.full_like(tin.neighbors, 10_000)))
+    result = check(tin.replace(neighbors=np.full_like(tin.neighbors, 10_000)))
     (problem,) = result.problems
     assert problem.count == len(tin.triangles)
     assert problem.first == (0, 1, 2, 3, 4)

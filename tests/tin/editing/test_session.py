@@ -374,7 +374,7 @@ def test_edits_away_from_lines_build_nothing_anew(monkeypatch):
     far = np.flatnonzero(points[:, 1] > 60)
     tin.set_elevation(int(far[0]), 0.5)
     with monkeypatch.context() as patched:
-        patched.setattr("tinsmith.tin.editing.session.build_state", None)
+        patched.setattr("tinsmith.tin.editing.changes.assemble", None)
         assert tin.insert([[70.5, 80.5, 3], points[far[1]]]).tolist() == [400, far[1]]
         tin.move(int(far[2]), [75.25, 85.5, 4])
         tin.remove([int(far[3]), int(far[4])])
@@ -396,7 +396,7 @@ def test_flips_build_nothing_anew_where_no_lines_meet(lines, monkeypatch):
     tin = ts.triangulate(points, breaklines=lines)
     flips = []
     with monkeypatch.context() as patched:
-        patched.setattr("tinsmith.tin.editing.session.build_state", None)
+        patched.setattr("tinsmith.tin.editing.changes.assemble", None)
         for a, b in tin.edges[5::40].tolist():
             left, right = corners_beside(tin, a, b)
             try:

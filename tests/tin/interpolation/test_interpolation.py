@@ -72,7 +72,7 @@ def test_weights_are_those_of_the_definition_on_small_grids(method, sites, seed)
     z = rng(seed).random(len(sites)) * 10
     tin = ts.triangulate(np.column_stack([np.array(sites, float), z]))
     xy = strictly_inside(tin, places_of(tin))
-    found = tin.interpolate(xy, method)
+    found = tin.interpolate(xy, method=method)
     wanted = [expected(WEIGHTS[method], sites, z, p) for p in xy]
     np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-10)
 
@@ -84,7 +84,7 @@ def test_weights_are_those_of_the_definition_on_uneven_points(method, shift):
     tin = ts.triangulate(points)
     xy = strictly_inside(tin, places_of(tin))
     wanted = [expected(WEIGHTS[method], points[:, :2], points[:, 2], p) for p in xy]
-    np.testing.assert_allclose(tin.interpolate(xy, method), wanted, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(tin.interpolate(xy, method=method), wanted, rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize("method", ["natural", "laplace"])
@@ -98,7 +98,7 @@ def test_slivers_along_the_hull_take_no_digits(method, offset):
     tin = ts.triangulate(np.column_stack([points, z]))
     xy = strictly_inside(tin, places_of(tin))
     wanted = [expected(WEIGHTS[method], points, z, p) for p in xy]
-    np.testing.assert_allclose(tin.interpolate(xy, method), wanted, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(tin.interpolate(xy, method=method), wanted, rtol=0, atol=1e-9)
 
 
 ROUNDINGS_APART = {
@@ -134,7 +134,7 @@ def test_points_a_rounding_apart_take_no_digits(method, case):
     z = rng(1).random(len(sites)) * 100
     tin = ts.triangulate(np.column_stack([sites, z]))
     wanted = expected(WEIGHTS[method], sites, z, place)
-    assert float(tin.interpolate(place, method)) == pytest.approx(wanted, abs=1e-8)
+    assert float(tin.interpolate(place, method=method)) == pytest.approx(wanted, abs=1e-8)
 
 
 @pytest.mark.parametrize("method", ["natural", "laplace"])
@@ -142,7 +142,7 @@ def test_next_to_an_edge_of_the_hull_the_limit_is_linear(method):
     points = np.array([[0, 0, 1], [4, 0, 3], [2, 5, 100]], float)
     tin = ts.triangulate(points)
     for away in (1e-3, 1e-9, 1e-15, 1e-60):
-        found = tin.interpolate([[1.0, away]], method)
+        found = tin.interpolate([[1.0, away]], method=method)
         assert found == pytest.approx(1.5 + 19.6 * away, abs=1e-12)  # three make a plane
 
 
@@ -161,7 +161,7 @@ def test_natural_neighbours_do_not_depend_on_the_triangles_given(method):
         tuple(sorted(e)) for e in tin.edges.tolist()
     }
     np.testing.assert_allclose(
-        other.interpolate(xy, method), tin.interpolate(xy, method), atol=1e-10
+        other.interpolate(xy, method=method), tin.interpolate(xy, method=method), atol=1e-10
     )
 
 
@@ -171,8 +171,8 @@ def test_sibson_on_a_raster_is_the_same_whichever_way_squares_are_cut():
     turned = points[:, [1, 0, 2]]
     xy = rng(9).random((200, 2)) * 5
     np.testing.assert_allclose(
-        ts.triangulate(points).interpolate(xy, "natural"),
-        ts.triangulate(turned).interpolate(xy[:, ::-1], "natural"),
+        ts.triangulate(points).interpolate(xy, method="natural"),
+        ts.triangulate(turned).interpolate(xy[:, ::-1], method="natural"),
         atol=1e-13,
     )
 
@@ -183,7 +183,7 @@ def test_a_hub_of_many_neighbours_is_no_limit(method):
     ring = np.column_stack([100 * np.cos(angle), 100 * np.sin(angle), np.zeros(5000)])
     ring[:, 2] = 7
     tin = ts.triangulate(ring)
-    np.testing.assert_allclose(tin.interpolate(rng(1).random((20, 2)) * 50, method), 7.0)
+    np.testing.assert_allclose(tin.interpolate(rng(1).random((20, 2)) * 50, method=method), 7.0)
 
 
 # ---------------------------------------------------------------- what all methods have in common
@@ -199,14 +199,16 @@ def test_planes_are_reproduced(method, shift):
     tin = ts.triangulate(points)
     xy = places_of(tin)
     xy = xy[tin.locate(xy) >= 0]
-    np.testing.assert_allclose(tin.interpolate(xy, method), plane(xy), rtol=0, atol=2e-9)
+    np.testing.assert_allclose(tin.interpolate(xy, method=method), plane(xy), rtol=0, atol=2e-9)
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_vertices_keep_their_elevations_to_the_last_bit(method):
     for points in (uniform(300) + np.array([*UTM, 1e9]), raster_points(12)):
         tin = ts.triangulate(points)
-        np.testing.assert_array_equal(tin.interpolate(tin.points[:, :2], method), tin.points[:, 2])
+        np.testing.assert_array_equal(
+            tin.interpolate(tin.points[:, :2], method=method), tin.points[:, 2]
+        )
 
 
 def raster_points(n):
@@ -221,7 +223,7 @@ def test_inside_there_is_an_elevation_and_outside_none(method):
     points = np.array([(x, y, x * y) for x, y in outer + inner], float)
     tin = ts.triangulate(points, holes=[np.array(inner, float)])
     xy = rng(1).random((500, 2)) * 5 - 1
-    found = tin.interpolate(xy, method)
+    found = tin.interpolate(xy, method=method)
     np.testing.assert_array_equal(np.isnan(found), tin.locate(xy) < 0)
     assert np.isnan(found).sum() > 100
 
@@ -230,9 +232,9 @@ def test_inside_there_is_an_elevation_and_outside_none(method):
 def test_any_number_of_threads_gives_the_same_bits(method):
     tin = ts.triangulate(uniform(2000))
     xy = rng(1).random((5000, 2)) * 110
-    one = tin.interpolate(xy, method, threads=1, extrapolate="nearest")
+    one = tin.interpolate(xy, method=method, threads=1, extrapolate="nearest")
     for threads in (2, 5, None):
-        again = tin.interpolate(xy, method, threads=threads, extrapolate="nearest")
+        again = tin.interpolate(xy, method=method, threads=threads, extrapolate="nearest")
         np.testing.assert_array_equal(again, one)
 
 
@@ -240,18 +242,18 @@ def test_any_number_of_threads_gives_the_same_bits(method):
 def test_one_place_is_a_number(method):
     tin = ts.triangulate(uniform(50))
     place = [50.0, 50.0]
-    found = tin.interpolate(place, method)
+    found = tin.interpolate(place, method=method)
     assert np.ndim(found) == 0
-    assert float(found) == tin.interpolate([place], method)[0]
-    assert float(tin.interpolate(np.array(place), method)) == float(found)
+    assert float(found) == tin.interpolate([place], method=method)[0]
+    assert float(tin.interpolate(np.array(place), method=method)) == float(found)
 
 
 def test_nothing_and_nan_are_places():
     tin = ts.triangulate(uniform(50))
     for method in METHODS:
-        assert tin.interpolate([], method).shape == (0,)
+        assert tin.interpolate([], method=method).shape == (0,)
         places = [[np.nan, 50.0], [50.0, 50.0]]
-        found = tin.interpolate(places, method, extrapolate="nearest")
+        found = tin.interpolate(places, method=method, extrapolate="nearest")
         assert np.isnan(found).tolist() == [True, False]
 
 
@@ -261,15 +263,15 @@ def test_elevations_of_any_size_do_not_overflow():
     tin = ts.triangulate(points)
     xy = tin.points[tin.triangles, :2].mean(axis=1)
     for method in METHODS:
-        assert np.isfinite(tin.interpolate(xy, method)).all()
+        assert np.isfinite(tin.interpolate(xy, method=method)).all()
 
 
 def test_wrong_words_are_refused():
     tin = ts.triangulate(uniform(10))
     with pytest.raises(OptionError, match=r"Invalid method 'cubic'.*one of linear, nearest"):
-        tin.interpolate([[1, 1]], "cubic")
+        tin.interpolate([[1, 1]], method="cubic")
     with pytest.raises(OptionError, match="Invalid method"):
-        tin.interpolate([[1, 1]], ["linear"])
+        tin.interpolate([[1, 1]], method=["linear"])
     with pytest.raises(OptionError, match="Invalid extrapolate 'linear'"):
         tin.interpolate([[1, 1]], extrapolate="linear")
     with pytest.raises(OptionError, match="Invalid threads 0"):
@@ -280,10 +282,10 @@ def test_wrong_words_are_refused():
 
 def test_edits_are_seen_by_every_method():
     tin = ts.triangulate(raster_points(5))
-    before = {method: tin.interpolate([[1.5, 1.6]], method)[0] for method in METHODS}
+    before = {method: tin.interpolate([[1.5, 1.6]], method=method)[0] for method in METHODS}
     tin.insert([[1.5, 1.6, 99.0]])
     for method in METHODS:
-        assert tin.interpolate([[1.5, 1.6]], method)[0] == 99.0 != before[method]
+        assert tin.interpolate([[1.5, 1.6]], method=method)[0] == 99.0 != before[method]
 
 
 # ---------------------------------------------------------------- hard and soft breaklines
@@ -303,15 +305,15 @@ def test_nothing_is_smoothed_across_a_hard_breakline(method):
     xy = rng(4).random((2000, 2)) * 100
     xy = xy[tin.locate(xy) >= 0]
     np.testing.assert_allclose(
-        tin.interpolate(xy, method), 50 - np.abs(xy[:, 0] - 50), rtol=0, atol=1e-9
+        tin.interpolate(xy, method=method), 50 - np.abs(xy[:, 0] - 50), rtol=0, atol=1e-9
     )
 
 
 @pytest.mark.parametrize("method", ["natural", "laplace", "c1"])
 def test_a_soft_breakline_is_smoothed(method):
-    at_ridge = roof("soft").interpolate([[50.0, 60.0], [50.5, 60.0]], method)
+    at_ridge = roof("soft").interpolate([[50.0, 60.0], [50.5, 60.0]], method=method)
     assert (np.array([49.0, 48.5]) < at_ridge + 10).all()
-    hard = roof().interpolate([[50.5, 60.0]], method)
+    hard = roof().interpolate([[50.5, 60.0]], method=method)
     assert abs(at_ridge[1] - hard[0]) > 1e-3
 
 
@@ -327,7 +329,7 @@ def test_a_hard_breakline_is_linear_from_both_sides(method):
             at = a + share * (b - a)
             near = [at[:2] + 1e-10 * side * across for side in (-1, 0, 1)]
             # Vertices inserted on the way are no part of the line given.
-            np.testing.assert_allclose(tin.interpolate(near, method), at[2], atol=1e-6)
+            np.testing.assert_allclose(tin.interpolate(near, method=method), at[2], atol=1e-6)
 
 
 @pytest.mark.parametrize("weights", ["natural", "laplace"])
@@ -340,7 +342,7 @@ def test_a_line_across_everything_leaves_the_vertices_of_one_side(weights):
     side = np.concatenate([left, line])
     xy = strictly_inside(ts.triangulate(side), rng(3).random((40, 2)) * [50, 100])
     wanted = [expected(WEIGHTS[weights], side[:, :2], side[:, 2], p) for p in xy]
-    np.testing.assert_allclose(tin.interpolate(xy, weights), wanted, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(tin.interpolate(xy, method=weights), wanted, rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize("method", ["natural", "laplace", "c1"])
@@ -351,7 +353,7 @@ def test_around_the_end_of_a_line_the_surface_is_continuous(method):
     angle = np.linspace(0, 2 * np.pi, 2001)
     for radius in (3.0, 1e-3):
         circle = np.column_stack([50 + radius * np.cos(angle), 50 + radius * np.sin(angle)])
-        jumps = np.abs(np.diff(tin.interpolate(circle, method)))
+        jumps = np.abs(np.diff(tin.interpolate(circle, method=method)))
         assert jumps.max() < 0.2 * radius
 
 
@@ -370,7 +372,7 @@ def test_gradients_are_those_of_scipy_s_minimum_norm_network():
         both = inside & np.isfinite(peer(xy))
         assert both.sum() > 0.9 * len(xy)
         np.testing.assert_allclose(
-            tin.interpolate(xy[both], "c1"), peer(xy[both]), rtol=0, atol=1e-8
+            tin.interpolate(xy[both], method="c1"), peer(xy[both]), rtol=0, atol=1e-8
         )
 
 
@@ -380,9 +382,9 @@ def slopes_across(tin, method, edges, step=1e-8):
     at = a + (b - a) / 3
     normal = np.column_stack([-(b - a)[:, 1], (b - a)[:, 0]])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
-    here = tin.interpolate(at, method)
-    ahead = (tin.interpolate(at + step * normal, method) - here) / step
-    behind = (here - tin.interpolate(at - step * normal, method)) / step
+    here = tin.interpolate(at, method=method)
+    ahead = (tin.interpolate(at + step * normal, method=method) - here) / step
+    behind = (here - tin.interpolate(at - step * normal, method=method)) / step
     return ahead, behind
 
 
@@ -422,7 +424,7 @@ def test_c1_comes_closer_to_a_smooth_surface_than_linear():
     points[:, 2] = hills(points)
     tin = ts.triangulate(points)
     xy = rng(2).random((5000, 2)) * 80 + 10
-    errors = {m: np.sqrt(np.mean((tin.interpolate(xy, m) - hills(xy)) ** 2)) for m in PLANAR}
+    errors = {m: np.sqrt(np.mean((tin.interpolate(xy, method=m) - hills(xy)) ** 2)) for m in PLANAR}
     assert errors["c1"] < 0.4 * errors["linear"]
 
 
@@ -441,7 +443,7 @@ def test_outside_the_nearest_place_of_the_boundary_counts(method):
     )
     xy = rng(3).random((400, 2)) * 60 - 15
     outside = tin.locate(xy) < 0
-    found = tin.interpolate(xy[outside], method, extrapolate="nearest")
+    found = tin.interpolate(xy[outside], method=method, extrapolate="nearest")
     segments = np.concatenate([np.stack([r, np.roll(r, -1)], 1) for r in tin.rings])
     for p, z in zip(xy[outside], found, strict=True):
         a, b = tin.points[segments[:, 0]], tin.points[segments[:, 1]]
@@ -456,7 +458,7 @@ def test_outside_the_nearest_place_of_the_boundary_counts(method):
 def test_outside_the_nearest_vertex_counts_for_the_nearest():
     tin = ts.triangulate(uniform(30))
     xy = rng(1).random((50, 2)) * 300 - 100
-    found = tin.interpolate(xy, "nearest", extrapolate="nearest")
+    found = tin.interpolate(xy, method="nearest", extrapolate="nearest")
     np.testing.assert_array_equal(found, tin.points[tin.closest_vertex(xy), 2])
 
 
@@ -464,10 +466,10 @@ def test_outside_the_nearest_vertex_counts_for_the_nearest():
 def test_extrapolation_changes_nothing_inside(method):
     tin = ts.triangulate(uniform(100))
     xy = rng(1).random((300, 2)) * 100
-    plain = tin.interpolate(xy, method)
+    plain = tin.interpolate(xy, method=method)
     inside = ~np.isnan(plain)
     np.testing.assert_array_equal(
-        tin.interpolate(xy, method, extrapolate="nearest")[inside], plain[inside]
+        tin.interpolate(xy, method=method, extrapolate="nearest")[inside], plain[inside]
     )
 
 
@@ -485,7 +487,7 @@ def test_outside_the_westernmost_of_the_nearest_places_counts(method):
         number = np.argsort(order)
         triangles = number[kept[rng(seed).permutation(len(kept))]]
         tin = TIN.from_triangles(whole.points[order], triangles)
-        found.add(tuple(tin.interpolate(places, method, extrapolate="nearest").tolist()))
+        found.add(tuple(tin.interpolate(places, method=method, extrapolate="nearest").tolist()))
     assert len(found) == 1
     (one,) = found
     if method != "c1":
@@ -500,4 +502,4 @@ def test_the_nearest_vertex_inside_is_the_westernmost_of_several():
     places = np.column_stack([x[x < 4] + 0.5, y[x < 4]])
     for seed in range(10):
         tin = ts.triangulate(points[rng(seed).permutation(25)])
-        np.testing.assert_array_equal(tin.interpolate(places, "nearest"), points[x < 4, 2])
+        np.testing.assert_array_equal(tin.interpolate(places, method="nearest"), points[x < 4, 2])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .requirements import require
+from .....base.records import require
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .....base.crs import CRS, Unit
-from .....tin.building.constrained import LineOptions
 from .....tin.building.inputs import BuildInputs
+from .....tin.building.options import BuildOptions
 from .....tin.constraints.breaklines import Lines
 from .....tin.constraints.constraint_set import LineSet
 from .....tin.constraints.constraint_table import ConstraintTable
@@ -19,7 +19,7 @@ from .columns import pack_columns
 
 if TYPE_CHECKING:
     from .....base.arrays import AnyArray, Float64Array
-    from .....tin.editing.version import Version
+    from .....tin.building.version import Version
     from .....tin.surface import TIN
 
 __all__ = ["CLASSES", "Record", "pack_tin", "take_rows"]
@@ -27,7 +27,7 @@ __all__ = ["CLASSES", "Record", "pack_tin", "take_rows"]
 CLASSES: dict[str, Any] = {
     kind.__name__: kind
     for kind in (
-        *(BuildInputs, ConstraintTable, Crossings, Edit, LineOptions, Lines, LineSet),
+        *(BuildInputs, BuildOptions, ConstraintTable, Crossings, Edit, Lines, LineSet),
         *(Overruled, Report, Simplification, Unmended),
     )
 }

@@ -9,29 +9,22 @@ import numpy as np
 
 from .....base.crs import CRS, Unit
 from .....base.errors import PointsError, TinsmithError
+from .....base.records import require, require_fields, require_indices
 from .....tin import topology
+from .....tin.building.inputs import BuildInputs
+from .....tin.building.version import Version
 from .....tin.editing.origin import Origin
-from .....tin.editing.version import Version
 from .....tin.surface import TIN
 from .....tin.triangulation import Triangulation
 from .....tin.validation.points import as_points
 from .....tin.validation.triangles import as_flags, as_triangles, turn_counter_clockwise
 from .columns import unpack_columns
 from .packing import CLASSES, take_rows
-from .requirements import (
-    require,
-    require_edits,
-    require_inputs,
-    require_lines,
-    require_numbers,
-    require_report,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from .....base.arrays import AnyArray, BoolArray, Float64Array, Int32Array
-    from .....tin.building.inputs import BuildInputs
     from .packing import Record
 
 __all__ = ["unpack_tin"]
@@ -70,13 +63,10 @@ def _unpack_tin(record: Record, *mesh: AnyArray) -> TIN:
     if "given" in document:
         before = document["given"]
         given = _unpack_version(before, unpack(before["mesh"]), unpack)
-    edits = unpack(document["edits"])
-    require_edits(edits)
-    tin = TIN(
-        **{name: getattr(version.triangulation, name) for name in _MESH},
-        vertex_of=version.vertex_of,
-        report=version.report,
-        lines=version.lines,
+    origin = Origin(inputs, given, tuple(unpack(document["edits"])))
+    origin._require_sound(version)
+    tin = TIN._of(
+        version,
         crs=unpack(document["crs"]),
         elevation_unit=unpack(document["elevation_unit"]),
         row_attributes=unpack_columns(
@@ -85,11 +75,8 @@ def _unpack_tin(record: Record, *mesh: AnyArray) -> TIN:
     )
     if inputs is not None:
         inputs = replace(inputs, crs=tin.crs, elevation_unit=tin.elevation_unit)
-    tin._resume(Origin(inputs, given, tuple(edits)))
+    tin._resume(origin._replace(inputs=inputs))
     return tin
-
-
-_MESH = ("points", "triangles", "neighbors", "constrained")
 
 
 def _unpack_version(document: Any, mesh: Iterable[Any], unpack: Any) -> Version:
@@ -98,27 +85,21 @@ def _unpack_version(document: Any, mesh: Iterable[Any], unpack: Any) -> Version:
     corners, flags = as_triangles(triangles, len(xyz)), as_flags(constrained, len(triangles))
     turned, flags = turn_counter_clockwise(xyz, corners, flags)
     neighbors = topology.neighbors_of(turned, len(xyz))
-    vertex_of, lines = unpack(document["vertex_of"]), unpack(document["lines"])
-    report = unpack(document["report"])
-    require_numbers(vertex_of, np.int32, -1, len(xyz), "vertices of the rows")
-    require_lines(lines, len(xyz))
-    require_report(report, len(vertex_of), len(xyz), len(turned))
-    return Version(
-        triangulation=Triangulation(
-            points=xyz, triangles=turned, neighbors=neighbors, constrained=flags
-        ),
-        vertex_of=vertex_of,
-        report=report,
-        lines=lines,
+    version = Version(
+        triangulation=Triangulation(xyz, turned, neighbors, flags),
+        **{name: unpack(document[name]) for name in ("vertex_of", "lines", "report")},
     )
+    version._require_sound()
+    return version
 
 
 def _unpack_inputs(document: Mapping[str, Any], version: Version, unpack: Any) -> BuildInputs:
     inputs, count = unpack(document["inputs"]), document["n_rows"]
     numbers, values = unpack(document["rows"])
     require(type(count) is int and 0 <= count <= len(version.vertex_of), "too many rows")
-    require_inputs(inputs, count)
-    require_numbers(numbers, np.int32, 0, count, "rows")
+    require(isinstance(inputs, BuildInputs), "the inputs are none")
+    inputs._require_sound(count)
+    require_indices(numbers, count, "rows")
     require(isinstance(values, np.ndarray) and values.shape == (len(numbers), 3), "rows")
     rows = take_rows(version, count)
     rows[numbers] = values
@@ -141,7 +122,9 @@ class _Unpacker:
             return tree
         if "type" in tree:
             own = {k: self.unpack(v, depth + 1) for k, v in tree.items() if k != "type"}
-            return CLASSES[tree["type"]](**own)
+            value = CLASSES[tree["type"]](**own)
+            require_fields(value, CLASSES | {"CRS": CRS, "Unit": Unit})
+            return value
         ((kind, content),) = tree.items()
         if kind in ("list", "tuple"):
             items = [self.unpack(one, depth + 1) for one in content]

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..crs import CRS, shorten_crs
 from ..errors import OptionError
-from ..methods import make_html_repr
+from ..lazy import make_html_repr
 from ..notes import as_notes, join_notes
 from ..ranges import require_degrees
 from ..sentences import counted

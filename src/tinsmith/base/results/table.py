@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from .. import optional
 from ..errors import OptionError
-from ..methods import make_html_repr
+from ..lazy import make_html_repr
 from ..notes import as_notes, join_notes
 from ..sentences import counted
 from ..types import Frozen

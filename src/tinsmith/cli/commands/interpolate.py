@@ -113,7 +113,7 @@ def _interpolate(
         raise Failure(f"The points have a column '{column}' already: name another with --column.")
     elevations = tin.interpolate(
         _reproject(tin, points, asked["at_crs"], notes),
-        asked["method"],
+        method=asked["method"],
         extrapolate=asked["extrapolate"],
         threads=threads,
     )

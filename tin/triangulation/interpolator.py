@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ... import _kernel
-from ...validation.threads import thread_count
-from .barriers import find_barriers
+from .. import _kernel
+from ..validation.threads import thread_count
 
 if TYPE_CHECKING:
-    from ....base.arrays import BoolArray, Float64Array
-    from ....base.policies import InterpolationMethod
-    from ...constraints.breaklines import Lines
-    from ...triangulation import Triangulation
+    from collections.abc import Callable
+
+    from ...base.arrays import BoolArray, Float64Array
+    from ...base.policies import InterpolationMethod
+    from .triangulation import Triangulation
 
 __all__ = ["Interpolator"]
 
@@ -31,17 +31,17 @@ class Interpolator:
     Parameters
     ----------
     surface : Triangulation
-    lines : Lines
-        They tell hard breaklines from soft ones.
+    find_barriers : callable
+        Gives the edges that are breaks of slope, (m, 3) flags of the edge opposite each corner.
 
     Notes
     -----
     Any number of threads may ask it at a time.
     """
 
-    def __init__(self, surface: Triangulation, lines: Lines) -> None:
+    def __init__(self, surface: Triangulation, find_barriers: Callable[[], BoolArray]) -> None:
         self._surface = surface
-        self._lines = lines
+        self._find_barriers = find_barriers
 
     def interpolate(
         self,
@@ -105,18 +105,17 @@ class Interpolator:
         return self._surface.points[:, 2]
 
     @cached_property
-    def barriers(self) -> BoolArray:
-        """Edges that are breaks of slope, (m, 3) array."""
-        return find_barriers(self._surface, self._lines)
+    def _barriers(self) -> BoolArray:
+        return self._find_barriers()
 
     @cached_property
     def _neighbors(self) -> _kernel.NaturalNeighbors:
-        return _kernel.NaturalNeighbors(self._surface.locator, self.barriers)
+        return _kernel.NaturalNeighbors(self._surface.locator, self._barriers)
 
     @cached_property
     def _patches(self) -> _kernel.SmoothPatches:
         threads = thread_count(None, len(self._surface.points))
-        return _kernel.SmoothPatches(self._surface.locator, self.barriers, threads)
+        return _kernel.SmoothPatches(self._surface.locator, self._barriers, threads)
 
     @cached_property
     def _boundary(self) -> _kernel.NearestBoundary:

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ... import topology
+from .. import topology
 
 if TYPE_CHECKING:
-    from ....base.arrays import BoolArray
-    from ...constraints.breaklines import Lines
-    from ...triangulation import Triangulation
+    from ...base.arrays import BoolArray
+    from ..triangulation import Triangulation
+    from .breaklines import Lines
 
 __all__ = ["find_barriers"]
 

@@ -1,1 +1,0 @@
-"""Interpolation: the elevation between vertices, by several methods."""
