@@ -495,6 +495,22 @@ def test_outside_the_westernmost_of_the_nearest_places_counts(method):
         assert one == pytest.approx(wanted)
 
 
+@pytest.mark.parametrize("mirror", ["east", "north"])
+def test_places_as_near_by_exact_distances_are_tied(mirror):
+    """Of two sides like a roof, whose rounded distances from below its middle differ."""
+    places = np.array([[20.0, 500_000.0 + down] for down in np.linspace(0.0, 9.0, 64)])
+    roof = [[16, 500_000, 3], [20, 500_012, 0], [20, 500_016, 0], [24, 500_000, 1]]
+    points, triangles = np.array(roof, float), [[0, 1, 2], [1, 3, 2]]
+    if mirror == "north":
+        places, points = places[:, ::-1], points[:, [1, 0, 2]]
+        triangles = [one[::-1] for one in triangles]
+    tin = TIN.from_triangles(points, triangles)
+    share = ((places - points[0, :2]) @ (points[1] - points[0])[:2]) / 160
+    wanted = 3 - 3 * share  # on the western or the southern side
+    found = tin.interpolate(places, extrapolate="nearest")
+    np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-9)
+
+
 def test_the_nearest_vertex_inside_is_the_westernmost_of_several():
     """Between the points of a lattice, whatever their order."""
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(5.0), np.arange(5.0)))

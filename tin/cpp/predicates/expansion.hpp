@@ -74,10 +74,21 @@ inline Expansion<2> expand(TwoDoubles value) {
   return result;
 }
 
+template <std::size_t N, std::size_t M>
+Expansion<N> widen(const Expansion<M>& value) {
+  static_assert(M <= N);
+  Expansion<N> result;
+  for (std::size_t i = 0; i < value.size; ++i) result.push_nonzero(value.part[i]);
+  return result;
+}
+
+// Parts do not overlap, so no expansion has more of them than doubles have places for bits.
+constexpr std::size_t at_most(std::size_t parts) { return parts < 2098 ? parts : 2098; }
+
 // Merge by magnitude, then carry upwards (fast expansion sum with zero elimination).
 template <std::size_t N, std::size_t M>
-Expansion<N + M> operator+(const Expansion<N>& a, const Expansion<M>& b) {
-  Expansion<N + M> result;
+Expansion<at_most(N + M)> operator+(const Expansion<N>& a, const Expansion<M>& b) {
+  Expansion<at_most(N + M)> result;
   std::size_t i = 0;
   std::size_t j = 0;
   const auto magnitude = [](double v) { return v < 0.0 ? -v : v; };
@@ -102,14 +113,14 @@ Expansion<N> operator-(const Expansion<N>& a) {
 }
 
 template <std::size_t N, std::size_t M>
-Expansion<N + M> operator-(const Expansion<N>& a, const Expansion<M>& b) {
+Expansion<at_most(N + M)> operator-(const Expansion<N>& a, const Expansion<M>& b) {
   return a + (-b);
 }
 
 // Scale by one double.
 template <std::size_t N>
-Expansion<2 * N> operator*(const Expansion<N>& a, double factor) {
-  Expansion<2 * N> result;
+Expansion<at_most(2 * N)> operator*(const Expansion<N>& a, double factor) {
+  Expansion<at_most(2 * N)> result;
   double carry = 0.0;
   for (std::size_t i = 0; i < a.size; ++i) {
     const TwoDoubles product = exact_product(a.part[i], factor);
@@ -124,8 +135,8 @@ Expansion<2 * N> operator*(const Expansion<N>& a, double factor) {
 }
 
 template <std::size_t N, std::size_t M>
-Expansion<2 * N * M> operator*(const Expansion<N>& a, const Expansion<M>& b) {
-  Expansion<2 * N * M> total;
+Expansion<at_most(2 * N * M)> operator*(const Expansion<N>& a, const Expansion<M>& b) {
+  Expansion<at_most(2 * N * M)> total;
   for (std::size_t j = 0; j < b.size; ++j) {
     const auto sum = total + a * b.part[j];
     total.size = sum.size;
