@@ -1,0 +1,31 @@
+"""Boxes of tiles: closed rectangles, those at the rim without end."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...base.types import Bounds
+
+if TYPE_CHECKING:
+    from ...base.arrays import BoolArray, Float64Array
+
+__all__ = ["are_in_box", "find_limits", "widen"]
+
+
+def find_limits(box: Bounds) -> tuple[Float64Array, Float64Array]:
+    """Return the southwestern and the northeastern corner, (2,) arrays."""
+    return np.array([box.xmin, box.ymin]), np.array([box.xmax, box.ymax])
+
+
+def are_in_box(places: Float64Array, box: Bounds) -> BoolArray:
+    """Tell which places, (..., 2 or more), lie in a closed box."""
+    low, high = find_limits(box)
+    xy = places[..., :2]
+    return np.asarray(((xy >= low) & (xy <= high)).all(axis=-1))
+
+
+def widen(box: Bounds, margin: float) -> Bounds:
+    """Return a box that is wider by a margin on every side."""
+    return Bounds(box.xmin - margin, box.ymin - margin, box.xmax + margin, box.ymax + margin)
