@@ -169,8 +169,11 @@ class CenterScan {
       const Point p{grid_.x[column], grid_.y[row]};
       const auto weights = CornerWeights::at(p, corner[0], corner[1], corner[2]);
       const double least = std::min({weights.of[0], weights.of[1], weights.of[2]});
-      if (least < 0.0 || (least == 0.0 && !takes_edge(t, weights, row, column))) continue;
-      write(weights, place_of(row, column));
+      if (least > 0.0) {
+        write(weights, place_of(row, column));
+      } else if (least == 0.0 && takes_edge(t, weights, row, column)) {
+        write(weights.settled(p, corner[0], corner[1], corner[2]), place_of(row, column));
+      }
     }
   }
 

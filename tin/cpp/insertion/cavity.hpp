@@ -21,14 +21,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "../base/rare.hpp"
 #include "../predicates/predicates.hpp"
 #include "ghost_mesh.hpp"
-
-#if defined(__GNUC__)
-#define TINSMITH_RARE __attribute__((noinline, cold))
-#else
-#define TINSMITH_RARE
-#endif
 
 namespace tinsmith {
 

@@ -173,9 +173,10 @@ class NearestBoundary {
     const double part = is_late ? share - 1.0 : share;
     const double x = p.x - from.x - part * east, y = p.y - from.y - part * north;
     const double rise = surface_.elevation(end) - surface_.elevation(start);
-    const double size = std::abs(p.x - a.x) + std::abs(p.y - a.y) + std::abs(east) + std::abs(north);
+    const double size =
+        std::abs(p.x - a.x) + std::abs(p.y - a.y) + std::abs(east) + std::abs(north);
     const double off = kRoundingsOfOffset * kUnitRoundoff * size;
-    const bool is_before = along < -off * size, is_behind = along - length > off * size;
+    const bool is_before = along<-off * size, is_behind = along - length> off * size;
     return {{e, share},
             x * x + y * y,
             off * (2.0 * (std::abs(x) + std::abs(y)) + 2.0 * off),

@@ -9,6 +9,7 @@
 #include "../base/box.hpp"
 #include "../base/ids.hpp"
 #include "../base/point.hpp"
+#include "../base/rare.hpp"
 #include "../predicates/predicates.hpp"
 
 namespace tinsmith {
@@ -105,17 +106,48 @@ struct CornerWeights {
         {detail::twice_area(b, c, p), detail::twice_area(c, a, p), detail::twice_area(a, b, p)}};
   }
 
-  double total() const { return of[0] + of[1] + of[2]; }
+  // No two of them are equal, and none is zero: of a point within a triangle, nearly always.
+  bool are_distinct() const {
+    return of[0] != of[1] && of[1] != of[2] && of[2] != of[0] && of[0] != 0.0 && of[1] != 0.0 &&
+           of[2] != 0.0;
+  }
+
+  // The same, but of a point on an edge by its two ends alone, as the triangle beyond has it.
+  TINSMITH_RARE CornerWeights settled(Point p, Point a, Point b, Point c) const {
+    if (of[0] != 0.0 && of[1] != 0.0 && of[2] != 0.0) return *this;
+    const Point corners[3] = {a, b, c};
+    const std::uint32_t beyond = of[0] == 0.0 ? 0 : of[1] == 0.0 ? 1 : 2;
+    const std::uint32_t next = corner_after(beyond), last = corner_before(beyond);
+    if (of[next] == 0.0 || of[last] == 0.0) return *this;
+    const Point start = corners[next], end = corners[last];
+    const bool is_steep = std::fabs(end.y - start.y) > std::fabs(end.x - start.x);
+    CornerWeights weights{};
+    weights.of[next] = is_steep ? std::fabs(end.y - p.y) : std::fabs(end.x - p.x);
+    weights.of[last] = is_steep ? std::fabs(p.y - start.y) : std::fabs(p.x - start.x);
+    return weights;
+  }
+
+  // Added up by size, so in the same order whichever corner is named first.
+  double total() const {
+    const double less = std::min(of[0], of[1]), more = std::max(of[0], of[1]);
+    return std::max(more, of[2]) + (std::max(less, std::min(more, of[2])) + std::min(less, of[2]));
+  }
   std::uint32_t heaviest() const {
     const std::uint32_t main = of[1] > of[0];
     return of[2] > of[main] ? 2 : main;
   }
 
-  // The mean of three elevations, one of a corner each. Differences from the corner of largest
-  // weight keep the digits that the elevations share, and give a vertex exactly its own elevation;
-  // differences of halves cannot overflow.
+  // The mean of three elevations, one of a corner each, whichever corner is named first. Differences
+  // from the corner of largest weight, of several the lowest one, keep the digits that the elevations
+  // share, and give a vertex exactly its own elevation; differences of halves cannot overflow.
   double mean_of(const double (&elevations)[3]) const {
-    const std::uint32_t main = heaviest(), next = corner_after(main), last = corner_before(main);
+    if (!are_distinct()) return mean_of_equals(elevations);
+    return mean_from(heaviest(), elevations);
+  }
+
+  // By the corner of largest weight.
+  double mean_from(std::uint32_t main, const double (&elevations)[3]) const {
+    const std::uint32_t next = corner_after(main), last = corner_before(main);
     const double sum = total();
     const double z = elevations[main], z_next = elevations[next], z_last = elevations[last];
     const double half_rise =
@@ -124,14 +156,29 @@ struct CornerWeights {
     const double highest = std::max({z, z_next, z_last});
     return std::min(std::max(z + 2.0 * half_rise, lowest), highest);
   }
+
+ private:
+  // A corner without weight counts nothing.
+  TINSMITH_RARE double mean_of_equals(const double (&elevations)[3]) const {
+    std::uint32_t main = heaviest();
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (of[k] == of[main] && elevations[k] < elevations[main]) main = k;
+    }
+    double those[3];
+    for (int k = 0; k < 3; ++k) those[k] = of[k] == 0.0 ? elevations[main] : elevations[k];
+    return mean_from(main, those);
+  }
 };
 
-// The elevation of the plane through a triangle's corners at a point that the triangle holds.
+// The elevation of the plane through a triangle's corners at a point that the triangle holds: the
+// same however triangles, corners and vertices are numbered, and from both sides of an edge.
 inline double elevation_at(const Surface& surface, Point p, Triangle t) {
   const double elevations[3] = {surface.elevation(t, 0), surface.elevation(t, 1),
                                 surface.elevation(t, 2)};
-  return CornerWeights::at(p, surface.corner(t, 0), surface.corner(t, 1), surface.corner(t, 2))
-      .mean_of(elevations);
+  const Point a = surface.corner(t, 0), b = surface.corner(t, 1), c = surface.corner(t, 2);
+  const CornerWeights weights = CornerWeights::at(p, a, b, c);
+  if (!weights.are_distinct()) return weights.settled(p, a, b, c).mean_of(elevations);
+  return weights.mean_from(weights.heaviest(), elevations);
 }
 
 }  // namespace tinsmith
