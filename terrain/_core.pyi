@@ -1,5 +1,6 @@
 # Types of the compiled core; what it does is said in terrain/_kernel.py.
 from collections.abc import Callable
+from typing import Final
 
 from ..base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array, UInt8Array
 
@@ -46,44 +47,42 @@ class GriddedSurface:
         progress: Callable[[float], None] | None = ...,
     ) -> Float64Array: ...
 
+class ContourLines:
+    coordinates: Final[Float64Array]
+    offsets: Final[Int64Array]
+    level: Final[Int32Array]
+    is_closed: Final[BoolArray]
+    length: Final[Float64Array]
+
+class BandPolygons:
+    points: Final[Float64Array]
+    ring_offsets: Final[Int64Array]
+    polygon_offsets: Final[Int64Array]
+    band: Final[Int32Array]
+
 def trace_contours(
     points: Float64Array,
     triangles: Int32Array,
     neighbors: Int32Array,
     levels: Float64Array,
-) -> tuple[
-    Float64Array,
-    Int64Array,
-    Int32Array,
-    BoolArray,
-    Float64Array,
-]: ...
+) -> ContourLines: ...
 def fill_bands(
     points: Float64Array,
     triangles: Int32Array,
     neighbors: Int32Array,
     levels: Float64Array,
-) -> tuple[Float64Array, Int64Array, Int64Array, Int32Array]: ...
+) -> BandPolygons: ...
 def smooth_contours(
     points: Float64Array,
     triangles: Int32Array,
     neighbors: Int32Array,
     levels: Float64Array,
-    xyz: Float64Array,
-    offsets: Int64Array,
-    level: Int32Array,
-    is_closed: BoolArray,
+    lines: ContourLines,
     places: Int32Array,
     smooth: float,
     rounds: int,
     simplify: float,
-) -> tuple[
-    Float64Array,
-    Int64Array,
-    Int32Array,
-    BoolArray,
-    Float64Array,
-]: ...
+) -> ContourLines: ...
 def sum_between(
     points: Float64Array,
     triangles: Int32Array,
@@ -115,14 +114,17 @@ def overlay(
     triangles: Int32Array,
     other_points: Float64Array,
     other_triangles: Int32Array,
+    *,
     is_other_apart: bool = ...,
-) -> tuple[
-    Float64Array,
-    Int32Array,
-    Int64Array,
-    Int32Array,
-    Int32Array,
-]: ...
+) -> OverlayMesh: ...
+
+class OverlayMesh:
+    vertices: Final[Float64Array]
+    origins: Final[Int32Array]
+    offsets: Final[Int64Array]
+    corners: Final[Int32Array]
+    triangles: Final[Int32Array]
+
 def stage_sums(
     points: Float64Array,
     triangles: Int32Array,
@@ -155,7 +157,16 @@ def find_seen_parts(
     eye: Float64Array,
     target_height: float,
     threads: int = ...,
-) -> tuple[UInt8Array, Int64Array, Int32Array, UInt8Array, Float64Array, Int64Array]: ...
+) -> SeenParts: ...
+
+class SeenParts:
+    parts: Final[UInt8Array]
+    offsets: Final[Int64Array]
+    triangles: Final[Int32Array]
+    is_seen: Final[BoolArray]
+    corners: Final[Float64Array]
+    lines: Final[Int64Array]
+
 def find_seen_vertices(
     points: Float64Array,
     triangles: Int32Array,
@@ -202,6 +213,16 @@ def measure_cells(
     z: Float64Array, cells: Int32Array, elevations: Float64Array, triangles: Int32Array
 ) -> Float64Array: ...
 
+class Filling:
+    def __init__(
+        self,
+        levels: Float64Array,
+        ponds: Int64Array,
+        nexts: Int64Array,
+        steps: Int64Array,
+        ranks: Int64Array,
+    ) -> None: ...
+
 class FallingSurface:
     def __init__(
         self,
@@ -210,7 +231,7 @@ class FallingSurface:
         neighbors: Int32Array,
         signs: Int8Array,
         values: Float64Array,
-        levels: tuple[Float64Array, Int64Array, Int64Array, Int64Array, Int64Array] | None,
+        filling: Filling | None,
     ) -> None: ...
     def bases_of(self, triangles: Int64Array) -> tuple[Int64Array, Float64Array, BoolArray]: ...
     def cut_strips(self, most: int) -> tuple[Int64Array, Float64Array]: ...

@@ -1,5 +1,6 @@
 import enum
 from collections.abc import Callable
+from typing import Final
 
 from ..base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
 
@@ -24,7 +25,14 @@ def grow(
     threads: int = ...,
     path: str = ...,
     progress: Callable[[float], None] | None = ...,
-) -> tuple[Int32Array, Int32Array, Int32Array | None, int]: ...
+) -> Growth: ...
+
+class Growth:
+    triangles: Final[Int32Array]
+    neighbors: Final[Int32Array]
+    kept_row: Final[Int32Array | None]
+    distinct_count: Final[int]
+
 def count_work(
     points: Float64Array, method: Method = ..., threads: int = ..., path: str = ...
 ) -> dict[str, int]: ...
@@ -47,19 +55,18 @@ class Locator:
     ) -> None: ...
     def locate(self, xy: Float64Array) -> Int32Array: ...
     def interpolate(self, xy: Float64Array, threads: int = ...) -> Float64Array: ...
-    def trace(
-        self, starts: Float64Array, ends: Float64Array
-    ) -> tuple[
-        Int64Array,
-        Float64Array,
-        Float64Array,
-        Float64Array,
-        Int32Array,
-        Int32Array,
-        Int32Array,
-        Int32Array,
-        int,
-    ]: ...
+    def trace(self, starts: Float64Array, ends: Float64Array) -> Trace: ...
+
+class Trace:
+    offsets: Final[Int64Array]
+    places: Final[Float64Array]
+    elevations: Final[Float64Array]
+    ratios: Final[Float64Array]
+    vertices: Final[Int32Array]
+    edges: Final[Int32Array]
+    triangles: Final[Int32Array]
+    along: Final[Int32Array]
+    failed: Final[int]
 
 class NaturalWeights(enum.Enum):
     SIBSON = 0
@@ -170,7 +177,15 @@ def refine(
     longest_edge: float,
     most: int,
     progress: Callable[[float], None] | None = None,
-) -> tuple[Float64Array, Int32Array, Int32Array, int, bool]: ...
+) -> Refined: ...
+
+class Refined:
+    points: Final[Float64Array]
+    splits: Final[Int32Array]
+    misses: Final[Int32Array]
+    triangle_count: Final[int]
+    is_too_many: Final[bool]
+
 def regions(
     points: Float64Array,
     triangles: Int32Array,

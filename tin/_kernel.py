@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from ..base.errors import PointsError
 from ..base.interrupts import hold_interrupts
@@ -11,7 +11,7 @@ with hold_interrupts():
     from . import _core
 
 if TYPE_CHECKING:
-    from ..base.arrays import Float64Array, Int32Array
+    from ..base.arrays import Float64Array
     from ..base.progress import Tell
 
 __all__ = [
@@ -29,6 +29,7 @@ __all__ = [
     "NaturalWeights",
     "NearestBoundary",
     "SmoothPatches",
+    "Trace",
     "are_in_exact_range",
     "clean",
     "compare_distances",
@@ -64,6 +65,7 @@ MOST_POINTS: int = _core.MOST_POINTS
 """So many points 32-bit indices can number, and their edges."""
 
 Locator = _core.Locator
+Trace = _core.Trace
 NaturalNeighbors = _core.NaturalNeighbors
 NaturalWeights = _core.NaturalWeights
 NearestBoundary = _core.NearestBoundary
@@ -94,19 +96,7 @@ measure_neighbors = _core.measure_neighbors
 find_long_edges = _core.find_long_edges
 find_peaks_and_pits = _core.find_peaks_and_pits
 Method = _core.Method
-
-
-class Growth(NamedTuple):
-    """Triangles in canonical order: by first vertex in the sweep, then by angle.
-
-    ``kept_row`` is None when no two points share a place; otherwise it holds for each row the
-    first row at the same place, and vertices are numbered by kept rows.
-    """
-
-    triangles: Int32Array
-    neighbors: Int32Array
-    kept_row: Int32Array | None
-
+Growth = _core.Growth
 
 VECTOR_PATHS: tuple[str, ...] = tuple(_core.vector_paths())
 """Vector instructions that this processor has, slowest first; the growth uses the last."""
@@ -141,10 +131,10 @@ def grow(
     PointsError
         If fewer than three places are distinct, or all are collinear.
     """
-    triangles, neighbors, kept_row, n_distinct = _core.grow(points, method, threads, path, progress)
-    if len(triangles) == 0:
-        raise PointsError(_explain_no_triangle(len(points), n_distinct))
-    return Growth(triangles, neighbors, kept_row)
+    growth = _core.grow(points, method, threads, path, progress)
+    if len(growth.triangles) == 0:
+        raise PointsError(_explain_no_triangle(len(points), growth.distinct_count))
+    return growth
 
 
 def _explain_no_triangle(n_rows: int, n_distinct: int) -> str:

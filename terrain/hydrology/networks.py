@@ -118,10 +118,12 @@ def build_vertex_network(walker: Walker) -> Network:
 
 
 def _read_falls(falls: Falls, filling: Filling | None) -> _kernel.FallingSurface:
-    levels = None
+    water = None
     if filling is not None:
-        levels = (filling.levels, filling.ponds, filling.nexts, filling.steps, filling.ranks)
-    return _kernel.FallingSurface(*falls, levels)
+        water = _kernel.Filling(
+            filling.levels, filling.ponds, filling.nexts, filling.steps, filling.ranks
+        )
+    return _kernel.FallingSurface(*falls, water)
 
 
 def _measure_areas(falls: Falls) -> Float64Array:

@@ -81,7 +81,9 @@ def contour_bands(
         filled = _kernel.fill_bands(tin.points, *kept, chosen.values)
     except OverflowError as error:
         raise options.refuse_count(int(str(error)), "parts of triangles") from None
-    parts, notes = repair_polygons(PolygonParts(*filled))
+    parts, notes = repair_polygons(
+        PolygonParts(filled.points, filled.ring_offsets, filled.polygon_offsets, filled.band)
+    )
     said: tuple[str, ...] = ()
     if notes or not is_whole(tin, parts):
         parts, said = rebuild_wrong_bands(tin, chosen.values, parts)

@@ -14,7 +14,7 @@ from .. import _kernel
 from ..earthwork.slivers import take_without_slivers
 from .levels import LevelOptions, Levels
 from .measures import measure_lengths
-from .smoothing import TracedLines, require_tolerance, smooth_lines
+from .smoothing import require_tolerance, smooth_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -118,27 +118,26 @@ def contours(
     return found
 
 
-def _trace(tin: TIN, chosen: Levels, options: LevelOptions) -> TracedLines:
+def _trace(tin: TIN, chosen: Levels, options: LevelOptions) -> _kernel.ContourLines:
     try:
-        traced = _kernel.trace_contours(tin.points, tin.triangles, tin.neighbors, chosen.values)
+        return _kernel.trace_contours(tin.points, tin.triangles, tin.neighbors, chosen.values)
     except OverflowError as error:
         raise options.refuse_count(int(str(error)), "crossings of triangles") from None
-    return TracedLines(*traced)
 
 
-def _as_features(tin: TIN, lines: TracedLines, chosen: Levels) -> Features:
-    xyz, offsets, level, is_closed, length = lines
+def _as_features(tin: TIN, lines: _kernel.ContourLines, chosen: Levels) -> Features:
+    length = lines.length
     if tin.crs is not None and tin.crs.is_geographic:
-        length = measure_lengths(tin.crs, xyz, offsets)
+        length = measure_lengths(tin.crs, lines.coordinates, lines.offsets)
     columns: dict[str, Any] = {
-        "elevation": chosen.values[level],
-        "is_index": chosen.is_index[level],
-        "is_closed": is_closed,
+        "elevation": chosen.values[lines.level],
+        "is_index": chosen.is_index[lines.level],
+        "is_closed": lines.is_closed,
         "length": length,
     }
     return Features.of_lines(
-        seal(xyz),
-        seal(offsets),
+        seal(lines.coordinates),
+        seal(lines.offsets),
         columns={name: seal(values) for name, values in columns.items()},
         units={"elevation": tin.elevation_unit, "length": find_plane_units(tin.crs).length},
         crs=tin.crs,

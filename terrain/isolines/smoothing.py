@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,31 +11,17 @@ from ...base.errors import OptionError
 from .. import _kernel
 
 if TYPE_CHECKING:
-    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int32Array
     from ...tin import TIN
+    from .._kernel import ContourLines
 
-__all__ = ["TracedLines", "require_tolerance", "smooth_lines"]
+__all__ = ["require_tolerance", "smooth_lines"]
 
 MOST_POINTS = (2**31 - 1) // 16
 """Of all lines together: the kernel numbers in 31 bits what rounds of cutting corners make."""
 
 _ROUNDS = 3
 """So often corners are cut: what is left turns by a few degrees in each vertex."""
-
-
-class TracedLines(NamedTuple):
-    """Lines as the kernel returns them."""
-
-    coordinates: Float64Array
-    """(n, 3), of closed lines the first point is repeated."""
-    offsets: Int64Array
-    """(k + 1,)."""
-    level: Int32Array
-    """(k,), place in the levels."""
-    is_closed: BoolArray
-    """(k,)."""
-    length: Float64Array
-    """(k,), in the plane of the coordinates."""
 
 
 def require_tolerance(option: str, value: Any) -> float:
@@ -56,12 +42,12 @@ def require_tolerance(option: str, value: Any) -> float:
 
 def smooth_lines(
     tin: TIN,
-    lines: TracedLines,
+    lines: ContourLines,
     levels: Float64Array,
     *,
     smooth: float,
     simplify: float,
-) -> TracedLines:
+) -> ContourLines:
     """Round the corners of a TIN's contours, then drop points of them.
 
     ``smooth`` and ``simplify`` are how far the surface may be from the level along a line, for each
@@ -83,22 +69,12 @@ def smooth_lines(
     """
     _require_few(lines, smooth=smooth, simplify=simplify)
     places = _find_places(tin, lines)
-    return TracedLines(
-        *_kernel.smooth_contours(
-            tin.points,
-            tin.triangles,
-            tin.neighbors,
-            levels,
-            *lines[:4],
-            places,
-            smooth,
-            _ROUNDS,
-            simplify,
-        )
+    return _kernel.smooth_contours(
+        tin.points, tin.triangles, tin.neighbors, levels, lines, places, smooth, _ROUNDS, simplify
     )
 
 
-def _require_few(lines: TracedLines, **tolerances: float) -> None:
+def _require_few(lines: ContourLines, **tolerances: float) -> None:
     count = len(lines.coordinates)
     if count > MOST_POINTS:
         name, value = next(item for item in tolerances.items() if item[1] > 0)
@@ -106,7 +82,7 @@ def _require_few(lines: TracedLines, **tolerances: float) -> None:
         raise OptionError(name, value, allowed=allowed)
 
 
-def _find_places(tin: TIN, lines: TracedLines) -> Int32Array:
+def _find_places(tin: TIN, lines: ContourLines) -> Int32Array:
     """Return a triangle for each point but those repeated."""
     xy = np.ascontiguousarray(lines.coordinates[:, :2])
     places = np.array(tin.locate(xy))

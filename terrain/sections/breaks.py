@@ -84,7 +84,7 @@ def trace_breaks(tin: TIN, segments: Segments) -> Breaks:
     traced = surface.locator.trace(
         np.ascontiguousarray(segments.starts), np.ascontiguousarray(segments.ends)
     )
-    offsets, xy, elevations, ratios, vertices, edges, triangles, _, failed = traced
+    failed = traced.failed
     if failed >= 0:
         start, end = segments.starts[failed].tolist(), segments.ends[failed].tolist()
         raise LinesError(
@@ -92,10 +92,20 @@ def trace_breaks(tin: TIN, segments: Segments) -> Breaks:
             f"{tuple(end)}: one elevation is needed at each place; a check of the TIN tells more.",
             lines=[int(segments.lines[failed])],
         )
-    crossed = np.full(len(xy), _LINE, np.int8)
-    crossed[vertices >= 0] = _VERTEX
+    edges = traced.edges
+    crossed = np.full(len(edges), _LINE, np.int8)
+    crossed[traced.vertices >= 0] = _VERTEX
     is_edge = edges >= 0
     crossed[is_edge] = _EDGE
     crossed[is_edge & surface.constrained.ravel()[edges]] = _BREAKLINE
     crossed[is_edge & (surface.neighbors.ravel()[edges] == NO_NEIGHBOR)] = _BOUNDARY
-    return Breaks(find_owners(offsets), ratios, xy, elevations, crossed, triangles, vertices, edges)
+    return Breaks(
+        find_owners(traced.offsets),
+        traced.ratios,
+        traced.places,
+        traced.elevations,
+        crossed,
+        traced.triangles,
+        traced.vertices,
+        edges,
+    )

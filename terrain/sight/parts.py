@@ -41,12 +41,13 @@ def divide(tin: TIN, view: View) -> tuple[DividedMesh, BoolArray]:
     each side gets all that lie on it, so that the cells share their vertices, and then is joined
     with the middle of its cell.
     """
-    parts, offsets, owners, is_seen, corners, lines = _kernel.find_seen_parts(
+    found = _kernel.find_seen_parts(
         tin.points, tin.triangles, tin.neighbors, view.eye, view.target_height
     )
-    points, numbers = _number_corners(tin, corners)
-    given = owners.astype(np.int64), is_seen.astype(np.bool_), np.diff(offsets)
-    cells, parts = _join_thin(tin, _Cells(*given, numbers, lines), parts)
+    points, numbers = _number_corners(tin, found.corners)
+    owners, counts = found.triangles.astype(np.int64), np.diff(found.offsets)
+    cells = _Cells(owners, found.is_seen, counts, numbers, found.lines)
+    cells, parts = _join_thin(tin, cells, found.parts)
     cells = _drop_points(cells)
     cells, is_cut = _add_whole_triangles(tin, cells, parts)
     cells = _complete_sides(cells, points)

@@ -315,12 +315,12 @@ class _Found(NamedTuple):
 
 def _find_points(tin: TIN, goal: _Goal, kept_whole: Int32Array, progress: Tell | None) -> _Found:
     fixed = tin.constrained | (tin.neighbors == topology.NO_NEIGHBOR)
-    xy, splits, left, n_triangles, is_too_many = _kernel.refine(
+    found = _kernel.refine(
         tin.points, tin.triangles, tin.neighbors, fixed, kept_whole, *goal, progress
     )
-    if is_too_many:
+    if found.is_too_many:
         raise PointsError(_explain_too_many(goal.most_vertices))
-    return _Found(xy, _Splits.of(splits.reshape(-1, 3)), left.reshape(-1, 4), n_triangles)
+    return _Found(found.points, _Splits.of(found.splits), found.misses, found.triangle_count)
 
 
 # ------------------------------------------------------------------------- result

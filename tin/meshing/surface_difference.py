@@ -14,7 +14,8 @@ from ...base.errors import PointsError
 from .. import topology
 
 if TYPE_CHECKING:
-    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
+    from .._kernel import Trace
     from ..surface import TIN
 
 __all__ = ["Beyond", "Crossings", "SurfaceMeter", "choose_rows"]
@@ -108,19 +109,17 @@ class SurfaceMeter:
         traced = self.tin.triangulation.locator.trace(
             np.ascontiguousarray(start[:, :2]), np.ascontiguousarray(end[:, :2])
         )
-        offsets, xy, elevations, ratios, vertices, crossed, _, _, failed = traced
-        if failed >= 0:
+        if traced.failed >= 0:
             raise PointsError("The TIN cannot be simplified: triangles lie over each other.")
-        owners = topology.find_owners(offsets)
+        owners, ratios = topology.find_owners(traced.offsets), traced.ratios
         z, other = start[owners, 2], end[owners, 2]
         own = np.where(ratios > 0.5, other + (1.0 - ratios) * (z - other), z + ratios * (other - z))
-        errors = np.nan_to_num(np.abs(own - elevations))
-        return Crossings(owners, xy, errors, self._list_candidates(xy, vertices, crossed))
+        errors = np.nan_to_num(np.abs(own - traced.elevations))
+        return Crossings(owners, traced.places, errors, self._list_candidates(traced))
 
-    def _list_candidates(
-        self, xy: Float64Array, vertices: Int32Array, edges: Int32Array
-    ) -> Int64Array:
+    def _list_candidates(self, traced: Trace) -> Int64Array:
         """Return the vertices around each crossing; one that is a vertex alone."""
+        xy, vertices, edges = traced.places, traced.vertices, traced.edges
         found = np.full((len(xy), 4), -1, np.int64)
         found[:, 0] = vertices
         at = np.flatnonzero((vertices < 0) & (edges >= 0))

@@ -2,12 +2,10 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
-#include <nanobind/stl/tuple.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <stdexcept>
-#include <tuple>
 #include <vector>
 
 #include "../../../tin/cpp/python/conversion.hpp"
@@ -75,19 +73,26 @@ inline Elevations sum_areas(const GivenXyz& points, const GivenTriples& triangle
   return copy_over<Elevations, double>(areas, {areas.size()});
 }
 
-inline auto overlay(const GivenXyz& points, const GivenTriples& triangles,
-                    const GivenXyz& other_points, const GivenTriples& other_triangles,
-                    bool is_other_apart) {
+struct OverlayMesh {
+  Xyz vertices;
+  Pairs origins;
+  Offsets offsets;
+  Numbers corners;
+  Pairs triangles;
+};
+
+inline OverlayMesh overlay(const GivenXyz& points, const GivenTriples& triangles,
+                           const GivenXyz& other_points, const GivenTriples& other_triangles,
+                           bool is_other_apart) {
   const Surface first = exact_surface_of(points, triangles);
   const Surface second = exact_surface_of(other_points, other_triangles);
   const earthwork::Overlay made = unlocked(
       1, [&](Team& team) { return earthwork::Overlay(first, second, is_other_apart, team); });
-  return std::make_tuple(
-      copy_over<Xyz, double>(made.vertices, {made.vertices.size(), 3}),
-      copy_over<Pairs, std::int32_t>(made.origins, {made.origins.size(), 2}),
-      copy_over<Offsets, std::int64_t>(made.offsets, {made.offsets.size()}),
-      hand_over(made.corners),
-      copy_over<Pairs, std::int32_t>(made.triangles, {made.triangles.size(), 2}));
+  return {copy_over<Xyz, double>(made.vertices, {made.vertices.size(), 3}),
+          copy_over<Pairs, std::int32_t>(made.origins, {made.origins.size(), 2}),
+          copy_over<Offsets, std::int64_t>(made.offsets, {made.offsets.size()}),
+          hand_over(made.corners),
+          copy_over<Pairs, std::int32_t>(made.triangles, {made.triangles.size(), 2})};
 }
 
 inline StageTable stage_sums(const GivenXyz& points, const GivenTriples& triangles,
@@ -114,10 +119,24 @@ inline void bind_earthwork(nb::module_& m) {
         "Cut and fill of heights at the vertices, a row for each group of triangles.");
   m.def("sum_areas", &sum_areas, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "groups"_a.noconvert(), "group_count"_a, "The area in the plane of each group.");
-  m.def(
-      "overlay", &overlay, "points"_a.noconvert(), "triangles"_a.noconvert(),
-      "other_points"_a.noconvert(), "other_triangles"_a.noconvert(), "is_other_apart"_a = false,
-      "Vertices with differences, their origins, offsets and corners of cells, triangles of each.");
+  m.def("overlay", &overlay, "points"_a.noconvert(), "triangles"_a.noconvert(),
+        "other_points"_a.noconvert(), "other_triangles"_a.noconvert(), nb::kw_only(),
+        "is_other_apart"_a = false,
+        "Cut two surfaces along the edges of each other, where both are. Faster where both have "
+        "many triangles in common, if it is known that those of the other one do not overlap.");
+  Result<OverlayMesh>(m, "OverlayMesh",
+                      "The overlay of two surfaces: convex cells that share their vertices.")
+      .def_array("vertices", &OverlayMesh::vertices,
+                 "(n, 3), easting, northing, elevation of the second surface above the first.")
+      .def_array("origins", &OverlayMesh::origins,
+                 "(n, 2), the vertex of the first surface, and of the second, that it is; -1 for "
+                 "none.")
+      .def_array("offsets", &OverlayMesh::offsets, "(k + 1,), where the corners of cells begin.")
+      .def_array("corners", &OverlayMesh::corners,
+                 "(c,), cell i has the vertices corners[offsets[i]:offsets[i + 1]], "
+                 "counter-clockwise.")
+      .def_array("triangles", &OverlayMesh::triangles,
+                 "(k, 2), of the first and of the second surface, that the cell is part of.");
   m.def("stage_sums", &stage_sums, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "levels"_a.noconvert(), "up"_a, "Area, area in space and volume under each level.");
 }

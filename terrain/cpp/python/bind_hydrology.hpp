@@ -24,8 +24,12 @@ using GivenSigns = Given<std::int8_t, -1, 3>;
 using GivenOffsets = Given<std::int64_t, -1>;
 using GivenLongs = Given<std::int64_t, -1>;
 using GivenVertices = Given<bool, -1>;
-using GivenLevels =
-    std::tuple<GivenValues, GivenLongs, GivenLongs, GivenLongs, GivenLongs>;  // as of Filling
+
+// The arrays of a Filling.
+struct GivenFilling {
+  GivenValues levels;
+  GivenLongs ponds, nexts, steps, ranks;
+};
 using ChangedValues = nb::ndarray<double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 
 inline void require(bool is_sound, const char* message) {
@@ -47,19 +51,19 @@ inline bool are_below(const GivenNumbers& numbers, std::int64_t least, std::int6
 class FallingSurface {
  public:
   FallingSurface(GivenXyz points, GivenTriples triangles, GivenTriples neighbors, GivenSigns signs,
-                 GivenXyz values, std::optional<GivenLevels> levels)
+                 GivenXyz values, std::optional<GivenFilling> filling)
       : points_(std::move(points)),
         triangles_(std::move(triangles)),
         neighbors_(std::move(neighbors)),
         signs_(std::move(signs)),
         values_(std::move(values)),
-        levels_(std::move(levels)),
+        given_filling_(std::move(filling)),
         falls_{surface_of(points_, triangles_, &neighbors_), signs_.data(), values_.data()} {
     const std::size_t count = triangles_.shape(0);
     require(falls_.surface.has_sound_neighbors(), "neighbors must be triangles or -1");
     require(signs_.shape(0) == count && values_.shape(0) == count,
             "there must be a row of signs and of values for each triangle");
-    if (levels_) fill();
+    if (given_filling_) fill(*given_filling_);
     ReleasedLock release;
     bases_.reserve(count);
     for (const Triangle t : Ids<Triangle>(falls_.surface.triangle_count)) {
@@ -155,8 +159,8 @@ class FallingSurface {
  private:
   std::uint32_t triangle_count() const { return falls_.surface.triangle_count; }
 
-  void fill() {
-    const auto& [levels, ponds, nexts, steps, ranks] = *levels_;
+  void fill(const GivenFilling& given) {
+    const auto& [levels, ponds, nexts, steps, ranks] = given;
     const std::size_t count = points_.shape(0);
     require(levels.shape(0) == count && ponds.shape(0) == count && nexts.shape(0) == count &&
                 steps.shape(0) == count && ranks.shape(0) == count,
@@ -187,7 +191,7 @@ class FallingSurface {
   const GivenTriples neighbors_;
   const GivenSigns signs_;
   const GivenXyz values_;
-  const std::optional<GivenLevels> levels_;
+  const std::optional<GivenFilling> given_filling_;
   const hydrology::FallingSurface falls_;
   hydrology::Filling filling_;
   std::vector<hydrology::Base> bases_;
@@ -276,11 +280,15 @@ inline std::tuple<Offsets, Offsets, Numbers> cut_cells(
 }
 
 inline void bind_hydrology(nb::module_& m) {
+  nb::class_<GivenFilling>(m, "Filling", "The water of full depressions, by vertex.")
+      .def(nb::init<GivenValues, GivenLongs, GivenLongs, GivenLongs, GivenLongs>(),
+           "levels"_a.noconvert(), "ponds"_a.noconvert(), "nexts"_a.noconvert(),
+           "steps"_a.noconvert(), "ranks"_a.noconvert());
   nb::class_<FallingSurface>(m, "FallingSurface", "A surface and how its triangles fall.")
       .def(nb::init<GivenXyz, GivenTriples, GivenTriples, GivenSigns, GivenXyz,
-                    std::optional<GivenLevels>>(),
+                    std::optional<GivenFilling>>(),
            "points"_a.noconvert(), "triangles"_a.noconvert(), "neighbors"_a.noconvert(),
-           "signs"_a.noconvert(), "values"_a.noconvert(), "levels"_a.none())
+           "signs"_a.noconvert(), "values"_a.noconvert(), "filling"_a.none())
       .def("bases_of", &FallingSurface::bases_of, "triangles"_a.noconvert(),
            "Edges that all fall lines meet, where those through the corner opposite do, and "
            "whether water leaves there.")

@@ -2,13 +2,11 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
-#include <nanobind/stl/tuple.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
 #include "../../../tin/cpp/python/conversion.hpp"
@@ -38,18 +36,25 @@ inline isolines::Levels levels_of(const GivenValues& levels) {
   return {levels.data(), row_count(levels.shape(0))};
 }
 
-// Coordinates and offsets, and of each line its level, whether it is closed, and its length.
-inline auto hand_over(isolines::LineArrays made) {
+struct ContourLines {
+  Xyz coordinates;
+  Offsets offsets;
+  Numbers level;
+  Flags is_closed;
+  Elevations length;
+};
+
+inline ContourLines hand_over(isolines::LineArrays made) {
   const std::size_t count = made.count;
-  return std::make_tuple(hand_over<Xyz>(std::move(made.xyz), {made.point_count, 3}),
-                         hand_over<Offsets>(std::move(made.offsets), {count + 1}),
-                         hand_over<Numbers>(std::move(made.level), {count}),
-                         hand_over<Flags>(std::move(made.is_closed), {count}),
-                         hand_over<Elevations>(std::move(made.length), {count}));
+  return {hand_over<Xyz>(std::move(made.xyz), {made.point_count, 3}),
+          hand_over<Offsets>(std::move(made.offsets), {count + 1}),
+          hand_over<Numbers>(std::move(made.level), {count}),
+          hand_over<Flags>(std::move(made.is_closed), {count}),
+          hand_over<Elevations>(std::move(made.length), {count})};
 }
 
-inline auto trace_contours(const GivenXyz& points, const GivenTriples& triangles,
-                           const GivenTriples& neighbors, const GivenValues& levels) {
+inline ContourLines trace_contours(const GivenXyz& points, const GivenTriples& triangles,
+                                   const GivenTriples& neighbors, const GivenValues& levels) {
   const Surface surface = joined_surface_of(points, triangles, neighbors);
   const isolines::Levels wanted = levels_of(levels);
   return hand_over(unlocked(1, [&](Team& team) {
@@ -57,31 +62,27 @@ inline auto trace_contours(const GivenXyz& points, const GivenTriples& triangles
   }));
 }
 
-using GivenOffsets = Given<std::int64_t, -1>;
-using GivenClosed = Given<bool, -1>;
-
-// Lines as they were handed over; the places of their points come without those repeated.
-inline isolines::TracedLines lines_of(const GivenXyz& xyz, const GivenOffsets& offsets,
-                                      const GivenNumbers& level, const GivenClosed& is_closed,
-                                      const isolines::Levels& levels) {
-  const std::size_t count = level.shape(0);
-  const std::int64_t* const offset = offsets.data();
-  if (offsets.shape(0) != count + 1 || is_closed.shape(0) != count || offset[0] != 0 ||
-      offset[count] != row_count(xyz.shape(0)) || !std::is_sorted(offset, offset + count + 1)) {
+// Lines as they were handed over, whose numbers may have been written to since; the places of
+// their points come without those repeated.
+inline isolines::TracedLines lines_of(const ContourLines& lines, const isolines::Levels& levels) {
+  const std::size_t count = lines.level.shape(0);
+  const std::int64_t* const offset = lines.offsets.data();
+  if (offset[0] != 0 || offset[count] != row_count(lines.coordinates.shape(0)) ||
+      !std::is_sorted(offset, offset + count + 1)) {
     throw std::invalid_argument("offsets must grow from 0 to the number of points");
   }
-  return isolines::lines_of({xyz.data(), offset, level.data(), is_closed.data(), count}, levels);
+  return isolines::lines_of(
+      {lines.coordinates.data(), offset, lines.level.data(), lines.is_closed.data(), count},
+      levels);
 }
 
-inline auto smooth_contours(const GivenXyz& points, const GivenTriples& triangles,
-                            const GivenTriples& neighbors, const GivenValues& levels,
-                            const GivenXyz& xyz, const GivenOffsets& offsets,
-                            const GivenNumbers& level, const GivenClosed& is_closed,
-                            const GivenNumbers& places, double smooth, int rounds,
-                            double simplify) {
+inline ContourLines smooth_contours(const GivenXyz& points, const GivenTriples& triangles,
+                                    const GivenTriples& neighbors, const GivenValues& levels,
+                                    const ContourLines& given, const GivenNumbers& places,
+                                    double smooth, int rounds, double simplify) {
   const Surface surface = joined_surface_of(points, triangles, neighbors);
   const isolines::Levels wanted = levels_of(levels);
-  const isolines::TracedLines lines = lines_of(xyz, offsets, level, is_closed, wanted);
+  const isolines::TracedLines lines = lines_of(given, wanted);
   const auto is_sound = [&](std::int32_t t) {
     return t == kNoNeighbor || surface.is_triangle(triangle_numbered(t));
   };
@@ -98,33 +99,46 @@ inline auto smooth_contours(const GivenXyz& points, const GivenTriples& triangle
   }));
 }
 
-// Points of the rings, offsets of rings and polygons, and the band of each polygon.
-inline auto fill_bands(const GivenXyz& points, const GivenTriples& triangles,
-                       const GivenTriples& neighbors, const GivenValues& levels) {
+struct BandPolygons {
+  Xy points;
+  Offsets ring_offsets, polygon_offsets;
+  Numbers band;
+};
+
+inline BandPolygons fill_bands(const GivenXyz& points, const GivenTriples& triangles,
+                               const GivenTriples& neighbors, const GivenValues& levels) {
   const Surface surface = joined_surface_of(points, triangles, neighbors);
   const isolines::Levels wanted = levels_of(levels);
   const isolines::Bands found =
       unlocked(1, [&](Team& team) { return isolines::fill_bands(surface, wanted, team); });
-  return std::make_tuple(
-      copy_over<Xy, double>(found.points, {found.points.size(), 2}),
-      copy_over<Offsets, std::int64_t>(found.ring_offsets, {found.ring_offsets.size()}),
-      copy_over<Offsets, std::int64_t>(found.polygon_offsets, {found.polygon_offsets.size()}),
-      hand_over(found.band));
+  return {copy_over<Xy, double>(found.points, {found.points.size(), 2}),
+          copy_over<Offsets, std::int64_t>(found.ring_offsets, {found.ring_offsets.size()}),
+          copy_over<Offsets, std::int64_t>(found.polygon_offsets, {found.polygon_offsets.size()}),
+          hand_over(found.band)};
 }
 
 inline void bind_isolines(nb::module_& m) {
   m.def("trace_contours", &trace_contours, "points"_a.noconvert(), "triangles"_a.noconvert(),
-        "neighbors"_a.noconvert(), "levels"_a.noconvert(),
-        "Contour lines joined: coordinates, offsets, level and whether closed of each.");
+        "neighbors"_a.noconvert(), "levels"_a.noconvert(), "Contour lines, joined.");
   m.def("smooth_contours", &smooth_contours, "points"_a.noconvert(), "triangles"_a.noconvert(),
-        "neighbors"_a.noconvert(), "levels"_a.noconvert(), "xyz"_a.noconvert(),
-        "offsets"_a.noconvert(), "level"_a.noconvert(), "is_closed"_a.noconvert(),
-        "places"_a.noconvert(), "smooth"_a, "rounds"_a, "simplify"_a,
+        "neighbors"_a.noconvert(), "levels"_a.noconvert(), "lines"_a, "places"_a.noconvert(),
+        "smooth"_a, "rounds"_a, "simplify"_a,
         "The same lines rounder, then with fewer points, within two vertical tolerances; 0 is "
         "neither. places: a triangle for each point but those repeated.");
   m.def("fill_bands", &fill_bands, "points"_a.noconvert(), "triangles"_a.noconvert(),
-        "neighbors"_a.noconvert(), "levels"_a.noconvert(),
-        "Bands between levels: points of rings, offsets of rings and polygons, band of each.");
+        "neighbors"_a.noconvert(), "levels"_a.noconvert(), "Polygons of the bands between levels.");
+  Result<ContourLines>(m, "ContourLines", "Contour lines one after the other.")
+      .def_array("coordinates", &ContourLines::coordinates,
+                 "(n, 3), of closed lines the first point is repeated.")
+      .def_array("offsets", &ContourLines::offsets, "(k + 1,), where those of each line begin.")
+      .def_array("level", &ContourLines::level, "(k,), place in the levels.")
+      .def_array("is_closed", &ContourLines::is_closed, "(k,).")
+      .def_array("length", &ContourLines::length, "(k,), in the plane of the coordinates.");
+  Result<BandPolygons>(m, "BandPolygons", "Polygons with holes, by band.")
+      .def_array("points", &BandPolygons::points, "(n, 2), of rings.")
+      .def_array("ring_offsets", &BandPolygons::ring_offsets, "(r + 1,), into points.")
+      .def_array("polygon_offsets", &BandPolygons::polygon_offsets, "(k + 1,), into rings.")
+      .def_array("band", &BandPolygons::band, "(k,), of each polygon.");
 }
 
 }  // namespace tinsmith::python

@@ -2,12 +2,10 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
-#include <nanobind/stl/tuple.h>
 
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
 #include "../../../tin/cpp/python/conversion.hpp"
@@ -49,8 +47,15 @@ inline Verdicts find_seen_vertices(const GivenXyz& points, const GivenTriples& t
   return hand_over<Verdicts>(std::move(numbers), {points.shape(0)});
 }
 
-// Parts of triangles; offsets, triangles, flags, corners and lines of the cells of divided ones.
-using SeenParts = std::tuple<Verdicts, Offsets, Numbers, Verdicts, Xy, Offsets>;
+// Parts of triangles, and the cells of divided ones.
+struct SeenParts {
+  Verdicts parts;
+  Offsets offsets;
+  Numbers triangles;
+  Flags is_seen;
+  Xy corners;
+  Offsets lines;
+};
 
 inline SeenParts find_seen_parts(const GivenXyz& points, const GivenTriples& triangles,
                                  const GivenTriples& neighbors, const GivenEye& eye,
@@ -67,7 +72,7 @@ inline SeenParts find_seen_parts(const GivenXyz& points, const GivenTriples& tri
   return {copy_over<Verdicts, std::uint8_t>(parts, {parts.size()}),
           copy_over<Offsets, std::int64_t>(cells.offsets, {cells.offsets.size()}),
           hand_over(cells.triangles),
-          copy_over<Verdicts, std::uint8_t>(cells.seen, {cells.seen.size()}),
+          copy_over<Flags, bool>(cells.seen, {cells.seen.size()}),
           copy_over<Xy, double>(cells.corners, {cells.corners.size(), 2}),
           copy_over<Offsets, std::int64_t>(cells.lines, {cells.lines.size()})};
 }
@@ -79,7 +84,17 @@ inline void bind_sight(nb::module_& m) {
         "Of the vertices wanted: 0 hidden, 1 seen, 2 not known (with a fall alone).");
   m.def("find_seen_parts", &find_seen_parts, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "neighbors"_a.noconvert(), "eye"_a.noconvert(), "target_height"_a, "threads"_a = 1,
-        "Of triangles: 0 hidden, 1 seen, 2 divided, 3 too thin; cells of the divided ones.");
+        "Which triangles are seen, and cells of those that are divided.");
+  Result<SeenParts>(m, "SeenParts", "Triangles that are seen, hidden, or divided into cells.")
+      .def_array("parts", &SeenParts::parts,
+                 "(m,), of triangles: 0 hidden, 1 seen, 2 divided, 3 too thin.")
+      .def_array("offsets", &SeenParts::offsets, "(k + 1,), where the corners of cells begin.")
+      .def_array("triangles", &SeenParts::triangles, "(k,), that cells are part of.")
+      .def_array("is_seen", &SeenParts::is_seen, "(k,), whether cells are seen.")
+      .def_array("corners", &SeenParts::corners, "(c, 2), of cells, counter-clockwise.")
+      .def_array("lines", &SeenParts::lines,
+                 "(c,), numbers of the lines on which the sides after the corners lie, -1 for "
+                 "none.");
 }
 
 }  // namespace tinsmith::python

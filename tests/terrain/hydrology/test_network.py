@@ -205,8 +205,14 @@ def test_too_many_cuts_are_refused(monkeypatch):
         ({"neighbors": np.full((1, 3), 7, np.int32)}, "neighbors must be triangles or -1"),
         ({"triangles": np.full((1, 3), 3, np.int32)}, "vertex numbers from 0 to n - 1"),
         ({"signs": np.zeros((2, 3), np.int8)}, "a row of signs and of values for each triangle"),
-        ({"levels": (np.zeros(3), *4 * (np.full(3, 9),))}, "next vertices must be vertices or -1"),
-        ({"levels": (np.zeros(2), *4 * (np.zeros(2, np.int64),))}, "one value of each kind"),
+        (
+            {"filling": _kernel.Filling(np.zeros(3), *4 * (np.full(3, 9),))},
+            "next vertices must be vertices or -1",
+        ),
+        (
+            {"filling": _kernel.Filling(np.zeros(2), *4 * (np.zeros(2, np.int64),))},
+            "one value of each kind",
+        ),
     ],
 )
 def test_the_core_refuses_what_is_no_falling_surface(change, words):
@@ -222,7 +228,7 @@ def make_surface(**change):
         "neighbors": np.full((1, 3), -1, np.int32),
         "signs": np.array([[-1, 1, 1]], np.int8),
         "values": np.array([[-2.0, 1, 1]]),
-        "levels": None,
+        "filling": None,
     }
     return _kernel.FallingSurface(**(arrays | change))
 

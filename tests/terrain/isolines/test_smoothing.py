@@ -7,7 +7,7 @@ import pytest
 
 import tinsmith as ts
 from tinsmith.terrain._kernel import trace_contours
-from tinsmith.terrain.isolines.smoothing import TracedLines, _find_places
+from tinsmith.terrain.isolines.smoothing import _find_places
 
 ROUNDING = 1e-12
 
@@ -159,7 +159,7 @@ def test_more_points_than_smoothing_can_number_are_refused(monkeypatch):
 def test_each_point_of_a_line_is_known_in_a_triangle_that_holds_it(make):
     tin = make(3)
     kernel_arrays = (tin.points, tin.triangles, tin.neighbors)
-    lines = TracedLines(*trace_contours(*kernel_arrays, np.arange(-12.0, 12.0, 0.75)))
+    lines = trace_contours(*kernel_arrays, np.arange(-12.0, 12.0, 0.75))
     places = _find_places(tin, lines)
     is_last = np.zeros(len(lines.coordinates), bool)
     is_last[(lines.offsets[1:] - 1)[lines.is_closed]] = True

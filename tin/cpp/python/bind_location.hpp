@@ -2,11 +2,9 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
-#include <nanobind/stl/tuple.h>
 
 #include <cstdint>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -29,10 +27,14 @@ Elevations elevations_at(const Locator& locator, const GivenXy& xy, int threads,
   return hand_over<Elevations>(std::move(result), {count});
 }
 
-// Breaks of segments one after the other: where those of each begin, the arrays, and the first
-// segment for which there are none, -1 if all have theirs.
-using TraceArrays = std::tuple<Offsets, Xy, Elevations, Elevations, Numbers, Numbers, Numbers,
-                               Numbers, std::int64_t>;
+// Breaks of segments one after the other, as in TraceBreaks.
+struct TraceArrays {
+  Offsets offsets;
+  Xy places;
+  Elevations elevations, ratios;
+  Numbers vertices, edges, triangles, along;
+  std::int64_t failed;
+};
 
 // A locator with the arrays that it reads.
 class HeldLocator {
@@ -106,6 +108,20 @@ inline void bind_location(nb::module_& m) {
            "The elevation at each point, NaN outside.")
       .def("trace", &HeldLocator::trace, "starts"_a.noconvert(), "ends"_a.noconvert(),
            "The places along segments where they cross edges, and the triangles between them.");
+  Result<TraceArrays>(m, "Trace", "Breaks of segments, those of one after those of the other.")
+      .def_array("offsets", &TraceArrays::offsets, "(s + 1,), where those of each segment begin.")
+      .def_array("places", &TraceArrays::places, "(n, 2).")
+      .def_array("elevations", &TraceArrays::elevations, "(n,), NaN where there is no surface.")
+      .def_array("ratios", &TraceArrays::ratios, "(n,), 0 at the first end, 1 at the second.")
+      .def_array("vertices", &TraceArrays::vertices, "(n,), that are there, else -1.")
+      .def_array("edges", &TraceArrays::edges,
+                 "(n,), crossed, or on which an end lies, as 3 * triangle + corner, else -1.")
+      .def_array("triangles", &TraceArrays::triangles,
+                 "(n,), through which the segment goes on, -1 outside.")
+      .def_array("along", &TraceArrays::along, "(n,), the edge along which it goes on, else -1.")
+      .def_ro("failed", &TraceArrays::failed,
+              "The first segment whose triangles lie over each other, -1 for none; it has no "
+              "breaks, nor have those after it.");
 }
 
 }  // namespace tinsmith::python

@@ -4,13 +4,11 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
-#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -34,15 +32,21 @@ inline Triangulation triangulate(const GivenXyz& points, Method method, int thre
   return made;
 }
 
-inline auto grow(const GivenXyz& points, Method method, int threads, const std::string& path,
-                 const Listener::Tell& tell) {
+struct GrownArrays {
+  Triples triangles, neighbors;
+  std::optional<Numbers> kept_row;
+  std::int32_t distinct_count;
+};
+
+inline GrownArrays grow(const GivenXyz& points, Method method, int threads, const std::string& path,
+                        const Listener::Tell& tell) {
   Triangulation made = triangulate(points, method, threads, path, tell);
   const auto size = static_cast<std::size_t>(made.triangle_count);
   std::optional<Numbers> kept_row;
   if (!made.kept_row.empty()) kept_row = hand_over(made.kept_row);
-  return std::make_tuple(hand_over<Triples>(std::move(made.corners), {size, 3}),
-                         hand_over<Triples>(std::move(made.neighbors), {size, 3}), kept_row,
-                         made.distinct_count);
+  return {hand_over<Triples>(std::move(made.corners), {size, 3}),
+          hand_over<Triples>(std::move(made.neighbors), {size, 3}), std::move(kept_row),
+          made.distinct_count};
 }
 
 inline nb::dict count_work(const GivenXyz& points, Method method, int threads,
@@ -73,8 +77,15 @@ inline void bind_triangulation(nb::module_& m) {
       .value("INSERTION", Method::kInsertion);
   const auto fastest = vector_paths().back().name;
   m.def("grow", &grow, "points"_a.noconvert(), "method"_a = Method::kAutomatic, "threads"_a = 1,
-        "path"_a = fastest, "progress"_a = nb::none(),
-        "Triangles, neighbours, kept row of each row (or None) and the number of distinct points.");
+        "path"_a = fastest, "progress"_a = nb::none(), "The triangulation of points.");
+  Result<GrownArrays>(m, "Growth",
+                      "Triangles in canonical order: by first vertex in the sweep, then by angle.")
+      .def_array("triangles", &GrownArrays::triangles, "(m, 3), vertices, numbered by kept rows.")
+      .def_array("neighbors", &GrownArrays::neighbors, "(m, 3), opposite the corners, -1 outside.")
+      .def_array("kept_row", &GrownArrays::kept_row,
+                 "(n,), for each row the first row at the same place; None when no two points "
+                 "share a place.")
+      .def_ro("distinct_count", &GrownArrays::distinct_count, "How many places there are.");
   m.def("count_work", &count_work, "points"_a.noconvert(), "method"_a = Method::kAutomatic,
         "threads"_a = 1, "path"_a = fastest, "Triangulate and return how much the searches did.");
   m.def("vector_paths", &names_of_vector_paths,

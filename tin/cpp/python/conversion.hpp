@@ -47,6 +47,7 @@ using Made = nb::ndarray<nb::numpy, T, nb::shape<Shape...>>;
 using Xyz = Made<double, -1, 3>;
 using Xy = Made<double, -1, 2>;
 using Triples = Made<std::int32_t, -1, 3>;
+using Quadruples = Made<std::int32_t, -1, 4>;
 using Pairs = Made<std::int32_t, -1, 2>;
 using Numbers = Made<std::int32_t, -1>;
 using Elevations = Made<double, -1>;
@@ -77,6 +78,20 @@ template <typename Id>
 Numbers hand_over(const std::vector<Id>& values) {
   return copy_over<Numbers, std::int32_t>(values, {values.size()});
 }
+
+// A struct of arrays whose members Python reads by their names.
+template <typename Struct>
+class Result : public nb::class_<Struct> {
+ public:
+  using nb::class_<Struct>::class_;
+
+  // The array owns its memory, so that it may outlive the struct.
+  template <typename Array>
+  Result& def_array(const char* name, Array Struct::* member, const char* text) {
+    this->def_ro(name, member, nb::rv_policy::automatic, text);
+    return *this;
+  }
+};
 
 constexpr std::int32_t kMostRows = INT32_MAX / 4;
 constexpr std::int32_t kMostTriangles = INT32_MAX / 3;
