@@ -79,7 +79,6 @@ class ElevationWalk {
   }
 
  private:
-  static constexpr std::uint32_t kNoCorner = 3;
   static constexpr std::int32_t kMostSteps = 100'000;
   static constexpr double kRoundings = 1.0 + 16.0 * kUnitRoundoff;  // of the last few operations
 

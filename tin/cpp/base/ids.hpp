@@ -61,6 +61,7 @@ constexpr HalfEdge half_edge(Triangle triangle, std::uint32_t corner) {
 }
 constexpr Triangle triangle_of(HalfEdge e) { return Triangle{number(e) >> 2}; }
 constexpr std::uint32_t corner_of(HalfEdge e) { return number(e) & 3; }
+constexpr std::uint32_t kNoCorner = 3;
 
 // The corners 1, 2, 0 and 2, 0, 1 as digits of a number: a branch on the corner would be guessed
 // wrongly half of the time.

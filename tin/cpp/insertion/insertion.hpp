@@ -18,6 +18,7 @@
 #include "../base/ids.hpp"
 #include "../index/grid.hpp"
 #include "../index/hilbert_order.hpp"
+#include "../location/visibility_walk.hpp"
 #include "../predicates/predicates.hpp"
 #include "cavity.hpp"
 #include "ghost_mesh.hpp"
@@ -128,36 +129,35 @@ class Insertion {
   // Walk towards p across edges that separate it, to a triangle whose circle holds it.
   Triangle find_conflict(Point p, Triangle triangle) {
     const GhostTriangle* const triangles = mesh_.triangles.get();
-    const GhostTriangle* here = &triangles[number(triangle)];
+    const GhostTriangle& start = triangles[number(triangle)];
     // p is not right of the edge from `right` to `left`, seen from the triangle to search.
-    Sight left = sight(here->corner[2], p), right = sight(here->corner[1], p);
+    Sight left = sight(start.corner[2], p), right = sight(start.corner[1], p);
     HalfEdge edge = half_edge(triangle, 0);
     if (is_right_of(right, left, p)) {
-      edge = here->twin[0];
+      edge = start.twin[0];
       std::swap(left, right);
     }
-    for (int steps = 1; steps < kMostSteps; ++steps) {
-      here = &triangles[number(triangle_of(edge))];
-      const std::uint32_t corner = corner_of(edge);
-      const Vertex vertex = here->corner[corner];
-      if (vertex == kGhost) return arrive(edge, steps);
+    int steps = 0;
+    const HalfEdge end = walk_towards(edge, kMostSteps, [&](HalfEdge entry) {
+      ++steps;
+      const GhostTriangle& entered = triangles[number(triangle_of(entry))];
+      const std::uint32_t corner = corner_of(entry);
+      const Vertex vertex = entered.corner[corner];
+      if (vertex == kGhost) return entry;
       const Sight apex = sight(vertex, p);
       if (is_right_of(left, apex, p)) {
-        edge = here->twin[corner_after(corner)];
         right = apex;
-      } else if (is_right_of(apex, right, p)) {
-        edge = here->twin[corner_before(corner)];
-        left = apex;
-      } else {
-        return arrive(edge, steps);
+        return entered.twin[corner_after(corner)];
       }
-    }
-    return find_straight(p, triangle);
-  }
-
-  Triangle arrive(HalfEdge edge, int steps) {
+      if (is_right_of(apex, right, p)) {
+        left = apex;
+        return entered.twin[corner_before(corner)];
+      }
+      return entry;
+    });
+    if (end == kNoHalfEdge) return find_straight(p, triangle);
     walk_steps_ += steps;
-    return triangle_of(edge);
+    return triangle_of(end);
   }
 
   TINSMITH_RARE Triangle find_straight(Point p, Triangle triangle) {

@@ -1,11 +1,11 @@
 // Point location: which triangle holds a point, and which is the surface's elevation there?
 //
 // A short walk over neighbours, from the triangle of the query before, guesses; a tree of boxes
-// proves. The walk (a visibility walk of Devillers, Pion and Teillaud, "Walking in a triangulation",
-// 2002, that leaves across the edge with the query furthest beyond it) is believed only where floating point is certain that the query lies strictly
-// inside a triangle. All else - on an edge or a vertex, outside, across a gap, too far away - is
-// decided by testing every triangle whose box holds the query, exactly. So the answer needs no
-// convex boundary, no Delaunay triangles and no sound neighbours.
+// proves. The walk, across edges with the query furthest beyond them, is believed only where
+// floating point is certain that the query lies strictly inside a triangle. All else - on an edge
+// or a vertex, outside, across a gap, too far away - is decided by testing every triangle whose box
+// holds the query, exactly. So the answer needs no convex boundary, no Delaunay triangles and no
+// sound neighbours.
 #pragma once
 
 #include <algorithm>
@@ -20,6 +20,7 @@
 #include "../predicates/predicates.hpp"
 #include "ordered_surface.hpp"
 #include "surface.hpp"
+#include "visibility_walk.hpp"
 
 namespace tinsmith {
 
@@ -117,8 +118,9 @@ class Locator {
   }
 
   // The triangle that certainly holds p strictly inside, or kNoTriangle for "cannot say".
-  Triangle walk(Point p, Triangle triangle, int longest) const {
-    for (int step = 0; step < longest && surface_.is_triangle(triangle); ++step) {
+  Triangle walk(Point p, Triangle start, int longest) const {
+    const auto next = [this, p](HalfEdge entry) {
+      const Triangle triangle = triangle_of(entry);
       const Point a = surface_.corner(triangle, 0);
       const Point b = surface_.corner(triangle, 1);
       const Point c = surface_.corner(triangle, 2);
@@ -134,11 +136,14 @@ class Locator {
                                        std::fabs(cyax) + std::fabs(axby) + std::fabs(aybx));
       std::uint32_t outermost = side[1] < side[0];
       outermost = side[2] < side[outermost] ? 2 : outermost;
-      if (side[outermost] > bound) return triangle;
-      if (!(side[outermost] < -bound)) return kNoTriangle;
-      triangle = surface_.neighbor(triangle, outermost);
-    }
-    return kNoTriangle;
+      if (side[outermost] > bound) return entry;
+      if (!(side[outermost] < -bound)) return kNoHalfEdge;
+      const Triangle beyond = surface_.neighbor(triangle, outermost);
+      const bool leads_on = surface_.is_triangle(beyond) && beyond != triangle;
+      return leads_on ? unentered(beyond) : kNoHalfEdge;
+    };
+    const HalfEdge end = walk_towards(unentered(start), static_cast<std::uint32_t>(longest), next);
+    return end == kNoHalfEdge ? kNoTriangle : triangle_of(end);
   }
 
   // The triangle that holds p, boundary included, and of several the one that the caller calls by

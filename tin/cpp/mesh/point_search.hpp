@@ -2,8 +2,7 @@
 //
 // Jump-and-walk (Muecke, Saias and Zhu, "Fast randomized point location without preprocessing in
 // two- and three-dimensional Delaunay triangulations", 1999); the walk is the stochastic one of
-// Devillers, Pion and Teillaud, "Walking in a triangulation" (2002), with the straight one behind
-// it.
+// the visibility walks, with the straight one behind it.
 #pragma once
 
 #include <cmath>
@@ -12,6 +11,7 @@
 
 #include "../base/ids.hpp"
 #include "../insertion/straight_walk.hpp"
+#include "../location/visibility_walk.hpp"
 #include "../predicates/predicates.hpp"
 #include "mesh.hpp"
 #include "mesh_points.hpp"
@@ -23,6 +23,20 @@ struct MeshLocation {
   Where where;
   HalfEdge edge;  // of the triangle; the edge; one that leaves the vertex; of the ghost
 };
+
+// Of a point that a triangle holds, perhaps on its boundary.
+template <typename PointAt>
+MeshLocation location_in(const Mesh& mesh, PointAt&& point_at, Triangle t, Point p) {
+  for (const HalfEdge e : half_edges(t)) {
+    if (point_at(mesh.apex(e)) == p) return {MeshLocation::Where::kAtVertex, Mesh::before(e)};
+  }
+  for (const HalfEdge e : half_edges(t)) {
+    if (orientation(point_at(mesh.from(e)), point_at(mesh.to(e)), p) == 0) {
+      return {MeshLocation::Where::kOnEdge, e};
+    }
+  }
+  return {MeshLocation::Where::kInside, half_edge(t, 0)};
+}
 
 // One walk: exact, and no longer than a few times what the distance asks for.
 class PointSearch {
@@ -37,22 +51,19 @@ class PointSearch {
     HalfEdge e = nearest_start(p, last, landmark);
     if (mesh_.is_ghost(triangle_of(e))) e = real_side(triangle_of(e));
     const Triangle start = triangle_of(e);
-    Triangle t = start;
-    std::uint32_t entry = kNoCorner;
-    for (int steps = most_steps(); steps > 0; --steps) {
-      const std::uint32_t corner = corner_beyond(p, t, entry);
-      if (corner == kNoCorner) return location_in(p, t);
-      const HalfEdge across = mesh_.twin(half_edge(t, corner));
-      if (mesh_.apex(across) == kGhost) return {MeshLocation::Where::kOutside, across};
-      t = triangle_of(across);
-      entry = corner_of(across);
-    }
-    return locate_straight(p, start);
+    bool is_outside = false;
+    const HalfEdge end = walk_towards(unentered(start), most_steps(), [&](HalfEdge entry) {
+      if (is_outside) return entry;
+      const HalfEdge beyond = entry_beyond(p, entry);
+      is_outside = beyond != entry && mesh_.apex(beyond) == kGhost;
+      return beyond;
+    });
+    if (end == kNoHalfEdge) return locate_straight(p, start);
+    if (is_outside) return {MeshLocation::Where::kOutside, end};
+    return location_in(p, triangle_of(end));
   }
 
  private:
-  static constexpr std::uint32_t kNoCorner = 3;
-
   // The walk begins at the last change, at the landmark, or at the nearest of a few vertices drawn
   // at random: as many as make the walk from there as short as the drawing.
   HalfEdge nearest_start(Point p, HalfEdge last, Vertex landmark) {
@@ -112,8 +123,8 @@ class PointSearch {
   // From a start within a share of the landmarks' cells a walk takes some dozen steps, from one of
   // the drawn vertices a few times the cube root of all; one that takes more has strayed among
   // slivers.
-  int most_steps() const {
-    return 100 + static_cast<int>(8.0 * std::cbrt(static_cast<double>(count_)));
+  std::uint32_t most_steps() const {
+    return 100 + static_cast<std::uint32_t>(8.0 * std::cbrt(static_cast<double>(count_)));
   }
 
   MeshLocation locate_straight(Point p, Triangle start) const {
@@ -133,29 +144,20 @@ class PointSearch {
     return {MeshLocation::Where::kOutside, ghost};
   }
 
-  // The corner opposite an edge that has p on its other side, or kNoCorner. The edges are tried
-  // from a random one on: among fixed edges a walk in fixed order could go round and round.
-  std::uint32_t corner_beyond(Point p, Triangle t, std::uint32_t entry) {
+  // Across an edge that has p on its other side, or the same entry. The edges are tried from a
+  // random one on: among fixed edges a walk in fixed order could go round and round.
+  HalfEdge entry_beyond(Point p, HalfEdge entry) {
     std::uint32_t corner = static_cast<std::uint32_t>(random() % 3);
     for (int i = 0; i < 3; ++i, corner = corner_after(corner)) {
-      if (corner == entry) continue;
-      const HalfEdge e = half_edge(t, corner);
-      if (orientation(points_[mesh_.from(e)], points_[mesh_.to(e)], p) < 0) return corner;
+      const HalfEdge e = half_edge(triangle_of(entry), corner);
+      if (e == entry) continue;
+      if (orientation(points_[mesh_.from(e)], points_[mesh_.to(e)], p) < 0) return mesh_.twin(e);
     }
-    return kNoCorner;
+    return entry;
   }
 
-  // p is in the triangle or on its boundary.
   MeshLocation location_in(Point p, Triangle t) const {
-    for (const HalfEdge e : half_edges(t)) {
-      if (points_[mesh_.apex(e)] == p) return {MeshLocation::Where::kAtVertex, Mesh::before(e)};
-    }
-    for (const HalfEdge e : half_edges(t)) {
-      if (orientation(points_[mesh_.from(e)], points_[mesh_.to(e)], p) == 0) {
-        return {MeshLocation::Where::kOnEdge, e};
-      }
-    }
-    return {MeshLocation::Where::kInside, half_edge(t, 0)};
+    return tinsmith::location_in(mesh_, [this](Vertex v) { return points_[v]; }, t, p);
   }
 
   std::uint64_t random() {

@@ -435,28 +435,23 @@ class Refiner {
   // From triangle to triangle towards p, across edges that are no segments. Every step goes to a
   // circle of smaller power about p, because such edges are Delaunay: the walk ends.
   Found walk(Triangle t, Point p) const {
-    for (std::uint32_t most = mesh_.triangle_slots(); most > 0; --most) {
-      HalfEdge blocking = kNoHalfEdge, on = kNoHalfEdge, across = kNoHalfEdge;
-      for (const HalfEdge e : half_edges(t)) {
-        const Point from = point(mesh_.from(e)), to = point(mesh_.to(e));
-        if (p == from) return {{MeshLocation::Where::kAtVertex, e}, false};
-        const int side = orientation(from, to, p);
-        if (side == 0) on = e;
-        if (side >= 0) continue;
+    HalfEdge blocking = kNoHalfEdge;
+    const HalfEdge end = walk_towards(unentered(t), mesh_.triangle_slots(), [&](HalfEdge entry) {
+      HalfEdge across = blocking = kNoHalfEdge;
+      for (const HalfEdge e : half_edges(triangle_of(entry))) {
+        if (orientation(point(mesh_.from(e)), point(mesh_.to(e)), p) >= 0) continue;
         HalfEdge& kind = mesh_.is_fixed(e) ? blocking : across;
         if (kind == kNoHalfEdge || is_apex_before(e, kind)) kind = e;
       }
-      if (across != kNoHalfEdge) {
-        t = triangle_of(mesh_.twin(across));
-      } else if (blocking != kNoHalfEdge) {
-        return {{MeshLocation::Where::kOnEdge, blocking}, true};
-      } else if (on != kNoHalfEdge) {
-        return {{MeshLocation::Where::kOnEdge, on}, mesh_.is_fixed(on)};
-      } else {
-        return {{MeshLocation::Where::kInside, half_edge(t, 0)}, false};
-      }
+      return across == kNoHalfEdge ? entry : mesh_.twin(across);
+    });
+    if (end == kNoHalfEdge) {
+      throw std::logic_error("a walk to the remedy of a triangle did not arrive");
     }
-    throw std::logic_error("a walk to the remedy of a triangle did not arrive");
+    if (blocking != kNoHalfEdge) return {{MeshLocation::Where::kOnEdge, blocking}, true};
+    const auto point_at = [this](Vertex v) { return point(v); };
+    const MeshLocation at = location_in(mesh_, point_at, triangle_of(end), p);
+    return {at, at.where == MeshLocation::Where::kOnEdge && mesh_.is_fixed(at.edge)};
   }
 
   bool is_apex_before(HalfEdge e, HalfEdge f) const {
