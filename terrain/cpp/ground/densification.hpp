@@ -117,18 +117,13 @@ class Densification {
   // what is ahead of it.
   static constexpr int kParts = 4, kShareOfRound = 4;
 
-  struct Corner {
-    Point place;
-    double elevation;
-  };
-
-  // z = base.elevation + east * (x - base.x) + north * (y - base.y)
+  // z = base.z + east * (x - base.x) + north * (y - base.y)
   struct Plane {
-    Corner base{};
+    SurfacePoint base{};
     double east = 0.0, north = 0.0;
 
     double elevation_at(Point p) const {
-      return base.elevation + east * (p.x - base.place.x) + north * (p.y - base.place.y);
+      return base.z + east * (p.x - base.at.x) + north * (p.y - base.at.y);
     }
   };
 
@@ -152,7 +147,7 @@ class Densification {
   Point place(std::int32_t point) const { return {row(point)[0], row(point)[1]}; }
   double elevation(std::int32_t point) const { return row(point)[2]; }
   double elevation(Vertex v) const { return elevations_[std::size_t(number(v))]; }
-  Corner corner(Vertex v) const { return {editor_.point(v), elevation(v)}; }
+  SurfacePoint corner(Vertex v) const { return {editor_.point(v), elevation(v)}; }
 
   // ------------------------------------------------------------------ lists of candidates
 
@@ -233,7 +228,7 @@ class Densification {
   std::int32_t nearest_that_fits(Triangle t) const {
     const Plane plane = plane_of(t);
     const double tilt = std::sqrt(1.0 + plane.east * plane.east + plane.north * plane.north);
-    const std::array<Corner, 3> corners = corners_of(t);
+    const std::array<SurfacePoint, 3> corners = corners_of(t);
     const double sine = limits_.sine * std::min(1.0, longest_edge(corners) / limits_.full_edge);
     std::int32_t best = kNone;
     double least = std::numeric_limits<double>::infinity();
@@ -254,7 +249,7 @@ class Densification {
     return std::lexicographical_compare(row(a), row(a) + 3, row(b), row(b) + 3);
   }
 
-  std::array<Corner, 3> corners_of(Triangle t) const {
+  std::array<SurfacePoint, 3> corners_of(Triangle t) const {
     const auto& vertices = editor_.mesh()[t].corner;
     return {corner(vertices[0]), corner(vertices[1]), corner(vertices[2])};
   }
@@ -262,33 +257,33 @@ class Densification {
   // Corners are taken in the order of their coordinates, so that equal triangles have equal planes
   // to the last bit.
   Plane plane_of(Triangle t) const {
-    std::array<Corner, 3> c = corners_of(t);
-    std::sort(c.begin(), c.end(), [](const Corner& a, const Corner& b) {
-      return lexicographically_before(a.place, b.place);
+    std::array<SurfacePoint, 3> c = corners_of(t);
+    std::sort(c.begin(), c.end(), [](const SurfacePoint& a, const SurfacePoint& b) {
+      return lexicographically_before(a.at, b.at);
     });
-    const double ux = c[1].place.x - c[0].place.x, uy = c[1].place.y - c[0].place.y;
-    const double vx = c[2].place.x - c[0].place.x, vy = c[2].place.y - c[0].place.y;
-    const double uz = c[1].elevation - c[0].elevation, vz = c[2].elevation - c[0].elevation;
+    const double ux = c[1].at.x - c[0].at.x, uy = c[1].at.y - c[0].at.y;
+    const double vx = c[2].at.x - c[0].at.x, vy = c[2].at.y - c[0].at.y;
+    const double uz = c[1].z - c[0].z, vz = c[2].z - c[0].z;
     const double area = ux * vy - uy * vx;
     if (area == 0.0) return {c[0], 0.0, 0.0};  // a sliver: its sides cancel in doubles
     return {c[0], (uz * vy - vz * uy) / area, (vz * ux - uz * vx) / area};
   }
 
-  static double longest_edge(const std::array<Corner, 3>& c) {
+  static double longest_edge(const std::array<SurfacePoint, 3>& c) {
     double square = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Point a = c[k].place, b = c[(k + 1) % 3].place;
+      const Point a = c[k].at, b = c[(k + 1) % 3].at;
       square = std::max(square, (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y));
     }
     return std::sqrt(square);
   }
 
-  double squared_distance_to_nearest(const std::array<Corner, 3>& corners,
+  double squared_distance_to_nearest(const std::array<SurfacePoint, 3>& corners,
                                      std::int32_t point) const {
     double least = std::numeric_limits<double>::infinity();
-    for (const Corner& c : corners) {
-      const double dx = row(point)[0] - c.place.x, dy = row(point)[1] - c.place.y;
-      const double dz = row(point)[2] - c.elevation;
+    for (const SurfacePoint& c : corners) {
+      const double dx = row(point)[0] - c.at.x, dy = row(point)[1] - c.at.y;
+      const double dz = row(point)[2] - c.z;
       least = std::min(least, dx * dx + dy * dy + dz * dz);
     }
     return least;

@@ -81,7 +81,8 @@ class Arcs {
 
   void insert(EdgeTree& tree, std::vector<EdgeTree::Handle>& handles, std::uint32_t arc) {
     const Arc& one = arcs_[arc];
-    const SightEdge edge{place_of(surface_, one.from), place_of(surface_, one.to), 0.0, 0.0};
+    const SightEdge edge{surface_.surface_point(one.from), surface_.surface_point(one.to), 0.0,
+                         0.0};
     const EdgeTree::Handle h = handles[arc] = tree.insert(edge, arc);
     relate(tree, tree.next_nearer(h), h);
     relate(tree, h, tree.next_farther(h));

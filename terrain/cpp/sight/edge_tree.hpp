@@ -17,7 +17,7 @@ namespace tinsmith::sight {
 
 // An edge, counter-clockwise about the eye.
 struct SightEdge {
-  Place from, to;
+  SurfacePoint from, to;
   double bound;  // the steepest ray that it may block, by the rule
   double reach;  // for the rule: how far the triangles beside it extend
 };

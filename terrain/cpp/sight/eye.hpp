@@ -8,17 +8,14 @@
 
 namespace tinsmith::sight {
 
-struct Place {
-  Point at;
-  double elevation;
-};
-
 // From the eye to a place, rounded once each.
 struct Offset {
   double x, y, z;
 
-  Offset(const Place& eye, const Place& place)
-      : x(place.at.x - eye.at.x), y(place.at.y - eye.at.y), z(place.elevation - eye.elevation) {}
+  Offset() = default;
+  Offset(double east, double north, double up) : x(east), y(north), z(up) {}
+  Offset(const SurfacePoint& eye, const SurfacePoint& place)
+      : Offset(place.at.x - eye.at.x, place.at.y - eye.at.y, place.z - eye.z) {}
 
   // Along an edge within a quadrant a height is linear, and so is this: their ratio has its
   // extremes at the ends, which it has not if it is taken with the distance.
@@ -31,18 +28,20 @@ namespace detail {
 // Shewchuk's bound for the first stage of the determinant.
 constexpr double kVolumeBound = (7.0 + 56.0 * kUnitRoundoff) * kUnitRoundoff;
 
-inline Expansion<64> exact_term(const Place& eye, const Place& a, const Place& b, const Place& c) {
+inline Expansion<64> exact_term(const SurfacePoint& eye, const SurfacePoint& a,
+                                const SurfacePoint& b, const SurfacePoint& c) {
   const auto difference = [](double p, double q) { return expand(exact_difference(p, q)); };
   const auto ax = difference(a.at.x, eye.at.x), ay = difference(a.at.y, eye.at.y);
   const auto bx = difference(b.at.x, eye.at.x), by = difference(b.at.y, eye.at.y);
-  return (ax * by - ay * bx) * difference(c.elevation, eye.elevation);
+  return (ax * by - ay * bx) * difference(c.z, eye.z);
 }
 
 }  // namespace detail
 
 // Of the plane through the eye, a and b above the place c, where a, b is counter-clockwise about
 // the eye: the sign of the opposite of the volume that they span.
-inline int sign_of_height(const Place& eye, const Place& a, const Place& b, const Place& c) {
+inline int sign_of_height(const SurfacePoint& eye, const SurfacePoint& a, const SurfacePoint& b,
+                          const SurfacePoint& c) {
   const Offset p(eye, a), q(eye, b), r(eye, c);
   const double qx_ry = q.x * r.y, qy_rx = q.y * r.x, rx_py = r.x * p.y;
   const double ry_px = r.y * p.x, px_qy = p.x * q.y, py_qx = p.y * q.x;
@@ -58,12 +57,13 @@ inline int sign_of_height(const Place& eye, const Place& a, const Place& b, cons
 }
 
 // Of the ray from the eye to a below the one to b, where a and b lie in the same direction.
-inline int compare_steepness(const Place& eye, const Place& a, const Place& b) {
+inline int compare_steepness(const SurfacePoint& eye, const SurfacePoint& a,
+                             const SurfacePoint& b) {
   const bool by_x = a.at.x != eye.at.x;
   const double from = by_x ? eye.at.x : eye.at.y;
   const double to_a = by_x ? a.at.x : a.at.y, to_b = by_x ? b.at.x : b.at.y;
-  const int sign = tinsmith::detail::sign_of_product_difference(
-      a.elevation, eye.elevation, to_b, from, b.elevation, eye.elevation, to_a, from);
+  const int sign =
+      tinsmith::detail::sign_of_product_difference(a.z, eye.z, to_b, from, b.z, eye.z, to_a, from);
   return to_a > from ? sign : -sign;
 }
 

@@ -24,12 +24,11 @@ constexpr std::uint32_t kNoEdge = UINT32_MAX;
 // the eye. The farther one has the point where they do.
 struct Ray {
   double key;          // grows from the first direction of the surface on
-  double x, y;         // the direction
+  Point towards;       // relative to the eye; of a crossing, the place itself
   std::int32_t slot;   // of vertices; kNoSlot for a crossing
   std::int64_t line;   // its number as a line
-  std::uint32_t edge;  // of a crossing, with the point
+  std::uint32_t edge;  // of a crossing, with the other one
   std::uint32_t other;
-  double point_x, point_y;  // as seen from the eye
 };
 
 // What stands above the horizon's start from one ray to the next.
@@ -39,9 +38,9 @@ struct Piece {
 };
 
 // A point of the ground as seen from the eye, so that one close to it keeps its digits.
-struct Spot {
-  double x, y, z;
-  Vertex vertex;  // kNoVertex if it is none
+// A place as seen from the eye, and the vertex that it is, kNoVertex if it is none.
+struct Spot : Offset {
+  Vertex vertex;
 };
 
 // Points of edges in directions, computed from nothing but the edge and the ray: whoever asks gets
@@ -61,23 +60,19 @@ class SightGeometry {
     }
   }
 
-  Spot eye() const { return {0.0, 0.0, 0.0, kNoVertex}; }
+  Spot eye() const { return {Offset(0.0, 0.0, 0.0), kNoVertex}; }
   double lift() const { return view_.target_height; }
-  Spot spot(Vertex v) const {
-    const Offset to(view_.eye, place_of(surface_, v));
-    return {to.x, to.y, to.z, v};
-  }
+  Spot spot(Vertex v) const { return {Offset(view_.eye, surface_.surface_point(v)), v}; }
   Point place(const Spot& s) const {
     if (s.vertex != kNoVertex) return surface_.point(s.vertex);
     return {view_.eye.at.x + s.x, view_.eye.at.y + s.y};
   }
-  static double norm(const Spot& s) { return std::fabs(s.x) + std::fabs(s.y); }
 
   Ray ray(Vertex v, bool is_last = false) const {
     const std::int32_t slot = directions_.slot(v);
     const double key = is_last ? kLastKey : keys_[slot];
     const Spot to = spot(directions_.vertex(slot));
-    return {key, to.x, to.y, slot, slot, kNoEdge, kNoEdge, 0.0, 0.0};
+    return {key, {to.x, to.y}, slot, slot, kNoEdge, kNoEdge};
   }
   Ray begin(const Arc& arc) const {
     return ray(arc.begins_at_cut ? directions_.vertex(0) : arc.from);
@@ -87,7 +82,7 @@ class SightGeometry {
   }
   // From that of the first direction on.
   double key_of(const Spot& s) const {
-    const double part = s.x / norm(s);
+    const double part = s.x / s.norm();
     const double key = s.y > 0.0 || (s.y == 0.0 && s.x > 0.0) ? 1.0 - part : 3.0 + part;
     return key < first_key_ ? key + 4.0 : key;
   }
@@ -98,12 +93,14 @@ class SightGeometry {
     if (ray.slot != Directions::kNoSlot && directions_.slot(from) == ray.slot) return spot(from);
     if (ray.slot != Directions::kNoSlot && directions_.slot(to) == ray.slot) return spot(to);
     const Spot a = spot(from), b = spot(to);
-    const double left = a.x * ray.y - a.y * ray.x, right = ray.x * b.y - ray.y * b.x;
+    const Point towards = ray.towards;
+    const double left = a.x * towards.y - a.y * towards.x;
+    const double right = towards.x * b.y - towards.y * b.x;
     const double along = std::min(std::max(left / (left + right), 0.0), 1.0);
     Spot found = between(a, b, along);
     if (ray.edge == edge) {
-      found.x = ray.point_x;
-      found.y = ray.point_y;
+      found.x = ray.towards.x;
+      found.y = ray.towards.y;
     }
     return found;
   }
@@ -113,7 +110,7 @@ class SightGeometry {
     if (edge == kNoEdge) return std::numeric_limits<double>::infinity();
     const Spot source = point_on(edge == ray.other ? ray.edge : edge, ray);
     if (source.x == x.x && source.y == x.y) return lift;
-    const double line = source.z * (norm(x) / norm(source));
+    const double line = source.z * (x.norm() / source.norm());
     return settle(x.z + lift - line, std::fabs(x.z) + lift + std::fabs(line));
   }
 
@@ -127,8 +124,9 @@ class SightGeometry {
   }
 
   static Spot between(const Spot& a, const Spot& b, double along) {
-    return {a.x + along * (b.x - a.x), a.y + along * (b.y - a.y), a.z + along * (b.z - a.z),
-            kNoVertex};
+    const Offset offset(a.x + along * (b.x - a.x), a.y + along * (b.y - a.y),
+                        a.z + along * (b.z - a.z));
+    return {offset, kNoVertex};
   }
 
  private:
@@ -231,14 +229,11 @@ class Horizon {
 
   Ray make_ray(const Spot& crossing, std::uint32_t edge, std::uint32_t other) {
     return {geometry_.key_of(crossing),
-            crossing.x,
-            crossing.y,
+            {crossing.x, crossing.y},
             Directions::kNoSlot,
             next_line_++,
             edge,
-            other,
-            crossing.x,
-            crossing.y};
+            other};
   }
 
   const SightGeometry& geometry_;

@@ -57,27 +57,27 @@ class PlaneRule {
  public:
   static constexpr bool kIsExact = true;
 
-  explicit PlaneRule(const Place& eye) : eye_(eye) {}
+  explicit PlaneRule(const SurfacePoint& eye) : eye_(eye) {}
 
   double bound(const SightEdge& edge) const {
     const Offset a(eye_, edge.from), b(eye_, edge.to);
     return bound_steepness(a, b, a.z, b.z);
   }
   // What only edges above that bound may block.
-  double steepness(const Place& target) const {
+  double steepness(const SurfacePoint& target) const {
     const Offset to(eye_, target);
     return least_steepness(to.z, to.norm());
   }
-  Sight judge(const SightEdge& edge, const Place& target) const {
+  Sight judge(const SightEdge& edge, const SurfacePoint& target) const {
     return sign_of_height(eye_, edge.from, edge.to, target) > 0 ? Sight::kHidden : Sight::kSeen;
   }
   // Of a nearer vertex in the same direction.
-  Sight judge(const Place& vertex, double, const Place& target) const {
+  Sight judge(const SurfacePoint& vertex, double, const SurfacePoint& target) const {
     return compare_steepness(eye_, vertex, target) > 0 ? Sight::kHidden : Sight::kSeen;
   }
 
  private:
-  Place eye_;
+  SurfacePoint eye_;
 };
 
 // Over an earth that falls away as the square of the distance. Between edges the ground bulges by
@@ -87,18 +87,18 @@ class CurvedRule {
  public:
   static constexpr bool kIsExact = false;
 
-  CurvedRule(const Place& eye, double fall) : eye_(eye), fall_(fall) {}
+  CurvedRule(const SurfacePoint& eye, double fall) : eye_(eye), fall_(fall) {}
 
   double bound(const SightEdge& edge) const {
     const Offset a(eye_, edge.from), b(eye_, edge.to);
     const double rise = 2.0 * fall_ * edge.reach * edge.reach + rounding(a) + rounding(b);
     return bound_steepness(a, b, height(a) + rise, height(b) + rise);
   }
-  double steepness(const Place& target) const {
+  double steepness(const SurfacePoint& target) const {
     const Offset to(eye_, target);
     return least_steepness(height(to) - rounding(to), to.norm());
   }
-  Sight judge(const SightEdge& edge, const Place& target) const {
+  Sight judge(const SightEdge& edge, const SurfacePoint& target) const {
     const Offset a(eye_, edge.from), b(eye_, edge.to), to(eye_, target);
     const double left = a.x * b.y, right = a.y * b.x;
     const double to_a = to.x * a.y - to.y * a.x, to_b = to.x * b.y - to.y * b.x;
@@ -113,7 +113,7 @@ class CurvedRule {
                          rounding(a) + rounding(b) + rounding(to);
     return decide(above, error, edge.reach);
   }
-  Sight judge(const Place& vertex, double reach, const Place& target) const {
+  Sight judge(const SurfacePoint& vertex, double reach, const SurfacePoint& target) const {
     const Offset a(eye_, vertex), to(eye_, target);
     const double share = a.norm() / to.norm();
     const double above = a.z - share * to.z + fall_ * to.square() * share * (1.0 - share);
@@ -125,7 +125,7 @@ class CurvedRule {
 
   double height(const Offset& to) const { return to.z - fall_ * to.square(); }
   double rounding(const Offset& to) const {
-    return kDoubt * (std::fabs(eye_.elevation) + std::fabs(to.z) + fall_ * to.square());
+    return kDoubt * (std::fabs(eye_.z) + std::fabs(to.z) + fall_ * to.square());
   }
   Sight decide(double above, double error, double reach) const {
     if (above > error) return Sight::kHidden;
@@ -133,7 +133,7 @@ class CurvedRule {
     return is_below ? Sight::kSeen : Sight::kUnknown;  // not a number: unknown
   }
 
-  Place eye_;
+  SurfacePoint eye_;
   double fall_;
 };
 

@@ -187,7 +187,7 @@ class PartFinder {
   void list_corners(const Wedge& w, Corner (&corners)[4]) const {
     const Piece& p = w.piece;
     const auto height = [&](const Spot& spot, const Ray& ray) {
-      return w.front == kNoEdge && SightGeometry::norm(spot) == 0.0
+      return w.front == kNoEdge && spot.norm() == 0.0
                  ? geometry_.lift()
                  : geometry_.height(spot, p.edge, ray, geometry_.lift());
     };

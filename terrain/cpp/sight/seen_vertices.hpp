@@ -34,14 +34,10 @@
 namespace tinsmith::sight {
 
 struct View {
-  Place eye;
+  SurfacePoint eye;
   double target_height;
   double radius;  // infinite for none
 };
-
-inline Place place_of(const Surface& surface, Vertex v) {
-  return {surface.point(v), surface.elevation(v)};
-}
 
 // An edge that crosses the first direction of a sector.
 struct CrossingEdge {
@@ -106,7 +102,7 @@ class Sweep {
   using Handle = EdgeTree::Handle;
 
   struct Nearer {
-    Place place;
+    SurfacePoint place;
     double reach;
   };
 
@@ -121,7 +117,7 @@ class Sweep {
   }
 
   Handle insert(std::uint32_t number, Vertex from) {
-    SightEdge edge{place_of(surface_, from), place_of(surface_, edges_.to(number)), 0.0,
+    SightEdge edge{surface_.surface_point(from), surface_.surface_point(edges_.to(number)), 0.0,
                    edges_.reach(number)};
     edge.bound = rule_.bound(edge);
     return tree_.insert(edge, number);
@@ -156,8 +152,8 @@ class Sweep {
       const Vertex v = directions_.vertex(i);
       if (i > begin) add_nearer(i - 1);
       if (seen[number(v)] != Sight::kSeen) continue;
-      Place target = place_of(surface_, v);
-      target.elevation += view_.target_height;
+      SurfacePoint target = surface_.surface_point(v);
+      target.z += view_.target_height;
       Sight found = Sight::kSeen;
       for (const Nearer& nearer : nearer_) {
         if (found != Sight::kHidden) worsen(found, rule_.judge(nearer.place, nearer.reach, target));
@@ -169,7 +165,7 @@ class Sweep {
 
   // Of the vertices in one direction the steepest alone matters, where that can be decided.
   void add_nearer(std::int32_t position) {
-    const Place place = place_of(surface_, directions_.vertex(position));
+    const SurfacePoint place = surface_.surface_point(directions_.vertex(position));
     if (!Rule::kIsExact || nearer_.empty()) {
       nearer_.push_back({place, reach_at(position)});
     } else if (compare_steepness(view_.eye, place, nearer_.front().place) > 0) {
@@ -190,7 +186,7 @@ class Sweep {
   }
 
   // For an edge in front of the target that hides it.
-  void search(const Place& target, Sight& found) {
+  void search(const SurfacePoint& target, Sight& found) {
     const double steepness = rule_.steepness(target);
     const auto may_hide = [&](Handle h) { return tree_.highest(h) > steepness; };
     parts_.clear();

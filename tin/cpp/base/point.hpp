@@ -17,6 +17,12 @@ inline bool lexicographically_before(Point a, Point b) {
   return a.x < b.x || (a.x == b.x && a.y < b.y);
 }
 
+// A point of a surface, or a place above or below it.
+struct SurfacePoint {
+  Point at;
+  double z;
+};
+
 // The caller's points: n rows of (x, y, ...), `stride` doubles apart.
 struct PointRows {
   const double* data;

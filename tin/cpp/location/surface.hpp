@@ -25,6 +25,7 @@ struct Surface {
   const double* row(Vertex v) const { return points + 3 * static_cast<std::size_t>(number(v)); }
   Point point(Vertex v) const { return {row(v)[0], row(v)[1]}; }
   double elevation(Vertex v) const { return row(v)[2]; }
+  SurfacePoint surface_point(Vertex v) const { return {point(v), elevation(v)}; }
 
   Vertex vertex(Triangle t, std::uint32_t k) const { return Vertex{corners[entry_of(t, k)]}; }
   Point corner(Triangle t, std::uint32_t k) const { return point(vertex(t, k)); }

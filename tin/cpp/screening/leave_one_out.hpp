@@ -99,7 +99,7 @@ class LeaveOneOut {
     const auto weights = CornerWeights::at(p, at(holder.a), at(holder.b), at(holder.c));
     double elevations[3], moment = 0.0;
     for (int k = 0; k < 3; ++k) {
-      elevations[k] = ring_[corners[k]].elevation;
+      elevations[k] = ring_[corners[k]].z;
       moment += weights.of[k] * square_to(p, at(corners[k]));
     }
     return {weights.mean_of(elevations), moment / weights.total()};
@@ -108,10 +108,6 @@ class LeaveOneOut {
  private:
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-  struct Neighbor {
-    Point place;
-    double elevation;
-  };
   struct Holder {  // a triangle of neighbours that holds the place, counter-clockwise
     std::size_t a, b, c;
   };
@@ -131,11 +127,11 @@ class LeaveOneOut {
     return start;
   }
 
-  Point at(std::size_t i) const { return ring_[i].place; }
+  Point at(std::size_t i) const { return ring_[i].at; }
 
   void add(HalfEdge corner, std::uint32_t k) {
     const Vertex w = surface_.vertex(triangle_of(corner), k);
-    ring_.push_back({surface_.point(w), surface_.elevation(w)});
+    ring_.push_back(surface_.surface_point(w));
   }
 
   // The neighbours counter-clockwise; false if the vertex is on the boundary.
@@ -167,7 +163,7 @@ class LeaveOneOut {
     if (orientation(a, b, p) != 0 || ax * bx + ay * by >= 0.0) return {kNone, kNone};
     const double to_a = std::hypot(ax, ay), to_b = std::hypot(bx, by);
     const double share = to_a / (to_a + to_b);
-    return {(1.0 - share) * ring_[0].elevation + share * ring_[1].elevation, to_a * to_b};
+    return {(1.0 - share) * ring_[0].z + share * ring_[1].z, to_a * to_b};
   }
 
   static double square_to(Point p, Point q) {
@@ -215,7 +211,7 @@ class LeaveOneOut {
 
   const Surface& surface_;
   const HalfEdge* corners_;
-  std::vector<Neighbor> ring_;
+  std::vector<SurfacePoint> ring_;
 };
 
 // At some vertices. Check `team.is_stopped()` afterwards.

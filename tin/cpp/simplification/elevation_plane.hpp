@@ -8,11 +8,6 @@
 
 namespace tinsmith {
 
-struct SurfacePoint {
-  Point at;
-  double z;
-};
-
 // The result depends on the three corners, not on which of them is named first.
 class ElevationPlane {
  public:
