@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fuzz import coordinates, minimise, readers, samples
+from fuzz import minimise, readers, samples
+from support import point_sets
 
 from tinsmith.io import reading
 from tinsmith.io.registry.lookup import known_formats
@@ -151,9 +152,9 @@ def test_minimising_keeps_what_the_find_needs():
     assert small == {"points": [[17.0]], "bytes": "ff"}
 
 
-@pytest.mark.parametrize("kind", coordinates.KINDS)
+@pytest.mark.parametrize("kind", point_sets.KINDS)
 def test_coordinates_are_finite_pairs_and_the_same_by_seed(kind):
-    made = [coordinates.coordinates(np.random.default_rng(7), 50, kind) for _ in range(2)]
+    made = [point_sets.coordinates(np.random.default_rng(7), 50, kind) for _ in range(2)]
     assert made[0].shape == (50, 2)
     assert np.isfinite(made[0]).all()
     assert np.array_equal(made[0], made[1])

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from support.leave_one_out import interpolate_without, rounding_of
+from support.point_sets import points
 
 import tinsmith as ts
 from tinsmith.terrain.inspection.dropping import drop_blunders, list_wrong_rows
@@ -13,7 +14,6 @@ from tinsmith.terrain.inspection.findings import screen
 from tinsmith.tin import _kernel
 
 from .campaign import Campaign, Case
-from .coordinates import points
 
 
 def generate(rng: np.random.Generator) -> Case:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import shapely
 from support.isolines import area_between, level_segments, rounded_segments, segments_of_lines
+from support.point_sets import whole_number_grid
 
 import tinsmith as ts
 
@@ -23,18 +24,15 @@ def generate(rng: np.random.Generator) -> Case:
     case["interval"] = float(rng.choice([0.3, 0.5, 0.75, 1.0]))
     case["tolerance"] = float(rng.choice([0.02, 0.1, 0.3, 1.0]))
     is_grid = rng.random() < 0.6
-    case["points"] = (grid(rng) if is_grid else scatter(rng)).tolist()
+    case["points"] = (thinned_grid(rng) if is_grid else scatter(rng)).tolist()
     case["is_exact"] = bool(is_grid)
     case["max_edge"] = [None, 1.5, 3.0, 20.0][int(rng.integers(4))]
     return case
 
 
-def grid(rng: np.random.Generator) -> Any:
-    columns, rows = rng.integers(2, 9, 2)
-    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(columns), np.arange(rows)))
-    z = rng.integers(0, int(rng.integers(1, 6)), len(x))
-    kept = rng.random(len(x)) < rng.choice([0.7, 1.0])
-    return np.column_stack([x, y, z]).astype(float)[kept]
+def thinned_grid(rng: np.random.Generator) -> Any:
+    points = whole_number_grid(rng, *rng.integers(2, 9, 2), int(rng.integers(5)))
+    return points[rng.random(len(points)) < rng.choice([0.7, 1.0])]
 
 
 def scatter(rng: np.random.Generator) -> Any:

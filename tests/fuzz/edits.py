@@ -13,12 +13,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from support.point_sets import KINDS, coordinates
 
 import tinsmith as ts
 from tinsmith.tin.editing.history import apply_edits
 
 from .campaign import Campaign, Case
-from .coordinates import KINDS, coordinates
 
 ARRAYS = ("points", "triangles", "neighbors", "constrained")
 CHAINS = ("vertices", "offsets", "kinds", "sources", "names")

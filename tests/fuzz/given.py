@@ -9,12 +9,12 @@ import geopandas
 import numpy as np
 import pandas as pd
 import shapely
+from support.point_sets import points as draw_points
 from support.same_tins import find_differences
 
 import tinsmith as ts
 
 from .campaign import Campaign, Case
-from .coordinates import points as draw_points
 
 NAMES = (("x", "y", "z"), ("Easting", "NORTHING", "elev"), ("e", "n", "h"), ("lon", "lat", "alt"))
 ROLES = ("breaklines", "boundary", "holes", "erase", "water")

@@ -18,6 +18,7 @@ from support.hydrology_oracle import (
     require_full_catchments,
     require_full_routes,
 )
+from support.point_sets import grid, scattered
 
 import tinsmith as ts
 
@@ -43,7 +44,7 @@ def generate(rng: np.random.Generator) -> Case:
 def make_grid(rng: np.random.Generator) -> np.ndarray:
     """Few elevations: ties, level ponds that touch, islands and ridges of one level."""
     side, spacing = int(rng.integers(2, 9)), float(rng.choice([1.0, 0.1, 3.7]))
-    x, y = (axis.ravel() * spacing for axis in np.meshgrid(np.arange(side), np.arange(side)))
+    x, y = spacing * grid(side, side).T
     z = rng.integers(0, int(rng.integers(1, 6)), len(x)) * float(rng.choice([1.0, 0.1, 1e-9]))
     if rng.random() < 0.3:  # the same on both sides
         z = np.minimum(z.reshape(side, side), z.reshape(side, side)[::-1]).ravel()
@@ -53,9 +54,8 @@ def make_grid(rng: np.random.Generator) -> np.ndarray:
 
 
 def make_scattered(rng: np.random.Generator) -> np.ndarray:
-    count = int(rng.integers(4, 80))
-    xy = rng.uniform(0, 60, (count, 2)).round(int(rng.choice([0, 1, 9])))
-    return np.column_stack([xy, rng.uniform(0, 9, count).round(int(rng.choice([0, 1, 9])))])
+    xy = scattered(rng, int(rng.integers(4, 80)), 60.0)
+    return np.column_stack([xy, rng.uniform(0, 9, len(xy)).round(int(rng.choice([0, 1, 9])))])
 
 
 def examine(case: Case) -> str:

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from support import oracles
 from support.natural_oracle import laplace_weights, sibson_weights
+from support.point_sets import points
 
 import tinsmith as ts
 from tinsmith.base.arrays import Float64Array
 
 from .campaign import Campaign, Case
-from .coordinates import points
 
 METHODS = ("linear", "nearest", "laplace", "natural", "c1")
 _MOST_PLACES = 6

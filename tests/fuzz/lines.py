@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 import shapely
+from support.point_sets import KINDS, coordinates
 
 import tinsmith as ts
 from tinsmith.base.arrays import Float64Array
 
 from .campaign import Campaign, Case
-from .coordinates import KINDS, coordinates
 
 PLAIN_KINDS = ("lattice", "utm_centimetres", "fractions", "thirds", "clustered")
 

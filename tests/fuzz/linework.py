@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from support.point_sets import points
 
 import tinsmith as ts
 from tinsmith.base.arrays import Float64Array
 
 from .campaign import Case
-from .coordinates import points
 
 __all__ = ["list_lines", "surface", "triangulate"]
 

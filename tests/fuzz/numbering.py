@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 from support.clipping import covered_area
+from support.point_sets import grid
 from support.relief_oracle import GradientAt
 
 import tinsmith as ts
@@ -25,7 +26,7 @@ VALUES = ("elevation", "slope", "aspect", "hillshade")
 def generate(rng: np.random.Generator) -> Case:
     """A lattice or scattered points of a lattice, some triangles left out, and places."""
     columns, rows = (int(side) for side in rng.integers(2, 7, 2))
-    lattice = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).reshape(-1, 2)
+    lattice = grid(columns, rows)
     if rng.random() < 0.4:
         lattice = np.unique(rng.integers(0, 9, (int(rng.integers(3, 20)), 2)), axis=0)
     scale = float(rng.choice([1.0, 0.5, 4.0]))

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+from support.point_sets import grid
 from support.printed import Page, georeference, read_svg
 
 import tinsmith as ts
@@ -50,10 +51,7 @@ def make_shape(shape: str, rng: np.random.Generator) -> Any:
     if shape == "cloud":
         return rng.random((count, 2)) * [1.0, rng.choice([0.1, 1.0])]
     if shape == "grid":
-        columns, rows = rng.integers(2, 9, 2)
-        return (
-            np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).reshape(-1, 2) / 8
-        )
+        return grid(*rng.integers(2, 9, 2)) / 8
     t = np.sort(rng.random(count))
     if shape == "ring":
         t = 2 * np.pi * t

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 from support import oracles
+from support.point_sets import points
 
 import tinsmith as ts
 
 from .campaign import Campaign, Case
-from .coordinates import points
 
 POLICIES = ("first", "last", "mean", "lowest", "highest")
 SMALL = 14  # brute force looks at n^4 in exact fractions

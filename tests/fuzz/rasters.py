@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from support import relief_oracle
+from support.point_sets import scattered, whole_number_grid
 
 import tinsmith as ts
 from tinsmith.terrain import _kernel
@@ -59,14 +60,12 @@ def generate(rng: np.random.Generator) -> Case:
 def make_points(rng: np.random.Generator, kind: str) -> Any:
     count = int(rng.integers(3, 90))
     if kind == "lattice":
-        columns, rows = rng.integers(2, 10, 2)
-        x, y = (axis.ravel() for axis in np.meshgrid(np.arange(columns), np.arange(rows)))
-        return np.column_stack([x, y, rng.integers(0, 5, len(x))]).astype(float)
+        return whole_number_grid(rng, *rng.integers(2, 10, 2), 4)
     if kind == "needles":
         along = rng.uniform(0, 40, count)
         off = rng.choice([1e-9, 1e-3, 0.3]) * rng.normal(size=count)
         return np.column_stack([along, 0.3 * along + off, rng.uniform(0, 5, count)])
-    xy = rng.uniform(0, 40, (count, 2)).round(int(rng.choice([0, 1, 9])))
+    xy = scattered(rng, count, 40.0)
     if kind == "plane":
         a, b = rng.integers(-3, 4, 2)
         xy = xy.round(0)

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+from support.point_sets import scattered, whole_number_grid
 
 import tinsmith as ts
 
@@ -27,7 +28,7 @@ LEVEL = 1e-12
 def generate(rng: np.random.Generator) -> Case:
     """A small grid with many flats, points along a line, or scattered ones, perhaps trimmed."""
     kind = str(rng.choice(["grid", "line", "scatter"]))
-    points = {"grid": grid, "line": near_line, "scatter": scatter}[kind](rng)
+    points = {"grid": small_grid, "line": slanted, "scatter": scatter}[kind](rng)
     return {
         "points": points.tolist(),
         "max_edge": [None, 1.5, 20.0][int(rng.integers(3))],
@@ -36,14 +37,11 @@ def generate(rng: np.random.Generator) -> Case:
     }
 
 
-def grid(rng: np.random.Generator) -> Any:
-    columns, rows = rng.integers(2, 9, 2)
-    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(columns), np.arange(rows)))
-    z = rng.integers(0, int(rng.integers(1, 4)), len(x))
-    return np.column_stack([x, y, z]).astype(float)
+def small_grid(rng: np.random.Generator) -> Any:
+    return whole_number_grid(rng, *rng.integers(2, 9, 2), int(rng.integers(3)))
 
 
-def near_line(rng: np.random.Generator) -> Any:
+def slanted(rng: np.random.Generator) -> Any:
     xy = rng.uniform(0, 1, (int(rng.integers(3, 30)), 1)) * rng.normal(size=2) * 100
     points = np.column_stack([xy, rng.uniform(0, 30, len(xy))])
     return np.vstack([points, [*(rng.normal(size=2) * 100), 3.0]]) + np.array(
@@ -52,9 +50,8 @@ def near_line(rng: np.random.Generator) -> Any:
 
 
 def scatter(rng: np.random.Generator) -> Any:
-    count = int(rng.integers(3, 120))
-    xy = rng.uniform(0, 60, (count, 2)).round(int(rng.choice([0, 1, 9])))
-    return np.column_stack([xy + rng.choice([0.0, 500_000.0]), rng.uniform(0, 9, count)])
+    xy = scattered(rng, int(rng.integers(3, 120)), 60.0)
+    return np.column_stack([xy + rng.choice([0.0, 500_000.0]), rng.uniform(0, 9, len(xy))])
 
 
 def examine(case: Case) -> str:

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from support.point_sets import coordinates
 
 import tinsmith as ts
 
 from .campaign import Campaign
-from .coordinates import coordinates
 from .samples import MEMORY
 
 SUFFIXES = ("ply", "obj", "vtp", "vtu", "msh", "stl", "geojson", "csv")

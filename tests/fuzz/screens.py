@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from support.point_sets import points
 
 import tinsmith as ts
 from tinsmith.terrain.inspection.dropping import drop_blunders, list_wrong_rows
@@ -12,7 +13,6 @@ from tinsmith.terrain.inspection.findings import screen
 from tinsmith.tin.screening import describe_findings
 
 from .campaign import Campaign, Case
-from .coordinates import points
 
 SIZE = 100.0
 BASE = 300.0

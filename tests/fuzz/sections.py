@@ -6,12 +6,12 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from support.point_sets import points
 from support.section_oracle import elevation_at, exact_rows
 
 import tinsmith as ts
 
 from .campaign import Campaign, Case
-from .coordinates import points
 
 
 def generate(rng: np.random.Generator) -> Case:

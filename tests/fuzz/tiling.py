@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 from support.point_cells import PointCells
+from support.point_sets import points
 from support.tiled import require_triangles_of_the_whole
 
 import tinsmith as ts
 
 from .campaign import Campaign, Case
-from .coordinates import points
 
 _MOST_CUTS = 7
 

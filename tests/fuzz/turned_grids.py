@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+from support.point_sets import grid
 
 import tinsmith as ts
 
@@ -32,7 +33,7 @@ def shape(
     """Return a grid turned about its corner, or points on slanted lines y = x / k."""
     columns, rows = rng.integers(2, 16, 2)
     size = float(rng.choice([1.0, 0.25, 5.0, 1 / 3]))
-    x, y = (axis.ravel() * size for axis in np.meshgrid(np.arange(columns), np.arange(rows)))
+    x, y = size * grid(columns, rows).T
     if rng.random() < 0.25:
         y = y + x / float(rng.integers(2, 12))  # its ends are slanted, its sides upright
     turn = np.deg2rad(rng.uniform(0, 90) if angle is None else angle)

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 from support.earthwork_oracle import exact_volume
+from support.point_sets import points
 
 import tinsmith as ts
 
 from .campaign import Campaign, Case
-from .coordinates import points
 
 NAMES = ("area", "cut_area", "fill_area", "cut", "fill")
 

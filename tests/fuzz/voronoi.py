@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 from shapely.geometry import Point, Polygon
+from support.point_sets import points
 
 import tinsmith as ts
 from tinsmith.base.arrays import Float64Array
 
 from .campaign import Campaign, Case
-from .coordinates import points
 
 Place = tuple[Fraction, Fraction]
 

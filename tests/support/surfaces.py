@@ -6,6 +6,8 @@ import numpy as np
 
 import tinsmith as ts
 
+from .point_sets import whole_number_grid
+
 ORIGIN = np.array([745_000.0, 4_033_000.0, 0.0])
 
 
@@ -96,6 +98,4 @@ def survey_site(points, breaklines, attributes, *, pond=""):
 
 def triangulate_whole_numbers(side, relief, rng):
     """Make a TIN of a square grid with whole elevations: flats, pits and equal slopes."""
-    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side)))
-    z = rng.integers(0, relief + 1, len(x))
-    return ts.triangulate(np.column_stack([x, y, z]).astype(float))
+    return ts.triangulate(whole_number_grid(rng, side, side, relief))

@@ -12,6 +12,7 @@ import scipy.spatial
 from hypothesis import given
 from hypothesis import strategies as st
 from support import oracles
+from support.point_sets import places
 
 import tinsmith as ts
 from tinsmith.tin import TIN, check
@@ -97,9 +98,7 @@ def test_hull_is_the_convex_hull_counter_clockwise(tin, cloud):
     assert ours[first:] + ours[:first] == np.roll(hull.vertices, -least).tolist()
 
 
-@given(
-    st.lists(st.tuples(st.integers(0, 5), st.integers(0, 5)), min_size=3, max_size=12, unique=True)
-)
+@given(places(st.integers(0, 5), 12))
 def test_hull_keeps_collinear_points(xy):
     try:
         tin = ts.triangulate([(x, y, 0) for x, y in xy])

@@ -10,6 +10,7 @@ import pytest
 import shapely
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from support.point_sets import small_surfaces
 
 import tinsmith as ts
 
@@ -212,12 +213,8 @@ def test_percentiles_that_are_none_are_refused(shares):
 
 # ---------------------------------------------------------------------- hard cases
 
-spots = st.lists(
-    st.tuples(st.integers(0, 4), st.integers(0, 4), st.integers(-2, 2)), min_size=3, max_size=9
-)
 
-
-@given(spots, spots, st.sampled_from([1.0, 0.25]), st.booleans())
+@given(small_surfaces, small_surfaces, st.sampled_from([1.0, 0.25]), st.booleans())
 def test_differences_of_small_grids_are_sound(points, others, scale, is_far):
     """Vertices on edges, edges on each other; crossings are rounded."""
     try:

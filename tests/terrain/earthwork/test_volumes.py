@@ -11,6 +11,7 @@ import shapely
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from support.earthwork_oracle import exact_heights, exact_volume
+from support.point_sets import small_surfaces
 
 import tinsmith as ts
 
@@ -129,10 +130,6 @@ def test_a_surface_and_itself_have_no_volume():
 
 # ------------------------------------------------------------ independent opinions
 
-lattice = st.lists(
-    st.tuples(st.integers(0, 4), st.integers(0, 4), st.integers(-2, 2)), min_size=3, max_size=9
-)
-
 
 def built(points):
     try:
@@ -141,7 +138,7 @@ def built(points):
         return None
 
 
-@given(lattice, lattice, st.integers(0, 2**8 - 1))
+@given(small_surfaces, small_surfaces, st.integers(0, 2**8 - 1))
 def test_volumes_are_those_in_fractions(points, others, kept):
     """Shared vertices, edges on each other, vertices on edges, flats, parts cut away."""
     tin, other = built(points), built(others)
@@ -156,7 +153,7 @@ def test_volumes_are_those_in_fractions(points, others, kept):
         assert (one(found, name) == 0.0) == (true == 0)
 
 
-@given(lattice, st.fractions(-2, 2, max_denominator=8))
+@given(small_surfaces, st.fractions(-2, 2, max_denominator=8))
 def test_volumes_above_a_level_are_those_in_fractions(points, level):
     tin = built(points)
     assume(tin is not None)

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support import oracles
 from support.clipping import covered_area
+from support.point_sets import places
 from support.relief_oracle import GradientAt
 
 import tinsmith as ts
@@ -80,7 +81,7 @@ def test_centres_have_the_interpolated_elevation_to_the_last_bit(surface, cells,
 
 @settings(max_examples=60, deadline=None)
 @given(
-    st.lists(st.tuples(st.integers(0, 6), st.integers(0, 6)), min_size=3, max_size=16, unique=True),
+    places(st.integers(0, 6), 16),
     st.sampled_from([0.25, 0.5, 1.0, 2.0]),
     st.booleans(),
 )

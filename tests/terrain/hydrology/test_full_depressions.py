@@ -14,6 +14,8 @@ from support.hydrology_oracle import (
     require_full_catchments,
     require_full_routes,
 )
+from support.point_sets import rolling, seeds
+from support.surfaces import triangulate_whole_numbers
 
 import tinsmith as ts
 from tinsmith.terrain.hydrology.filling import fill
@@ -29,12 +31,8 @@ def fold_gutter(floor, wall=10.0):
 
 def trim_scattered(seed, count, max_edge=None, digits=9):
     """Return scattered points, with holes where edges are long."""
-    rng = np.random.default_rng(seed)
-    xy = rng.uniform(0, 100, (count, 2))
-    z = 8 * np.sin(xy[:, 0] / 9) * np.cos(xy[:, 1] / 11) + rng.uniform(0, 2, count)
-    return ts.triangulate(
-        np.column_stack([xy, z]).round(digits), max_edge=max_edge, trim="everywhere"
-    )
+    points = rolling(np.random.default_rng(seed), count).round(digits)
+    return ts.triangulate(points, max_edge=max_edge, trim="everywhere")
 
 
 def summarise(path):
@@ -140,12 +138,10 @@ def test_levels_are_those_of_a_priority_flood():
 
 
 @settings(max_examples=15, deadline=None)
-@given(st.integers(0, 2**32 - 1), st.integers(1, 5), st.sampled_from([4, 8]))
+@given(seeds, st.integers(1, 5), st.sampled_from([4, 8]))
 def test_routes_of_integer_grids_are_those_of_a_plain_search(seed, relief, side):
     rng = np.random.default_rng(seed)
-    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side)))
-    z = rng.integers(0, relief + 1, len(x))
-    tin = ts.triangulate(np.column_stack([x, y, z]).astype(float))
+    tin = triangulate_whole_numbers(side, relief, rng)
     starts = np.vstack([tin.points[:, :2], rng.integers(0, 4 * side - 3, (20, 2)) / 4])
     require_full_routes(tin, starts, 1e-9)
     require_full_catchments(tin, rng.random((20, 2)))

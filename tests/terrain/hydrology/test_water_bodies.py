@@ -8,6 +8,8 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.hydrology_oracle import flood, flood_raster
+from support.point_sets import seeds
+from support.surfaces import triangulate_whole_numbers
 
 import tinsmith as ts
 
@@ -59,12 +61,10 @@ def test_flat_ground_above_an_outlet_is_no_depression():
 
 
 @settings(max_examples=25, deadline=None)
-@given(st.integers(0, 2**32 - 1), st.integers(1, 6), st.sampled_from([4, 7, 10]))
+@given(seeds, st.integers(1, 6), st.sampled_from([4, 7, 10]))
 def test_depressions_are_those_of_a_priority_flood(seed, relief, side):
     rng = np.random.default_rng(seed)
-    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side)))
-    z = rng.integers(0, relief + 1, len(x))
-    tin = ts.triangulate(np.column_stack([x, y, z]).astype(float))
+    tin = triangulate_whole_numbers(side, relief, rng)
     rim = {vertex for ring in tin.boundary for vertex in ring.tolist()}
     filled = flood(tin.points, tin.edges, rim)
     found = ts.depressions(tin)

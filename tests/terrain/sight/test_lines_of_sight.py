@@ -6,17 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.point_sets import seeds
 from support.sight_oracle import find_first_block
+from support.surfaces import triangulate_whole_numbers
 
 import tinsmith as ts
 
 RIDGE = [[0, 0, 0], [0, 4, 0], [4, 0, 2], [4, 4, 2], [8, 0, 0], [8, 4, 0]]
-
-
-def grid(rng, side, relief):
-    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side)))
-    z = rng.integers(0, relief + 1, len(x))
-    return ts.triangulate(np.column_stack([x, y, z]).astype(float))
 
 
 def assert_as_brute_force(tin, eye, targets, height=0.0):
@@ -32,10 +28,10 @@ def assert_as_brute_force(tin, eye, targets, height=0.0):
 
 
 @settings(max_examples=25, deadline=None)
-@given(st.integers(0, 2**32 - 1), st.integers(1, 4), st.sampled_from([0.0, 0.5, 1.0]))
+@given(seeds, st.integers(1, 4), st.sampled_from([0.0, 0.5, 1.0]))
 def test_lines_on_integer_grids_are_those_of_brute_force(seed, relief, height):
     rng = np.random.default_rng(seed)
-    tin = grid(rng, 5, relief)
+    tin = triangulate_whole_numbers(5, relief, rng)
     targets = rng.integers(0, 9, (12, 2)) / 2
     assert_as_brute_force(tin, rng.integers(0, 5, 2).astype(float), targets, height)
 
@@ -66,7 +62,7 @@ def test_the_blocking_place_is_where_the_line_goes_into_the_ground():
 
 def test_sight_is_the_same_there_and_back():
     rng = np.random.default_rng(8)
-    tin = grid(rng, 7, 3)
+    tin = triangulate_whole_numbers(7, 3, rng)
     one, other = rng.uniform(0, 6, (40, 2)), rng.uniform(0, 6, (40, 2))
     there, back = ts.line_of_sight(tin, one, other), ts.line_of_sight(tin, other, one)
     assert there.columns["visible"].tolist() == back.columns["visible"].tolist()

@@ -10,7 +10,9 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.point_sets import grid, seeds, whole_number_grid
 from support.sight_oracle import find_first_block, require_parts_as_lines
+from support.surfaces import triangulate_whole_numbers
 
 import tinsmith as ts
 from tinsmith.terrain.sight.eyes import as_view, measure_distances
@@ -18,11 +20,10 @@ from tinsmith.terrain.sight.vertices import judge_vertices, look_one_by_one, see
 
 
 @settings(max_examples=8, deadline=None)
-@given(st.integers(0, 2**32 - 1), st.integers(1, 4), st.sampled_from([0.0, 0.5]))
+@given(seeds, st.integers(1, 4), st.sampled_from([0.0, 0.5]))
 def test_vertices_that_are_seen_are_those_of_brute_force(seed, relief, height):
     rng = np.random.default_rng(seed)
-    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(6), np.arange(6)))
-    tin = ts.triangulate(np.column_stack([x, y, rng.integers(0, relief + 1, 36)]).astype(float))
+    tin = triangulate_whole_numbers(6, relief, rng)
     eye = rng.integers(0, 11, 2) / 2
     seen = ts.visible_vertices(tin, eye, eye_height=height)
     start = [*eye, float(tin.interpolate([eye])[0]) + height]
@@ -47,10 +48,10 @@ def require_same_as_lines(tin, eye, fall=0.0, heights=(0.0, 0.0), radius=None):
 
 def make_surface(rng, kind):
     """Make a grid with many equal heights, scattered points far from the origin, or a ramp."""
-    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(9.0), np.arange(9.0)))
     if kind == "grid":
-        return np.column_stack([x, y, rng.integers(0, 4, len(x))])
+        return whole_number_grid(rng, 9, 9, 3)
     if kind == "ramp":
+        x, y = grid(9, 9).T
         return np.column_stack([x, y, x / 2 + y / 4 + (rng.random(len(x)) < 0.1)])
     corner = np.array([500_000.3, 4_000_000.7, 200.1])
     return corner + rng.uniform(0, [50, 50, 8], (81, 3))
@@ -58,7 +59,7 @@ def make_surface(rng, kind):
 
 @settings(max_examples=30, deadline=None)
 @given(
-    st.integers(0, 2**32 - 1),
+    seeds,
     st.sampled_from(["grid", "ramp", "scattered"]),
     st.sampled_from([None, 1.2, 8.0]),
     st.sampled_from([0.0, 1e-7, 1e-3]),
@@ -180,7 +181,7 @@ def test_a_target_above_the_ground_is_seen_as_far_as_the_line_over_the_crest():
 
 @settings(max_examples=25, deadline=None)
 @given(
-    st.integers(0, 2**32 - 1),
+    seeds,
     st.sampled_from(["grid", "ramp", "scattered"]),
     st.sampled_from([None, 8.0]),
     st.sampled_from([0.5, 2.0]),

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from support import oracles
+from support.point_sets import places
 
 import tinsmith as ts
 from tinsmith.tin import TIN, CheckError, OptionError, PointsError, _kernel, check
@@ -404,7 +405,7 @@ def test_tie_broken_otherwise_is_a_note():
 
 
 @given(
-    st.lists(st.tuples(st.integers(0, 4), st.integers(0, 4)), min_size=4, max_size=9, unique=True),
+    places(st.integers(0, 4), 9, least=4),
     st.lists(st.integers(0, 1000), max_size=4),
 )
 def test_verdict_is_that_of_brute_force_after_any_flips(xy, choices):

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support import line_oracle
 from support.line_oracle import places_of, steps_of
+from support.point_sets import seeds, small_integers, utm_floats, utm_raster
 
 import tinsmith as ts
 from tinsmith.base.errors import LinesError, OptionError
@@ -172,7 +173,7 @@ def test_heights_stay_within_the_steps_own():
 
 
 @settings(max_examples=60)
-@given(st.integers(0, 2**32 - 1))
+@given(seeds)
 def test_heights_are_linear_and_the_rule_chooses_one(seed):
     rng = np.random.default_rng(seed)
     xy = rng.random((16, 2)) * 50 + UTM
@@ -269,13 +270,16 @@ def drawn_lines(rng, xy, *, most=10):
     return [rng.integers(0, len(xy), rng.integers(1, 6)).tolist() for _ in range(count)]
 
 
+def nearly_raster(rng, n):
+    return small_integers(rng, n, 6) * 0.1 + UTM + rng.integers(-2, 3, (n, 2)) * 2.0**-30
+
+
 def drawn_places(name, rng):
-    grid = rng.integers(0, 6, (14, 2))
     places = {
-        "small_grid": lambda: grid * 1.0,
-        "utm_raster": lambda: grid * 30.1 + UTM,
-        "nearly_raster": lambda: grid * 0.1 + UTM + rng.integers(-2, 3, grid.shape) * 2.0**-30,
-        "random": lambda: rng.random((14, 2)) * 100 + UTM,
+        "small_grid": lambda: small_integers(rng, 14, 6),
+        "utm_raster": lambda: utm_raster(rng, 14, 6),
+        "nearly_raster": lambda: nearly_raster(rng, 14),
+        "random": lambda: utm_floats(rng, 14),
     }[name]()
     return np.unique(places, axis=0)
 
@@ -284,7 +288,7 @@ NAMES = ["small_grid", "utm_raster", "nearly_raster", "random"]
 
 
 @settings(max_examples=120)
-@given(st.integers(0, 2**32 - 1), st.sampled_from(NAMES))
+@given(seeds, st.sampled_from(NAMES))
 def test_any_lines_in_any_order_and_direction(seed, name):
     rng = np.random.default_rng(seed)
     xy = drawn_places(name, rng)
@@ -294,7 +298,7 @@ def test_any_lines_in_any_order_and_direction(seed, name):
 
 
 @settings(max_examples=80)
-@given(st.integers(0, 2**32 - 1), st.sampled_from(NAMES), st.sampled_from([0.05, 0.4, 1.2, 20.0]))
+@given(seeds, st.sampled_from(NAMES), st.sampled_from([0.05, 0.4, 1.2, 20.0]))
 def test_any_lines_within_a_distance(seed, name, snap):
     rng = np.random.default_rng(seed)
     xy = drawn_places(name, rng)

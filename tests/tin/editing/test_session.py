@@ -7,25 +7,18 @@ import json
 
 import numpy as np
 import pytest
+from support.point_sets import small_integers, tenths, utm_floats
 
 import tinsmith as ts
 from tinsmith.tin.editing.history import apply_edits
 from tinsmith.tin.editing.operations import OPERATIONS
 
 
-def small_integers(rng, n):
-    return np.c_[rng.integers(0, 8, (n, 2)), rng.integers(0, 50, n)].astype(float)
+def with_elevations(kind):
+    return lambda rng, n: np.c_[kind(rng, n), rng.integers(0, 50, n)]
 
 
-def utm_floats(rng, n):
-    return np.c_[rng.random((n, 2)) * 100 + [5e5, 4e6], rng.integers(0, 50, n)]
-
-
-def tenths(rng, n):
-    return np.c_[np.round(rng.random((n, 2)) * 3, 1), rng.integers(0, 50, n)]
-
-
-KINDS = [small_integers, utm_floats, tenths]
+KINDS = [with_elevations(kind) for kind in (small_integers, utm_floats, tenths)]
 ARRAYS = ("points", "triangles", "neighbors", "constrained")
 
 

@@ -13,6 +13,7 @@ from scipy.interpolate import CloughTocher2DInterpolator
 from scipy.spatial import Delaunay
 from support import oracles
 from support.natural_oracle import laplace_weights, sibson_weights
+from support.point_sets import places, seeds
 
 import tinsmith as ts
 from tinsmith.base.errors import OptionError, PointsError
@@ -63,8 +64,8 @@ def places_of(tin):
 @pytest.mark.parametrize("method", ["natural", "laplace"])
 @settings(max_examples=15, deadline=None)
 @given(
-    st.lists(st.tuples(st.integers(0, 5), st.integers(0, 5)), min_size=4, max_size=12, unique=True),
-    st.integers(0, 2**32 - 1),
+    places(st.integers(0, 5), 12, least=4),
+    seeds,
 )
 def test_weights_are_those_of_the_definition_on_small_grids(method, sites, seed):
     if oracles.are_collinear(sites):

@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support import line_oracle
 from support.line_oracle import places_of
+from support.point_sets import UTM_CORNER, seeds, small_integers, utm_raster
 
 from tinsmith.tin import _kernel
 
-UTM = np.array([500_000.0, 4_000_000.0])
 DATA = ["small_grid", "utm_raster", "one_line", "near_line", "huge", "bundle"]
 
 
@@ -26,8 +26,8 @@ def drawn(name, rng):
     if name == "bundle":
         return bundle(rng, 8)
     xy = {
-        "small_grid": lambda: rng.integers(0, 5, (24, 2)) * 1.0,
-        "utm_raster": lambda: rng.integers(0, 5, (24, 2)) * 30.1 + UTM,
+        "small_grid": lambda: small_integers(rng, 24),
+        "utm_raster": lambda: utm_raster(rng, 24),
         "one_line": lambda: np.repeat(rng.integers(0, 20, (14, 1)), 2, axis=1) * [0.1, 0.3],
         "near_line": lambda: near_line(rng, 16),
         "huge": lambda: rng.integers(-2, 3, (16, 2)) * 1e70,
@@ -42,15 +42,15 @@ def near_line(rng, n):
 
 
 def bundle(rng, n):
-    """Nearly parallel segments a few roundings apart, at UTM coordinates."""
+    """Nearly parallel segments a few roundings apart, at UTM_CORNER coordinates."""
     noise = rng.integers(-4, 5, (n, 2, 2)) * 2.0**-30
-    ends = np.array([[0, 0], [300.0, 100.0]]) + UTM + noise
+    ends = np.array([[0, 0], [300.0, 100.0]]) + UTM_CORNER + noise
     xy, number = np.unique(ends.reshape(-1, 2), axis=0, return_inverse=True)
     return xy, as_pairs(number)
 
 
 @settings(max_examples=150)
-@given(st.integers(0, 2**32 - 1), st.sampled_from(DATA), st.integers(1, 3))
+@given(seeds, st.sampled_from(DATA), st.integers(1, 3))
 def test_contacts_of_all_pairs(seed, name, threads):
     xy, segments = drawn(name, np.random.default_rng(seed))
     places = places_of(xy)
@@ -63,7 +63,7 @@ def test_contacts_of_all_pairs(seed, name, threads):
 
 
 @settings(max_examples=60)
-@given(st.integers(0, 2**32 - 1), st.sampled_from(DATA))
+@given(seeds, st.sampled_from(DATA))
 def test_only_what_is_new(seed, name):
     rng = np.random.default_rng(seed)
     xy, segments = drawn(name, rng)
@@ -85,7 +85,7 @@ def test_many_short_segments_among_long_ones():
     xy, number = np.unique(np.vstack([ends.reshape(-1, 2), mass]), axis=0, return_inverse=True)
     segments = as_pairs(number.ravel()[:1600])
     crossings, touches = every_pair(xy, segments)
-    xy = xy * 0.5 + UTM
+    xy = xy * 0.5 + UTM_CORNER
     assert len(crossings) > 50
     assert len(touches) > 50
     for threads in (1, 3):
@@ -114,7 +114,7 @@ def every_pair(xy, segments):
 
 @pytest.mark.parametrize("steps", [[0, 1], [1, 0]])
 def test_segment_through_a_thousand_collinear_vertices(steps):
-    xy = np.arange(1002)[:, None] * [0.25, 0.75] + UTM
+    xy = np.arange(1002)[:, None] * [0.25, 0.75] + UTM_CORNER
     segments = as_pairs(np.array([0, 1001])[steps])
     assert _kernel.touches(xy, segments)[:, 1].tolist() == list(range(1, 1001))
 
@@ -160,10 +160,10 @@ def test_vertex_that_would_make_a_longer_part_touches_nothing():
 
 
 @settings(max_examples=80)
-@given(st.integers(0, 2**32 - 1), st.sampled_from([0.1, 0.7, 1.5]), st.booleans())
+@given(seeds, st.sampled_from([0.1, 0.7, 1.5]), st.booleans())
 def test_touches_within_a_distance_of_all_pairs(seed, distance, is_utm):
     rng = np.random.default_rng(seed)
-    xy = rng.random((40, 2)) * 10 + (UTM if is_utm else 0.0)
+    xy = rng.random((40, 2)) * 10 + (UTM_CORNER if is_utm else 0.0)
     segments = as_pairs(rng.integers(0, 20, (12, 2)))
     wanted = [
         [i, v]
@@ -189,8 +189,8 @@ def is_near(a, b, p, distance):
 @pytest.mark.parametrize(("units", "is_near"), [(1, True), (-1, True), (2, False), (-2, False)])
 def test_a_rounding_counts_in_units_of_the_segments_own_coordinates(units, is_near):
     """A far outlier must not make other segments reach far."""
-    ends = np.array([[0, 0], [8, 0]]) + UTM
-    beside = UTM + np.array([4, units * np.spacing(UTM[1])])
+    ends = np.array([[0, 0], [8, 0]]) + UTM_CORNER
+    beside = UTM_CORNER + np.array([4, units * np.spacing(UTM_CORNER[1])])
     xy = np.vstack([ends, beside, [1e20, 1e20]])
     segments = as_pairs([[0, 1], [3, 3]])
     found = _kernel.touches(xy, segments, is_rounded=True).tolist()
@@ -202,7 +202,7 @@ def test_a_rounding_counts_in_units_of_the_segments_own_coordinates(units, is_ne
 
 
 @settings(max_examples=100)
-@given(st.integers(0, 2**32 - 1), st.sampled_from(DATA))
+@given(seeds, st.sampled_from(DATA))
 def test_meeting_places_are_the_true_ones_rounded_once(seed, name):
     """Rectangles' diagonals meet in the middle between two doubles: rounded to even."""
     xy, segments = drawn(name, np.random.default_rng(seed))
@@ -216,7 +216,7 @@ def test_meeting_places_are_the_true_ones_rounded_once(seed, name):
 
 def test_meeting_places_do_not_depend_on_order_or_direction():
     rng = np.random.default_rng(2)
-    xy = rng.random((200, 2)) * 100 + UTM
+    xy = rng.random((200, 2)) * 100 + UTM_CORNER
     segments = as_pairs(np.arange(200))
     pairs = _kernel.crossings(xy, segments)
     found = _kernel.intersections(xy, segments, pairs)
@@ -247,7 +247,7 @@ def test_lines_through_one_place_meet_in_one_point():
 
 def test_vertices_at_places():
     rng = np.random.default_rng(6)
-    xy = np.unique(rng.integers(0, 300, (20_000, 2)), axis=0) * 0.1 + UTM
+    xy = np.unique(rng.integers(0, 300, (20_000, 2)), axis=0) * 0.1 + UTM_CORNER
     rng.shuffle(xy)
     beside = xy[::11] + np.array([0, 1e-9])
     places = np.vstack([xy[::7], beside, xy[:5]])

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support import oracles
 from support.kernel_datasets import require_same_growth, with_heights
+from support.point_sets import hard_places, places
 
 import tinsmith as ts
 from tinsmith.tin import _kernel, check, topology
@@ -60,23 +61,19 @@ def require_brute_force(xy):
     require_same_by_every_way(xy)
 
 
-def distinct_points(coordinate, *, max_size):
-    return st.lists(st.tuples(coordinate, coordinate), min_size=3, max_size=max_size, unique=True)
-
-
-@given(distinct_points(st.integers(0, 4), max_size=9))
+@given(places(st.integers(0, 4), 9))
 def test_small_grids_equal_brute_force(xy):
     require_brute_force(xy)
 
 
-@given(
-    distinct_points(
-        st.sampled_from([0.0, 1e-60, -1e-60, 0.1, 0.2, 0.1 + 0.2, 1.0, 5e5, 1e75, -1e75]),
-        max_size=7,
-    )
-)
+@given(places(st.sampled_from([0.0, 1e-60, -1e-60, 0.1, 0.2, 0.1 + 0.2, 1.0, 5e5, 1e75, -1e75]), 7))
 def test_mixed_magnitudes_equal_brute_force(xy):
     require_brute_force(xy)
+
+
+@given(hard_places(9))
+def test_hard_coordinates_equal_brute_force(xy):
+    require_brute_force(np.unique(xy, axis=0))
 
 
 def test_whole_grid_equals_brute_force():
@@ -151,7 +148,7 @@ def test_shuffled_rows_give_the_same_triangles(cloud):
 
 
 @given(
-    distinct_points(st.integers(0, 6), max_size=30),
+    places(st.integers(0, 6), 30),
     st.integers(-40, 40),
     st.tuples(st.integers(-(2**40), 2**40), st.integers(-(2**40), 2**40)),
 )
@@ -170,7 +167,7 @@ def test_moved_and_scaled_points_give_the_same_triangles(xy, exponent, shift):
         )
 
 
-@given(distinct_points(st.integers(0, 6), max_size=30))
+@given(places(st.integers(0, 6), 30))
 def test_turned_and_mirrored_points_give_valid_tins(xy):
     xy = np.array(xy, float)
     try:

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import LinearNDInterpolator
 from scipy.spatial import Delaunay
 from support import oracles
+from support.point_sets import places, seeds
 
 import tinsmith as ts
 from tinsmith.tin import TIN, PointsError, _kernel
@@ -184,8 +185,8 @@ small_place = st.tuples(st.integers(0, 6), st.integers(0, 6))
 
 @settings(max_examples=150)
 @given(
-    st.lists(small_place, min_size=3, max_size=20, unique=True),
-    st.lists(st.tuples(st.integers(-1, 13), st.integers(-1, 13)), min_size=1, max_size=40),
+    places(st.integers(0, 6), 20),
+    places(st.integers(-1, 13), 40, least=1, unique=False),
     st.sampled_from([(0.0, 1.0), (UTM[0], 1.0), (UTM[0], 0.1), (-3.0, 0.7)]),
 )
 def test_places_on_a_small_grid(points, queries, frame):
@@ -201,7 +202,7 @@ def test_places_on_a_small_grid(points, queries, frame):
 
 
 @settings(max_examples=60)
-@given(st.integers(0, 2**32 - 1), st.floats(0.1, 0.9))
+@given(seeds, st.floats(0.1, 0.9))
 def test_surface_with_triangles_torn_out(seed, share):
     random = rng(seed)
     whole = ts.triangulate(np.c_[random.integers(0, 12, (50, 2)), np.zeros(50)])

@@ -7,21 +7,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from support.point_sets import small_integers, tenths, utm_floats
 
 import tinsmith as ts
 from tinsmith.tin import _kernel
-
-
-def small_integers(rng, n):
-    return rng.integers(0, 5, (n, 2)).astype(float)
-
-
-def utm_floats(rng, n):
-    return rng.random((n, 2)) * 100 + [5e5, 4e6]
-
-
-def tenths(rng, n):
-    return np.round(rng.random((n, 2)) * 3, 1)
 
 
 def nearly_a_circle(rng, n):

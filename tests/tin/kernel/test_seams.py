@@ -14,6 +14,7 @@ from support.kernel_datasets import (
     require_sound,
     with_heights,
 )
+from support.point_sets import places
 
 from tinsmith.tin import _kernel
 
@@ -199,11 +200,11 @@ def test_more_threads_than_places():
 
 # ------------------------------------------------------------------ properties
 
-small_grids = st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=3, max_size=60)
+small_grids = places(st.integers(0, 9), 60, unique=False)
 # Tenths at UTM coordinates: neither ties nor their differences are exact.
-utm_tenths = st.lists(
-    st.tuples(st.integers(0, 60), st.integers(0, 60)), min_size=3, max_size=60
-).map(lambda steps: (np.round(UTM_CORNER * 10) + np.array(steps)) / 10)
+utm_tenths = places(st.integers(0, 60), 60, unique=False).map(
+    lambda steps: (np.round(UTM_CORNER * 10) + np.array(steps)) / 10
+)
 clouds = st.one_of(small_grids, utm_tenths).map(lambda xy: np.array(xy, float))
 clouds_with_triangles = clouds.filter(lambda xy: np.linalg.matrix_rank(xy - xy[0]) == 2)
 

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import Delaunay
-from support import oracles
+from support import oracles, point_sets
 
 import tinsmith as ts
 from tinsmith.tin import OptionError, PointsError, paper
@@ -160,9 +160,9 @@ def finished(uses):
 )
 @settings(max_examples=60)
 @given(
-    places=st.lists(
-        st.tuples(st.integers(0, 6), st.integers(0, 6)), min_size=4, max_size=10, unique=True
-    ).filter(lambda places: any(oracles.orientation(*places[:2], one) for one in places))
+    places=point_sets.places(st.integers(0, 6), 10, least=4).filter(
+        lambda places: any(oracles.orientation(*places[:2], one) for one in places)
+    )
 )
 def test_every_triangle_is_the_one_of_the_steps(grow, rule, removal, places):
     network = grow(flat(places), removal=removal)
@@ -346,14 +346,9 @@ def test_counts_of_two_triangles():
 # ------------------------------------------------------------------ always ends, is honest
 
 
-def small_grids():
-    place = st.tuples(st.integers(0, 4), st.integers(0, 4))
-    return st.lists(place, min_size=3, max_size=12)
-
-
 @pytest.mark.parametrize("grow", ALL)
 @settings(max_examples=60)
-@given(places=small_grids())
+@given(places=point_sets.places(st.integers(0, 4), 12, unique=False))
 def test_ends_on_small_grids_and_uses_no_edge_thrice(grow, places):
     distinct = list(dict.fromkeys(places))
     try:

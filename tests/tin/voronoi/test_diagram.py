@@ -11,6 +11,7 @@ import scipy.spatial
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.point_sets import places
 
 from tinsmith import TIN, Bounds, LinesError, OptionError, triangulate
 
@@ -107,7 +108,7 @@ def assert_nearest(diagram, points, count=2000, seed=5):
 
 @settings(max_examples=60)
 @given(
-    st.lists(st.tuples(st.integers(0, 6), st.integers(0, 6)), min_size=3, max_size=14, unique=True),
+    places(st.integers(0, 6), 14),
     st.sampled_from([0, 1, 2.5]),
 )
 def test_cells_on_small_grids_are_those_cut_by_every_bisector(places, pad):

@@ -1,14 +1,19 @@
-"""Coordinates that are hard in the ways in which real ones are, and in a few worse ones."""
+"""Sets of points: generators with a generator of numpy, and strategies of hypothesis.
+
+Those of :data:`KINDS` are hard in the ways in which real coordinates are, and in a few worse ones.
+"""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
+from hypothesis import strategies as st
 
 from tinsmith.base.arrays import Float64Array
 
 UTM = np.array([512_345.0, 5_403_210.0])
+UTM_CORNER = np.array([500_000.0, 4_000_000.0])
 
 
 def lattice(rng: np.random.Generator, n: int) -> Float64Array:
@@ -99,3 +104,82 @@ def points(rng: np.random.Generator, n: int, kind: str | None = None) -> list[li
     elevations = rng.integers(-500, 100_000, n) / 100.0
     rows: list[Any] = np.column_stack([coordinates(rng, n, kind), elevations]).tolist()
     return rows
+
+
+# ------------------------------------------------------------------- ordinary sets
+
+
+def small_integers(rng: np.random.Generator, n: int, side: int = 5) -> Float64Array:
+    """Return whole numbers below ``side``."""
+    return rng.integers(0, side, (n, 2)).astype(float)
+
+
+def utm_raster(rng: np.random.Generator, n: int, side: int = 5) -> Float64Array:
+    """Return centres of a raster at UTM coordinates, whose distances are not exact."""
+    return rng.integers(0, side, (n, 2)) * 30.1 + UTM_CORNER
+
+
+def utm_floats(rng: np.random.Generator, n: int) -> Float64Array:
+    """Return any doubles within 100 units at UTM coordinates."""
+    return rng.random((n, 2)) * 100 + UTM_CORNER
+
+
+def tenths(rng: np.random.Generator, n: int) -> Float64Array:
+    """Return tenths from 0 to 3."""
+    return np.round(rng.random((n, 2)) * 3, 1)
+
+
+def scattered(rng: np.random.Generator, count: int, size: float) -> Float64Array:
+    """Return points of a square, of no decimals, of one, or of nine."""
+    return rng.uniform(0, size, (count, 2)).round(int(rng.choice([0, 1, 9])))
+
+
+def grid(columns: int, rows: int) -> Float64Array:
+    """Return the places of a grid with the spacing 1, row by row."""
+    places = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1)
+    return places.reshape(-1, 2).astype(float)
+
+
+def whole_number_grid(
+    rng: np.random.Generator, columns: int, rows: int, relief: int
+) -> Float64Array:
+    """Return (n, 3) points of a grid with whole elevations: flats, pits and equal slopes."""
+    xy = grid(columns, rows)
+    return np.column_stack([xy, rng.integers(0, relief + 1, len(xy))])
+
+
+def rolling(rng: np.random.Generator, count: int, noise: float = 2.0) -> Float64Array:
+    """Return (n, 3) points of hills and hollows within 100 units, with noise."""
+    xy = rng.uniform(0, 100, (count, 2))
+    z = 8 * np.sin(xy[:, 0] / 9) * np.cos(xy[:, 1] / 11) + rng.uniform(0, noise, count)
+    return np.column_stack([xy, z])
+
+
+# ---------------------------------------------------------------------- strategies
+
+seeds = st.integers(0, 2**32 - 1)
+"""Of generators of numpy."""
+
+
+def places(
+    coordinates: st.SearchStrategy[Any], most: int, *, least: int = 3, unique: bool = True
+) -> st.SearchStrategy[list[Any]]:
+    """Return a strategy of lists of pairs of coordinates."""
+    pairs = st.tuples(coordinates, coordinates)
+    return st.lists(pairs, min_size=least, max_size=most, unique=unique)
+
+
+small_surfaces = st.lists(
+    st.tuples(st.integers(0, 4), st.integers(0, 4), st.integers(-2, 2)), min_size=3, max_size=9
+)
+"""Rows of x, y and elevation on a small grid; some at one place."""
+
+
+def hard_places(most: int) -> st.SearchStrategy[Float64Array]:
+    """Return a strategy of coordinates of every kind, 3 to ``most`` rows, some at one place."""
+    return st.builds(
+        lambda kind, seed, n: coordinates(np.random.default_rng(seed), n, kind),
+        st.sampled_from(list(KINDS)),
+        seeds,
+        st.integers(3, most),
+    )
