@@ -153,13 +153,3 @@ def test_tin_is_refused(tmp_path):
     path = tmp_path / "tin.ply"
     ts.io.write(ts.triangulate([[0, 0, 0], [4, 0, 0], [0, 4, 0]]), path)
     assert "needs points" in run(path, code=1).stderr
-
-
-def test_a_sample_keeps_the_order_of_the_points():
-    from tinsmith.cli.commands.compare import _sample_points
-
-    points = np.random.default_rng(2).random((50, 3))
-    sample = _sample_points(points, 20)
-    rows = [int(np.flatnonzero((points == one).all(axis=1))[0]) for one in sample]
-    assert rows == sorted(set(rows))
-    assert len(rows) == 20

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tinsmith.io import ReadError
-from tinsmith.io.delimited.cell_bounds import _drop_quoted, find_cell_bounds
+from tinsmith.io.delimited.cell_bounds import find_cell_bounds
 from tinsmith.io.delimited.columns import find_columns_by_word
 from tinsmith.io.delimited.layout import find_layout
 from tinsmith.io.delimited.lines import TextLines
@@ -83,11 +83,19 @@ def test_words_between_blanks_are_counted_line_by_line(text, expected):
     assert is_regular(text.encode(), layout) is expected
 
 
-def test_places_between_quotes_count_for_nothing():
-    places = np.array([1, 4, 6, 9, 12])
-    assert _drop_quoted(places, np.array([3, 5])).tolist() == [1, 6, 9, 12]
-    assert _drop_quoted(places, np.array([0, 2, 5, 10])).tolist() == [4, 12]
-    assert _drop_quoted(places, np.array([2, 3, 13, 14])).tolist() == places.tolist()
+def test_delimiters_between_quotes_part_no_cells():
+    text = b'"a,b",1,"x,,y"\n2,"3",",,"\n"",4,5\n"6,",7,""'
+    bounds = find_cell_bounds(text, ",", 3)
+    cells = [
+        [text[start + 1 : end] for start, end in zip(*row, strict=True)]
+        for row in zip(bounds.before.tolist(), bounds.ends.tolist(), strict=True)
+    ]
+    assert cells == [
+        [b'"a,b"', b"1", b'"x,,y"'],
+        [b"2", b'"3"', b'",,"'],
+        [b'""', b"4", b"5"],
+        [b'"6,"', b"7", b'""'],
+    ]
 
 
 def test_rows_that_are_not_regular_are_rewritten_one_by_one():
