@@ -28,6 +28,7 @@ import numpy as np
 import tinsmith as ts
 
 from .measure import is_installed
+from .report.tables import TEXT, Table, add_option
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -191,33 +192,38 @@ def _in_folder() -> Iterator[Path]:
 # ---------------------------------------------------------------------------------- tables
 
 
-def print_errors(folder: Path) -> None:
-    """Print the errors of every filter on every file, as a table of Markdown."""
+def compare_filters(folder: Path) -> Table:
+    """Show the errors of every filter on every file."""
     files = _list_files(folder)
     tools = {name: find for name, (module, find) in FILTERS.items() if is_installed(module)}
-    header = ["file", "points", "type I", "type II", "total", "kappa"]
-    header += [f"{name}: total, kappa" for name in list(tools)[1:]]
-    print(f"| {' | '.join(header)} |\n|{'---|' * len(header)}")
-    rows: list[list[float]] = []
+    table = Table(
+        {"file": TEXT, "points": "{:,}"}
+        | dict.fromkeys(("type I", "type II", "total", "kappa"), "{:.2f}")
+        | {f"{name}: total, kappa": "{:.2f}, {:.1f}" for name in list(tools)[1:]}
+    )
+    rows: list[list[Errors]] = []
     for path in files:
         survey = ts.read(path)
         truth = np.equal(survey.attributes["classification"], GROUND)
         errors = [measure_errors(find(survey), truth) for find in tools.values()]
-        rows.append([*errors[0], *(part for one in errors[1:] for part in (one.total, one.kappa))])
-        _print_row(path.name, f"{len(survey):,}", rows[-1])
-    _print_row("**mean**", "", np.mean(rows, axis=0).tolist())
+        rows.append(errors)
+        table.show(path.name, len(survey), *_list_cells(errors))
+    means = [Errors(*one) for one in np.mean(rows, axis=0).tolist()]
+    table.show("**mean**", None, *_list_cells(means))
+    return table
 
 
-def print_changed(folder: Path) -> None:
-    """Print the mean total error on the files turned, thinned and cut, as a table of Markdown."""
+def change_points(folder: Path) -> Table:
+    """Show the mean total error on the files turned, thinned and cut."""
     samples = _read_samples(folder)
-    print("| points | mean total |\n|---|---|")
+    table = Table({"points": TEXT, "mean total": "{:.2f}"})
     for name, change in CHANGES.items():
         totals = []
         for number, (points, truth) in enumerate(samples):
             changed, rows = change(points, np.random.default_rng(number))
             totals.append(measure_errors(ts.ground(changed).is_ground, truth[rows]).total)
-        print(f"| {name} | {np.mean(totals):.2f} |", flush=True)
+        table.show(name, float(np.mean(totals)))
+    return table
 
 
 def print_leave_one_out(folder: Path, count: int) -> None:
@@ -253,10 +259,9 @@ def _list_files(folder: Path) -> list[Path]:
     return sorted(path for path in folder.iterdir() if path.suffix.lower() in (".las", ".laz"))
 
 
-def _print_row(name: str, count: str, values: list[float]) -> None:
-    own = [f"{value:.2f}" for value in values[:4]]
-    others = [f"{values[k]:.2f}, {values[k + 1]:.1f}" for k in range(4, len(values), 2)]
-    print(f"| {' | '.join([name, count, *own, *others])} |", flush=True)
+def _list_cells(errors: list[Errors]) -> list[float | tuple[float, float]]:
+    own, *others = errors
+    return [*map(float, own), *((float(one.total), float(one.kappa)) for one in others)]
 
 
 def make_terrain(count: int, seed: int = 1) -> tuple[Float64Array, BoolArray]:
@@ -296,15 +301,16 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--points", type=int, metavar="N", help="time a terrain of N points")
     parser.add_argument("--changed", action="store_true", help="turn, thin and cut the files")
     parser.add_argument("--leave-one-out", type=int, metavar="N", help="draw N sets of parameters")
+    add_option(parser)
     given = parser.parse_args(arguments)
     if (given.changed or given.leave_one_out) and given.folder is None:
         parser.error("a folder of files with labels is needed")
     if given.changed:
-        print_changed(given.folder)
+        change_points(given.folder).write(given.json)
     if given.leave_one_out:
         print_leave_one_out(given.folder, given.leave_one_out)
     if given.folder is not None and not (given.changed or given.leave_one_out):
-        print_errors(given.folder)
+        compare_filters(given.folder).write(given.json)
     if given.points is not None:
         print_time(given.points)
 

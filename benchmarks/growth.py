@@ -29,10 +29,20 @@ from .datasets.uneven import (
     make_overlapping_waters,
     make_sawtooth,
 )
+from .report.tables import TEXT, Table, add_option
 
 __all__ = ["DATASETS", "PRODUCTS", "TASKS", "Growth", "measure"]
 
 Product = Callable[[ts.TIN], object]
+
+COLUMNS = {
+    "data": TEXT,
+    "product": TEXT,
+    "size": "{:,}",
+    "seconds": "{:.3f}",
+    "exponent": "{:.2f}",
+    "refused": TEXT,
+}
 
 _FITTED = 4
 """Sizes of which the exponent is that of the last."""
@@ -211,8 +221,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--start", type=int, default=500, help="points; default 500")
     parser.add_argument("--most", type=int, default=16_000, help="points; default 16,000")
     parser.add_argument("--limit", type=float, default=2.0, help="seconds; default 2")
+    add_option(parser)
     given = parser.parse_args(arguments)
-    print(f"{'data':14} {'product':26} {'size':>8} {'seconds':>8} {'exponent':>8}")
+    table = Table(COLUMNS)
     runs = [
         (data, name, partial(_build, DATASETS[data]), PRODUCTS[name])
         for data in given.data
@@ -223,8 +234,8 @@ def main(arguments: list[str] | None = None) -> None:
     for data, name, make, run in runs:
         found = measure(make, run, start=given.start, most=given.most, limit=given.limit)
         size, seconds = (found.sizes or (0,))[-1], (found.seconds or (math.nan,))[-1]
-        row = f"{data:14} {name:26} {size:8,} {seconds:8.3f} {found.exponent:8.2f}"
-        print(f"{row}  {found.refusal}".rstrip(), flush=True)
+        table.show(data, name, size, seconds, found.exponent, found.refusal)
+    table.write(given.json)
 
 
 def _build(make: Callable[[int], np.ndarray], count: int) -> ts.TIN:

@@ -6,9 +6,8 @@ card Chromium draws on the processor, so turning is the worst case.
 
 from __future__ import annotations
 
-import json
+import argparse
 import shutil
-import sys
 import time
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -16,6 +15,16 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 import tinsmith as ts
+
+from .report.tables import Table, add_option
+
+COLUMNS = {
+    "triangles": "{:,}",
+    "written, s": "{:.2f}",
+    "size, MB": "{:.2f}",
+    "opened, s": "{:.2f}",
+    "picture, ms": "{:.1f}",
+}
 
 _ARGUMENTS = (
     *("--no-sandbox", "--use-angle=swiftshader"),
@@ -38,8 +47,8 @@ def make_terrain(triangles: int) -> ts.TIN:
     return ts.triangulate(points, crs="EPSG:32616", z_unit="m")
 
 
-def measure_page(triangles: int) -> dict[str, float]:
-    """Return seconds to write and to open a page, its size in MB, and ms of a picture of it."""
+def measure_page(triangles: int) -> tuple[int, float, float, float, float]:
+    """Return triangles, seconds to write, MB, seconds to open, and ms of a picture of a page."""
     from playwright.sync_api import sync_playwright
 
     browser_path = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -56,15 +65,20 @@ def measure_page(triangles: int) -> dict[str, float]:
         megabytes = path.stat().st_size / 1e6
         browser.close()
     assert len(tin.triangles) > 0.9 * triangles
-    return {
-        "triangles": len(tin.triangles),
-        "written, s": round(written, 2),
-        "size, MB": round(megabytes, 2),
-        "opened, s": round(opened, 2),
-        "picture, ms": round(turned, 1),
-    }
+    return len(tin.triangles), written, megabytes, opened, turned
+
+
+def main() -> None:
+    """Show the figures of pages of as many triangles as the command line asks for."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.pages", description=__doc__)
+    parser.add_argument("triangles", nargs="*", type=int, default=[100_000, 1_000_000])
+    add_option(parser)
+    given = parser.parse_args()
+    table = Table(COLUMNS)
+    for count in given.triangles:
+        table.show(*measure_page(count))
+    table.write(given.json)
 
 
 if __name__ == "__main__":
-    for count in [int(text) for text in sys.argv[1:]] or [100_000, 1_000_000]:
-        print(json.dumps(measure_page(count)))
+    main()

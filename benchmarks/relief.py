@@ -14,6 +14,8 @@ import numpy as np
 
 import tinsmith as ts
 
+from .report.tables import TEXT, Table, add_option
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -24,14 +26,17 @@ def main() -> None:
     """Read the command line, time and print."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--side", type=int, default=1000, help="rows and columns of the DEM")
-    side = parser.parse_args().side
+    add_option(parser)
+    given = parser.parse_args()
+    side = given.side
     y, x = (axis.ravel().astype(float) for axis in np.mgrid[0:side, 0:side])
     z = 40 * np.sin(x / 17) * np.cos(y / 23) + 15 * np.sin(x / 5 + y / 7)
     tin = ts.triangulate(np.column_stack([x, y, z]))
+    table = Table({"cells": TEXT, "value": TEXT, "seconds": "{:.3f}", "times elevation": "{:.1f}"})
     for where, shift in (("own cells", 0.5), ("between", 0.37)):
         grid = ts.Grid(ts.Bounds(-shift, -shift, side - shift, side - shift), (side, side), 1.0)
         whole = measure(lambda grid=grid: ts.rasterize(tin, grid=grid))
-        print(f"{where}, elevation: {whole:.3f} s")
+        table.show(where, "elevation", whole, None)
         for smooth in (False, True):
             require_slopes_of_vertices(tin, smooth)
             for value in ("slope", "hillshade"):
@@ -41,7 +46,8 @@ def main() -> None:
                     )
                 )
                 how = "smooth" if smooth else "of triangles"
-                print(f"{where}, {value} {how}: {found:.3f} s ({found / whole:.1f} of elevation)")
+                table.show(where, f"{value} {how}", found, found / whole)
+    table.write(given.json)
 
 
 def require_slopes_of_vertices(tin: ts.TIN, smooth: bool) -> None:

@@ -22,6 +22,7 @@ import tinsmith as ts
 from tinsmith.base.policies import SimplificationHold
 
 from .measure import is_installed
+from .report.tables import TEXT, Table, add_option
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -53,11 +54,19 @@ def as_points(heights: Float32Array) -> Float64Array:
     return np.column_stack([x.ravel(), y.ravel(), heights.ravel()]).astype(float)
 
 
-def print_row(program: str, tolerance: float, tin: ts.TIN, points: Any, seconds: str) -> None:
-    """Print a line of the table; the error is measured here, at every point."""
-    error = np.abs(tin.interpolate(points[:, :2]) - points[:, 2]).max()
-    counts = f"{len(tin.points):,} | {len(tin.triangles):,}"
-    print(f"| {tolerance:g} | {program} | {counts} | {error:.4f} | {seconds} |")
+COLUMNS = {
+    "tolerance": "{:g}",
+    "program": TEXT,
+    "vertices": "{:,}",
+    "triangles": "{:,}",
+    "largest error": "{:.4f}",
+    "seconds": "{:.3f}",
+}
+
+
+def measure_error(tin: ts.TIN, points: Float64Array) -> float:
+    """Return the largest difference of elevations at points."""
+    return float(np.abs(tin.interpolate(points[:, :2]) - points[:, 2]).max())
 
 
 def as_raster(heights: Float32Array) -> ts.Raster:
@@ -67,13 +76,17 @@ def as_raster(heights: Float32Array) -> ts.Raster:
     return ts.Raster({"elevation": heights}, ts.Grid(bounds, heights.shape, 1.0))
 
 
-def compare(side: int) -> None:
-    """Print vertices, triangles, errors and processor seconds of both programs."""
+def compare(side: int) -> Table:
+    """Show vertices, triangles, errors and processor seconds of both programs."""
     heights = make_heights(side)
     points = as_points(heights) * [1, -1, 1]
     raster = as_raster(heights)
-    print("| tolerance | program | vertices | triangles | largest error | seconds |")
-    print("|---|---|---|---|---|---|")
+    table = Table(COLUMNS)
+
+    def show(tolerance: float, program: str, tin: ts.TIN, seconds: float) -> None:
+        counts = len(tin.points), len(tin.triangles)
+        table.show(tolerance, program, *counts, measure_error(tin, points), seconds)
+
     for tolerance in TOLERANCES:
         programs: dict[str, Callable[[], Any]] = {
             "tinsmith": partial(ts.simplify, raster, tolerance=tolerance, threads=1)
@@ -85,11 +98,12 @@ def compare(side: int) -> None:
         made, seconds = time_in_turn(programs)
         for program, found in made.items():
             tin = found if program == "tinsmith" else as_tin(found, side)
-            print_row(program, tolerance, tin, points, f"{seconds[program]:.3f}")
+            show(tolerance, program, tin, seconds[program])
     surface = ts.triangulate(points, threads=1)
     begin = time.process_time()
     simple = ts.simplify(surface, tolerance=USUAL_TOLERANCE, threads=1)
-    print_row("TIN", USUAL_TOLERANCE, simple, points, f"{time.process_time() - begin:.2f}")
+    show(USUAL_TOLERANCE, "TIN", simple, time.process_time() - begin)
+    return table
 
 
 def time_in_turn(
@@ -185,6 +199,7 @@ def main() -> None:
     parser.add_argument("--blocks", type=int, help="time a raster with such a side instead")
     parser.add_argument("--points", type=int, help="time so many random points instead")
     parser.add_argument("--write", type=Path, metavar="FILE", help="write a GeoTIFF instead")
+    add_option(parser)
     given = parser.parse_args()
     if given.write:
         write_raster(given.write, given.side)
@@ -193,7 +208,7 @@ def main() -> None:
     elif given.points:
         time_points(given.points)
     else:
-        compare(given.side)
+        compare(given.side).write(given.json)
 
 
 if __name__ == "__main__":

@@ -15,6 +15,8 @@ from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from .report.tables import TEXT, Table
+
 ROOT = Path(__file__).parents[1]
 AREAS = ("tin", "terrain", "io", "cli", "base")
 FOLDERS = {"tin": "tin", "terrain": "terrain", "io": "io", "": "src/tinsmith"}
@@ -198,10 +200,9 @@ def main(places: list[str]) -> None:
                 packed = subprocess.run(archive, capture_output=True, check=True).stdout
                 subprocess.run(["tar", "-x", "-C", str(root)], input=packed, check=True)
             columns.append([*measure(root).rows, ("options in all helps", count_options(root))])
-    names = places or ["."]
-    print("| |" + "".join(f" {name} |" for name in names) + "\n|---|" + "---|" * len(names))
+    table = Table(dict.fromkeys(("", *(places or ["."])), TEXT))
     for rows in zip(*columns, strict=True):
-        print(f"| {rows[0][0]} |" + "".join(f" {value} |" for _, value in rows))
+        table.show(rows[0][0], *(value for _, value in rows))
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from statistics import median
+from typing import Any
 
 from ..measure import OURS, Outcome, Result, is_installed
 from ..peers.answers import AS_MANY, EQUAL
@@ -16,8 +17,9 @@ from ..peers.line_tools import ALL_LINE_TOOLS
 from ..peers.triangulators import CGAL, KERNEL
 from ..sections import answers, kernel
 from .goals import judge_goals
+from .tables import format_table
 
-__all__ = ["write_report"]
+__all__ = ["format_page", "write_report"]
 
 NAME = "benchmarks"
 PLOTS = {"kernel": ".png", "lines": "-lines.png"}
@@ -79,12 +81,17 @@ def write_report(
     is_page = target.suffix == ".md"
     folder, name = (target.parent, target.stem) if is_page else (target, NAME)
     folder.mkdir(parents=True, exist_ok=True)
-    plots = _name_plots(outcome, name)
+    plots = _name_plots(outcome.results, name)
+    if plots and not is_installed("matplotlib"):
+        outcome.skip({"plot": "matplotlib is not installed"})
+        plots = {}
+    content = _as_content(outcome, machine, command, [*plots])
     written = [folder / f"{name}.md"]
-    written[0].write_text(_format_page(outcome, machine, command, plots), encoding="utf-8")
+    written[0].write_text(format_page(content, name), encoding="utf-8")
     if not is_page:
         written.append(folder / f"{name}.json")
-        written[1].write_text(_format_outcome(outcome, machine, command), encoding="utf-8")
+        text = json.dumps(content, indent=1, allow_nan=False) + "\n"
+        written[1].write_text(text, encoding="utf-8")
     for section, plot in plots.items():
         from .plot import draw
 
@@ -102,46 +109,52 @@ def _make_title(results: Sequence[Result]) -> str:
     return f"{subject}: {10 ** round(math.log10(median(counts))):,} points"
 
 
-def _name_plots(outcome: Outcome, name: str) -> dict[str, str]:
+def _name_plots(results: Sequence[Result], name: str) -> dict[str, str]:
     """Return the names of the plots to draw, by section."""
-    drawn = {
+    return {
         section: f"{name}{ending}"
         for section, ending in PLOTS.items()
-        if _select_section(outcome.results, section)
+        if _select_section(results, section)
     }
-    if drawn and not is_installed("matplotlib"):
-        outcome.skip({"plot": "matplotlib is not installed"})
-        return {}
-    return drawn
 
 
-def _format_outcome(outcome: Outcome, machine: dict[str, str], command: str) -> str:
-    content = {
+def _as_content(
+    outcome: Outcome, machine: dict[str, str], command: str, plots: list[str]
+) -> dict[str, Any]:
+    """Return all that a page says, as JSON holds it."""
+    return {
         "command": command,
         "machine": machine,
         "results": [_drop_nan(asdict(result)) for result in outcome.results],
         "skipped": outcome.skipped,
+        "plots": plots,
     }
-    return json.dumps(content, indent=1, allow_nan=False) + "\n"
 
 
 def _drop_nan(values: dict[str, object]) -> dict[str, object]:
     return {k: None if isinstance(v, float) and math.isnan(v) else v for k, v in values.items()}
 
 
-def _format_page(
-    outcome: Outcome, machine: dict[str, str], command: str, plots: dict[str, str]
-) -> str:
+def _read_result(values: dict[str, Any]) -> Result:
+    seconds = math.nan if values["seconds"] is None else values["seconds"]
+    return Result(**{**values, "seconds": seconds, "runs": tuple(values["runs"])})
+
+
+def format_page(content: dict[str, Any], name: str) -> str:
+    """Return the page of what a file of results holds; ``name`` is that of the file."""
+    results = [_read_result(values) for values in content["results"]]
+    machine, skipped = content["machine"], content["skipped"]
     versions = ", ".join(f"{k} {v}" for k, v in machine.items() if k != "machine")
-    title = _make_title(outcome.results)
+    title = _make_title(results)
     parts = [INTRODUCTION.format(title=title), f"Machine: {machine['machine']}. {versions}.\n"]
+    plots = _name_plots(results, name)
     for section, render in SECTIONS.items():
-        results = _select_section(outcome.results, section)
-        if results:
-            parts.append(render(results, plots.get(section, "")))
-    if outcome.skipped:
-        parts.append("\n".join(["## Left out", "", *(f"- {x}" for x in outcome.skipped), ""]))
-    parts.append(HOW_TO_REPEAT.format(command=command))
+        own = _select_section(results, section)
+        if own:
+            parts.append(render(own, plots[section] if section in content["plots"] else ""))
+    if skipped:
+        parts.append("\n".join(["## Left out", "", *(f"- {x}" for x in skipped), ""]))
+    parts.append(HOW_TO_REPEAT.format(command=content["command"]))
     return "\n".join(parts)
 
 
@@ -154,8 +167,7 @@ TEXT_COLUMNS = ("data set, points", "task", "tool", "remark", "goal", "data set"
 
 def _format_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return a table, text to the left, numbers to the right."""
-    rule = ["---" if name in TEXT_COLUMNS else "---:" for name in head]
-    return "\n".join(f"| {' | '.join(row)} |" for row in (head, rule, *rows)) + "\n"
+    return format_table({name: name in TEXT_COLUMNS for name in head}, rows)
 
 
 def _format_seconds(seconds: float) -> str:

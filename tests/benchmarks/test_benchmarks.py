@@ -26,6 +26,7 @@ from benchmarks.peers.programs import find_present, run_program
 from benchmarks.peers.tool_process import ToolFailedError, ToolProcess
 from benchmarks.peers.triangulators import CGAL, KERNEL, TOOLS
 from benchmarks.report import page
+from benchmarks.report.__main__ import format_file
 from benchmarks.report.goals import judge_goals as goals_of
 from benchmarks.report.page import write_report
 from benchmarks.sections import edits, kernel, lines, locate, readers, writers
@@ -448,6 +449,7 @@ def test_report_is_a_page_data_and_a_plot(tmp_path, capsys):
     page = (tmp_path / "benchmarks.md").read_text(encoding="utf-8")
     data = json.loads((tmp_path / "benchmarks.json").read_text(encoding="utf-8"))
     assert "| circle, 300 |" in page
+    assert format_file(tmp_path / "benchmarks.json") == page
     assert "## Writers" in page
     assert "## Readers" not in page
     tools = [r["tool"] for r in data["results"] if r["section"] == "kernel"]
