@@ -48,10 +48,10 @@ class Figures:
 
     lines: Counter[str] = field(default_factory=Counter)
     arrows: dict[str, set[tuple[str, str]]] = field(default_factory=lambda: defaultdict(set))
-    past_a_face: int = 0
+    past_a_face: list[tuple[str, str]] = field(default_factory=list)
     functions: int = 0
     called_once: int = 0
-    splinters: int = 0
+    splinters: list[str] = field(default_factory=list)
     longest: int = 0
     carriers: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
     with_path: int = 0
@@ -67,10 +67,10 @@ class Figures:
             for area in ("the whole", *AREAS)
         ]
         found += [
-            ("imports past a package's face", f"{self.past_a_face:,}"),
+            ("imports past a package's face", f"{len(self.past_a_face):,}"),
             ("functions", f"{self.functions:,}"),
             ("private functions called once", f"{self.called_once:,}"),
-            (f"of them with more than {MOST_POSITIONAL} positional", f"{self.splinters:,}"),
+            (f"of them with more than {MOST_POSITIONAL} positional", f"{len(self.splinters):,}"),
             ("lines of the longest function", f"{self.longest}"),
             ("functions of io that take a path", f"{self.with_path}"),
         ]
@@ -145,7 +145,7 @@ def _count_import(module, target, packages, found):
     package = ".".join(other[:-1])
     is_face = target in packages
     if not is_face and package not in ("", *AREAS) and not module.startswith(package):
-        found.past_a_face += 1
+        found.past_a_face.append((module, target))
 
 
 def _count_functions(tree, module, found):
@@ -169,7 +169,8 @@ def _count_functions(tree, module, found):
         is_private = node.name.startswith("_") and not node.name.startswith("__")
         if is_private and used[node.name] == 1:
             found.called_once += 1
-            found.splinters += len(positional) > MOST_POSITIONAL
+            if len(positional) > MOST_POSITIONAL:
+                found.splinters.append(f"{module}.{node.name}")
 
 
 def count_options(root: Path) -> str:

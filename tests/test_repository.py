@@ -22,6 +22,7 @@ from support.orthos import write_grey
 import tinsmith
 import tinsmith as ts
 import tinsmith.cli
+from benchmarks.structure import measure as measure_structure
 
 ROOT = Path(__file__).parents[1]
 
@@ -218,28 +219,22 @@ def test_folders_can_be_taken_in_at_a_glance():
 
 MOST_SPLINTERS = 77
 """Private functions called once with more than four positional parameters: may only fall."""
+MOST_PAST_A_FACE = 635
+"""Imports of a module within another package, not of what that package lists: may only fall."""
 
 
-def test_private_functions_called_once_take_few_parameters():
-    found = []
-    for folder in ("src", "io", "terrain", "tin"):
-        for path in (ROOT / folder).rglob("*.py"):
-            found += [f"{path.relative_to(ROOT)}: {name}" for name in list_splinters(parse(path))]
-    assert len(found) <= MOST_SPLINTERS, found
+@pytest.fixture(scope="module")
+def figures():
+    return measure_structure(ROOT)
 
 
-def list_splinters(module):
-    """Yield names of private functions used once that take more than four values in their order."""
-    used = Counter(
-        getattr(node, "id", getattr(node, "attr", None))
-        for node in ast.walk(module)
-        if isinstance(node, ast.Name | ast.Attribute)
-    )
-    for node in ast.walk(module):
-        if isinstance(node, ast.FunctionDef) and node.name.startswith("_") and used[node.name] == 1:
-            names = [one.arg for one in (*node.args.posonlyargs, *node.args.args)]
-            if len([name for name in names if name not in ("self", "cls")]) > 4:
-                yield node.name
+def test_private_functions_called_once_take_few_parameters(figures):
+    assert len(figures.splinters) <= MOST_SPLINTERS, figures.splinters
+
+
+def test_imports_past_the_face_of_a_package_grow_no_more(figures):
+    packages = Counter(target.rpartition(".")[0] for _, target in figures.past_a_face)
+    assert len(figures.past_a_face) <= MOST_PAST_A_FACE, packages.most_common()
 
 
 ROOT_ENTRIES = """
