@@ -85,7 +85,8 @@ OPTIONS: dict[str, dict[str, Any]] = {
         "type": Path,
         "default": RESULTS,
         "metavar": "FOLDER",
-        "help": "for benchmarks.md, .json and .png; or a page to write alone, .md",
+        "help": "for benchmarks.md, .json and .png; or a page to write alone, .md; "
+        "python -m benchmarks.report FILE.json prints a page again",
     },
 }
 

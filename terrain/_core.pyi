@@ -223,6 +223,11 @@ class Filling:
         ranks: Int64Array,
     ) -> None: ...
 
+class Bases:
+    edges: Final[Int64Array]
+    splits: Final[Float64Array]
+    drains: Final[BoolArray]
+
 class FallingSurface:
     def __init__(
         self,
@@ -233,7 +238,7 @@ class FallingSurface:
         values: Float64Array,
         filling: Filling | None,
     ) -> None: ...
-    def bases_of(self, triangles: Int64Array) -> tuple[Int64Array, Float64Array, BoolArray]: ...
+    def bases_of(self, triangles: Int64Array) -> Bases: ...
     def cut_strips(self, most: int) -> tuple[Int64Array, Float64Array]: ...
     def measure_strips(
         self, offsets: Int64Array, starts: Float64Array, areas: Float64Array

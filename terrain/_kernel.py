@@ -10,6 +10,7 @@ with hold_interrupts():
 __all__ = [
     "SUMS",
     "TILE_SIDE",
+    "Bases",
     "ContourLines",
     "FallingSurface",
     "Filling",
@@ -55,6 +56,7 @@ find_seen_vertices = _core.find_seen_vertices
 
 FallingSurface = _core.FallingSurface
 Filling = _core.Filling
+Bases = _core.Bases
 find_ends = _core.find_ends
 accumulate = _core.accumulate
 sum_channels = _core.sum_channels

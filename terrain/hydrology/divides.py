@@ -11,7 +11,7 @@ from .. import _kernel
 from ..earthwork.cells import fan_out
 from ..relief.dissolving import DividedMesh
 from .descent import interpolate_edges
-from .strips import SAME, Bases, follow
+from .strips import SAME, follow
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array, Int64Array
@@ -72,7 +72,7 @@ def _place_cuts(
 ) -> _Cuts:
     """Place the ends of cuts, once for both triangles of an edge."""
     falls, shares = network.walker.falls, network.strips.starts[rows]
-    bases, count = Bases(*network.surface.bases_of(triangles)), len(falls.points)
+    bases, count = network.surface.bases_of(triangles), len(falls.points)
     sides, at_side = follow(bases, bases.edges, shares)
     is_apex = np.abs(shares - bases.splits) <= SAME
     owners, edges = np.tile(triangles, 2), np.append(bases.edges, sides)
@@ -118,7 +118,7 @@ def _cut_triangles(
 ) -> tuple[Int32Array, Int32Array]:
     """Cut triangles into cells, and these into triangles; return them, and their labels."""
     falls, count = network.walker.falls, len(network.walker.falls.points)
-    turns = np.array([1, 2, 0]) + network.surface.bases_of(triangles)[0][:, None]
+    turns = np.array([1, 2, 0]) + network.surface.bases_of(triangles).edges[:, None]
     corners = falls.triangles[triangles[:, None], turns % 3]  # start, end, apex
     keys = _name_edges(corners, count)[:, [2, 1, 0]]
     ranges = np.stack([cuts.edges.searchsorted(keys, side) for side in ("left", "right")], axis=2)

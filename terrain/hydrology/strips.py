@@ -14,12 +14,11 @@ from .. import _kernel
 from .descent import MOVING, Drops, make_drops
 
 if TYPE_CHECKING:
-    from ...base.arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
     from .descent import Walker
 
 __all__ = [
     "SAME",
-    "Bases",
     "Strips",
     "cut_strips",
     "follow",
@@ -30,25 +29,6 @@ __all__ = [
 SAME = 1e-12
 """Fall lines whose shares of the base differ by no more are one."""
 _MOST_CUTS = 100_000_000
-
-
-class Bases(NamedTuple):
-    r"""The edges of triangles that all their fall lines meet, so that shares of them name those.
-
-    It is the only edge that water leaves across, or else the only one that it enters across::
-
-                  apex
-                 /  | \          share 0 at the start of the base, 1 at its end; the fall line
-                /   |  \         through the apex meets it at ``splits``
-          start ----|--- end
-    """
-
-    edges: Int64Array
-    """(k,)."""
-    splits: Float64Array
-    """(k,)."""
-    drains: BoolArray
-    """(k,), whether water leaves across the base."""
 
 
 class Strips(NamedTuple):
@@ -88,7 +68,7 @@ def cut_strips(surface: _kernel.FallingSurface) -> Strips:
 
 
 def follow(
-    bases: Bases, edges: Int64Array, shares: Float64Array
+    bases: _kernel.Bases, edges: Int64Array, shares: Float64Array
 ) -> tuple[Int64Array, Float64Array]:
     """Return where the fall line through a place on an edge meets the base, or from it the side."""
     base, split = bases.edges, bases.splits
@@ -111,7 +91,7 @@ def leave_strips(
     following = np.minimum(rows + 1, len(strips.starts) - 1)
     ends = np.where(is_last, 1.0, strips.starts[following])
     shares = (strips.starts[rows] + ends) / 2
-    bases = Bases(*surface.bases_of(triangles))
+    bases = surface.bases_of(triangles)
     sides, at_side = follow(bases, bases.edges, shares)
     edges = np.where(bases.drains, bases.edges, sides)
     return walker.arrive(triangles, edges, np.where(bases.drains, shares, at_side))

@@ -12,9 +12,17 @@ import numpy as np
 
 from tinsmith.terrain.hydrology.descent import BOUNDARY, MOVING, Drops, Walker, make_drops
 from tinsmith.terrain.hydrology.falls import Falls
-from tinsmith.terrain.hydrology.strips import SAME, Bases, follow, settle
+from tinsmith.terrain.hydrology.strips import SAME, follow, settle
 from tinsmith.terrain.hydrology.vertices import NOWHERE
 from tinsmith.tin.topology import NO_NEIGHBOR, find_offsets
+
+
+class Bases(NamedTuple):
+    """As the core names them."""
+
+    edges: np.ndarray
+    splits: np.ndarray
+    drains: np.ndarray
 
 
 class Strips(NamedTuple):

@@ -47,6 +47,13 @@ inline bool are_below(const GivenNumbers& numbers, std::int64_t least, std::int6
   return are_all(numbers, [=](std::int32_t one) { return least <= one && one < most; });
 }
 
+// Of some triangles, as hydrology::Base.
+struct BaseArrays {
+  Offsets edges;
+  Elevations splits;
+  Flags drains;
+};
+
 // A surface and how its triangles fall; holds the arrays it is given.
 class FallingSurface {
  public:
@@ -71,7 +78,7 @@ class FallingSurface {
     }
   }
 
-  std::tuple<Offsets, Elevations, Flags> bases_of(const GivenLongs& triangles) const {
+  BaseArrays bases_of(const GivenLongs& triangles) const {
     const std::size_t count = triangles.shape(0);
     const auto most = static_cast<std::int64_t>(bases_.size());
     require(are_all(triangles, [=](std::int64_t t) { return 0 <= t && t < most; }),
@@ -280,6 +287,19 @@ inline std::tuple<Offsets, Offsets, Numbers> cut_cells(
 }
 
 inline void bind_hydrology(nb::module_& m) {
+  Result<BaseArrays>(m, "Bases", R"(
+The edges of triangles that all their fall lines meet, so that shares of them name those.
+
+It is the only edge that water leaves across, or else the only one that it enters across::
+
+              apex
+             /  | \         share 0 at the start of the base, 1 at its end; the fall line
+            /   |  \        through the apex meets it at `splits`
+      start ----|--- end
+)")
+      .def_array("edges", &BaseArrays::edges, "(k,), as corners opposite.")
+      .def_array("splits", &BaseArrays::splits, "(k,).")
+      .def_array("drains", &BaseArrays::drains, "(k,), whether water leaves across the base.");
   nb::class_<GivenFilling>(m, "Filling", "The water of full depressions, by vertex.")
       .def(nb::init<GivenValues, GivenLongs, GivenLongs, GivenLongs, GivenLongs>(),
            "levels"_a.noconvert(), "ponds"_a.noconvert(), "nexts"_a.noconvert(),
@@ -290,8 +310,7 @@ inline void bind_hydrology(nb::module_& m) {
            "points"_a.noconvert(), "triangles"_a.noconvert(), "neighbors"_a.noconvert(),
            "signs"_a.noconvert(), "values"_a.noconvert(), "filling"_a.none())
       .def("bases_of", &FallingSurface::bases_of, "triangles"_a.noconvert(),
-           "Edges that all fall lines meet, where those through the corner opposite do, and "
-           "whether water leaves there.")
+           "The edges that all fall lines of triangles meet.")
       .def("cut_strips", &FallingSurface::cut_strips, "most"_a,
            "Offsets of strips by triangle, and where each begins on the base.")
       .def("measure_strips", &FallingSurface::measure_strips, "offsets"_a.noconvert(),
