@@ -44,12 +44,12 @@ def main(folder: Path = HERE) -> None:
     ortho = paint_site(site)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ts.LossWarning)
-        draped = ts.preview(site, survey=survey, title="Site survey", drape=ortho)
+        draped = ts.preview(site, survey=survey, title="Site survey", ortho=ortho)
         draw_page(draped, folder / "preview-page-ortho.png")
         ts.preview(
             hills,
             title="Jacksboro, Tennessee",
-            drape=paint_hills(hills),
+            ortho=paint_hills(hills),
             output=folder / "preview-ortho.png",
             size=(1200, 750),
         )

@@ -13,6 +13,7 @@ def _make(name: str, description: str, *suffixes: str, **more: Any) -> Format:
     where = f"{__package__}.{name}"
     ends: dict[str, Any] = {"read": f"{where}.reading:read", "reads": ("TIN", "Survey")}
     ends |= {"write": f"{where}.writing:write", "writes": (*SURFACES, "Features")}
+    ends["is_text"] = True
     ends["precision"] = "Coordinates are kept bit for bit."
     return Format(name=name, description=description, suffixes=suffixes, **(ends | more))
 

@@ -9,6 +9,7 @@ FORMATS = (
         name="delimited",
         description="Delimited text: survey points as CSV, TXT, XYZ",
         suffixes=(".csv", ".txt", ".xyz", ".tsv", ".pts", ".dat", ".pnt"),
+        is_text=True,
         read="tinsmith.io.delimited.survey_text:read",
         write="tinsmith.io.delimited.survey_text:write",
         precision="Every number is kept bit for bit.",

@@ -27,6 +27,7 @@ FORMATS = (
             *("elevation unit", "triangles", "constrained", "lines", "survey lines"),
             *("attributes", "notes", "report"),
         ),
+        holds_classes=True,
         extra="lidar",
         sniff=is_lidar,
         sniff_folder=is_lidar_folder,

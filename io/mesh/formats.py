@@ -12,6 +12,7 @@ from .signatures import (
     is_gzipped_tile,
     is_off,
     is_quantized_mesh,
+    is_tile_folder,
 )
 
 __all__ = ["FORMATS"]
@@ -53,6 +54,7 @@ FORMATS = (
     _make(
         *("obj", "Wavefront OBJ mesh", ".obj"),
         module="obj",
+        is_text=True,
         side_files={"": (".mtl",)},
         sniff=signatures.is_obj,
         losses=f"{_LOSSES}.",
@@ -72,6 +74,7 @@ FORMATS = (
     _make(
         *("vtk", "VTK XML mesh (opens in ParaView)", ".vtp", ".vtu"),
         module="vtk",
+        is_text=True,
         sniff=signatures.is_vtk_xml,
         losses="Names and kinds of lines, attributes, and the report.",
         loses=("lines", "attributes", "notes", "report"),
@@ -81,6 +84,7 @@ FORMATS = (
         "Gmsh mesh, with the edges of boundary and lines (for finite element programs)",
         ".msh",
         module="gmsh",
+        is_text=True,
         extra="mesh",
         sniff=signatures.is_gmsh,
         losses="The CRS and the unit of elevations; lines are named groups of edges, which are "
@@ -92,6 +96,7 @@ FORMATS = (
         "2DM mesh of SMS (for hydraulic models; opens in QGIS)",
         ".2dm",
         module="sms",
+        is_text=True,
         losses="The CRS and the unit of elevations; names and kinds of lines; attributes; the "
         "report.",
         loses=("crs", "elevation unit", "lines", "attributes", "notes", "report"),
@@ -119,6 +124,7 @@ FORMATS = (
     _make(
         *("cityjson", "CityJSON 2.0 with a TINRelief", ".city.json", ".cityjson"),
         module="city_json.reading",
+        is_text=True,
         write="tinsmith.io.mesh.city_json.writing:write",
         precision="Decimals are kept bit for bit, other numbers to the last digit of float64; or "
         "to the precision asked for.",
@@ -132,6 +138,7 @@ FORMATS = (
         description="Quantized-mesh 1.0 tiles (a folder with layer.json, for Cesium)",
         suffixes=(),
         write="tinsmith.io.mesh.quantized_mesh.writing:write",
+        sniff_folder=is_tile_folder,
         writes=("TIN",),
         precision="Horizontally 1/1000 of the median edge; vertically a millimetre or 1/32,767 "
         "of the range of elevations in a tile.",
@@ -163,6 +170,7 @@ FORMATS = (
         "Object File Format mesh",
         ".off",
         module="off",
+        is_text=True,
         losses=f"{_LOSSES}.",
         loses=_LOSES,
         sniff=is_off,

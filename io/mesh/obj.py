@@ -105,14 +105,14 @@ def write(
     surface: TIN,
     path: Path,
     *,
-    drape: str | os.PathLike[str] | None = None,
+    ortho: str | os.PathLike[str] | None = None,
     progress: Tell | None = None,
 ) -> None:
     """Write a TIN as OBJ; :func:`read` gives the same vertices and triangles back.
 
     Parameters
     ----------
-    drape : path-like, optional
+    ortho : path-like, optional
         Picture to lay over it, as :func:`.gltf.writing.write` takes it. The material (``.mtl``) and
         the picture are written beside the file, under its name.
 
@@ -124,13 +124,13 @@ def write(
         Also if the texture itself would be overwritten.
     """
     tin = common.require_tin(surface, format_name="OBJ")
-    if drape is None:
+    if ortho is None:
         with replacing(path, binary=False) as file:
             _write_body(file, tin, None, progress)
         return
-    draped = load_texture(drape, tin)
+    draped = load_texture(ortho, tin)
     picture = path.with_name(f"{path.stem}{_PICTURE}{draped.suffix}")
-    _require_other_file(drape, (picture, path, path.with_suffix(".mtl")))
+    _require_other_file(ortho, (picture, path, path.with_suffix(".mtl")))
     with replacing_data_set(path, "obj") as beside:
         beside.with_name(picture.name).write_bytes(draped.content)
         material = f"newmtl {_MATERIAL}\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nmap_Kd {picture.name}\n"

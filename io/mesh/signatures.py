@@ -19,6 +19,7 @@ __all__ = [
     "is_gzipped_tile",
     "is_off",
     "is_quantized_mesh",
+    "is_tile_folder",
 ]
 
 TIN_FILES = ("tnxy.adf", "tnz.adf", "tnod.adf", "tedg.adf", "tmsk.adf", "tmsx.adf", "thul.adf",
@@ -55,6 +56,11 @@ def is_cityjson(head: bytes) -> bool:
     return head.lstrip(b"\xef\xbb\xbf \t\r\n\x1e").startswith(b"{") and (
         _CITYJSON.search(head) is not None
     )
+
+
+def is_tile_folder(folder: Path) -> bool:
+    """Whether the folder has tiles of quantized-mesh: it has their description."""
+    return (folder / "layer.json").is_file()
 
 
 def is_esri_tin(folder: Path) -> bool:

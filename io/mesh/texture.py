@@ -58,7 +58,7 @@ def load_texture(source: str | os.PathLike[str], tin: TIN) -> Texture:
 
     Errors and warnings are those of :func:`.read_ortho`.
     """
-    path = as_picture_path(source, "drape")
+    path = as_picture_path(source, "ortho")
     kind = _find_kind(path)
     if kind is None:
         ortho = read_ortho(path, [tin], most_pixels=MOST_PIXELS, beyond=_BEYOND)

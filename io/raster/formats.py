@@ -52,6 +52,7 @@ FORMATS = (
             *(".jp2", ".png", ".jpg", ".grb", ".grb2", ".ntf"),
         ),
         read="tinsmith.io.raster.dem:read",
+        read_cells="tinsmith.io.raster.elevations:read_raster",
         sniff=signatures.is_raster,
         side_files=_SIDE_FILES,
         find_sources=_list_mosaic,
@@ -61,6 +62,7 @@ FORMATS = (
     _make(
         *("asc", "Esri ASCII grid, one band as text", "ascii_grid:write"),
         suffixes=(".asc",),
+        is_text=True,
         side_files={"": (".prj",)},
         precision="Every number is kept bit for bit.",
         losses="Units and notes; all bands but one.",

@@ -73,7 +73,7 @@ def read_ortho(
         If the picture is warped or made smaller, does not reach over all of the surface, or
         something is taken for granted that it does not tell.
     """
-    path = as_picture_path(source, "drape")
+    path = as_picture_path(source, "ortho")
     optional.require("rasterio", "Reading a picture to drape")
     crs = None if tins[0].crs is None else tins[0].crs.horizontal
     value, arrays = _ask_child(path, tins, crs, most_pixels, transparent)

@@ -56,7 +56,8 @@ class Format:
         A few words for a list.
     suffixes : tuple of str
         Lower case, with the dot; a writer is chosen by them, a reader where the content is silent.
-        The longest that a name ends in counts: ``.city.json`` before ``.json``.
+        The longest that a name ends in counts: ``.city.json`` before ``.json``. A format of
+        folders has none.
     read, write : str, optional
         ``"module:function"``, of functions as the notes describe them.
     reads, writes : tuple of str
@@ -86,6 +87,14 @@ class Format:
         replaces or removes.
     find_sources : callable, optional
         Other files that a file names and that are read with it, by its path.
+    read_cells : str, optional
+        ``"module:function"`` of a function that reads a file of cells as a Raster.
+    is_text : bool
+        Whether a file that was written is text, which a terminal can show.
+    has_layers : bool
+        Whether files that are written have layers with names.
+    holds_classes : bool
+        Whether points keep their classes, such as ground, in a file that was written.
     part_names : tuple of str
         Names of files in such a folder, small letters, any of which stands for the folder.
     distribution : str
@@ -139,6 +148,10 @@ class Format:
     sniff_folder: Callable[[Path], bool] | None = None
     side_files: Mapping[str, tuple[str, ...]] = field(default_factory=dict, hash=False)
     find_sources: Callable[[Path], Sequence[Path]] | None = None
+    read_cells: str | None = None
+    is_text: bool = False
+    has_layers: bool = False
+    holds_classes: bool = False
     part_names: tuple[str, ...] = ()
     distribution: str = _OWN
 

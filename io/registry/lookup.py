@@ -26,12 +26,14 @@ __all__ = [
     "choose_format",
     "find_format",
     "find_format_of_suffix",
+    "find_formats",
     "find_suffixes",
     "find_writer",
     "find_writers",
     "known_formats",
     "list_claims",
     "list_suffixes",
+    "list_writers",
 ]
 
 _FAMILIES = ("delimited", "field_survey", "raster", "mesh", "vector", "cad", "tables", "lidar")
@@ -92,16 +94,22 @@ def find_format(name: str, action: str | None = None) -> Format:
     """
     if action is not None:
         choice("action", action, ("read", "write"))
+    called = find_formats(name)
+    found = [one for one in called if action and getattr(one, action) is not None] or called
+    wanted = name.strip().lower()
+    named = [one for one in found if one.name == wanted and not one.is_built_in]
+    return choose_clear(named or found, f"The suffix '{_as_suffix(name)}'")
+
+
+def find_formats(name: str) -> list[Format]:
+    """Return all formats that have a name or suffix; raise a FormatError if there is none."""
     wanted = name.strip().lower() if isinstance(name, str) else ""
-    suffix = wanted if wanted.startswith(".") else f".{wanted}"
-    called = [one for one in known_formats() if one.name == wanted or suffix in one.suffixes]
-    able = [one for one in called if action and getattr(one, action) is not None]
-    found = able or called
+    suffix = _as_suffix(wanted)
+    found = [one for one in known_formats() if one.name == wanted or suffix in one.suffixes]
     if not found:
         names = tuple(one.name for one in known_formats())
         raise FormatError(f"Unknown format {shown(name)}: one of {', '.join(names)}.", known=names)
-    named = [one for one in found if one.name == wanted and not one.is_built_in]
-    return choose_clear(named or found, f"The suffix '{suffix}'")
+    return found
 
 
 def list_claims(formats: Iterable[Format], path: Path) -> list[Format]:
@@ -205,7 +213,7 @@ def find_writers(path: Path, name: str | None, kinds: Sequence[str]) -> dict[str
     Kinds that no format holds are left out; the answer is never empty, else a FormatError is
     raised.
     """
-    claims = {kind: _list_writers(path, name, kind) for kind in kinds}
+    claims = {kind: list_writers(path, name, kind) for kind in kinds}
     clear = {kind: formats[0] for kind, formats in claims.items() if _is_clear(formats)}
     what = f"The suffix of '{path}'" if name is None else f"The format {shown(name)}"
     for formats in claims.values():
@@ -216,7 +224,7 @@ def find_writers(path: Path, name: str | None, kinds: Sequence[str]) -> dict[str
     return clear
 
 
-def _list_writers(path: Path, name: str | None, kind: str) -> list[Format]:
+def list_writers(path: Path, name: str | None, kind: str) -> list[Format]:
     """Return the formats that a kind of thing can be written in, of a name or else a suffix."""
     able = [one for one in known_formats() if one.write is not None]
     if name is None:

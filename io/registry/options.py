@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Collection, Iterable, Sequence
 
-__all__ = ["FormatOption", "describe_parameters", "list_options"]
+__all__ = ["FormatOption", "describe_parameters", "find_option_not_taken", "list_options"]
 
 _OWN_PARAMETERS = frozenset({"crs", "z_unit", "progress"})
 """What every reader or writer may take, which is no option of its format."""
@@ -70,6 +70,19 @@ def list_options(function: Callable[..., Any]) -> tuple[FormatOption, ...]:
         for one in inspect.signature(function).parameters.values()
         if one.kind is one.KEYWORD_ONLY and one.name not in _OWN_PARAMETERS
     )
+
+
+def find_option_not_taken(given: Iterable[str], outputs: Sequence[Collection[str]]) -> str | None:
+    """Return the first of the options given that no output takes; None if there is none.
+
+    To append must be possible in all outputs, since a file of another format would be replaced;
+    to overwrite is what formats do that have no such option.
+    """
+    for name in given:
+        able = [name in taken for taken in outputs]
+        if name != "overwrite" and not (all(able) if name == "append" else any(able)):
+            return name
+    return None
 
 
 def describe_parameters(docstring: str) -> dict[str, tuple[str, str]]:

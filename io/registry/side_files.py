@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from .format import Format
 
-__all__ = ["list_sources", "list_written_beside", "replacing_data_set"]
+__all__ = ["is_replaceable_folder", "list_sources", "list_written_beside", "replacing_data_set"]
 
 _PROJECTION = ".prj"
 
@@ -38,6 +38,13 @@ def list_sources(path: Path) -> list[Path]:
             except (OSError, ReadError):  # which reading it tells
                 continue
     return found
+
+
+def is_replaceable_folder(path: Path) -> bool:
+    """Whether a folder is there, of a format whose writer replaces such folders."""
+    of_folders = [one for one in known_formats() if one.write and not one.suffixes]
+    sniffs = [one.sniff_folder for one in of_folders if one.sniff_folder is not None]
+    return path.is_dir() and any(sniff(path) for sniff in sniffs)
 
 
 def list_written_beside(path: Path) -> list[Path]:

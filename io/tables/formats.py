@@ -17,6 +17,7 @@ def _make(
         writes=writes,
         precision="Every number is kept bit for bit.",
         losses=losses,
+        is_text=True,
     )
 
 

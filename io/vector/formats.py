@@ -50,6 +50,7 @@ FORMATS = (
     _make(
         *("geojson", "GeoJSON (RFC 7946)", ".geojson", ".json"),
         writer="geojson.writing:write",
+        is_text=True,
         writes=(*SURFACES, "Features"),
         precision=(
             "Longitude and latitude with 9 decimals, elevations in metres with 6; with the option "
@@ -64,6 +65,7 @@ FORMATS = (
         "Sequence of GeoJSON features, one per line (RFC 8142 without its separators)",
         *(".geojsonl", ".geojsons", ".ndjson"),
         writer="geojson.features:write_feature_lines",
+        is_text=True,
         precision="Longitude and latitude with 9 decimals, elevations in metres with 6.",
         rounding=2e-4,
         losses="CRS, units and notes: name the CRS when reading. " + _LOSSES,
@@ -72,6 +74,7 @@ FORMATS = (
     _make(
         *("gpkg", "GeoPackage", ".gpkg"),
         writer="geopackage:write",
+        has_layers=True,
         writes=("Features", "Survey"),
         losses="Of a survey its lines.",
         loses=("survey lines",),

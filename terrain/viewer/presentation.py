@@ -236,7 +236,7 @@ def preview(
     *,
     output: None = None,
     survey: Survey | None = None,
-    drape: str | os.PathLike[str] | None = None,
+    ortho: str | os.PathLike[str] | None = None,
     **options: Unpack[PreviewKeywords],
 ) -> Preview: ...
 
@@ -247,7 +247,7 @@ def preview(
     *,
     output: str | os.PathLike[str],
     survey: Survey | None = None,
-    drape: str | os.PathLike[str] | None = None,
+    ortho: str | os.PathLike[str] | None = None,
     **options: Unpack[PreviewKeywords],
 ) -> Path: ...
 
@@ -258,7 +258,7 @@ def preview(
     *,
     output: str | os.PathLike[str] | None = None,
     survey: Survey | None = None,
-    drape: str | os.PathLike[str] | None = None,
+    ortho: str | os.PathLike[str] | None = None,
     **options: Unpack[PreviewKeywords],
 ) -> Preview | Path:
     """Show a TIN in 3D with hypsometric tints, hillshade, legend, scale bar and north arrow.
@@ -309,7 +309,7 @@ def preview(
         Interval of contour lines in a picture, in the unit of elevations; default none.
     survey : Survey, optional
         Points that a page shows with their numbers, up to 20,000.
-    drape : path, optional
+    ortho : path, optional
         Picture of the ground, laid over the surfaces: a GeoTIFF in any CRS, or a PNG, JPEG or JPEG
         2000 file with its place. Where it has nothing, or is transparent, the tints stay.
 
@@ -360,10 +360,10 @@ def preview(
     """
     require_type("survey", survey, Survey, or_none=True)
     chosen, aligned = PreviewOptions.of(**options), align(tin, survey)
-    ortho = None if drape is None else read_ortho(drape, [*aligned.surfaces.values()])
-    if ortho is not None:
-        ortho = ortho.draw_north_up(aligned.crs)
-    made = Preview(aligned.draw_north_up(), chosen, survey, ortho)
+    picture = None if ortho is None else read_ortho(ortho, [*aligned.surfaces.values()])
+    if picture is not None:
+        picture = picture.draw_north_up(aligned.crs)
+    made = Preview(aligned.draw_north_up(), chosen, survey, picture)
     return made if output is None else made.save(output)
 
 

@@ -298,7 +298,7 @@ def test_convert_keeps_points_as_points(folder):
 AS_USUAL = {
     "view": "oblique", "title": "pyramid", "survey": None, "exaggeration": None, "edges": False,
     "lines": True, "tint": "elevation", "azimuth": None, "tilt": None, "size": None, "dpi": None,
-    "sun": None, "background": None, "elevations": None, "contours": None, "drape": None,
+    "sun": None, "background": None, "elevations": None, "contours": None, "ortho": None,
 }  # fmt: skip
 
 

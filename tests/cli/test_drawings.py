@@ -14,7 +14,7 @@ ROWS = [[0, 0, 5], [40, 0, 6], [0, 30, 8], [40, 30, 4], [20, 10, 7]]
 @pytest.fixture
 def surfaces(tmp_path):
     tin = ts.triangulate(ROWS, z_unit="m", crs="EPSG:32616")
-    one, other = (ts.write(tin, tmp_path / f"{k}.xml", surface=k) for k in ("EG", "FG"))
+    one, other = (ts.write(tin, tmp_path / f"{k}.xml", name=k) for k in ("EG", "FG"))
     head, _, tail = one.read_text().partition("</Surfaces>")
     second = other.read_text().partition("<Surfaces>")[2].partition("</Surfaces>")[0]
     path = tmp_path / "two.xml"

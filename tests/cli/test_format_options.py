@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import re
+from pathlib import Path
 
 import click
 import pytest
@@ -11,6 +13,7 @@ from click.testing import CliRunner
 from support import commands
 
 import tinsmith as ts
+import tinsmith.cli
 from tinsmith.cli import main
 from tinsmith.cli.command_list import SUMMARIES
 from tinsmith.io import known_formats
@@ -59,8 +62,7 @@ def test_the_help_of_a_command_lists_the_options_of_the_format_at_hand(one, way)
     for option in one.describe_options(way):
         if option.name not in OWN[way]:
             plain, prefixed = option.name.replace("_", "-"), f"--output-{option.name}"
-            special = {"drape": "--ortho", "surface": "--name"}.get(option.name, "")
-            assert f"--{plain}" in shown or prefixed in shown or special in shown, option.name
+            assert f"--{plain}" in shown or prefixed in shown, option.name
 
 
 def test_formats_lists_the_flags_of_a_format():
@@ -129,3 +131,30 @@ def test_a_flag_that_nobody_has_is_refused_with_the_nearest(survey):
 
 def test_the_help_of_all_commands_lists_less_than_500_options():
     assert sum(count_options(help_of(name)) for name in SUMMARIES) < 500
+
+
+NAMED = {
+    "raster": "the name of a command",
+    "tin": "the kind of what `info` describes",
+    ".json": "reports are JSON whatever the formats are",
+}
+"""What may stand in the commands besides sentences, though formats are called so, and why."""
+
+
+def list_words(path):
+    """Return the texts of a module that are no sentences and no documentation."""
+    nodes = list(ast.walk(ast.parse(path.read_text())))
+    bare = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
+    texts = [node for node in nodes if isinstance(node, ast.Constant) and id(node) not in bare]
+    return [node.value for node in texts if isinstance(node.value, str) and " " not in node.value]
+
+
+def test_the_commands_know_no_format():
+    formats = known_formats()
+    suffixes = tuple({suffix for one in formats for suffix in one.suffixes})
+    names = {one.name for one in formats} | {"png"}
+    folder = Path(tinsmith.cli.__file__).parent
+    for path in folder.rglob("*.py"):
+        words = [word for word in list_words(path) if word not in NAMED]
+        found = [word for word in words if word in names or word.lower().endswith(suffixes)]
+        assert not found, f"{path.relative_to(folder)}: {found}"

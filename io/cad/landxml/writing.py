@@ -59,7 +59,7 @@ def write(
     obj: TIN | Survey | Features,
     path: Path,
     *,
-    surface: str | None = None,
+    name: str | None = None,
     unit: UnitLike | None = None,
     progress: Tell | None = None,
 ) -> None:
@@ -70,7 +70,7 @@ def write(
 
     Parameters
     ----------
-    surface : str, optional
+    name : str, optional
         Name of the surface; default that of the TIN, else "surface".
     unit : Unit or str, optional
         Unit of coordinates and elevations, where the CRS does not tell. Without one the file has
@@ -93,10 +93,10 @@ def write(
     """
     if not isinstance(obj, Surface | Survey | Features):
         raise FormatError(f"Cannot write {FILE}: a {type(obj).__name__} is no surface or survey.")
-    if surface is None:
-        surface = (obj.name.strip() if isinstance(obj, Surface) else "") or "surface"
-    if not isinstance(surface, str) or not surface.strip():
-        raise OptionError("surface", surface, "the name of a surface")
+    if name is None:
+        name = (obj.name.strip() if isinstance(obj, Surface) else "") or "surface"
+    if not isinstance(name, str) or not name.strip():
+        raise OptionError("name", name, "the name of a surface")
     _require_lines(obj)
     along, factor = choose_length_unit(
         obj, unit, is_known=lambda one: name_unit(one) is not None, format_name="LandXML"
@@ -106,7 +106,7 @@ def write(
         file.write(_ROOT)
         _write_reference(file, obj, along)
         file.write('<Application name="tinsmith"/>\n')
-        _write_content(file, obj, surface.strip(), texts, factor, progress)
+        _write_content(file, obj, name.strip(), texts, factor, progress)
         file.write("</LandXML>\n")
     if progress is not None:
         progress(1.0)

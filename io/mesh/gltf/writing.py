@@ -70,7 +70,7 @@ def write(
     surface: TIN,
     path: Path,
     *,
-    drape: str | os.PathLike[str] | None = None,
+    ortho: str | os.PathLike[str] | None = None,
     exaggeration: float = 1.0,
     progress: Tell | None = None,
 ) -> None:
@@ -78,7 +78,7 @@ def write(
 
     Parameters
     ----------
-    drape : path-like, optional
+    ortho : path-like, optional
         Picture to lay over it: a GeoTIFF in any CRS, or a PNG or JPEG file with a world file beside
         it. Default colours by elevation.
     exaggeration : float
@@ -109,7 +109,7 @@ def write(
             "TIN in a projected CRS.",
             crs=tin.crs,
         )
-    draped = None if drape is None else load_texture(drape, tin)
+    draped = None if ortho is None else load_texture(ortho, tin)
     origin = np.floor(tin.points.min(axis=0))
     scale = _choose_scale(tin) * (1.0, 1.0, exaggeration)
     mesh = _make_mesh(tin, origin, scale, draped)

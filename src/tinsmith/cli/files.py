@@ -52,9 +52,6 @@ __all__ = [
     "write_text",
 ]
 
-_TEXT_FORMATS = ("delimited", "geojson", "obj", "off", "2dm", "cityjson", "csv", "json")
-"""Formats that a terminal can show."""
-
 
 @dataclass(frozen=True)
 class Output:
@@ -69,9 +66,10 @@ class Output:
     layer: str | None = None
     """Name of the layer, of a file of layers; None for that of the product."""
 
-    def takes(self, name: str) -> bool:
-        """Whether one of the formats has an option."""
-        return any(name in one.options("write") for one in self.formats.values())
+    @property
+    def options_taken(self) -> set[str]:
+        """Names of the options that one of the formats has."""
+        return {name for one in self.formats.values() for name in one.options("write")}
 
 
 def read_input(path: Path, reading: Reading, console: Console) -> Survey | TIN:
@@ -278,16 +276,17 @@ def plan_outputs(
     click.UsageError
         If a file is named twice, or standard output gets more than one thing.
     """
+    from ..io.registry.options import find_option_not_taken
+
     placed = [split_output(path) for path in paths]
     outputs = [Named(path, "--output") for path, layer in placed if layer is None]
     outputs += _list_layered(placed, inputs)
     if report is not None:
         outputs.append(Named(report, "--report"))
-    drape = writing.options.get("drape")
-    pictures = [] if drape is None else [Named(drape, "--ortho")]
-    require_separate([*inputs, *pictures], outputs)
-    console.note(describe_leftovers(path for path, _ in placed))
     given = writing.options
+    more = [Named(file, make_flag(name, "write")) for name, file in given.items()]
+    require_separate([*inputs, *(one for one in more if isinstance(one.path, Path))], outputs)
+    console.note(describe_leftovers(path for path, _ in placed))
     planned = [
         Output(path, formats, given, _choose_suffix(formats, writing), layer)
         for path, layer, formats in (
@@ -296,11 +295,9 @@ def plan_outputs(
         )
     ]
     _require_layered(planned)
-    for name in given:
-        is_for_all = name == "append"  # what takes it not would be replaced
-        able = [one.takes(name) for one in planned]
-        if name != "overwrite" and not (all(able) if is_for_all else any(able)):
-            raise _describe_option_not_taken(name)
+    left = find_option_not_taken(given, [one.options_taken for one in planned])
+    if left is not None:
+        raise _describe_option_not_taken(left)
     _require_free_stdout(planned, console)
     return planned
 
@@ -320,7 +317,7 @@ def _require_layered(planned: Sequence[Output]) -> None:
     for one in planned:
         if one.layer is None:
             continue
-        if not one.takes("layer"):
+        if not any(able.has_layers for able in one.formats.values()):
             what = next(iter(one.formats.values())).description
             raise click.UsageError(f"'{one.path}:{one.layer}': {what} takes no name of a layer.")
         if (one.path, one.layer) in seen:
@@ -333,11 +330,11 @@ def require_picture(
     *,
     place: str,
     inputs: Sequence[Named],
-    suffixes: Sequence[str] = (".png",),
+    suffixes: Sequence[str] = (),
 ) -> None:
     """Refuse a picture that would overwrite an input, has another suffix, or cannot be written.
 
-    ``place`` is the option that names it.
+    ``place`` is the option that names it; ``suffixes`` are those of pictures if none are given.
 
     Raises
     ------
@@ -346,19 +343,21 @@ def require_picture(
     WriteError
         If it cannot be written there.
     """
+    from ..terrain.drawing.pictures import PICTURE_SUFFIXES
+
     require_separate(inputs, [Named(path, place)])
-    if path.suffix.lower() not in suffixes:
+    known = suffixes or PICTURE_SUFFIXES
+    if path.suffix.lower() not in known:
         raise click.UsageError(
-            f"Cannot write a picture to '{path}': its name must end in {', '.join(suffixes)}."
+            f"Cannot write a picture to '{path}': its name must end in {', '.join(known)}."
         )
 
 
 def write_figure(figure: Any, path: Path, *, dpi: int) -> None:
-    """Write a figure of matplotlib, whole or not at all, with no version in its bytes."""
-    from ..base.atomic import replacing
+    """Write a figure of matplotlib, whole or not at all."""
+    from ..terrain.drawing.pictures import save_figure
 
-    with replacing(path) as picture:
-        figure.savefig(picture, format="png", dpi=dpi, metadata={"Software": None})
+    save_figure(figure, path, dpi=dpi)
     note_written(path)
 
 
@@ -377,7 +376,7 @@ def _require_free_stdout(planned: Sequence[Output], console: Console) -> None:
     if console.as_json:
         raise click.UsageError("--json and '-o -' both write to standard output: choose one.")
     for one in chosen.formats.values():
-        if one.name not in _TEXT_FORMATS and sys.stdout is not None and sys.stdout.isatty():
+        if not one.is_text and sys.stdout is not None and sys.stdout.isatty():
             raise click.UsageError(
                 f"The format '{one.name}' is binary: send standard output to a file or a pipe."
             )

@@ -33,9 +33,6 @@ _OWN = {"read": ("source_crs", "unit"), "write": ("layer",)}
 
 _SUBJECTS = {"read": "Reading", "write": "Writing"}
 
-_FLAGS = {("write", "drape"): "--ortho", ("write", "surface"): "--name"}
-"""Flags that are not called as the option is: commands have others of that name."""
-
 _OUTPUTS = ("-o", "--output")
 
 
@@ -120,7 +117,7 @@ def take_options(given: dict[str, Any], way: str) -> dict[str, Any]:
 
 def make_flag(name: str, way: str, taken: Iterable[str] = ()) -> str:
     """Return the flag of an option; ``--output-NAME`` for a writer's where another has the name."""
-    flag = _FLAGS.get((way, name), f"--{name.replace('_', '-')}")
+    flag = f"--{name.replace('_', '-')}"
     if flag not in taken:
         return flag
     return f"--{'input' if way == 'read' else 'output'}-{name.replace('_', '-')}"
@@ -142,7 +139,7 @@ def _find_formats(arguments: Sequence[str], way: str) -> list[Format]:
     """Return the formats that a command's arguments name, by suffixes or their names."""
     from ..base.errors import FormatError
     from ..io import known_formats
-    from ..io.registry.lookup import find_format, list_claims
+    from ..io.registry.lookup import find_formats, list_claims
 
     flag = "--format" if way == "read" else "--output-format"
     named, paths = [], []
@@ -154,7 +151,7 @@ def _find_formats(arguments: Sequence[str], way: str) -> list[Format]:
         elif not text.startswith("-") or start == "--output":
             paths += [Path(value or text)] if is_output == (way == "write") else []
     try:
-        found = [find_format(name) for name in named]
+        found = [one for name in named for one in find_formats(name) if getattr(one, way)]
     except FormatError:  # which the command refuses
         found = []
     able = [one for one in known_formats() if getattr(one, way)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from inspect import signature
 from typing import TYPE_CHECKING
 
 import click
@@ -120,23 +121,22 @@ def require_contours(survey: Survey, path: Path) -> None:
 
 # ---------------------------------------------------------------- cells of a raster
 
-_OF_CELLS = ("crs", "z_unit", "band", "nodata")
-"""Options of reading that a raster has when its cells are not read as points."""
-
 
 def read_cells(path: Path, job: Job) -> Raster | None:
     """Return the raster of a file; None where its cells are to be points, or it is no raster."""
     from ..base.errors import OptionError, ReadError
-    from ..io.raster.elevations import read_raster
-    from ..io.raster.formats import FORMATS
+    from ..io.registry.lookup import choose_format
 
     given = job.reading.given
-    is_raster = path.suffix.lower() in FORMATS[0].suffixes and given.pop("format", None) is None
+    chosen = None if "format" in given else choose_format(path, "read")
+    if chosen is None or chosen.read_cells is None:
+        return None
+    read = chosen.load("read_cells")
     is_moved = job.reading.to_crs is not None
-    if not is_raster or is_moved or job.how.shaping or set(given) - set(_OF_CELLS):
+    if is_moved or job.how.shaping or {*given} - {*signature(read).parameters}:
         return None
     try:
-        return read_raster(path, **given)
+        return read(path, **given)  # type: ignore[no-any-return]
     except (OptionError, ReadError):
         return None  # as points it can be read, or it is told why not
 

@@ -45,8 +45,6 @@ if TYPE_CHECKING:
 __all__ = ["Job", "Products", "surface_options"]
 
 
-_PICTURE = ".png"
-_TABLES = (".csv", ".tsv", ".txt", ".json")
 _DOTS = 150
 
 
@@ -249,27 +247,16 @@ def _tabulate(features: Features) -> tuple[Table, list[str]]:
     ]
 
 
-def _find_suffix(path: Path) -> str:
-    """Return the longest suffix of a format that a name ends in: .city.json before .json."""
-    from ..io import known_formats
-
-    suffixes = {suffix for one in known_formats() for suffix in one.suffixes}
-    fitting = [suffix for suffix in suffixes if path.name.lower().endswith(suffix)]
-    return max(fitting, key=len, default=path.suffix.lower())
-
-
 def _find_kind(path: Path, writing: Writing, kinds: Sequence[str]) -> str:
     """Return what a suffix, or a format that is named, is meant for."""
-    from ..io import known_formats
+    from ..io.registry.lookup import list_writers
+    from ..terrain.drawing.pictures import PICTURE_SUFFIXES
 
     name = writing.output_format
-    suffix = _find_suffix(path) if name is None else f".{name.strip().lower().lstrip('.')}"
-    if suffix in _TABLES and "Table" in kinds:
-        return "Table"
-    if suffix == _PICTURE and "picture" in kinds:
+    suffix = path.suffix.lower() if name is None else f".{name.strip().lower().lstrip('.')}"
+    if suffix in PICTURE_SUFFIXES and "picture" in kinds:
         return "picture"
-    for kind in ("Features", "TIN"):
-        able = [one for one in known_formats() if one.write is not None and kind in one.writes]
-        if kind in kinds and any(suffix in (*one.suffixes, f".{one.name}") for one in able):
+    for kind in ("Table", "Features", "TIN"):
+        if kind in kinds and list_writers(path, name, kind):
             return kind
     return next(kind for kind in kinds if kind != "picture")  # whose refusal names what it takes

@@ -57,17 +57,15 @@ def make_title(path: Path) -> str:
     return "" if path == STANDARD else path.stem.replace("_", " ")
 
 
-_LAYERED = (".gpkg",)
-"""Suffixes of files of several layers."""
-
-
 def split_output(path: Path) -> tuple[Path, str | None]:
     """Split the name of a layer off a file to write (``site.gpkg:contours``), if there is one."""
+    from ..io.registry.lookup import known_formats, list_claims
+
     before, colon, layer = str(path).rpartition(":")
-    is_layered = before.lower().endswith(_LAYERED) and not {"/", os.sep} & {*layer}
-    if colon and layer and is_layered and not path.exists():
-        return Path(before), layer
-    return path, None
+    if not (colon and layer) or {"/", os.sep} & {*layer} or path.exists():
+        return path, None
+    is_layered = any(one.has_layers for one in list_claims(known_formats(), Path(before)))
+    return (Path(before), layer) if is_layered else (path, None)
 
 
 class Named(NamedTuple):
@@ -133,7 +131,7 @@ def require_separate(inputs: Iterable[Named], outputs: Sequence[Named]) -> None:
         If an output cannot be written where it should be.
     """
     from ..base.atomic import require_writable
-    from ..io.registry.side_files import list_sources
+    from ..io.registry.side_files import is_replaceable_folder, list_sources
 
     taken: dict[object, Named] = {}
     for one in _drop_streams(inputs, "input"):
@@ -149,7 +147,7 @@ def require_separate(inputs: Iterable[Named], outputs: Sequence[Named]) -> None:
         _require_spared(one, taken)
         taken.update(dict.fromkeys(keys, one))
     for one in files:
-        if not _is_tile_folder(one.path):
+        if not is_replaceable_folder(one.path):
             require_writable(one.path)
 
 
@@ -196,11 +194,6 @@ def _require_spared(output: Named, read: dict[object, Named]) -> None:
                     f"'{path}' is{what} {before.place}, and '{output.path}' ({output.place}) would "
                     "replace it: give the output another name."
                 )
-
-
-def _is_tile_folder(path: Path) -> bool:
-    """Whether a folder of tiles is there, which only a writer of such folders replaces."""
-    return path.is_dir() and (path / "layer.json").is_file()
 
 
 def _drop_streams(named: Iterable[Named], what: str) -> list[Named]:

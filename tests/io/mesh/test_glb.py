@@ -164,7 +164,7 @@ def test_each_vertex_has_the_colour_of_its_place(tmp_path, kind):
 
     tin = hills()
     source = make_picture(tmp_path / "o.tif") if kind == "tif" else make_png(tmp_path)
-    document, arrays, binary = parse(ts.write(tin, tmp_path / "a.glb", drape=source))
+    document, arrays, binary = parse(ts.write(tin, tmp_path / "a.glb", ortho=source))
     (primitive,) = document["meshes"][0]["primitives"]
     assert "COLOR_0" not in primitive["attributes"]
     uv = arrays[primitive["attributes"]["TEXCOORD_0"]].astype(float)
@@ -187,7 +187,7 @@ def test_an_obj_with_a_texture_has_its_material_beside_it(tmp_path):
     trimesh = pytest.importorskip("trimesh")
     tin = hills()
     source = make_picture(tmp_path / "ortho.tif")
-    path = ts.write(tin, tmp_path / "site.obj", drape=source)
+    path = ts.write(tin, tmp_path / "site.obj", ortho=source)
     assert {one.name for one in tmp_path.iterdir()} == {
         "ortho.tif", "site.obj", "site.mtl", "site_texture.jpg"}  # fmt: skip
     mesh = trimesh.load(path, process=False)
@@ -204,7 +204,7 @@ def test_the_texture_is_never_written_over(tmp_path):
     write_world_file(tmp_path / "site_texture.jgw")
     before = source.read_bytes()
     with pytest.raises(ts.WriteError, match="the texture itself"):
-        ts.write(hills(), tmp_path / "site.obj", drape=source)
+        ts.write(hills(), tmp_path / "site.obj", ortho=source)
     assert source.read_bytes() == before
     assert not (tmp_path / "site.obj").exists()
 
@@ -213,30 +213,30 @@ def test_a_large_picture_is_made_smaller_and_it_is_told(tmp_path, monkeypatch):
     monkeypatch.setattr("tinsmith.io.mesh.texture.MOST_PIXELS", 100)
     source = make_picture(tmp_path / "o.tif")
     with pytest.warns(ts.LossWarning, match="from 310 x 300 to"):
-        ts.write(hills(), tmp_path / "a.glb", drape=source)
+        ts.write(hills(), tmp_path / "a.glb", ortho=source)
 
 
 def test_pictures_that_do_not_fit(tmp_path):
     tin = hills()
     elsewhere = make_picture(tmp_path / "far.tif", west=0.0)
     with pytest.raises(ts.ReadError, match="shows nothing of the surface"):
-        ts.write(tin, tmp_path / "a.glb", drape=elsewhere)
+        ts.write(tin, tmp_path / "a.glb", ortho=elsewhere)
     other = make_picture(tmp_path / "other.tif", crs="EPSG:25832")
     with pytest.raises(ts.ReadError, match="shows nothing of the surface"):
-        ts.write(tin, tmp_path / "a.glb", drape=other)
+        ts.write(tin, tmp_path / "a.glb", ortho=other)
     half = make_picture(tmp_path / "half.tif", west=745_150.0)
     with pytest.warns(ts.LossWarning, match="does not reach over"):
-        ts.write(tin, tmp_path / "a.glb", drape=half)
+        ts.write(tin, tmp_path / "a.glb", ortho=half)
     bare = make_png(tmp_path)
     (tmp_path / "o.pgw").unlink()
     with pytest.raises(ts.ReadError, match="no world file"):
-        ts.write(tin, tmp_path / "a.glb", drape=bare)
+        ts.write(tin, tmp_path / "a.glb", ortho=bare)
     with pytest.raises(ts.ReadError, match="Cannot read"):
-        ts.write(tin, tmp_path / "a.glb", drape=tmp_path / "nothing.tif")
+        ts.write(tin, tmp_path / "a.glb", ortho=tmp_path / "nothing.tif")
     with pytest.raises(ts.ReadError, match="only files of this machine"):
-        ts.write(tin, tmp_path / "a.glb", drape="https://example.org/o.tif")
+        ts.write(tin, tmp_path / "a.glb", ortho="https://example.org/o.tif")
     with pytest.raises(ts.OptionError, match="path of a GeoTIFF"):
-        ts.write(tin, tmp_path / "a.glb", drape=7)
+        ts.write(tin, tmp_path / "a.glb", ortho=7)
 
 
 @pytest.mark.parametrize(
@@ -246,7 +246,7 @@ def test_damaged_world_files(tmp_path, text):
     source = make_png(tmp_path)
     (tmp_path / "o.pgw").write_text(text)
     with pytest.raises(ts.ReadError, match=r"world file|no place on the ground"):
-        ts.write(hills(), tmp_path / "a.glb", drape=source)
+        ts.write(hills(), tmp_path / "a.glb", ortho=source)
 
 
 def slivers(count=12):

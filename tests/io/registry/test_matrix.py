@@ -75,6 +75,21 @@ def test_what_comes_back_is_as_precise_as_is_said(one, kind, tmp_path):
 
 
 @pytest.mark.parametrize(
+    "one",
+    dict.fromkeys(case.values[0] for case in WRITTEN if case.values[0].suffixes),
+    ids=lambda one: one.name,
+)
+def test_what_is_text_is_said(one, tmp_path):
+    for suffix in one.suffixes:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ts.LossWarning)
+            path = ts.write(make(one.writes[0]), tmp_path / f"a{suffix}", format=one.name)
+        content = path.read_bytes()
+        is_utf_8 = content.decode("utf-8", "ignore").encode() == content
+        assert (is_utf_8 and b"\0" not in content) == one.is_text
+
+
+@pytest.mark.parametrize(
     "one", dict.fromkeys(case.values[0] for case in ROUND_TRIPS), ids=lambda one: one.name
 )
 def test_nothing_is_said_to_be_lost_that_is_not(one, tmp_path):

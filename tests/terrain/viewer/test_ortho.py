@@ -286,7 +286,7 @@ def test_a_crs_that_is_not_known_is_told(tmp_path, of_tin, of_picture):
 def test_what_is_no_picture_of_the_surface(tmp_path, bands, profile, sentence):
     path = write_raster(tmp_path / "a.tif", bands, **profile)
     with pytest.raises(ts.ReadError, match=sentence) as told:
-        ts.preview(make_square(), drape=path)
+        ts.preview(make_square(), ortho=path)
     assert str(path) in str(told.value)
 
 
@@ -300,9 +300,9 @@ def test_what_is_no_file(tmp_path):
         (tmp_path / "text.tif", "cannot be read"),
     ]:
         with pytest.raises(ts.ReadError, match=sentence):
-            ts.preview(tin, drape=source)
+            ts.preview(tin, ortho=source)
     with pytest.raises(ts.OptionError, match="path of a GeoTIFF"):
-        ts.preview(tin, drape=7)
+        ts.preview(tin, ortho=7)
 
 
 # ------------------------------------------------------------------ where it is seen
@@ -340,10 +340,10 @@ def test_the_page_shows_each_colour_at_its_place(tmp_path, crs):
         tin = ts.TIN.from_triangles(moved, tin.triangles, crs=crs, z_unit="m")
     places, colors = list_places()
     if crs == "EPSG:32616":
-        made = ts.preview(tin, drape=path)
+        made = ts.preview(tin, ortho=path)
     else:
         with pytest.warns(ts.LossWarning):
-            made = ts.preview(tin, drape=path)
+            made = ts.preview(tin, ortho=path)
         lifted = np.column_stack([places, np.zeros(len(places))])
         places = ts.transform_points(lifted, "EPSG:32616", crs)[:, :2]
     with open_page(made.save(tmp_path / "a.html")) as page:
@@ -364,7 +364,7 @@ def test_the_tints_stay_where_there_is_no_picture(tmp_path):
     bands[3, :100] = 255
     tin = make_square()
     with pytest.warns(ts.LossWarning, match="does not reach"):
-        made = ts.preview(tin, drape=write_raster(tmp_path / "a.tif", bands))
+        made = ts.preview(tin, ortho=write_raster(tmp_path / "a.tif", bands))
     places, colors = list_places()
     upper = places[:, 1] > NORTH - SIDE / 2
     with open_page(made.save(tmp_path / "a.html")) as page:
@@ -384,7 +384,7 @@ def test_all_surfaces_of_a_page_are_draped(tmp_path):
         tin.points + np.array([0, 0, 20]), tin.triangles, crs=tin.crs, z_unit="m"
     )
     path = write_raster(tmp_path / "a.tif", paint_quarters(200))
-    made = ts.preview({"Existing": tin, "Design": raised}, drape=path)
+    made = ts.preview({"Existing": tin, "Design": raised}, ortho=path)
     places, colors = list_places()
     with open_page(made.save(tmp_path / "a.html")) as page:
         for shown, surface in [(0, tin), (1, raised)]:
@@ -396,7 +396,7 @@ def test_all_surfaces_of_a_page_are_draped(tmp_path):
 
 def test_without_webgl_the_picture_is_on_the_still(tmp_path):
     path = write_raster(tmp_path / "a.tif", paint_quarters(200))
-    saved = ts.preview(make_square(), drape=path).save(tmp_path / "a.html")
+    saved = ts.preview(make_square(), ortho=path).save(tmp_path / "a.html")
     with open_page(saved, webgl=False) as page:
         seen = page.evaluate("""() => {
           const c = document.getElementById("notes"), side = 0.94 * Math.min(c.width, c.height);
@@ -414,7 +414,7 @@ def test_the_picture_lies_right_in_a_png(tmp_path):
     pytest.importorskip("pyvista")
     path = write_raster(tmp_path / "a.tif", paint_quarters(2000))
     tin = make_square(height=0.0)
-    out = ts.preview(tin, drape=path, view="top", output=tmp_path / "a.png", lines=False,
+    out = ts.preview(tin, ortho=path, view="top", output=tmp_path / "a.png", lines=False,
                      size=(800, 600))  # fmt: skip
     pixels = np.asarray(pil.open(out).convert("RGB")).astype(int)
     frames = {}
@@ -445,7 +445,7 @@ def test_a_png_keeps_the_tints_beyond_the_picture(tmp_path):
                         np.array([1, 0, 1], np.uint8)[:, None, None], transform=place)  # fmt: skip
     plain = ts.preview(tin, view="top", output=tmp_path / "plain.png", size=(800, 500))
     with pytest.warns(ts.LossWarning, match="does not reach"):
-        draped = ts.preview(tin, drape=path, view="top", output=tmp_path / "a.png", size=(800, 500))
+        draped = ts.preview(tin, ortho=path, view="top", output=tmp_path / "a.png", size=(800, 500))
     a, b = (np.asarray(pil.open(one).convert("RGB")).astype(int) for one in (plain, draped))
     rows, columns = np.nonzero(np.abs(a - b).max(axis=2) > 8)
     assert np.ptp(rows) == pytest.approx(np.ptp(columns), abs=2)
@@ -456,7 +456,7 @@ def test_a_png_keeps_the_tints_beyond_the_picture(tmp_path):
 def test_glb_takes_the_same_picture(tmp_path):
     path = write_elsewhere(tmp_path / "a.tif", "EPSG:4326")
     with pytest.warns(ts.LossWarning, match="was warped"):
-        made = ts.write(make_square(), tmp_path / "a.glb", drape=path)
+        made = ts.write(make_square(), tmp_path / "a.glb", ortho=path)
     assert b"image/" in made.read_bytes()
 
 

@@ -57,19 +57,14 @@ def _choose(names: Sequence[str]) -> tuple[Format, ...]:
     """Return the formats that have one of the names or suffixes."""
     from ...base.errors import FormatError
     from ...base.sentences import suggest
-    from ...io import known_formats
-    from ...io.registry.lookup import find_format
+    from ...io.registry.lookup import find_formats
 
     found: list[Format] = []
     for name in names:
         try:
-            find_format(name)
+            found += find_formats(name)
         except FormatError as error:
             raise click.UsageError(f"{error}{suggest(name, error.known)}") from error
-        plain = name.strip().lower().lstrip(".")
-        found += [
-            one for one in known_formats() if one.name == plain or f".{plain}" in one.suffixes
-        ]
     return tuple(dict.fromkeys(found))
 
 

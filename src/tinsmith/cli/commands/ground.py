@@ -147,7 +147,7 @@ def _plan(job: Job, points: Sequence[Path], is_as_points: bool) -> Products:
 
 def _choose_content(output: Output, is_as_points: bool) -> str:
     survey, tin = (output.formats.get(kind) for kind in ("Survey", "TIN"))
-    if survey is not None and survey.name == "las":
+    if survey is not None and survey.holds_classes:
         return "classes"
     holds_tin = tin is not None and "triangles" not in tin.loses
     return "TIN" if holds_tin and not (is_as_points and survey is not None) else "Survey"

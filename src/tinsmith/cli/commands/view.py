@@ -143,7 +143,7 @@ def view(
         drawing["title"] = f"{drawing['title'] or _UNNAMED} ({sample})"
     with console.steps() as steps, steps.step("Drawing"):
         seen = "top" if top else "oblique"
-        shown = preview(tin, survey=survey, drape=ortho, view=seen, **drawing)
+        shown = preview(tin, survey=survey, ortho=ortho, view=seen, **drawing)
         if output is None:
             shown.show()
         else:

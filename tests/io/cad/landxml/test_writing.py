@@ -59,7 +59,7 @@ def test_a_survey_comes_back_with_its_lines(survey, tmp_path):
 
 def test_a_plain_reader_finds_northing_first_and_whole_numbers_from_1(survey, tmp_path):
     tin = ts.triangulate(survey)
-    root = ET.parse(ts.write(tin, tmp_path / "a.xml", surface="EG")).getroot()
+    root = ET.parse(ts.write(tin, tmp_path / "a.xml", name="EG")).getroot()
     assert root.tag == f"{SPACE}LandXML"
     assert root.get("version") == "1.2"
     assert root.find(f"{SPACE}Units/{SPACE}Metric").get("linearUnit") == "meter"
@@ -150,12 +150,12 @@ def test_the_name_of_a_surface_goes_from_file_to_file(tmp_path):
     moved = ts.reproject(again, "EPSG:32617")
     for made in (again, again.snapshot(), again.copy(), pickle.loads(pickle.dumps(again)), moved):
         assert ts.read(ts.write(made, tmp_path / "b.xml")).name == again.name
-    assert ts.read(ts.write(again, tmp_path / "c.xml", surface="Design")).name == "Design"
+    assert ts.read(ts.write(again, tmp_path / "c.xml", name="Design")).name == "Design"
     assert ts.read(ts.write(tin.with_name(""), tmp_path / "d.xml")).name == "surface"
 
 
 def test_the_command_line_keeps_and_sets_the_name(tmp_path):
-    first = ts.write(hills(20, size=50.0, unit="m"), tmp_path / "a.xml", surface="Ground 2026")
+    first = ts.write(hills(20, size=50.0, unit="m"), tmp_path / "a.xml", name="Ground 2026")
     for options, name in (((), "Ground 2026"), (("--name", "Design"), "Design")):
         done = CliRunner().invoke(
             main, ["convert", str(first), "-o", str(tmp_path / "b.xml"), *options]
