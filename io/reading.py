@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import IO, TYPE_CHECKING, Any, NamedTuple, cast, overload
 
 from ..base.atomic import as_path
+from ..base.checks import as_flag
 from ..base.crs import CRS, Unit
 from ..base.errors import (
     FormatError,
@@ -202,8 +203,7 @@ def read_as_wished(
     wishes : mapping of str to object
         Options of readers; one that the chosen reader does not have is left out.
     """
-    if not isinstance(remote, bool):
-        raise OptionError("remote", remote, "True or False")
+    remote = as_flag("remote", remote)
     done = Progress(progress)
     declared = _collect_declared(crs, z_unit)
     asked = _Asked(format, declared, options, wishes, done.stage(0.0, 1.0))

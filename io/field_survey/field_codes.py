@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base import optional
-from ...base.checks import is_finite_number
+from ...base.checks import as_length, require_type
 from ...base.errors import LinesError, OptionError, choice
 from ...base.policies import BreaklineKind, CodeStyle, LineRole, ShotOrder
 from ...base.sentences import counted
@@ -54,8 +54,6 @@ stays one surface, for contours and volumes; who wants the footprint cut out say
 _SHOWN = 5
 _TOLERANCE_METRES = 0.01
 """By which chords leave arcs where nobody says: below what a shot is worth."""
-
-_ALLOWED_TOLERANCE = "a length above 0, in units of the CRS"
 
 
 def lines_from_codes(
@@ -121,8 +119,7 @@ def lines_from_codes(
     >>> lines_from_codes(survey).breaklines
     [<Breakline: hard, 3 vertices, 'EP1'>]
     """
-    if not isinstance(survey, Survey):
-        raise OptionError("survey", survey, "a Survey")
+    require_type("survey", survey, Survey)
     table = _choose_table(rules, code_table)
     if files := split_files(survey):
 
@@ -163,9 +160,7 @@ def _choose_table(
 def _choose_tolerance(survey: Survey, table: CodeTable, given: float | None) -> float:
     """Return the tolerance of arcs in units of the CRS."""
     if given is not None:
-        if not is_finite_number(given) or given <= 0:
-            raise OptionError("arc_tolerance", given, _ALLOWED_TOLERANCE)
-        return float(given)
+        return as_length("arc_tolerance", given)
     if table.arc_tolerance is not None:
         return table.arc_tolerance
     metres = None if survey.crs is None else survey.crs.horizontal_unit.metres

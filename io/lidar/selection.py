@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import isfinite
-from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.checks import as_length, is_finite_number, is_whole_number, require_count
 from ...base.errors import OptionError
 from ...base.sentences import counted
 from ...tin import Bounds
@@ -144,13 +143,12 @@ def parse_selection(
     OptionError
         If a value is none that its option can have.
     """
-    if not isinstance(every, Integral) or isinstance(every, bool) or every < 1:
-        raise OptionError("every", every, "a whole number from 1")
+    require_count("every", every)
     return Selection(
         None if classes is None else _parse_classes(classes),
         None if returns is None else _parse_returns(returns),
         None if window is None else _parse_window(window),
-        None if resolution is None else _parse_resolution(resolution),
+        None if resolution is None else as_length("resolution", resolution, or_none=True),
         int(every),
         bool(withheld),
         _parse_attributes(attributes),
@@ -163,10 +161,10 @@ def _split(given: object) -> list[object]:
     return list(given) if isinstance(given, Iterable) else [given]
 
 
-def _parse_whole(value: object) -> int | None:
+def _parse_whole(value: Any) -> int | None:
     if isinstance(value, str) and value.isdecimal():
         return int(value)
-    return int(value) if isinstance(value, Integral) and not isinstance(value, bool) else None
+    return int(value) if is_whole_number(value) else None
 
 
 def _parse_classes(given: object) -> tuple[int, ...]:
@@ -199,17 +197,11 @@ def _parse_window(given: Bounds | Sequence[float]) -> Bounds:
         box: list[Any] = [given.xmin, given.ymin, given.xmax, given.ymax]
     else:
         box = _split(given)
-    if len(box) != 4 or not all(isinstance(one, Real) and isfinite(one) for one in box):
+    if len(box) != 4 or not all(map(is_finite_number, box)):
         raise OptionError("window", given, allowed)
     if not (box[0] < box[2] and box[1] < box[3]):
         raise OptionError("window", tuple(box), allowed)
     return Bounds(*map(float, box))
-
-
-def _parse_resolution(given: object) -> float:
-    if not isinstance(given, Real) or not isfinite(given) or given <= 0:
-        raise OptionError("resolution", given, "a distance above 0, in units of the CRS")
-    return float(given)
 
 
 def _parse_attributes(given: str | Sequence[str] | None) -> tuple[str, ...] | None:

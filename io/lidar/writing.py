@@ -9,7 +9,8 @@ import numpy as np
 
 from ...base import optional
 from ...base.atomic import replacing
-from ...base.errors import OptionError, WriteError
+from ...base.checks import as_length
+from ...base.errors import WriteError
 from ...base.notes import warn
 from ...base.progress import Progress
 from ...base.sentences import FILE, coordinate
@@ -125,11 +126,7 @@ def write(
 
 
 def _parse_scale(scale: float | None) -> float | None:
-    if scale is None:
-        return None
-    if not isinstance(scale, int | float) or not np.isfinite(scale) or scale <= 0:
-        raise OptionError("scale", scale, "a number above 0, such as 0.001")
-    return float(scale)
+    return None if scale is None else as_length("scale", scale, or_none=True)
 
 
 def _require_points(points: Float64Array) -> None:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
-from ...base.checks import is_finite_number
 from ...base.crs import CRS, Unit
 from ...base.errors import CrsError, FormatError, OptionError, PointsError, ReadError
 from ...base.sentences import FILE, counted, height
@@ -48,7 +47,6 @@ __all__ = [
     "measure_rounding",
     "mesh_reader",
     "read_content",
-    "require_factor",
     "require_own_crs",
     "require_tin",
     "require_vertices",
@@ -101,19 +99,6 @@ def require_tin(surface: object, *, format_name: str) -> TIN:
         f"Cannot write {FILE}: {format_name} holds triangles, and a survey has none; "
         "triangulate it first."
     )
-
-
-def require_factor(option: str, value: object, *, or_none: bool = False) -> None:
-    """Refuse an option that is no finite number above 0.
-
-    Raises
-    ------
-    OptionError
-    """
-    if or_none and value is None:
-        return
-    if not is_finite_number(value) or not float(value) > 0:  # type: ignore[arg-type]
-        raise OptionError(option, value, "a finite number above 0")
 
 
 def format_crs(crs: CRS) -> str:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.atomic import replacing
-from ...base.checks import as_flag
+from ...base.checks import as_flag, as_number
 from ...base.crs import scale_elevations
 from ...base.errors import CrsError, OptionError, ReadError, WriteError
 from ...base.sentences import FILE
@@ -31,7 +31,6 @@ from .common import (
     measure_rounding,
     mesh_reader,
     read_content,
-    require_factor,
     require_tin,
 )
 from .solid import build_solid
@@ -206,8 +205,9 @@ def _require_model_options(
     exaggeration: float,
 ) -> None:
     for name, value in (("thickness", thickness), ("scale", scale), ("size", size)):
-        require_factor(name, value, or_none=True)
-    require_factor("exaggeration", exaggeration)
+        if value is not None:
+            as_number(name, value, above=0, or_none=True)
+    as_number("exaggeration", exaggeration, above=0)
     if scale is not None and size is not None:
         raise OptionError("size", size, "left out where a scale is given, which sets the size")
     if thickness is not None and not is_solid:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...base import optional
+from ...base.checks import require_count
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError
 from ...base.progress import Progress
@@ -501,9 +502,7 @@ def _choose_cells(dataset: Header, choice: Choice) -> _Cells:
 
 def _choose_stride(width: int, height: int, stride: int | None, most_cells: int) -> int:
     """Return the smallest stride that leaves so many cells, and two rows and columns at least."""
-    is_count = isinstance(most_cells, Integral) and not isinstance(most_cells, bool)
-    if not is_count or most_cells < _FEWEST_CELLS:
-        raise OptionError("most_cells", most_cells, f"a whole number from {_FEWEST_CELLS} on")
+    require_count("most_cells", most_cells, least=_FEWEST_CELLS)
     if stride is not None:
         raise OptionError("most_cells", most_cells, "None where a stride is given")
     found = max(1, math.isqrt(width * height // int(most_cells)))

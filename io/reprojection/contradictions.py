@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...base.errors import CrsError, OptionError
+from ...base.checks import as_flag
+from ...base.errors import CrsError
 from ...base.georeference.axes import gives_northing_first
 from ...base.sentences import coordinate, counted
 from ...tin.screening.area_of_use import AreaOfUse
@@ -49,8 +50,7 @@ def checking_crs(is_checked: bool) -> Iterator[None]:
     OptionError
         If it is neither True nor False.
     """
-    if not isinstance(is_checked, bool):
-        raise OptionError("check_crs", is_checked, "True or False")
+    is_checked = as_flag("check_crs", is_checked)
     token = _IS_CHECKED.set(is_checked and _IS_CHECKED.get())
     try:
         yield

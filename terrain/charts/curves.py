@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.checks import is_finite_number, is_whole_number
+from ...base.checks import as_number, is_whole_number
 from ...base.crs import CRS, Unit, assume_elevation_unit
 from ...base.errors import OptionError
 from .. import palette
@@ -119,9 +119,7 @@ def choose_exaggeration(wanted: Any, *, usual: float) -> float:
     """Return the exaggeration that is wanted, if it is one, or else the usual one rounded down."""
     if wanted is None:
         return round_down(usual)
-    if not is_finite_number(wanted) or not float(wanted) > 0.0:
-        raise OptionError("exaggeration", wanted, allowed="a finite number above 0")
-    return float(wanted)
+    return as_number("exaggeration", wanted, above=0)
 
 
 def describe_drawing(crs: CRS | None, exaggeration: float) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.checks import is_whole_number
+from ...base.checks import require_count
 from ...base.crs import CRS
 from ...base.errors import OptionError
 from ...base.results import Table
@@ -122,7 +122,8 @@ def section_picture(
     sections = _choose_sections(table, line)
     system = CRS.of(crs)
     along, up = curves.read_units(table, system)
-    sheet = _plan_sheet(sections, curves.find_ratio(along, up), exaggeration, _as_columns(columns))
+    require_count("columns", columns, most=6)
+    sheet = _plan_sheet(sections, curves.find_ratio(along, up), exaggeration, int(columns))
     figure = _start_figure(sheet)
     _write_heading(figure, heading, sheet, system)
     for number, section in enumerate(sections):
@@ -159,12 +160,6 @@ def _find_section(table: Table, rows: BoolArray) -> _Section:
     surfaces = curves.find(table, rows, "offset")
     marks = curves.find_marks(table, rows, surfaces[0])
     return _Section(float(table["station"][rows][0]), surfaces, marks)
-
-
-def _as_columns(columns: Any) -> int:
-    if not (is_whole_number(columns) and 1 <= columns <= 6):
-        raise OptionError("columns", columns, allowed="a whole number from 1 to 6")
-    return int(columns)
 
 
 def _plan_sheet(sections: list[_Section], ratio: float, wanted: Any, most: int) -> _Sheet:

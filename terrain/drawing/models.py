@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base import optional
-from ...base.checks import is_finite_number, require_tin
+from ...base.checks import as_number, require_tin
 from ...base.crs import scale_elevations
 from ...base.errors import OptionError
 from ...base.products import product
@@ -75,7 +75,7 @@ def lift(
     pv = optional.load("pyvista", "Lifting a TIN into 3D")
     require_tin(tin)
     shift = choose_origin(tin) if origin is None else _parse_origin(origin)
-    factor = parse_exaggeration(exaggeration)
+    factor = as_number("exaggeration", exaggeration, above=0)
     scale = scale_elevations(tin.crs, tin.elevation_unit)
     mesh: pyvista.PolyData = pv.PolyData.from_regular_faces(
         (tin.points - shift) * (1.0, 1.0, scale * factor), np.array(tin.triangles)
@@ -104,13 +104,6 @@ def choose_origin(tin: TIN) -> Float64Array:
     steps = [_round_down_to_power(extent) for extent in (extents[0], extents[0], extents[1])]
     origin: Float64Array = np.round((low + high) / 2 / steps) * steps
     return origin
-
-
-def parse_exaggeration(exaggeration: float) -> float:
-    """Return a vertical exaggeration as a float, or raise OptionError."""
-    if not is_finite_number(exaggeration) or exaggeration <= 0:
-        raise OptionError("exaggeration", exaggeration, "a finite number above 0")
-    return float(exaggeration)
 
 
 def _round_down_to_power(extent: float) -> float:

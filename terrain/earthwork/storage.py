@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.checks import is_finite_number
+from ...base.checks import as_number
 from ...base.crs import CRS
 from ...base.errors import OptionError, PointsError
 from ...base.georeference import require_same_crs
@@ -144,7 +144,7 @@ def _as_levels(levels: Any, interval: Any, lowest: float, highest: float) -> Flo
         return _as_given_levels(levels)
     if interval is None:
         interval = _choose_interval(highest - lowest)
-    step = _as_interval(interval)
+    step = as_number("interval", interval, above=0)
     first, last = math.ceil(lowest / step), math.ceil(highest / step)
     if last - first >= _MOST_LEVELS:
         allowed = f"larger: there would be {last - first + 1:,} levels, at most {_MOST_LEVELS:,}"
@@ -164,12 +164,6 @@ def _as_given_levels(levels: Sequence[float]) -> Float64Array:
         bad = float(array[~np.isfinite(array)][0])
         raise OptionError("levels", bad, allowed="finite")
     return array
-
-
-def _as_interval(interval: Any) -> float:
-    if not is_finite_number(interval) or interval <= 0:
-        raise OptionError("interval", interval, allowed="a number above 0")
-    return float(interval)
 
 
 def _choose_interval(relief: float) -> float:

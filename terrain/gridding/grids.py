@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...base.checks import is_finite_number
+from ...base.checks import as_length
 from ...base.crs import CRS
 from ...base.errors import OptionError, PointsError
 from ...base.georeference import require_same_crs
@@ -98,9 +98,7 @@ def cover(bounds: Bounds, spacing: float) -> Grid:
     >>> cover(Bounds(0.5, 0.5, 3.5, 2.0), 1.0)
     Grid(bounds=Bounds(xmin=0.0, ymin=0.0, xmax=4.0, ymax=2.0), shape=(2, 4), spacing=1.0)
     """
-    if not (is_finite_number(spacing) and spacing > 0):
-        raise OptionError("spacing", spacing, "a length > 0 in CRS units")
-    size = float(spacing)
+    size = as_length("spacing", spacing)
     _require_telling(size, bounds)
     west, south = math.floor(bounds.xmin / size), math.floor(bounds.ymin / size)
     columns = max(1, math.ceil(bounds.xmax / size) - west)
@@ -118,8 +116,7 @@ def as_one_grid(grid: Any) -> Grid:
     """
     if not isinstance(grid, Grid):
         raise OptionError("grid", grid, "a Grid")
-    if not (is_finite_number(grid.spacing) and grid.spacing > 0):
-        raise OptionError("spacing", grid.spacing, "a length > 0 in CRS units")
+    as_length("spacing", grid.spacing)
     require_grid(grid)
     return grid
 

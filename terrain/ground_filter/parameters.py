@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from ...base.checks import is_finite_number
+from ...base.checks import as_length, as_number
 from ...base.errors import OptionError, choice
 from ...base.policies import GroundReturns
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 __all__ = ["Parameters"]
 
@@ -32,12 +29,12 @@ class Parameters:
 
     def __post_init__(self) -> None:
         for name in ("building", "cell", "iteration_distance", "edge_length", "noise_depth"):
-            _require(name, getattr(self, name), lambda x: x > 0, "a length > 0 in metres")
+            as_length(name, getattr(self, name), unit="in metres")
         for name in ("tolerance", "horizontal_tolerance"):
-            _require(name, getattr(self, name), lambda x: x >= 0, "a length >= 0 in metres")
-        _require("terrain_slope", self.terrain_slope, lambda x: x > 0, "a rise per length > 0")
-        is_angle = "an angle above 0 and below 90 degrees"
-        _require("iteration_angle", self.iteration_angle, lambda x: 0 < x < 90, is_angle)
+            as_number(name, getattr(self, name), "a length", least=0, unit="in metres")
+        as_number("terrain_slope", self.terrain_slope, "a rise per length", above=0)
+        angle = "iteration_angle", self.iteration_angle
+        as_number(*angle, "an angle", above=0, below=90, unit="degrees")
         choice("returns", self.returns, GroundReturns)
         if self.cell > self.building:
             raise OptionError("cell", self.cell, f"no more than building, {self.building:g} m")
@@ -45,8 +42,3 @@ class Parameters:
     def to_dict(self) -> dict[str, Any]:
         """Return all by their names."""
         return asdict(self)
-
-
-def _require(name: str, value: Any, test: Callable[[float], bool], allowed: str) -> None:
-    if not (is_finite_number(value) and test(float(value))):
-        raise OptionError(name, value, allowed)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.checks import as_flag, is_finite_number
-from ...base.errors import OptionError, PointsError
+from ...base.checks import as_flag, as_number
+from ...base.errors import PointsError
 from ...base.products import product
 from ...base.progress import Progress
 from ...base.results import Features
@@ -193,8 +193,7 @@ def flow_accumulation(
     >>> found.columns["area"].tolist()
     [15.0]
     """
-    if not is_finite_number(min_area) or min_area < 0:
-        raise OptionError("min_area", min_area, allowed="a number from 0 on")
+    min_area = as_number("min_area", min_area, least=0)
     is_filled = as_flag("fill_depressions", fill_depressions)
     reference, done = find_reference(tin, "Flow accumulation"), Progress(progress)
     filling = fill(tin) if is_filled else None

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...base.checks import is_finite_number
-from ...base.errors import OptionError
+from ...base.checks import as_number
 from ...base.products import product
 from ...base.results import Features
 from ..earthwork.reference import find_reference
@@ -67,8 +66,7 @@ def ridges_and_valleys(tin: TIN, *, min_angle: float = 0.0) -> Features:
     >>> found.columns["kind"], found.coordinates[:, 1], found.columns["angle"].round(2)
     (array(['ridge'], dtype=object), array([2., 2.]), array([53.13]))
     """
-    if not is_finite_number(min_angle) or not 0 <= min_angle <= _MOST_DEGREES:
-        raise OptionError("min_angle", min_angle, allowed="degrees from 0 to 180")
+    min_angle = as_number("min_angle", min_angle, least=0, most=_MOST_DEGREES, unit="degrees")
     reference = find_reference(tin, "Ridges and valleys")
     falls = find_falls(tin)
     triangle, edge = np.nonzero(falls.neighbors > np.arange(len(falls.triangles))[:, None])

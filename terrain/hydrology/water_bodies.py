@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.checks import as_flag, is_finite_number
+from ...base.checks import as_flag, as_number
 from ...base.errors import OptionError
 from ...base.products import product
 from ...base.results import Features
@@ -135,12 +135,11 @@ def depressions(tin: TIN, *, nested: bool = False, min_depth: float = 0.0) -> Fe
     (array([3.]), array([36.]), array([36.]))
     """
     nested = as_flag("nested", nested)
-    if not is_finite_number(min_depth) or min_depth < 0:
-        raise OptionError("min_depth", min_depth, allowed="a number from 0 on")
+    min_depth = as_number("min_depth", min_depth, least=0)
     reference = find_reference(tin, "Depressions")
     filling = fill(tin)
     found = filling.hierarchy
-    chosen = _choose_depressions(tin, found, nested, float(min_depth))
+    chosen = _choose_depressions(tin, found, nested, min_depth)
     waters = _list_waters(tin, found, chosen)
     areas, volumes = measure_waters(tin.points, tin.triangles, waters, reference.up)
     columns = {
@@ -184,11 +183,10 @@ def ponds(tin: TIN, level: float) -> Features:
     >>> ts.ponds(bowl, 2).columns["volume"].round(3), ts.ponds(bowl, 2).columns["is_contained"]
     (array([10.667]), array([ True]))
     """
-    if not is_finite_number(level):
-        raise OptionError("level", level, allowed="a finite number")
+    level = as_number("level", level)
     reference = find_reference(tin, "Ponds")
     z = tin.points[:, 2]
-    is_wet = z < float(level)
+    is_wet = z < level
     chosen = np.flatnonzero(is_wet[tin.triangles].any(axis=1))
     numbers, lowest = _part_waters(tin, is_wet, chosen)
     waters = Waters(chosen, numbers, np.full(len(lowest), float(level)))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...base.checks import is_finite_number
+from ...base.checks import as_flag, as_length
 from ...base.errors import OptionError
 from ...base.results import Features
 from ...base.types import seal
@@ -80,14 +80,11 @@ def contour_labels(
     _require_contours(lines)
     if spacing is None:
         spacing = _choose_spacing(lines)
-    if not (is_finite_number(spacing) and spacing > 0):
-        raise OptionError("spacing", spacing, "a finite number above 0")
-    if not isinstance(index_only, bool | np.bool_):
-        raise OptionError("index_only", index_only, "True or False")
+    spacing = as_length("spacing", spacing)
     is_chosen = lines.columns["is_index"]
-    if not index_only or not is_chosen.any():
+    if not as_flag("index_only", index_only) or not is_chosen.any():
         is_chosen = np.ones(len(lines), np.bool_)
-    placed = _place_labels(lines, np.flatnonzero(is_chosen), float(spacing))
+    placed = _place_labels(lines, np.flatnonzero(is_chosen), spacing)
     return _as_features(lines, placed)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.checks import is_finite_number, is_whole_number
+from ...base.checks import as_number, require_count
 from ...base.errors import OptionError
 from ...base.sentences import counted, height, shown
 from ...base.types import seal
@@ -56,12 +56,9 @@ class LevelOptions:
             given = "neither" if self.interval is None else "both"
             raise OptionError("interval and levels", given, allowed="one of the two")
         if self.interval is not None:
-            _require_positive("interval", self.interval)
-        if not is_finite_number(self.base):
-            raise OptionError("base", self.base, allowed="a finite number")
-        if self.index is not None and not (is_whole_number(self.index) and self.index > 0):
-            allowed = "a whole number from 1 on, or None for no index contours"
-            raise OptionError("index", self.index, allowed=allowed)
+            as_number("interval", self.interval, above=0)
+        as_number("base", self.base)
+        require_count("index", self.index, or_none=True)
 
     def for_lines(self, tin: TIN) -> Levels:
         """Return the levels above the lowest and up to the highest elevation of a TIN."""
@@ -178,8 +175,3 @@ def as_levels(given: Any) -> Float64Array:
         allowed = f"at most {MOST_LEVELS:,}"
         raise OptionError("levels", len(values), allowed=allowed, what="number of levels")
     return seal(values)
-
-
-def _require_positive(option: str, value: Any) -> None:
-    if not (is_finite_number(value) and value > 0):
-        raise OptionError(option, value, allowed="a finite number above 0")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ...base.checks import require_tin
+from ...base.checks import as_length, require_tin
 from ...base.georeference import describe_unknown, find_plane_units
 from ...base.products import product
 from ...base.progress import Progress
@@ -14,7 +14,7 @@ from .. import _kernel
 from ..earthwork.slivers import take_without_slivers
 from .levels import LevelOptions, Levels
 from .measures import measure_lengths
-from .smoothing import require_tolerance, smooth_lines
+from .smoothing import smooth_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -101,7 +101,9 @@ def contours(
     options = LevelOptions(interval, levels, base, index)
     chosen = options.for_lines(tin)
     tolerances = [
-        require_tolerance(name, value)
+        0.0
+        if value is None
+        else as_length(name, value, unit="in the unit of elevations", or_none=True)
         for name, value in (("smooth", smooth), ("simplify", simplify))
     ]
     done(0.05)

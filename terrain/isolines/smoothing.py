@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...base.checks import is_finite_number
 from ...base.errors import OptionError
 from .. import _kernel
 
@@ -15,29 +14,13 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .._kernel import ContourLines
 
-__all__ = ["require_tolerance", "smooth_lines"]
+__all__ = ["smooth_lines"]
 
 MOST_POINTS = (2**31 - 1) // 16
 """Of all lines together: the kernel numbers in 31 bits what rounds of cutting corners make."""
 
 _ROUNDS = 3
 """So often corners are cut: what is left turns by a few degrees in each vertex."""
-
-
-def require_tolerance(option: str, value: Any) -> float:
-    """Return a vertical tolerance, 0 for None.
-
-    Raises
-    ------
-    OptionError
-        If it is neither None nor a finite number above 0.
-    """
-    if value is None:
-        return 0.0
-    if not (is_finite_number(value) and value > 0):
-        allowed = "a finite number above 0 in the unit of elevations"
-        raise OptionError(option, value, allowed=allowed, or_none=True)
-    return float(value)
 
 
 def smooth_lines(

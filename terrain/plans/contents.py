@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ...base.checks import is_finite_number
 from ...base.errors import OptionError
 from ...base.georeference import require_same_crs
 from ...base.georeference.axes import label_axes
@@ -124,8 +125,8 @@ def choose_interval(tin: TIN) -> float:
 
 def _trace(tin: TIN, chosen: Any, smooth: float | None) -> Features:
     lowest, highest = elevation_range(tin)
-    is_number = isinstance(chosen, int | float | np.number) and not isinstance(chosen, bool)
-    count = (highest - lowest) / chosen if is_number and chosen > 0 else 0.0
+    is_positive = is_finite_number(chosen) and chosen > 0
+    count = (highest - lowest) / chosen if is_positive else 0.0
     if count > _MOST_LEVELS:
         raise OptionError(
             "interval",

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...base import optional
 from ...base.atomic import as_path, replacing, replacing_files, require_writable
-from ...base.checks import is_whole_number
+from ...base.checks import require_count
 from ...base.errors import OptionError, RenderError
 from .canvas import METADATA, drawing_rules
 from .lettering import PURPOSE
@@ -100,9 +100,7 @@ def _write_each(files: list[Path], canvases: Iterator[Canvas], kind: str, dpi: i
 
 
 def _require_pixels(dpi: Any, size: tuple[float, float], kind: str) -> None:
-    low, high = _DPI
-    if not is_whole_number(dpi) or not low <= dpi <= high:
-        raise OptionError("dpi", dpi, f"a whole number from {low} to {high}")
+    require_count("dpi", dpi, least=_DPI[0], most=_DPI[1])
     pixels = size[0] * size[1] * (dpi / MM_PER_INCH) ** 2
     if kind == "png" and pixels > _MOST_PIXELS:
         fitting = int(dpi * (_MOST_PIXELS / pixels) ** 0.5)

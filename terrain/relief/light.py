@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...base.checks import is_finite_number
-from ...base.errors import OptionError
+from ...base.checks import as_number
 from .. import _kernel
 
 if TYPE_CHECKING:
@@ -36,11 +35,10 @@ def as_light(azimuth: Any, altitude: Any) -> Light:
     ------
     OptionError
     """
-    if not is_finite_number(azimuth):
-        raise OptionError("azimuth", azimuth, allowed="a finite number of degrees")
-    if not (is_finite_number(altitude) and 0.0 <= altitude <= 90.0):
-        raise OptionError("altitude", altitude, allowed="a number of degrees from 0 to 90")
-    return Light(float(azimuth), float(altitude))
+    return Light(
+        as_number("azimuth", azimuth, unit="of degrees"),
+        as_number("altitude", altitude, least=0, most=90, unit="degrees"),
+    )
 
 
 def shade(upward: Float64Array, light: Light) -> UInt8Array:

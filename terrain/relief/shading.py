@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...base.checks import is_finite_number, require_tin
+from ...base.checks import as_number, require_tin
 from ...base.errors import OptionError
 from ...base.georeference import describe_unknown
 from ...base.products import product
@@ -89,7 +89,7 @@ def hillshade(
            [181, 181]], dtype=uint8)
     """
     require_tin(tin)
-    light, factor = as_light(azimuth, altitude), _as_positive("exaggeration", exaggeration)
+    light, factor = as_light(azimuth, altitude), as_number("exaggeration", exaggeration, above=0)
     if spacing is not None and grid is not None:
         raise OptionError("spacing", spacing, allowed="None where a grid is given")
     is_smooth, told = choose_smooth(tin, smooth)
@@ -114,9 +114,3 @@ def hillshade(
 
 def _choose_spacing(tin: TIN) -> float:
     return round_down(max(tin.bounds.width, tin.bounds.height) / _USUAL_SIDE)
-
-
-def _as_positive(option: str, value: Any) -> float:
-    if not (is_finite_number(value) and value > 0.0):
-        raise OptionError(option, value, allowed="a finite number above 0")
-    return float(value)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ...base.checks import as_length, as_number
 from ...base.crs import scale_elevations
 from ...base.errors import OptionError, PointsError
 from ...base.georeference import require_same_crs
@@ -16,11 +17,9 @@ from ...base.sentences import coordinate
 from ...tin.validation.points import as_elevations
 from .geometries import as_features
 from .profiles import (
-    as_positive,
     lines_to_segments,
     measure_rows,
     require_few,
-    require_number,
     require_surface,
 )
 from .rows import cut_rows
@@ -233,17 +232,14 @@ def _as_reaches(width: Any, left: Any, right: Any) -> tuple[float, float]:
     if width is not None:
         if left is not None or right is not None:
             raise OptionError("width", width, allowed="given without left and right")
-        half = as_positive("width", width) / 2
+        half = as_length("width", width) / 2
         return half, half
     if left is None and right is None:
         raise OptionError("width", None, allowed="given, or left and right")
     reach = [
-        0.0 if side is None else require_number(name, side)
+        0.0 if side is None else as_number(name, side, "a length", least=0, unit="in CRS units")
         for name, side in (("left", left), ("right", right))
     ]
-    for name, side in zip(("left", "right"), reach, strict=True):
-        if side < 0.0:
-            raise OptionError(name, side, allowed="0 or more, in CRS units")
     if reach == [0.0, 0.0]:
         raise OptionError("left and right", 0.0, allowed="above 0, one of them at least")
     return reach[0], reach[1]
@@ -261,7 +257,7 @@ def _choose_stations(
     near = segments.rounding
     wanted = [_find_on_lines(ends, given, near)] if given is not None else [np.empty((0, 2))]
     if interval is not None:
-        wanted.append(_list_multiples(ends, as_positive("interval", interval)))
+        wanted.append(_list_multiples(ends, as_length("interval", interval)))
     pairs = _join_near(np.unique(np.concatenate(wanted), axis=0), ends, near)
     lines, stations = pairs[:, 0].astype(np.int64), pairs[:, 1]
     segment = np.empty(len(lines), np.int64)

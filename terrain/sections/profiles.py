@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.checks import is_finite_number
+from ...base.checks import as_length, as_number
 from ...base.crs import scale_elevations
 from ...base.errors import LinesError, OptionError
 from ...base.georeference import require_same_crs
@@ -31,12 +31,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "MOST_STATIONS",
-    "as_positive",
     "lines_to_segments",
     "measure_rows",
     "profile",
     "require_few",
-    "require_number",
     "require_surface",
 ]
 
@@ -122,9 +120,7 @@ def profile(
     )
     segments = lines_to_segments(features, start, "profile")
     extra = (
-        None
-        if interval is None
-        else _place_at_interval(segments, as_positive("interval", interval))
+        None if interval is None else _place_at_interval(segments, as_length("interval", interval))
     )
     rows = cut_rows(surfaces, segments, extra)
     require_surface(surfaces, segments, rows)
@@ -227,18 +223,6 @@ def require_surface(surfaces: Surfaces, segments: Segments, rows: Rows, what: st
 # ---------------------------------------------------------------- stations
 
 
-def as_positive(option: str, value: Any) -> float:
-    """Return a length above 0.
-
-    Raises
-    ------
-    OptionError
-    """
-    if not is_finite_number(value) or not float(value) > 0.0:
-        raise OptionError(option, value, allowed="a finite number above 0, in CRS units")
-    return float(value)
-
-
 def as_start(value: Any, segments: Segments) -> float:
     """Return the station where lines begin, small enough for their stations to differ.
 
@@ -246,25 +230,13 @@ def as_start(value: Any, segments: Segments) -> float:
     ------
     OptionError
     """
-    start = require_number("start", value)
+    start = as_number("start", value, unit="in CRS units")
     lengths = segments.end_stations - segments.start_stations
     shortest = float(np.bincount(segments.lines, lengths).min())
     if not np.spacing(abs(start)) <= _FINEST * shortest:
         allowed = f"of a size at which stations along {shortest:.6g} can be told apart"
         raise OptionError("start", start, allowed=allowed)
     return start
-
-
-def require_number(option: str, value: Any) -> float:
-    """Return a finite number.
-
-    Raises
-    ------
-    OptionError
-    """
-    if not is_finite_number(value):
-        raise OptionError(option, value, allowed="a finite number, in CRS units")
-    return float(value)
 
 
 def _place_at_interval(segments: Segments, interval: float) -> Places:

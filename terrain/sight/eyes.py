@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...base.checks import is_finite_number
-from ...base.errors import OptionError, PointsError
+from ...base.checks import as_length
+from ...base.errors import PointsError
 from ..hydrology.paths import as_places
 from .lines import as_height, raise_places
 
@@ -32,12 +32,10 @@ def as_view(
 ) -> tuple[View, tuple[str, ...]]:
     """Return how an eye sees, from what a caller gives, and what is to be told about it."""
     above = as_height("eye_height", heights[0]), as_height("target_height", heights[1])
-    if radius is not None and (not is_finite_number(radius) or not radius > 0):
-        raise OptionError("radius", radius, allowed="a finite number above 0", or_none=True)
+    reach = np.inf if radius is None else as_length("radius", radius, or_none=True)
     xy, notes = as_places(tin, eye, "the eye")
     if len(xy) != 1:
         raise PointsError(f"There are {len(xy)} eyes: a viewshed has one.")
-    reach = np.inf if radius is None else float(radius)
     return View(raise_places(tin, xy, above[0])[0], above[1], reach, fall), notes
 
 

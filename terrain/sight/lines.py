@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.checks import is_finite_number
-from ...base.errors import OptionError, PointsError
+from ...base.checks import as_number
+from ...base.errors import PointsError
 from ...base.products import product
 from ...base.results import Features
 from ...base.sentences import counted
@@ -130,9 +130,7 @@ def as_height(option: str, value: Any) -> float:
     ------
     OptionError
     """
-    if not is_finite_number(value) or value < 0:
-        raise OptionError(option, value, allowed="a finite number from 0 on, above the ground")
-    return float(value)
+    return as_number(option, value, "a height", least=0, unit="above the ground")
 
 
 def raise_places(tin: TIN, xy: Float64Array, height: float) -> Float64Array:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...base.checks import as_flag, is_finite_number
+from ...base.checks import as_flag, as_number
 from ...base.errors import CrsError, OptionError
 from ..sections.breaks import trace_breaks
 from ..sections.segments import Segments
@@ -65,8 +65,7 @@ def find_curvature(reference: Reference, curvature: Any, refraction: Any) -> flo
             raise OptionError("refraction", refraction, allowed="None without curvature")
         return 0.0
     coefficient = REFRACTION if refraction is None else refraction
-    if not is_finite_number(coefficient) or not -1.0 <= coefficient <= 1.0:
-        raise OptionError("refraction", refraction, allowed="a coefficient from -1 to 1")
+    coefficient = as_number("refraction", coefficient, "a coefficient", least=-1, most=1)
     metres = None if reference.crs is None else reference.crs.horizontal_unit.metres
     if metres is None:
         raise CrsError(

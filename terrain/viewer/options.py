@@ -126,7 +126,7 @@ def _parse_size(size: Any) -> tuple[int, int]:
 
 
 def _parse_azimuth(azimuth: Any) -> float:
-    return as_number("azimuth", azimuth, "a finite number of degrees clockwise from north") % 360.0
+    return as_number("azimuth", azimuth, unit="of degrees clockwise from north") % 360.0
 
 
 def _parse_sun(sun: Any) -> Light:
@@ -157,22 +157,20 @@ def _parse_elevations(elevations: Any) -> tuple[float, float]:
 
 
 _PARSERS: Mapping[str, Callable[[Any], Any]] = {
-    "exaggeration": lambda value: as_number(
-        "exaggeration", value, "a finite number above 0", above=0.0
-    ),
+    "exaggeration": lambda value: as_number("exaggeration", value, above=0),
     "size": _parse_size,
     "title": _parse_title,
     "azimuth": _parse_azimuth,
     "tilt": lambda value: as_number(
-        "tilt", value, "0 (from the horizon) to 90 (from above) degrees", least=0.0, most=90.0
+        "tilt", value, "an angle", least=0, most=90, unit="degrees above the horizon"
     ),
     "sun": _parse_sun,
     "background": _parse_background,
     "dpi": lambda value: as_number(
-        "dpi", value, "36 to 2400 dots per inch", least=36.0, most=2400.0
+        "dpi", value, "a number", least=36, most=2400, unit="dots per inch"
     ),
     "elevations": _parse_elevations,
     "contours": lambda value: as_number(
-        "contours", value, "an interval above 0, in the unit of elevations", above=0.0
+        "contours", value, "an interval", above=0, unit="in the unit of elevations"
     ),
 }

@@ -71,7 +71,7 @@ def test_levels_outside_are_told_and_the_file_is_empty(tmp_path):
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        (["--interval", "0"], "Invalid --interval 0.0: it must be a finite number above 0."),
+        (["--interval", "0"], "Invalid --interval 0.0: it must be a finite number > 0."),
         (["--interval", "nan"], "Invalid --interval nan"),
         (["--interval", "1e-7"], "at most 100,000 levels, and here there would be 167,890,001"),
         (["--levels", "1;2"], "it must be numbers with commas between them"),

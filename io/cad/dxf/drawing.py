@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ....base import optional
+from ....base.checks import as_length
 from ....base.crs import CRS
 from ....base.errors import CrsError, OptionError, ReadError
 from ....base.sentences import FILE, counted
@@ -129,9 +130,7 @@ def _require_options(layer: object, tolerance: object) -> None:
     if layer is not None and not (isinstance(layer, str) and layer.strip(", ")):
         raise OptionError("layer", layer, "names or patterns of layers with commas between")
     if tolerance is not None:
-        is_number = isinstance(tolerance, int | float) and not isinstance(tolerance, bool)
-        if not is_number or not 0 < float(tolerance) < float("inf"):  # type: ignore[arg-type]
-            raise OptionError("tolerance", tolerance, "a length above 0")
+        as_length("tolerance", tolerance, or_none=True)
 
 
 def _require_layer(drawing: Drawing, layer: str | None) -> None:

@@ -16,7 +16,8 @@ import numpy as np
 
 from ....base import optional
 from ....base.atomic import replacing
-from ....base.errors import FormatError, OptionError, choice
+from ....base.checks import as_flag
+from ....base.errors import FormatError, choice
 from ....base.notes import warn
 from ....base.policies import DrawingVersion
 from ....base.results import Features
@@ -85,8 +86,7 @@ def write(
     if not isinstance(obj, Surface | Survey | Features):
         raise FormatError(f"Cannot write {FILE}: a {type(obj).__name__} is no surface or survey.")
     choice("version", version, DrawingVersion)
-    if not isinstance(labels, bool):
-        raise OptionError("labels", labels, "True or False")
+    labels = as_flag("labels", labels)
     ezdxf = optional.load("ezdxf", "Writing DXF drawings")
     along, factor = choose_length_unit(
         obj, unit, is_known=lambda one: find_code(one) > 0, format_name="DXF"

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ....base.checks import is_finite_number
+from ....base.checks import as_number
 from ....base.crs import CRS, FOOT, METRE, US_SURVEY_FOOT, Unit, require_same_unit
-from ....base.errors import CrsError, OptionError, ReadError
+from ....base.errors import CrsError, ReadError
 from ....base.sentences import FILE, counted, inflect
 from ....base.types import RowSources
 from ....tin import Survey
@@ -35,9 +35,8 @@ def require_refraction(value: object) -> float | None:
     """Return a coefficient of refraction, or refuse it."""
     if value is None:
         return None
-    if not is_finite_number(value) or abs(float(value)) > _MOST_REFRACTION:  # type: ignore[arg-type]
-        raise OptionError("refraction", value, "a coefficient from -5 to 5, such as 0.13")
-    return float(value)  # type: ignore[arg-type]
+    most, unit = _MOST_REFRACTION, "such as 0.13"
+    return as_number("refraction", value, "a coefficient", least=-most, most=most, unit=unit)
 
 
 @dataclass

@@ -16,12 +16,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ....base.atomic import replacing
+from ....base.checks import as_number
 from ....base.crs import assume_elevation_unit
 from ....base.errors import CrsError, WriteError
 from ....base.notes import warn
 from ....base.sentences import FILE, counted
 from ....terrain.palette import interpolate_tints
-from ..common import format_crs, format_unit, require_factor, require_tin
+from ..common import format_crs, format_unit, require_tin
 from ..texture import load_texture
 
 if TYPE_CHECKING:
@@ -102,7 +103,7 @@ def write(
     triangles without area in float32, of which a LossWarning tells.
     """
     tin = require_tin(surface, format_name="GLB")
-    require_factor("exaggeration", exaggeration)
+    as_number("exaggeration", exaggeration, above=0)
     if tin.crs is not None and tin.crs.is_geographic:
         raise CrsError(
             f"Cannot write {FILE}: GLB is in metres, and {tin.crs.label} in degrees; build the "

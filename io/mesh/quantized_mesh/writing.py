@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ....base.atomic import replacing_folder
-from ....base.checks import as_flag, is_whole_number
+from ....base.checks import as_flag, require_count
 from ....base.crs import CRS
-from ....base.errors import CrsError, OptionError, WriteError
+from ....base.errors import CrsError, WriteError
 from ....base.notes import warn
 from ....base.sentences import FILE
 from ....tin import TIN
@@ -104,7 +104,7 @@ def write(
     """
     tin = require_tin(surface, format_name="quantized-mesh")
     is_gzipped = as_flag("gzipped", gzipped)
-    _require_level(max_level)
+    require_count("max_level", max_level, least=0, most=_MOST_LEVEL, or_none=True)
     placed = _place(tin)
     finest = _choose_finest(placed) if max_level is None else int(max_level)
     first = min(_choose_first(placed), finest)
@@ -127,12 +127,6 @@ def write(
                 progress((level + 1) / (finest + 1))
         layer = _describe_layer(placed, available)
         (folder / "layer.json").write_text(json.dumps(layer, indent=1) + "\n", encoding="utf-8")
-
-
-def _require_level(level: object) -> None:
-    if level is None or (is_whole_number(level) and 0 <= level <= _MOST_LEVEL):  # type: ignore[operator]
-        return
-    raise OptionError("max_level", level, f"a whole number from 0 to {_MOST_LEVEL}", or_none=True)
 
 
 # ----------------------------------------------------------------------- where it lies

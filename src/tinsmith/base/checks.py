@@ -12,6 +12,7 @@ from .sentences import shown
 
 __all__ = [
     "as_flag",
+    "as_length",
     "as_number",
     "is_finite_number",
     "is_whole_number",
@@ -48,34 +49,62 @@ def as_flag(name: str, value: Any) -> bool:
 def as_number(
     name: str,
     value: Any,
-    allowed: str,
+    what: str = "a finite number",
     *,
     above: float = -math.inf,
     least: float = -math.inf,
+    below: float = math.inf,
     most: float = math.inf,
+    unit: str = "",
+    or_none: bool = False,
 ) -> float:
-    """Return a finite number within limits; ``allowed`` says in words what they are."""
-    if not (is_finite_number(value) and value > above and least <= value <= most):
-        raise OptionError(name, value, allowed)
+    """Return a finite number within limits, which the refusal names.
+
+    ``what`` and ``unit`` stand before and behind the limits; ``or_none`` says that None is allowed
+    too, which callers look for themselves.
+
+    Examples
+    --------
+    >>> as_number("tilt", 91, "an angle", least=0, most=90, unit="degrees")
+    Traceback (most recent call last):
+    tinsmith.base.errors.OptionError: Invalid tilt 91: it must be an angle from 0 to 90 degrees.
+    """
+    if not (is_finite_number(value) and above < value < below and least <= value <= most):
+        words = [what, _describe_limits({">": above, ">=": least, "<": below, "<=": most}), unit]
+        raise OptionError(name, value, " ".join(filter(None, words)), or_none=or_none)
     return float(value)
 
 
-def require_count(name: str, value: Any, *, or_none: bool = False) -> None:
-    """Refuse what is no whole number above 0."""
-    if not (is_whole_number(value) and value >= 1) and not (or_none and value is None):
-        raise OptionError(name, value, "a whole number >= 1", or_none=or_none)
+def as_length(name: str, value: Any, *, unit: str = "in CRS units", or_none: bool = False) -> float:
+    """Return a finite number above 0."""
+    return as_number(name, value, "a length", above=0, unit=unit, or_none=or_none)
+
+
+def require_count(
+    name: str, value: Any, *, least: int = 1, most: float = math.inf, or_none: bool = False
+) -> None:
+    """Refuse what is no whole number within limits."""
+    if not (is_whole_number(value) and least <= value <= most) and not (or_none and value is None):
+        allowed = f"a whole number {_describe_limits({'>=': least, '<=': most})}"
+        raise OptionError(name, value, allowed, or_none=or_none)
+
+
+def _describe_limits(limits: dict[str, float]) -> str:
+    finite = {sign: f"{limit:,.12g}" for sign, limit in limits.items() if math.isfinite(limit)}
+    if [*finite] == [">=", "<="]:
+        return f"from {finite['>=']} to {finite['<=']}"
+    return " and ".join(f"{sign} {limit}" for sign, limit in finite.items())
 
 
 def require_positive(name: str, value: Any, *, what: str = "a length") -> None:
     """Refuse what is neither a finite number above 0 nor None."""
-    if value is not None and not (is_finite_number(value) and value > 0):
-        raise OptionError(name, value, f"{what} > 0 in CRS units", or_none=True)
+    if value is not None:
+        as_number(name, value, what, above=0, unit="in CRS units", or_none=True)
 
 
 def require_distance(name: str, value: Any) -> None:
     """Refuse what is no finite number from 0 on."""
-    if not (is_finite_number(value) and value >= 0):
-        raise OptionError(name, value, "a distance >= 0 in CRS units")
+    as_number(name, value, "a distance", least=0, unit="in CRS units")
 
 
 def require_type(name: str, value: Any, kind: type, *, or_none: bool = False) -> None:

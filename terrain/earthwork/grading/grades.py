@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from ....base.checks import is_finite_number
+from ....base.checks import as_number
 from ....base.crs import scale_elevations
 from ....base.errors import LinesError, OptionError, PointsError
 from ....base.georeference import Agreement
@@ -131,9 +131,8 @@ def grade(
 
 
 def _require_ratio(name: str, value: Any) -> float:
-    if not is_finite_number(value) or value <= 0:
-        raise OptionError(name, value, "a number > 0, horizontal over vertical: 2 is 2:1")
-    return float(value)
+    unit = "(horizontal over vertical: 2 is 2:1)"
+    return as_number(name, value, "a ratio", above=0, unit=unit)
 
 
 def _read_pad(pad: Any, elevation: Any) -> tuple[Any, float]:
@@ -146,12 +145,11 @@ def _read_pad(pad: Any, elevation: Any) -> tuple[Any, float]:
     ring = regions[0][0]
     if elevation is None:
         elevation = _find_level(ring)
-    if not is_finite_number(elevation):
-        raise OptionError("elevation", elevation, "a finite number")
+    level = as_number("elevation", elevation)
     polygon = shapely.Polygon(ring[:, :2])
     if not polygon.is_valid or not polygon.area > 0:
         raise LinesError(f"Invalid pad: {shapely.is_valid_reason(polygon)}.")
-    return shapely.orient_polygons(polygon), float(elevation)
+    return shapely.orient_polygons(polygon), level
 
 
 def _find_level(ring: Float64Array) -> float:

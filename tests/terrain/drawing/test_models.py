@@ -110,7 +110,7 @@ def test_the_mesh_is_a_copy():
 
 @pytest.mark.parametrize("exaggeration", [0, -1, float("nan"), float("inf")])
 def test_an_exaggeration_must_be_finite_and_above_zero(exaggeration):
-    with pytest.raises(OptionError, match=r"exaggeration .* finite number above 0") as caught:
+    with pytest.raises(OptionError, match=r"exaggeration .* finite number > 0") as caught:
         lift(survey(n=3), exaggeration=exaggeration)
     assert caught.value.option == "exaggeration"
     assert isinstance(caught.value, TinsmithError)
@@ -148,5 +148,5 @@ def test_an_origin_that_is_no_place_is_refused(origin):
 @pytest.mark.parametrize("factor", [object(), "2", None, 10**400, True])
 def test_an_exaggeration_that_is_no_number_is_refused(factor):
     tin = triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
-    with pytest.raises(OptionError, match=r"^Invalid exaggeration .*a finite number above 0"):
+    with pytest.raises(OptionError, match=r"^Invalid exaggeration .*a finite number > 0"):
         lift(tin, exaggeration=factor)

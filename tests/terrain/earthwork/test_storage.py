@@ -77,9 +77,9 @@ def test_multiples_of_the_interval_reach_the_top():
 @pytest.mark.parametrize(
     ("options", "part"),
     [
-        ({"interval": 0}, "Invalid interval 0: it must be a number above 0"),
-        ({"interval": -1.0}, "above 0"),
-        ({"interval": math.nan}, "above 0"),
+        ({"interval": 0}, "Invalid interval 0: it must be a finite number > 0"),
+        ({"interval": -1.0}, "> 0"),
+        ({"interval": math.nan}, "> 0"),
         ({"interval": 1e-6}, "at most 100,000"),
         ({"interval": 1.0, "levels": [1]}, "None where levels are given"),
         ({"levels": []}, "number of levels 0"),

@@ -279,10 +279,10 @@ def test_lengths_in_degrees_are_metres_on_the_ellipsoid():
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        ({"interval": 0}, "Invalid interval 0: it must be a finite number above 0."),
-        ({"interval": -1.5}, "Invalid interval -1.5: it must be a finite number above 0."),
-        ({"interval": math.nan}, "Invalid interval nan: it must be a finite number above 0."),
-        ({"interval": "1"}, "Invalid interval '1': it must be a finite number above 0."),
+        ({"interval": 0}, "Invalid interval 0: it must be a finite number > 0."),
+        ({"interval": -1.5}, "Invalid interval -1.5: it must be a finite number > 0."),
+        ({"interval": math.nan}, "Invalid interval nan: it must be a finite number > 0."),
+        ({"interval": "1"}, "Invalid interval '1': it must be a finite number > 0."),
         ({"interval": 1e-5}, "at most 100,000 levels, and here there would be 2,000,001"),
         (
             {"levels": np.arange(1e6)},
@@ -294,8 +294,11 @@ def test_lengths_in_degrees_are_metres_on_the_ellipsoid():
         ({}, "Invalid interval and levels 'neither': it must be one of the two."),
         ({"interval": 1, "levels": [1]}, "'both': it must be one of the two."),
         ({"interval": 1, "base": math.nan}, "Invalid base nan: it must be a finite number."),
-        ({"interval": 1, "index": 0}, "Invalid index 0: it must be a whole number from 1 on"),
-        ({"interval": 1, "index": 2.5}, "Invalid index 2.5: it must be a whole number from 1 on"),
+        ({"interval": 1, "index": 0}, "Invalid index 0: it must be a whole number >= 1, or None"),
+        (
+            {"interval": 1, "index": 2.5},
+            "Invalid index 2.5: it must be a whole number >= 1, or None",
+        ),
     ],
 )
 def test_options_that_are_none_are_refused_in_a_sentence(options, sentence):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..checks import as_length
 from ..crs import CRS, shorten_crs
 from ..errors import OptionError
 from ..lazy import make_html_repr
@@ -188,8 +189,7 @@ def require_grid(grid: Any) -> None:
     rows, columns = grid.shape
     if rows < 1 or columns < 1:
         raise OptionError("shape of the grid", grid.shape, allowed="1 or more rows and columns")
-    if not (math.isfinite(grid.spacing) and grid.spacing > 0):
-        raise OptionError("spacing of the grid", grid.spacing, allowed="finite and above 0")
+    as_length("spacing of the grid", grid.spacing)
     bounds = grid.bounds
     sides = ((bounds.xmin, bounds.xmax, columns), (bounds.ymin, bounds.ymax, rows))
     for low, high, cells in sides:
