@@ -44,7 +44,7 @@ def make_terrain(triangles: int) -> ts.TIN:
     xy = np.random.default_rng(1).random((triangles // 2, 2)) * 2000
     z = 300 + 30 * np.sin(xy[:, 0] / 150) * np.cos(xy[:, 1] / 210) + xy[:, 0] / 100
     points = np.round(np.column_stack([xy + np.array([742_000.0, 4_030_000.0]), z]), 3)
-    return ts.triangulate(points, crs="EPSG:32616", z_unit="m")
+    return ts.triangulate(points, crs="EPSG:32616", elevation_unit="m")
 
 
 def measure_page(triangles: int) -> tuple[int, float, float, float, float]:

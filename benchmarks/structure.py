@@ -20,7 +20,7 @@ from .report.tables import TEXT, Table
 ROOT = Path(__file__).parents[1]
 AREAS = ("tin", "terrain", "io", "cli", "base")
 FOLDERS = {"tin": "tin", "terrain": "terrain", "io": "io", "": "src/tinsmith"}
-PARAMETERS = ("crs", "z_unit", "elevation_unit", "interval", "path")
+PARAMETERS = ("crs", "elevation_unit", "elevation_unit", "interval", "path")
 MOST_POSITIONAL = 4
 
 _FIRST = """

@@ -28,7 +28,7 @@ def main(folder: Path = HERE) -> None:
     """Write field-codes.png."""
     from matplotlib.figure import Figure
 
-    survey = ts.read(CODES / "junction.csv", crs="EPSG:32616", z_unit="m")
+    survey = ts.read(CODES / "junction.csv", crs="EPSG:32616", elevation_unit="m")
     made = ts.lines_from_codes(survey, code_table=CODES / "words.toml")
     tin = ts.triangulate(made)
     figure = Figure(figsize=(11, 7.6), layout="constrained")

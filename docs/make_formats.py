@@ -32,7 +32,7 @@ _OPTIONS = """
 `ts.read` and `ts.io.write` take them by name, every command as a flag (`z_field` is `--z-field`);
 `tinsmith COMMAND FILE --help` lists those of a file, `tinsmith formats NAME` those of a format. An
 option of writing is `--output-NAME` where the command or the format of its input has one of that
-name. Every reader also takes `crs` and `z_unit`.
+name. Every reader also takes `crs` and `elevation_unit`.
 
 """
 
@@ -71,8 +71,8 @@ ifc = "tinsmith_ifc:IFC"
   distribution and version.
 - Built-in formats and commands cannot be replaced. If a plug-in and another format claim the same
   suffix for the same type, using it is an error that names both; `format=` decides.
-- A reader takes `(path, *, crs=None, z_unit=None)` and options of its own, and returns a Survey or
-  a TIN; a writer takes `(obj, path)` and options of its own.
+- A reader takes `(path, *, crs=None, elevation_unit=None)` and options of its own, and returns a
+  Survey or a TIN; a writer takes `(obj, path)` and options of its own.
 """
 
 

@@ -73,7 +73,7 @@ def read(
     *,
     format: str | None = None,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     remote: bool = False,
     check_crs: bool = True,
     progress: Callable[[float], None] | None = None,
@@ -87,7 +87,7 @@ def read(
     *,
     format: str | None = None,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     remote: bool = False,
     check_crs: bool = True,
     progress: Callable[[float], None] | None = None,
@@ -100,7 +100,7 @@ def read(
     *,
     format: str | None = None,  # noqa: A002 - the word that users of the package know
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     remote: bool = False,
     check_crs: bool = True,
     progress: Callable[[float], None] | None = None,
@@ -120,7 +120,7 @@ def read(
     crs : CRS, str, int or pyproj.CRS, optional
         Coordinate reference system. It declares that of a file which has none; points of a file
         with another one are reprojected to it, a TIN with another one is refused.
-    z_unit : Unit or str, optional
+    elevation_unit : Unit or str, optional
         Unit of the file's elevations ("m", "ft", "US survey foot"), where the file itself does not
         say. After a reprojection they have the unit of ``crs``: see
         :func:`tinsmith.transform_points`.
@@ -175,7 +175,7 @@ def read(
         {},
         format=format,
         crs=crs,
-        z_unit=z_unit,
+        elevation_unit=elevation_unit,
         remote=remote,
         check_crs=check_crs,
         progress=progress,
@@ -189,7 +189,7 @@ def read_as_wished(
     *,
     format: str | None = None,  # noqa: A002 - as in read
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     remote: bool = False,
     check_crs: bool = True,
     progress: Callable[[float], None] | None = None,
@@ -205,7 +205,7 @@ def read_as_wished(
     """
     remote = as_flag("remote", remote)
     done = Progress(progress)
-    declared = _collect_declared(crs, z_unit)
+    declared = _collect_declared(crs, elevation_unit)
     asked = _Asked(format, declared, options, wishes, done.stage(0.0, 1.0))
     places = path if isinstance(path, list | tuple) else [cast("str | os.PathLike[str]", path)]
     with ExitStack() as copies:
@@ -369,10 +369,10 @@ def _read_path(file: Path, asked: _Asked) -> Survey | TIN:
     return found if inner == file else _restore_source(found, inner, file)
 
 
-def _collect_declared(crs: CrsLike | None, z_unit: UnitLike | None) -> dict[str, Any]:
+def _collect_declared(crs: CrsLike | None, elevation_unit: UnitLike | None) -> dict[str, Any]:
     """Return what the caller says of the coordinates, as options of a reader."""
-    unit = Unit.of(z_unit)
-    return {"crs": CRS.of(crs)} | ({} if unit is None else {"z_unit": unit})
+    unit = Unit.of(elevation_unit)
+    return {"crs": CRS.of(crs)} | ({} if unit is None else {"elevation_unit": unit})
 
 
 def read_stream(
@@ -382,7 +382,7 @@ def read_stream(
     *,
     format: str | None = None,  # noqa: A002 - as in read
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     check_crs: bool = True,
     **options: Any,
 ) -> Survey | TIN:
@@ -397,7 +397,7 @@ def read_stream(
         As of :func:`read_as_wished`.
     """
     source = Path(name)
-    declared = _collect_declared(crs, z_unit)
+    declared = _collect_declared(crs, elevation_unit)
     with (
         naming_file(source),
         spool(stream, source) as local,
@@ -456,7 +456,7 @@ def _take_options(
         return taken, None
     told = Unit.of(taken.pop("unit", None))
     if told is not None:
-        taken.setdefault("z_unit", told)
+        taken.setdefault("elevation_unit", told)
     return taken, told
 
 

@@ -43,7 +43,7 @@ def test_junction_is_made_again_byte_for_byte(tmp_path):
 
 
 def test_kerbs_of_the_junction_are_arcs_of_12_m():
-    survey = ts.read(SAMPLES / "codes" / "junction.csv", crs="EPSG:32616", z_unit="m")
+    survey = ts.read(SAMPLES / "codes" / "junction.csv", crs="EPSG:32616", elevation_unit="m")
     made = ts.lines_from_codes(survey, code_table=SAMPLES / "codes" / "words.toml")
     lines = {line.name: line.coords[:, :2] - (752_100, 4_024_400) for line in made.breaklines}
     for name, centre in (("EP1", (38, 42)), ("EP2", (74, 42))):
@@ -185,7 +185,9 @@ def test_design_is_made_again_byte_for_byte(tmp_path):
 def design():
     """The ground and the pad, as TINs."""
     return [
-        ts.triangulate(ts.lines_from_codes(ts.read(SAMPLES / name, crs="EPSG:32616", z_unit="m")))
+        ts.triangulate(
+            ts.lines_from_codes(ts.read(SAMPLES / name, crs="EPSG:32616", elevation_unit="m"))
+        )
         for name in ("site_survey.csv", "design_pad.csv")
     ]
 

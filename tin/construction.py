@@ -39,7 +39,7 @@ def triangulate(
     snap: float = 0.0,
     threads: int | None = None,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> TIN:
     """Build the Delaunay TIN of a set of elevation points, and of lines that must be its edges.
@@ -100,7 +100,7 @@ def triangulate(
     crs : CRS, str, int or pyproj.CRS, optional
         Coordinate reference system of the points: a code ("EPSG:32616"), number, WKT; default that
         of the survey, points or lines.
-    z_unit : Unit or str, optional
+    elevation_unit : Unit or str, optional
         Unit of all elevations ("m", "ft", "US survey foot"), lines included; default the survey's
         own, else that of the CRS's vertical axis, else not known.
     progress : callable, optional
@@ -120,8 +120,8 @@ def triangulate(
     CrsError
         If the CRS is unknown, or another than that of the survey, the points or the lines.
     OptionError
-        If an option is none of the allowed; if ``z_unit`` is unknown, or another than the one that
-        survey or CRS give.
+        If an option is none of the allowed; if ``elevation_unit`` is unknown, or another than the
+        one that survey or CRS give.
     LinesError
         If a line has too few vertices or coordinates that are not finite, if a ring crosses
         itself, if lines cross and must not, if a hole lies outside, or if no triangle is left.
@@ -163,7 +163,7 @@ def triangulate(
         erase=erase,
         water=water,
         crs=crs,
-        z_unit=z_unit,
+        elevation_unit=elevation_unit,
     )
     tin = TIN._of(
         assemble(inputs, done),

@@ -247,7 +247,7 @@ class Surface:
         function: Callable[[Float64Array], Float64Array],
         *,
         crs: CrsLike | None = None,
-        z_unit: UnitLike | None = None,
+        elevation_unit: UnitLike | None = None,
         length: float = 1.0,
     ) -> TIN:
         """Return the TIN of moved points; :func:`tinsmith.reproject` moves them to another CRS.
@@ -258,7 +258,7 @@ class Surface:
             Takes (n, 3) points and returns where they are then, in the same order.
         crs : CRS, str, int or pyproj.CRS, optional
             Of the moved points; default not known.
-        z_unit : Unit or str, optional
+        elevation_unit : Unit or str, optional
             Unit of their elevations; default that of the CRS's vertical axis, else not known.
         length : float
             Factor of lengths in the plane, for ``max_edge`` and ``snap`` of the build.
@@ -286,7 +286,7 @@ class Surface:
         >>> tin.transform(lambda points: points + [10.0, 20.0, 0.0]).bounds.xmin
         10.0
         """
-        moved = self._keep()._transform(function, crs, z_unit, length)
+        moved = self._keep()._transform(function, crs, elevation_unit, length)
         return moved.with_source(self._source).with_name(self._name)
 
     # ---------------------------------------------------------------- measures
@@ -749,7 +749,7 @@ class Surface:
 
     # ---------------------------------------------------------------- other libraries
 
-    def to_crs(self, crs: CrsLike, *, z_unit: UnitLike | None = None) -> TIN:
+    def to_crs(self, crs: CrsLike, *, elevation_unit: UnitLike | None = None) -> TIN:
         """Return the TIN in another CRS: :func:`tinsmith.reproject` of it.
 
         Examples
@@ -759,7 +759,7 @@ class Surface:
         >>> ts.triangulate(points, crs="EPSG:32616").to_crs("EPSG:32617").bounds.xmin
         212642.559...
         """
-        moved: TIN = call_method("TIN.to_crs", self.snapshot(), crs, z_unit=z_unit)
+        moved: TIN = call_method("TIN.to_crs", self.snapshot(), crs, elevation_unit=elevation_unit)
         return moved
 
     def to_geodataframe(self, kind: FeatureKind = "triangles") -> Any:
@@ -967,7 +967,7 @@ class TIN(Editable, Surface):
         *,
         constrained: ArrayLike | None = None,
         crs: CrsLike | None = None,
-        z_unit: UnitLike | None = None,
+        elevation_unit: UnitLike | None = None,
         attributes: Mapping[str, ArrayLike] | None = None,
     ) -> TIN:
         """Make a TIN of triangles that exist already, for example those of a file.
@@ -980,7 +980,7 @@ class TIN(Editable, Surface):
         constrained : (m, 3) bool array, optional
             Flags of the edge opposite each corner as given; default none.
         crs : CRS, str, int or pyproj.CRS, optional
-        z_unit : Unit or str, optional
+        elevation_unit : Unit or str, optional
             Unit of the elevations; default that of the CRS's vertical axis, else not known.
         attributes : mapping of str to (n,) array, optional
             Further columns of the points.
@@ -990,7 +990,7 @@ class TIN(Editable, Surface):
         CrsError
             If the CRS is unknown.
         OptionError
-            If ``z_unit`` is unknown, or another than that of the CRS's vertical axis; if an
+            If ``elevation_unit`` is unknown, or another than that of the CRS's vertical axis; if an
             attribute has not one value for each point.
         PointsError
             If a vertex number is out of range, a triangle has no area, or triangles overlap
@@ -1003,7 +1003,7 @@ class TIN(Editable, Surface):
         <TIN: 3 vertices, 1 triangle, z 1 to 3, crs unknown>
         """
         system = CRS.of(crs)
-        unit = require_one_unit(system, Unit.of(z_unit))
+        unit = require_one_unit(system, Unit.of(elevation_unit))
         xyz = as_points(points)
         corners = as_triangles(triangles, len(xyz))
         flags = as_flags(constrained, len(corners))
@@ -1106,11 +1106,11 @@ class TIN(Editable, Surface):
         self,
         function: Callable[[Float64Array], Float64Array],
         crs: CrsLike | None,
-        z_unit: UnitLike | None,
+        elevation_unit: UnitLike | None,
         length: float,
     ) -> TIN:
         system = CRS.of(crs)
-        unit = require_one_unit(system, Unit.of(z_unit))
+        unit = require_one_unit(system, Unit.of(elevation_unit))
         require_move(function, length)
         inputs = self._gather_inputs()
         if inputs is None:
@@ -1129,7 +1129,7 @@ class TIN(Editable, Surface):
     def _keep_triangles(self, points: Float64Array, crs: CRS | None, unit: Unit | None) -> TIN:
         """Return the same triangles at other places, all turned round where the map is mirrored."""
         made = type(self).from_triangles(
-            points, self.triangles, constrained=self.constrained, crs=crs, z_unit=unit
+            points, self.triangles, constrained=self.constrained, crs=crs, elevation_unit=unit
         )
         return made.replace(
             vertex_of=self.vertex_of,

@@ -85,7 +85,7 @@ def _make_surface(rng: np.random.Generator, n_points: int, shift: float) -> TIN:
     xy = np.concatenate([ring, rng.random((n_points - len(ring), 2)) * SIZE])
     x, y = xy.T
     z = 300 + 60 * np.sin(x / 900 + shift) * np.cos(y / 1100) + 8 * np.sin(x / 70) * np.sin(y / 90)
-    return ts.triangulate(np.column_stack([xy, z]), crs="EPSG:32616", z_unit="m")
+    return ts.triangulate(np.column_stack([xy, z]), crs="EPSG:32616", elevation_unit="m")
 
 
 def _measure_exactly(before: TIN, after: TIN) -> Volumes:

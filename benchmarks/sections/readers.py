@@ -219,7 +219,7 @@ def _measure_mesh(trial: Trial) -> None:
 
 
 def _measure_landxml(trial: Trial) -> None:
-    tin = ts.triangulate(make_points("uniform", trial.n), crs=CRS, z_unit="m")
+    tin = ts.triangulate(make_points("uniform", trial.n), crs=CRS, elevation_unit="m")
     path = ts.write(tin, trial.folder / "surface.xml")
     peers = {"xml.etree": Reader("xml", read_with_etree, "the numbers only")}
 

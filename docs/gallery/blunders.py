@@ -18,7 +18,7 @@ DPI = 100
 
 def main(folder: Path = FOLDER) -> None:
     """Write blunders.png."""
-    survey = ts.read(SAMPLES / "site_survey.csv", crs="EPSG:32616", z_unit="m")
+    survey = ts.read(SAMPLES / "site_survey.csv", crs="EPSG:32616", elevation_unit="m")
     points = survey.points.copy()
     points[1703, 2] *= 10.0
     points[993, 2] = 0.0

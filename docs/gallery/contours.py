@@ -16,7 +16,7 @@ DPI = 100
 
 def main(folder: Path = FOLDER) -> None:
     """Write contours.png."""
-    survey = ts.read(SAMPLES / "site_survey.csv", crs="EPSG:32616", z_unit="m")
+    survey = ts.read(SAMPLES / "site_survey.csv", crs="EPSG:32616", elevation_unit="m")
     tin = ts.triangulate(ts.lines_from_codes(survey), max_edge=20.0)
     lines = ts.contours(tin, interval=0.5, smooth=0.1)
     labels = ts.contour_labels(lines, spacing=70)

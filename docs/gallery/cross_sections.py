@@ -18,7 +18,9 @@ AXIS = [(752765, 4024303), (752800, 4024300), (752832, 4024294)]
 def main(folder: Path = HERE) -> None:
     """Write cross_sections.png."""
     ground, design = (
-        ts.triangulate(ts.lines_from_codes(ts.read(SAMPLES / name, crs="EPSG:32616", z_unit="m")))
+        ts.triangulate(
+            ts.lines_from_codes(ts.read(SAMPLES / name, crs="EPSG:32616", elevation_unit="m"))
+        )
         for name in ("site_survey.csv", "design_pad.csv")
     )
     surfaces = {"existing ground": ground, "design": design}

@@ -18,7 +18,7 @@ LEVEL = 327.0
 
 def main(folder: Path = FOLDER) -> None:
     """Write grade.png."""
-    survey = ts.read(SAMPLES / "site_survey.csv", crs="EPSG:32616", z_unit="m")
+    survey = ts.read(SAMPLES / "site_survey.csv", crs="EPSG:32616", elevation_unit="m")
     ground = ts.triangulate(ts.lines_from_codes(survey))
     graded = ts.grade(ground, PAD, LEVEL, cut_slope=2, fill_slope=3)
     found = ts.volume(ground, graded)

@@ -33,7 +33,7 @@ INK, LINE, POINT = "#333333", "#b3472d", "#0b5fa5"
 
 def main(folder: Path = HERE) -> None:
     """Write interpolation.png."""
-    tin = ts.triangulate(ts.lines_from_codes(ts.read(SURVEY, crs="EPSG:32616", z_unit="m")))
+    tin = ts.triangulate(ts.lines_from_codes(ts.read(SURVEY, crs="EPSG:32616", elevation_unit="m")))
     shape = round(WINDOW.height / SPACING), round(WINDOW.width / SPACING)
     grid = ts.Grid(WINDOW, shape=shape, spacing=SPACING)
     figure = Figure(figsize=(10.0, 7.6), layout="constrained")

@@ -18,7 +18,9 @@ COLORS = 128
 
 def main(folder: Path = FOLDER) -> None:
     """Write plan.png."""
-    survey = ts.lines_from_codes(ts.read(SAMPLES / "site_survey.csv", crs="EPSG:32616", z_unit="m"))
+    survey = ts.lines_from_codes(
+        ts.read(SAMPLES / "site_survey.csv", crs="EPSG:32616", elevation_unit="m")
+    )
     tin = ts.triangulate(survey, max_edge=20.0)
     made = ts.plan(
         tin, scale=1000, interval=0.5, smooth=0.1, title="Site survey", date="2026-11-22"

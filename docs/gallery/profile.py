@@ -18,7 +18,9 @@ LINE = [(752770, 4024240), (752835, 4024340)]
 def main(folder: Path = HERE) -> None:
     """Write profile.png."""
     ground, design = (
-        ts.triangulate(ts.lines_from_codes(ts.read(SAMPLES / name, crs="EPSG:32616", z_unit="m")))
+        ts.triangulate(
+            ts.lines_from_codes(ts.read(SAMPLES / name, crs="EPSG:32616", elevation_unit="m"))
+        )
         for name in ("site_survey.csv", "design_pad.csv")
     )
     table = ts.profile({"existing ground": ground, "design": design}, LINE)

@@ -25,7 +25,7 @@ def main(folder: pathlib.Path = FOLDER) -> None:
     whole = ts.triangulate(ts.read(SAMPLES / "jacksboro.tif"))
     middle = np.array(whole.bounds.center)
     near = whole.points[np.abs(whole.points[:, :2] - middle).max(axis=1) < RADIUS]
-    tin = ts.triangulate(near, crs=whole.crs, z_unit=whole.elevation_unit)
+    tin = ts.triangulate(near, crs=whole.crs, elevation_unit=whole.elevation_unit)
     inner = np.abs(near[:, :2] - middle).max(axis=1) < RADIUS / 2
     eye = near[inner][np.argmax(near[inner, 2]), :2]
     seen = ts.viewshed(tin, eye, eye_height=HEIGHT)

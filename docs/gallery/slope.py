@@ -13,7 +13,7 @@ import tinsmith as ts
 
 def main(folder: Path = FOLDER) -> None:
     """Write slope.png."""
-    survey = ts.read(SAMPLES / "site_survey.csv", crs="EPSG:32616", z_unit="m")
+    survey = ts.read(SAMPLES / "site_survey.csv", crs="EPSG:32616", elevation_unit="m")
     tin = ts.triangulate(ts.lines_from_codes(survey), max_edge=20.0)
     figure = ts.relief_map(tin, ts.slope_classes(tin), title="Site survey: classes of slope")
     save(draw(figure, 110), folder / "slope.png")

@@ -17,7 +17,9 @@ SAMPLES = HERE.parent.parent / "sample_data"
 def main(folder: Path = HERE) -> None:
     """Write volumes.png."""
     ground, design = (
-        ts.triangulate(ts.lines_from_codes(ts.read(SAMPLES / name, crs="EPSG:32616", z_unit="m")))
+        ts.triangulate(
+            ts.lines_from_codes(ts.read(SAMPLES / name, crs="EPSG:32616", elevation_unit="m"))
+        )
         for name in ("site_survey.csv", "design_pad.csv")
     )
     figure = ts.earthwork_map(

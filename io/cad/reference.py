@@ -139,8 +139,8 @@ def _choose_elevation_unit(stated: Stated, declared: Declared, unit: Unit | None
         raise ReadError(
             f"{FILE} gives {stated.unit.name} for lengths and {stated.elevation_unit.name} for "
             "elevations, which may stand for those of attributes only: declare the unit of the "
-            f"elevations, `z_unit='{stated.unit.name}'` or "
-            f"`z_unit='{stated.elevation_unit.name}'`."
+            f"elevations, `elevation_unit='{stated.unit.name}'` or "
+            f"`elevation_unit='{stated.elevation_unit.name}'`."
         )
     return unit
 

@@ -258,7 +258,7 @@ def find_unit_words(attributes: Mapping[str, AnyArray]) -> list[str]:
         shown = " or ".join(f"'{word}'" for word in units[:_SHOWN])
         place = "every row" if n_rows == len(texts) else f"{n_rows:,} of {len(texts):,} rows"
         told = (
-            "if this is the unit of the elevations, the option `z_unit` says so"
+            "if this is the unit of the elevations, the option `elevation_unit` says so"
             if len(units) == 1
             else "if these are the units of the elevations, make them one"
         )
@@ -414,7 +414,7 @@ def require_ground(z: Float64Array, unit: Unit | None, *, is_free: bool) -> list
         return [f"{sentence[0].upper()}{sentence[1:]}: check the columns."]
     raise ReadError(
         f"{sentence}: say with the option `columns` what the columns are, or with the option "
-        "`z_unit` the unit of the elevations."
+        "`elevation_unit` the unit of the elevations."
     )
 
 

@@ -252,7 +252,7 @@ def find_unit_line(lines: TextLines, rows: Int64Array) -> UnitLine | None:
             return UnitLine(
                 "",
                 whole,
-                f"L{whole[1:]} tells a unit, which is not looked at: the option `z_unit` says that "
-                "of the elevations.",
+                f"L{whole[1:]} tells a unit, which is not looked at: the option `elevation_unit` "
+                "says that of the elevations.",
             )
     return None

@@ -74,7 +74,7 @@ def read(
     path: Path,
     *,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     columns: str | Sequence[str] | Mapping[str, str | int] | None = None,
     delimiter: str | None = None,
     decimal: str | None = None,
@@ -126,8 +126,8 @@ def read(
         If a CRS is unknown, or the points lie in its area of use only with coordinates exchanged;
         if the header gives eastings and northings another unit than the CRS has.
     OptionError
-        If an option has a value that it cannot have; if ``z_unit`` is unknown, or another than the
-        header gives.
+        If an option has a value that it cannot have; if ``elevation_unit`` is unknown, or another
+        than the header gives.
 
     Notes
     -----
@@ -159,7 +159,7 @@ def read(
     _require_few_faults(table.faults, lines, layout, skip_bad=skip_bad)
     require_one_header(table.faults, lines, layout.delimiter, meaning)
     told = _account_for_rows(table, left_out)
-    unit, told_unit = _find_unit(layout, lines, Unit.of(z_unit))
+    unit, told_unit = _find_unit(layout, lines, Unit.of(elevation_unit))
     where = _Reference(source, target, area)
     told = _settle_places(told, lines, layout, meaning, where, is_told=columns is not None)
     is_free = columns is not None or where.area is None  # a plan of its own may lie anywhere
@@ -246,7 +246,7 @@ def _find_unit(
     if named not in (None, told) or declared not in (None, told):
         raise ReadError(
             f"{line.label} tells {line.unit} as the unit of the elevations, and the "
-            f"{'header' if named else 'option `z_unit`'} another: make them agree.",
+            f"{'header' if named else 'option `elevation_unit`'} another: make them agree.",
         )
     return told, [line.note]
 

@@ -53,7 +53,7 @@ def read(
     path: Path,
     *,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     classes: int | str | Sequence[int] | None = None,
     returns: int | str | Sequence[int | str] | None = None,
     window: Bounds | Sequence[float] | None = None,
@@ -118,7 +118,7 @@ def read(
     selection = parse_selection(classes, returns, window, resolution, every, withheld, attributes)
     headers = [parse_header(one) for one in _list_files(path)]
     _require_levels(headers, selection)
-    target, declared = CRS.of(crs), Unit.of(z_unit)
+    target, declared = CRS.of(crs), Unit.of(elevation_unit)
     tiles = [_locate(header, target, declared) for header in headers]
     _require_one_crs(tiles, target, path)
     units = _require_comparable_units(tiles, target, path)
@@ -216,7 +216,7 @@ def _require_comparable_units(
             raise ReadError(
                 f"'{first}' and '{tile.header.path.name}' in '{path}' have elevations in different "
                 f"units: {units[0] or 'unknown'} and {unit or 'unknown'}; read them one by one, or "
-                "declare the unit (`z_unit`) if it is that of all.",
+                "declare the unit (`elevation_unit`) if it is that of all.",
                 path=path,
             )
     return units

@@ -117,7 +117,7 @@ class Reference(NamedTuple):
 
 def choose_reference(
     crs: CrsLike | None,
-    z_unit: UnitLike | None,
+    elevation_unit: UnitLike | None,
     *,
     found_crs: str | None = None,
     found_unit: str | None = None,
@@ -138,7 +138,7 @@ def choose_reference(
     system = declared if own is None else own
     known = _find_unit(found_unit)
     vertical = None if system is None else system.vertical_unit
-    unit = settle_unit(Unit.of(z_unit), known or vertical)
+    unit = settle_unit(Unit.of(elevation_unit), known or vertical)
     return Reference(system, unit, is_declared=own is None and system is not None)
 
 
@@ -208,7 +208,7 @@ class Mesh:
 def mesh_reader(parse: Callable[..., Mesh]) -> Callable[..., TIN | Survey]:
     """Make a reader of a function that says what a file holds, by its path and options.
 
-    The reader takes the options of every mesh too: ``crs``, ``z_unit`` and ``faces``.
+    The reader takes the options of every mesh too: ``crs``, ``elevation_unit`` and ``faces``.
     """
 
     @wraps(parse)
@@ -216,19 +216,19 @@ def mesh_reader(parse: Callable[..., Mesh]) -> Callable[..., TIN | Survey]:
         path: Path,
         *,
         crs: CrsLike | None = None,
-        z_unit: UnitLike | None = None,
+        elevation_unit: UnitLike | None = None,
         faces: FacePolicy = "most",
         **options: Any,
     ) -> TIN | Survey:
         mesh = parse(path, **options)
         reference = choose_reference(
-            crs, z_unit, found_crs=mesh.crs, found_unit=mesh.elevation_unit
+            crs, elevation_unit, found_crs=mesh.crs, found_unit=mesh.elevation_unit
         )
         return build_mesh(mesh, path, reference=reference, faces=faces)
 
     usual = signature(read, follow_wrapped=False).parameters
     first, *own = signature(parse).parameters.values()
-    order = [first, usual["crs"], usual["z_unit"], *own, usual["faces"]]
+    order = [first, usual["crs"], usual["elevation_unit"], *own, usual["faces"]]
     vars(read)["__signature__"] = signature(parse).replace(parameters=order)
     return read
 
@@ -297,7 +297,7 @@ def make_tin(
             np.asarray(triangles)[kept],
             constrained=None if constrained is None else constrained[kept],
             crs=reference.crs,
-            z_unit=reference.elevation_unit,
+            elevation_unit=reference.elevation_unit,
             attributes=attributes,
         )
 

@@ -224,7 +224,7 @@ def from_mesh(
     mesh: Any,
     *,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     faces: FacePolicy = "most",
 ) -> TIN:
     """Return a TIN of the triangles of another library's mesh, which are kept as they are.
@@ -234,7 +234,7 @@ def from_mesh(
     mesh : pyvista.PolyData, pyvista.UnstructuredGrid, meshio.Mesh or trimesh.Trimesh
     crs : CRS, str, int or pyproj.CRS, optional
         Declares the CRS; default the one that the mesh has from tinsmith.
-    z_unit : Unit or str, optional
+    elevation_unit : Unit or str, optional
         Declares the unit of the elevations; default the one that the mesh has from tinsmith.
     faces : {"most", "all", "surface"}
         What becomes of faces without area seen from above, and of those that overlap larger ones:
@@ -269,7 +269,7 @@ def from_mesh(
         with naming_file(name):
             reference = choose_reference(
                 crs,
-                z_unit,
+                elevation_unit,
                 found_crs=_as_text(found.about.get("crs")),
                 found_unit=_as_text(found.about.get("elevation_unit")),
             )
@@ -286,7 +286,7 @@ def from_mesh(
             fans.triangles[kept],
             constrained=found.flags[kept] if found.flags is not None and has_flags else None,
             crs=reference.crs,
-            z_unit=reference.elevation_unit,
+            elevation_unit=reference.elevation_unit,
             attributes=found.attributes,
         )
 

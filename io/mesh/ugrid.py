@@ -59,7 +59,7 @@ def read(
     path: Path,
     *,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     surface: str | None = None,
     variable: str | None = None,
     faces: FacePolicy = "most",
@@ -88,7 +88,7 @@ def read(
         points[:, 2] *= -1.0
         notes.append(f"Depths '{value['variable']}' grow downwards: their sign was changed.")
     _require_elevations(points, value["variable"])
-    reference = _choose_reference(crs, z_unit, value)
+    reference = _choose_reference(crs, elevation_unit, value)
     notes += describe_single_precision(points, value["dtype"])
     notes += _require_units(value["xy_units"], reference.crs)
     mesh = Mesh(
@@ -112,7 +112,7 @@ def _require_elevations(points: Float64Array, variable: str) -> None:
 
 
 def _choose_reference(
-    crs: CrsLike | None, z_unit: UnitLike | None, value: Mapping[str, Any]
+    crs: CrsLike | None, elevation_unit: UnitLike | None, value: Mapping[str, Any]
 ) -> Reference:
     unit = value["unit"] if _is_unit(value["unit"]) else None
     told = [text for text in value["crs"] if text not in _NO_CRS]
@@ -121,7 +121,7 @@ def _choose_reference(
         raise CrsError(
             f"{FILE} names the CRS '{told[0][:60]}', which is unknown: declare it.", crs=told[0]
         )
-    return choose_reference(crs, z_unit, found_crs=found, found_unit=unit)
+    return choose_reference(crs, elevation_unit, found_crs=found, found_unit=unit)
 
 
 def _require_units(units: Sequence[str], crs: CRS | None) -> list[str]:

@@ -120,7 +120,7 @@ def read(
     path: Path,
     *,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     band: int | None = None,
     window: Sequence[float] | Bounds | None = None,
     cells: Sequence[int] | None = None,
@@ -132,8 +132,8 @@ def read(
 ) -> Survey:
     """Read a raster as points, one at the centre of every cell that has an elevation.
 
-    The points are transformed to ``crs``, nothing is resampled. ``z_unit`` may also be that of the
-    band or that of the vertical axis of its CRS, if they differ.
+    The points are transformed to ``crs``, nothing is resampled. ``elevation_unit`` may also be that
+    of the band or that of the vertical axis of its CRS, if they differ.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def read(
         degrees and no other is wanted, or no cell has an elevation.
     OptionError
         If band, window, cells or stride is not one that the raster has, nodata is no number, or
-        ``z_unit`` is unknown, or another than the raster's own.
+        ``elevation_unit`` is unknown, or another than the raster's own.
     CrsError
         If the points cannot be transformed.
     MissingExtraError
@@ -182,7 +182,12 @@ def read(
     header = read_header(path)
     choice = Choice(band, window, cells, stride, nodata, fill, most_cells)
     return make_survey(
-        header, partial(stream_strips, header), choice, crs=crs, z_unit=z_unit, progress=progress
+        header,
+        partial(stream_strips, header),
+        choice,
+        crs=crs,
+        elevation_unit=elevation_unit,
+        progress=progress,
     )
 
 
@@ -192,7 +197,7 @@ def make_survey(
     choice: Choice,
     *,
     crs: CrsLike | None,
-    z_unit: UnitLike | None,
+    elevation_unit: UnitLike | None,
     progress: Tell | None = None,
 ) -> Survey:
     """Make a survey of the cells of a raster, as :func:`read` does.
@@ -202,7 +207,7 @@ def make_survey(
     path, target = dataset.path, CRS.of(crs)
     number, dataset, said = choose_elevations(dataset, choice.band)
     dataset, source, told = settle_axes(dataset, target)
-    unit, told_unit = find_elevation_unit(dataset, number, source, Unit.of(z_unit))
+    unit, told_unit = find_elevation_unit(dataset, number, source, Unit.of(elevation_unit))
     cells = _choose_cells(dataset, choice)
     said = [*said, *told, *told_unit, *_describe_window(dataset, choice)]
     left_out = 0 if choice.most_cells is None else cells.width * cells.height - cells.count

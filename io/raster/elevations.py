@@ -44,7 +44,7 @@ def read_raster(
     path: str | os.PathLike[str],
     *,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     band: int | None = None,
     nodata: float | Sequence[float] | None = None,
 ) -> Raster:
@@ -60,7 +60,7 @@ def read_raster(
         raster is used.
     crs : CRS, str, int or pyproj.CRS, optional
         Declares the CRS of a raster that has none. Nothing is transformed.
-    z_unit : Unit or str, optional
+    elevation_unit : Unit or str, optional
         Unit of the elevations, if the file does not give it.
     band : int, optional
         Band to read, from 1; default the first.
@@ -98,7 +98,9 @@ def read_raster(
     require_local(path)
     file = Path(path)
     _require_file(file)
-    return _make_raster(read_header(file), CRS.of(crs), Unit.of(z_unit), band, parse_nodata(nodata))
+    return _make_raster(
+        read_header(file), CRS.of(crs), Unit.of(elevation_unit), band, parse_nodata(nodata)
+    )
 
 
 def _require_file(path: Path) -> None:

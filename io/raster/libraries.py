@@ -41,7 +41,7 @@ def from_raster(
     raster: Any,
     *,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     band: int | str | None = None,
     window: Sequence[float] | Bounds | None = None,
     cells: Sequence[int] | None = None,
@@ -61,7 +61,7 @@ def from_raster(
     crs : CRS, str, int or pyproj.CRS, optional
         CRS wanted: the points are transformed to it, nothing is resampled. It declares the CRS of
         a raster that has none.
-    z_unit : Unit or str, optional
+    elevation_unit : Unit or str, optional
         Unit of the elevations, where the raster does not tell.
     band : int or str, optional
         Number of the band, from 1; of a Dataset or a Raster the name. Default the first, but a
@@ -106,7 +106,9 @@ def from_raster(
     )
     choice = Choice(number, window, cells, stride, nodata, fill)
     with naming_file(header.path):
-        return make_survey(header, partial(_cut, dataset), choice, crs=crs, z_unit=z_unit)
+        return make_survey(
+            header, partial(_cut, dataset), choice, crs=crs, elevation_unit=elevation_unit
+        )
 
 
 @contextmanager

@@ -102,12 +102,12 @@ class Format:
 
     Notes
     -----
-    A reader takes ``(path, *, crs=None, z_unit=None, <options>)`` and returns a Survey or a TIN.
-    ``crs``, a CRS, str, int or pyproj.CRS, declares the CRS of the coordinates, ``z_unit``, a Unit
-    or str, the unit of elevations; the default of both is what the file names. It raises a
-    ReadError if the file is missing or damaged, or its faces are no TIN; a CrsError if PROJ does
-    not know the CRS, or the file names another; an OptionError if the unit is unknown, or the file
-    names another, or an option has a value that it cannot have.
+    A reader takes ``(path, *, crs=None, elevation_unit=None, <options>)`` and returns a Survey or a
+    TIN. ``crs``, a CRS, str, int or pyproj.CRS, declares the CRS of the coordinates,
+    ``elevation_unit``, a Unit or str, the unit of elevations; the default of both is what the file
+    names. It raises a ReadError if the file is missing or damaged, or its faces are no TIN; a
+    CrsError if PROJ does not know the CRS, or the file names another; an OptionError if the unit is
+    unknown, or the file names another, or an option has a value that it cannot have.
 
     A writer takes ``(obj, path, *, <options>)``. It raises a FormatError for what it cannot hold,
     and a WriteError, with the old file left whole, if the new one cannot be written.
@@ -261,7 +261,9 @@ def require_options(
 ) -> None:
     """Refuse options that a reader or writer does not have."""
     allowed = tuple(one.name for one in list_options(function))
-    accepted = {*allowed, "progress", "z_unit"} & set(inspect.signature(function).parameters)
+    accepted = {*allowed, "progress", "elevation_unit"} & set(
+        inspect.signature(function).parameters
+    )
     unknown = [name for name in options if name not in accepted]
     if not unknown:
         return

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 __all__ = ["FormatOption", "describe_parameters", "find_option_not_taken", "list_options"]
 
-_OWN_PARAMETERS = frozenset({"crs", "z_unit", "progress"})
+_OWN_PARAMETERS = frozenset({"crs", "elevation_unit", "progress"})
 """What every reader or writer may take, which is no option of its format."""
 
 

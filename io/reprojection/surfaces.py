@@ -28,16 +28,18 @@ _FLAT = 1e-3
 
 
 @overload
-def reproject(surface: TIN, crs: CrsLike, *, z_unit: UnitLike | None = None) -> TIN: ...
-@overload
-def reproject(surface: Survey, crs: CrsLike, *, z_unit: UnitLike | None = None) -> Survey: ...
+def reproject(surface: TIN, crs: CrsLike, *, elevation_unit: UnitLike | None = None) -> TIN: ...
 @overload
 def reproject(
-    surface: TIN | Survey, crs: CrsLike, *, z_unit: UnitLike | None = None
+    surface: Survey, crs: CrsLike, *, elevation_unit: UnitLike | None = None
+) -> Survey: ...
+@overload
+def reproject(
+    surface: TIN | Survey, crs: CrsLike, *, elevation_unit: UnitLike | None = None
 ) -> TIN | Survey: ...
 @product
 def reproject(
-    surface: TIN | Survey, crs: CrsLike, *, z_unit: UnitLike | None = None
+    surface: TIN | Survey, crs: CrsLike, *, elevation_unit: UnitLike | None = None
 ) -> TIN | Survey:
     """Return a survey or TIN in another CRS.
 
@@ -47,7 +49,7 @@ def reproject(
         Its CRS must be known.
     crs : CRS, str, int or pyproj.CRS
         CRS wanted.
-    z_unit : Unit or str, optional
+    elevation_unit : Unit or str, optional
         Unit of the elevations, where the surface does not know it.
 
     Returns
@@ -84,7 +86,7 @@ def reproject(
     if not isinstance(surface, Surface | Survey):
         raise OptionError("surface", surface, "a TIN or a Survey")
     source, target = surface.crs, CRS.of(crs)
-    unit = _settle_unit(surface, Unit.of(z_unit))
+    unit = _settle_unit(surface, Unit.of(elevation_unit))
     if source is None or target is None:
         raise CrsError(
             "The CRS of these points is not known, so they cannot be reprojected: declare it first."
@@ -102,7 +104,10 @@ def _settle_unit(surface: TIN | Survey, declared: Unit | None) -> Unit | None:
     own = surface.elevation_unit
     if own is not None and declared is not None and own != declared:
         raise OptionError(
-            "z_unit", declared.name, f"{own.name}, as the points have", what="unit of elevations"
+            "elevation_unit",
+            declared.name,
+            f"{own.name}, as the points have",
+            what="unit of elevations",
         )
     return own or declared
 
@@ -115,7 +120,7 @@ def _move_tin(tin: TIN, source: CRS, target: CRS, unit: Unit | None) -> TIN:
         return reproject_points(points, source, target, unit=unit).points
 
     moved = tin.transform(
-        move, crs=target, z_unit=told.unit, length=find_conversion_factor(along, across)
+        move, crs=target, elevation_unit=told.unit, length=find_conversion_factor(along, across)
     )
     if not told.notes:
         return moved

@@ -75,7 +75,7 @@ def transform_points(
     source: CrsLike,
     target: CrsLike,
     *,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
 ) -> Float64Array:
     """Transform points from one CRS to another.
 
@@ -84,7 +84,7 @@ def transform_points(
     points : (n, 3) float64 array
         Easting (longitude), northing (latitude), elevation.
     source, target : CRS, str, int or pyproj.CRS
-    z_unit : Unit or str, optional
+    elevation_unit : Unit or str, optional
         Unit of the elevations; default that of the source: its vertical axis, else its eastings,
         metres above degrees.
 
@@ -108,7 +108,7 @@ def transform_points(
     known, wanted = CRS.of(source), CRS.of(target)
     if known is None or wanted is None:
         raise CrsError("Points are transformed from one CRS to another: both are needed.")
-    return reproject(as_points(points), known, wanted, unit=Unit.of(z_unit)).points
+    return reproject(as_points(points), known, wanted, unit=Unit.of(elevation_unit)).points
 
 
 def reproject(

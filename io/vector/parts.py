@@ -49,9 +49,9 @@ class Wanted(NamedTuple):
 
     crs: CRS | None = None
     """Of the points."""
-    elevation_unit: Unit | None = None
+    target_unit: Unit | None = None
     """Of their elevations, if it is known."""
-    z_unit: Unit | None = None
+    elevation_unit: Unit | None = None
     """Of the elevations in the file, if its CRS does not tell."""
 
 
@@ -218,8 +218,8 @@ def find_elevation_factor(features: Features, wanted: Wanted, *, notes: list[str
         another one.
     """
     source = features.crs or wanted.crs
-    theirs = find_elevation_unit(features, wanted.z_unit)
-    ours = wanted.elevation_unit or (None if wanted.crs is None else wanted.crs.vertical_unit)
+    theirs = find_elevation_unit(features, wanted.elevation_unit)
+    ours = wanted.target_unit or (None if wanted.crs is None else wanted.crs.vertical_unit)
     if theirs is None and features.crs is None:
         return 1.0
     from_unit = assume_elevation_unit(source, theirs)

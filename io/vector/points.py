@@ -41,7 +41,7 @@ def read(
     path: Path,
     *,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     layer: str | None = None,
     z_field: str | None = None,
     where: str | None = None,
@@ -88,7 +88,7 @@ def read(
     """
     role = None if lines_as is None else choice("lines_as", lines_as, LineReading)
     features = read_features(path, layer=layer, where=where)
-    declared = Unit.of(z_unit)
+    declared = Unit.of(elevation_unit)
     unit = find_elevation_unit(features, declared)
     asked = _Asked(CRS.of(crs), declared, unit, z_field, parse_nodata(nodata))
     kinds = _list_kinds(features)

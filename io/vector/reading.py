@@ -45,8 +45,8 @@ class LineOptions(TypedDict, total=False):
     """How lines are read, as :func:`read_lines` describes."""
 
     crs: CrsLike | None
+    target_unit: UnitLike | None
     elevation_unit: UnitLike | None
-    z_unit: UnitLike | None
     layer: str | None
     where: str | None
     drape: bool
@@ -67,8 +67,8 @@ def _reading(
     path: str | os.PathLike[str],
     *,
     crs: CrsLike | None = None,
+    target_unit: UnitLike | None = None,
     elevation_unit: UnitLike | None = None,
-    z_unit: UnitLike | None = None,
     layer: str | None = None,
     where: str | None = None,
     drape: bool = False,
@@ -76,7 +76,7 @@ def _reading(
     check_crs: bool = True,
 ) -> Iterator[_Lines]:
     """Yield the lines of a file, of which errors speak."""
-    file, wanted = as_path(path), Wanted(CRS.of(crs), Unit.of(elevation_unit), Unit.of(z_unit))
+    file, wanted = as_path(path), Wanted(CRS.of(crs), Unit.of(target_unit), Unit.of(elevation_unit))
     with naming_file(file), checking_crs(check_crs):
         features = read_features(file, layer=layer, where=where, lines_only=True)
         parts = split_into_parts(features, wanted, drape=drape, notes=notes)
@@ -99,9 +99,9 @@ def read_lines(
     path : path-like
     crs : CRS, str, int or pyproj.CRS, optional
         CRS wanted, that of the points; default the file's own.
-    elevation_unit : Unit or str, optional
+    target_unit : Unit or str, optional
         Unit wanted, that of the elevations of the points, if it is known.
-    z_unit : Unit or str, optional
+    elevation_unit : Unit or str, optional
         Unit of the elevations in the file, if its CRS has no vertical axis that tells.
     layer : str, optional
         Needed if several layers have geometry.
@@ -389,7 +389,7 @@ def _find_levels(features: Features, wanted: Wanted, z: float | str | None) -> l
         )
     unit = find_named_unit(name, features)
     if unit is not None:
-        wanted = wanted._replace(z_unit=settle_unit(wanted.z_unit, unit))
+        wanted = wanted._replace(elevation_unit=settle_unit(wanted.elevation_unit, unit))
         features = features._replace(elevation_unit="")  # is that of the geometries
     factor = find_elevation_factor(features, wanted, notes=[])
     return [None if level is None else level * factor for level in found]

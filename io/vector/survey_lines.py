@@ -47,7 +47,7 @@ def with_lines(
     water: Sequence[Source] = (),
     water_z: float | str | None = None,
     drape: bool = False,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     check_crs: bool = True,
 ) -> Survey:
     """Add the lines of vector files to a survey, in its CRS.
@@ -63,7 +63,7 @@ def with_lines(
     drape : bool
         Take the heights of breaklines, boundary and holes from the surface, whatever the files
         say.
-    z_unit : Unit or str, optional
+    elevation_unit : Unit or str, optional
         Unit of the elevations in the files, where their CRS has no vertical axis that tells.
     check_crs : bool
         Refuse coordinates that contradict their CRS; False takes them as they are, with a note.
@@ -89,8 +89,8 @@ def with_lines(
     notes = list(survey.notes)
     units: dict[str, Any] = {
         "crs": survey.crs,
-        "elevation_unit": survey.elevation_unit,
-        "z_unit": z_unit,
+        "target_unit": survey.elevation_unit,
+        "elevation_unit": elevation_unit,
         "check_crs": check_crs,
     }
 

@@ -138,7 +138,9 @@ def elevation_unit() -> Option:
         "Unit of the elevations, where neither the file nor the CRS says. A TIN in metres with "
         "elevations in feet is not the same surface."
     )
-    return choice("Z_UNIT", "Unit of elevations", "--z-unit", help_text, _UNITS, advanced=True)
+    return choice(
+        "ELEVATION_UNIT", "Unit of elevations", "--elevation-unit", help_text, _UNITS, advanced=True
+    )
 
 
 def describe(definition: Any, help_text: str, flag: str = "", advanced: bool = False) -> Any:

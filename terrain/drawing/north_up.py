@@ -54,7 +54,7 @@ def _turn_surface(tin: Surface, axes: Axes, crs: DrawnCRS) -> TIN:
         tin.triangles,
         constrained=tin.constrained,
         crs=crs,
-        z_unit=tin.elevation_unit,
+        elevation_unit=tin.elevation_unit,
     )
     kept = {name: getattr(tin, name) for name in ("vertex_of", "report", "lines", "row_attributes")}
     return made.replace(**kept).with_source(tin.source)

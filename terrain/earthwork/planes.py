@@ -88,4 +88,6 @@ def level_surface(tin: TIN, base: Any) -> TIN:
     corners = np.column_stack([east, north])
     flat = np.column_stack([corners, np.zeros(4)])
     flat[:, 2] = as_plane(base).heights_above(flat)
-    return TIN.from_triangles(flat, [[0, 1, 2], [0, 2, 3]], crs=tin.crs, z_unit=tin.elevation_unit)
+    return TIN.from_triangles(
+        flat, [[0, 1, 2], [0, 2, 3]], crs=tin.crs, elevation_unit=tin.elevation_unit
+    )

@@ -379,7 +379,7 @@ def _add_difference(
     differences = places[:, 2].copy()
     places[:, 2] = second.interpolate(places[:, :2], extrapolate="nearest")
     shown = TIN.from_triangles(
-        places, change.triangles, crs=second.crs, z_unit=second.elevation_unit
+        places, change.triangles, crs=second.crs, elevation_unit=second.elevation_unit
     )
     return {**surfaces, _COMPARED: shown}, {_COMPARED: differences}
 

@@ -45,7 +45,7 @@ def steep(ground, *, degrees=45.0, origin=CORNER):
     crs, unit, along, up = GROUNDS[ground]
     rise = np.tan(np.radians(degrees)) * 100.0 * along / up
     points = origin + np.array([[0, 0, 0], [100, 0, rise], [0, 100, 0]])
-    return TIN.from_triangles(points, TRIANGLES, crs=crs, z_unit=unit)
+    return TIN.from_triangles(points, TRIANGLES, crs=crs, elevation_unit=unit)
 
 
 def slope_of_terrain(tin, folder):
@@ -133,7 +133,7 @@ def test_slope_and_aspect_in_degrees_are_those_in_a_projected_crs(latitude, unit
     )
     local = f"+proj=tmerc +lat_0={latitude} +lon_0=10.0002 +ellps=WGS84 +units=m"
     flat = TIN.from_triangles(ts.io.transform_points(places, 4326, local), TRIANGLES, crs=local)
-    degrees = TIN.from_triangles(places / (1, 1, up), TRIANGLES, crs=4326, z_unit=unit)
+    degrees = TIN.from_triangles(places / (1, 1, up), TRIANGLES, crs=4326, elevation_unit=unit)
     expected = ts.terrain.slope(flat)[0]
     assert expected > 2.0
     assert slope_of_terrain(degrees, tmp_path) == pytest.approx(expected, abs=1e-3)
@@ -191,9 +191,9 @@ def test_the_unit_is_known_by_the_vertical_axis_or_declared(crs, declared, known
     for found in (
         survey,
         ts.triangulate(survey),
-        ts.triangulate(points, crs=crs, z_unit=declared),
-        ts.triangulate(points, breaklines=[points[:2]], crs=crs, z_unit=declared),
-        TIN.from_triangles(points, TRIANGLES, crs=crs, z_unit=declared),
+        ts.triangulate(points, crs=crs, elevation_unit=declared),
+        ts.triangulate(points, breaklines=[points[:2]], crs=crs, elevation_unit=declared),
+        TIN.from_triangles(points, TRIANGLES, crs=crs, elevation_unit=declared),
     ):
         assert found.elevation_unit == known
     tin = ts.triangulate(survey)
@@ -209,9 +209,9 @@ def test_two_units_that_differ_are_refused():
     feet = Survey(points=points, elevation_unit="ft")
     for both in (
         lambda: Survey(points=points, crs="EPSG:2274+5703", elevation_unit="ft"),
-        lambda: ts.triangulate(points, crs="EPSG:2274+5703", z_unit="ft"),
-        lambda: TIN.from_triangles(points, TRIANGLES, crs="EPSG:2274+5703", z_unit="ft"),
-        lambda: ts.triangulate(feet, z_unit="m"),
+        lambda: ts.triangulate(points, crs="EPSG:2274+5703", elevation_unit="ft"),
+        lambda: TIN.from_triangles(points, TRIANGLES, crs="EPSG:2274+5703", elevation_unit="ft"),
+        lambda: ts.triangulate(feet, elevation_unit="m"),
         lambda: ts.triangulate(feet, crs="EPSG:2274+5703"),
     ):
         with pytest.raises(OptionError, match="unit of elevations"):
@@ -220,12 +220,12 @@ def test_two_units_that_differ_are_refused():
 
 def test_a_declared_unit_that_is_none_is_refused_before_any_work(tmp_path):
     with pytest.raises(OptionError, match=r"'parsec'.*US survey foot"):
-        ts.read(tmp_path / "missing.csv", z_unit="parsec")
+        ts.read(tmp_path / "missing.csv", elevation_unit="parsec")
     with pytest.raises(OptionError, match="parsec"):
-        ts.triangulate([[0, 0, 0]], z_unit="parsec")
-    said = invoke("info", "missing.csv", "--z-unit", "parsec", code=2).stderr
+        ts.triangulate([[0, 0, 0]], elevation_unit="parsec")
+    said = invoke("info", "missing.csv", "--elevation-unit", "parsec", code=2).stderr
     assert "Invalid unit of elevations 'parsec'" in said
-    assert "(--z-unit)" in said
+    assert "(--elevation-unit)" in said
 
 
 # ------------------------------------------------------------------ reading
@@ -259,19 +259,19 @@ def test_a_summit_in_metres_is_reprojected_to_feet_and_back(summit, tmp_path):
     ],
 )
 def test_a_declared_unit_is_that_of_the_file(summit, declared, expected, known):
-    survey = ts.read(summit, source_crs=32616, crs=2274, z_unit=declared)
+    survey = ts.read(summit, source_crs=32616, crs=2274, elevation_unit=declared)
     assert survey.points[0, 2] == pytest.approx(expected, rel=1e-12)
     assert survey.elevation_unit == known
 
 
 def test_without_a_reprojection_a_declared_unit_stays(summit):
-    survey = ts.read(summit, crs=32616, z_unit="ft")
+    survey = ts.read(summit, crs=32616, elevation_unit="ft")
     assert survey.points[0, 2] == 1032.0
     assert survey.elevation_unit == FOOT
 
 
 def test_elevations_take_the_unit_of_the_vertical_axis(summit):
-    survey = ts.read(summit, crs="EPSG:32616+6360", z_unit="m")
+    survey = ts.read(summit, crs="EPSG:32616+6360", elevation_unit="m")
     assert survey.points[0, 2] == pytest.approx(3385.82)
     assert survey.elevation_unit == US_SURVEY_FOOT
     assert "converted from metre to US survey foot" in survey.notes[-1]
@@ -343,21 +343,21 @@ def test_a_band_and_a_vertical_axis_that_differ_ask_for_a_word(dem):
     with pytest.raises(ts.ReadError, match=r"two units: foot .* and metre"):
         ts.read(path)
     with pytest.raises(ts.ReadError, match="two units"):
-        ts.read(path, z_unit="cm")
-    assert ts.read(path, z_unit="m").points[0, 2] == 1000.0
-    assert ts.read(path, z_unit="ft").points[0, 2] == pytest.approx(304.8)
+        ts.read(path, elevation_unit="cm")
+    assert ts.read(path, elevation_unit="m").points[0, 2] == 1000.0
+    assert ts.read(path, elevation_unit="ft").points[0, 2] == pytest.approx(304.8)
 
 
 def test_a_band_in_something_else_than_a_length_is_told(dem):
     survey = ts.read(dem("dB"))
     assert survey.elevation_unit is None
     assert "'dB', is no length" in survey.notes[0]
-    assert ts.read(dem("dB"), z_unit="m").notes == []
+    assert ts.read(dem("dB"), elevation_unit="m").notes == []
 
 
 def test_what_a_file_says_is_not_overruled(dem):
     with pytest.raises(OptionError, match=r"'foot'.*metre, as '.*dem.tif' itself says"):
-        ts.read(dem("m"), z_unit="ft")
+        ts.read(dem("m"), elevation_unit="ft")
 
 
 # ------------------------------------------------------------------ round trips
@@ -394,14 +394,17 @@ def test_a_header_in_feet_is_honoured_and_not_overruled(tmp_path):
     vertical = ts.read(path, crs="EPSG:32616+5703")
     assert vertical.points[0, 2] == pytest.approx(1032 * US_FOOT)
     with pytest.raises(OptionError, match="US survey foot, as"):
-        ts.read(path, crs=32616, z_unit="m")
+        ts.read(path, crs=32616, elevation_unit="m")
 
 
 @pytest.mark.parametrize("unit", [None, "ft", "Clarke's foot"])
 def test_a_lifted_mesh_comes_back_in_its_own_unit(unit, tmp_path):
     pytest.importorskip("pyvista")
     tin = TIN.from_triangles(
-        CORNER + np.array([[0, 0, 0], [9, 0, 1], [0, 9, 4]]), TRIANGLES, crs=32616, z_unit=unit
+        CORNER + np.array([[0, 0, 0], [9, 0, 1], [0, 9, 4]]),
+        TRIANGLES,
+        crs=32616,
+        elevation_unit=unit,
     )
     ts.terrain.lift(tin, exaggeration=3).save(tmp_path / "a.vtp")
     again = ts.read(tmp_path / "a.vtp")
@@ -418,11 +421,11 @@ def test_a_unit_without_a_name_is_kept_by_the_crs_alone(tmp_path):
 
 def test_a_mesh_in_one_crs_is_not_declared_to_be_in_another(tmp_path):
     ts.write(steep("metres"), tmp_path / "a.ply")
-    assert ts.read(tmp_path / "a.ply", crs=32616, z_unit="m").crs == 32616
+    assert ts.read(tmp_path / "a.ply", crs=32616, elevation_unit="m").crs == 32616
     with pytest.raises(ts.CrsError, match=r"EPSG:32616.*EPSG:2274"):
         ts.read(tmp_path / "a.ply", crs=2274)
     with pytest.raises(OptionError, match="metre"):
-        ts.read(tmp_path / "a.ply", z_unit="ft")
+        ts.read(tmp_path / "a.ply", elevation_unit="ft")
 
 
 def test_a_unit_that_a_mesh_names_must_be_one(tmp_path):
@@ -476,7 +479,7 @@ def kerb(tmp_path):
 def test_lines_take_the_unit_of_the_points(kerb, theirs, declared, ours, factor, told):
     notes = []
     (line,) = ts.io.read_lines(
-        kerb(theirs), crs=32616, elevation_unit=ours, z_unit=declared, notes=notes
+        kerb(theirs), crs=32616, target_unit=ours, elevation_unit=declared, notes=notes
     )
     assert line.coords[:, 2] == pytest.approx(np.array([1000, 1010]) * factor)
     assert any("were converted from" in note for note in notes) == told
@@ -492,8 +495,8 @@ def test_lines_in_another_crs_are_converted_and_what_is_assumed_is_told(kerb):
 def test_lines_of_an_unknown_unit_are_refused_where_it_would_make_a_difference(kerb):
     path = kerb("EPSG:32616")
     with pytest.raises(ts.ReadError, match="declare the unit of the lines"):
-        ts.io.read_lines(path, crs=32616, elevation_unit="ft")
-    assert ts.io.read_lines(path, crs=32616, elevation_unit="ft", drape=True)[0].is_draped
+        ts.io.read_lines(path, crs=32616, target_unit="ft")
+    assert ts.io.read_lines(path, crs=32616, target_unit="ft", drape=True)[0].is_draped
 
 
 def test_levels_of_water_take_the_unit_of_the_points(kerb):
@@ -508,8 +511,8 @@ def test_levels_of_water_take_the_unit_of_the_points(kerb):
 
 
 def test_lines_of_files_meet_the_points_in_their_unit(kerb, summit):
-    survey = ts.read(summit, crs=32616, z_unit="ft")
-    with_kerb = ts.io.with_lines(survey, breaklines=[kerb("EPSG:32616")], z_unit="m")
+    survey = ts.read(summit, crs=32616, elevation_unit="ft")
+    with_kerb = ts.io.with_lines(survey, breaklines=[kerb("EPSG:32616")], elevation_unit="m")
     assert with_kerb.breaklines[0].coords[0, 2] == pytest.approx(1000 / 0.3048)
     assert with_kerb.elevation_unit == FOOT
 
@@ -518,7 +521,9 @@ def test_lines_of_files_meet_the_points_in_their_unit(kerb, summit):
 
 
 def test_the_command_line_declares_units_and_tells_what_is_assumed(summit, tmp_path):
-    known = invoke("build", summit, "--crs", "32616", "--z-unit", "ft", "-o", tmp_path / "a.ply")
+    known = invoke(
+        "build", summit, "--crs", "32616", "--elevation-unit", "ft", "-o", tmp_path / "a.ply"
+    )
     assert "1,030.000 to 1,032.000 ft\n" in known.stderr
     assert ts.read(tmp_path / "a.ply").elevation_unit == FOOT
     unknown = invoke("build", summit, "--crs", "EPSG:32616", "-o", tmp_path / "a.ply")
@@ -531,10 +536,19 @@ def test_the_command_line_declares_units_and_tells_what_is_assumed(summit, tmp_p
 
 
 def test_lines_on_the_command_line_declare_their_unit(kerb, summit, tmp_path):
-    arguments = ("build", summit, "--crs", "32616", "--z-unit", "ft", "-o", tmp_path / "a.ply")
+    arguments = (
+        "build",
+        summit,
+        "--crs",
+        "32616",
+        "--elevation-unit",
+        "ft",
+        "-o",
+        tmp_path / "a.ply",
+    )
     lines = ("--breaklines", kerb("EPSG:32616"))
     assert "declare the unit" in invoke(*arguments, *lines, code=1).stderr
-    result = invoke(*arguments, *lines, "--lines-z-unit", "m")
+    result = invoke(*arguments, *lines, "--lines-elevation-unit", "m")
     assert "converted from metre to foot" in " ".join(result.stderr.split())
 
 

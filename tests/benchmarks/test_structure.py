@@ -15,7 +15,7 @@ FILES = {
     "def _parse(path, a, b, c, d):\n    return path\n",
     "terrain/__init__.py": "from ..tin.mesh import build\n",
     "tin/__init__.py": "",
-    "tin/mesh/__init__.py": "def build(self, z_unit):\n    pass\n",
+    "tin/mesh/__init__.py": "def build(self, elevation_unit):\n    pass\n",
     "tin/edits.py": "from .mesh import build\n",
 }
 
@@ -38,7 +38,7 @@ def test_figures_of_a_small_checkout(checkout):
     assert (found.functions, found.called_once) == (3, 1)
     assert found.splinters == ["io.text.reading._parse"]
     assert found.carriers == {"crs": {"io.text.reading"}, "path": {"io.text.reading"}} | {
-        "z_unit": {"tin.mesh"}
+        "elevation_unit": {"tin.mesh"}
     }
     assert found.with_path == 2
 

@@ -14,7 +14,7 @@ from tinsmith.cli.command_list import SUMMARIES
 from tinsmith.io.vector.geometries import read_geometries
 
 CRS = "EPSG:32616"
-UTM = ("--crs", CRS, "--z-unit", "m")
+UTM = ("--crs", CRS, "--elevation-unit", "m")
 RING = [[700_030, 4_000_030], [700_060, 4_000_030], [700_060, 4_000_060], [700_030, 4_000_060]]
 SLOPES = ("--cut-slope", 2, "--fill-slope", 2)
 NO_SURFACE = {"completion", "formats"}
@@ -159,7 +159,7 @@ def compare_difference(folder, figures):
     outputs = [word for name in ("d.ply", "d.csv", "d.gpkg", "d.png") for word in ("-o", name)]
     run = Run("diff", "flat.csv", *outputs, figures=figures)
     (row,), layer = read_table(folder / "d.csv"), read_layer(folder / "d.gpkg").columns
-    tin = ts.read(folder / "d.ply", crs=CRS, z_unit="m")
+    tin = ts.read(folder / "d.ply", crs=CRS, elevation_unit="m")
     table = ts.volume(tin, base=0.0)
     kinds = layer["kind"].astype(str)
     volumes = {kind: [layer["volume"][kinds == kind].sum()] for kind in ("cut", "fill")}

@@ -13,7 +13,7 @@ ROWS = [[0, 0, 5], [40, 0, 6], [0, 30, 8], [40, 30, 4], [20, 10, 7]]
 
 @pytest.fixture
 def surfaces(tmp_path):
-    tin = ts.triangulate(ROWS, z_unit="m", crs="EPSG:32616")
+    tin = ts.triangulate(ROWS, elevation_unit="m", crs="EPSG:32616")
     one, other = (ts.write(tin, tmp_path / f"{k}.xml", name=k) for k in ("EG", "FG"))
     head, _, tail = one.read_text().partition("</Surfaces>")
     second = other.read_text().partition("<Surfaces>")[2].partition("</Surfaces>")[0]
@@ -37,13 +37,13 @@ def test_units_are_told_by_flags(tmp_path):
     with pytest.warns(ts.LossWarning):
         ts.write(tin, path)
     text = run("info", path, code=1).output
-    assert "--z-unit m" in text or "--z-unit 'm'" in text
+    assert "--elevation-unit m" in text or "--elevation-unit 'm'" in text
     run("convert", path, "--unit", "ft", "--crs", "EPSG:2222", "-o", tmp_path / "b.xml")
     assert ts.read(tmp_path / "b.xml").elevation_unit.name == "foot"
 
 
 def test_a_command_with_a_unit_of_its_own_names_that_of_lengths_otherwise(tmp_path):
-    tin = ts.triangulate(ROWS, crs="EPSG:32616", z_unit="m")
+    tin = ts.triangulate(ROWS, crs="EPSG:32616", elevation_unit="m")
     path = ts.write(tin, tmp_path / "a.xml")
     path.write_text(path.read_text().replace('linearUnit="meter"', 'linearUnit="millimeter"'))
     text = run("slope", path, "--unit", "percent", "-o", tmp_path / "s.geojson", code=1).output
@@ -86,7 +86,7 @@ def test_breaklines_come_from_a_layer_of_a_drawing(tmp_path):
 
 
 def test_contours_are_written_as_a_drawing(tmp_path):
-    ts.write(ts.triangulate(ROWS, crs="EPSG:32616", z_unit="m"), tmp_path / "a.ply")
+    ts.write(ts.triangulate(ROWS, crs="EPSG:32616", elevation_unit="m"), tmp_path / "a.ply")
     run("contours", tmp_path / "a.ply", "--interval", "0.5", "-o", tmp_path / "c.dxf")
     layers = {one.dxf.layer for one in ezdxf.readfile(tmp_path / "c.dxf").modelspace()}
     assert layers <= {"CONTOURS", "INDEX_CONTOURS"}

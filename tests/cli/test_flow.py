@@ -16,7 +16,7 @@ def site(tmp_path):
     corners = [[0, 0, 3], [6, 0, 3], [6, 6, 3], [0, 6, 3]]
     bowl = [*corners, [3, 0, 2], [3, 3, 0], [6, 3, 3], [3, 6, 3], [0, 3, 3]]
     path = tmp_path / "site.ply"
-    ts.write(ts.triangulate(np.array(bowl, float), crs="EPSG:32616", z_unit="m"), path)
+    ts.write(ts.triangulate(np.array(bowl, float), crs="EPSG:32616", elevation_unit="m"), path)
     return path
 
 

@@ -35,7 +35,7 @@ def test_a_pad_of_a_file_is_graded_as_by_the_library(tmp_path, pad):
         SITE,
         "--crs",
         "EPSG:32616",
-        "--z-unit",
+        "--elevation-unit",
         "m",
         "--pad",
         pad,
@@ -48,7 +48,7 @@ def test_a_pad_of_a_file_is_graded_as_by_the_library(tmp_path, pad):
     )
     assert done.exit_code == 0, done.output
     told = json.loads(done.stdout)["volume"]
-    ground = ts.triangulate(ts.read(SITE, crs="EPSG:32616", z_unit="m"))
+    ground = ts.triangulate(ts.read(SITE, crs="EPSG:32616", elevation_unit="m"))
     graded = ts.grade(ground, PAD, 327, cut_slope=2, fill_slope=3)
     expected = ts.volume(ground, graded)
     assert told["cut"] == pytest.approx(expected["cut"][0])
@@ -82,7 +82,9 @@ def write_pad(path, crs, level):
 @pytest.fixture
 def ground_in_feet(tmp_path):
     metres = ts.triangulate(
-        ts.read(SITE, crs="EPSG:32616", z_unit="m").points, crs="EPSG:32616", z_unit="m"
+        ts.read(SITE, crs="EPSG:32616", elevation_unit="m").points,
+        crs="EPSG:32616",
+        elevation_unit="m",
     )
     ts.write(ts.reproject(metres, "EPSG:2274"), tmp_path / "ground.ply")
     table = ts.volume(metres, ts.grade(metres, PAD, 327.0, cut_slope=2, fill_slope=3))
@@ -90,7 +92,7 @@ def ground_in_feet(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("crs", "options"), [("EPSG:32616+5703", ()), ("EPSG:32616", ("--lines-z-unit", "m"))]
+    ("crs", "options"), [("EPSG:32616+5703", ()), ("EPSG:32616", ("--lines-elevation-unit", "m"))]
 )
 def test_a_pad_in_metres_on_a_ground_in_feet(tmp_path, ground_in_feet, crs, options):
     ground, fill = ground_in_feet

@@ -76,14 +76,14 @@ def files(tmp_path):
 
 
 def test_every_option_of_triangulate_has_its_own():
-    others = {"points", "crs", "z_unit", "progress"}
+    others = {"points", "crs", "elevation_unit", "progress"}
     of_python = set(inspect.signature(ts.triangulate).parameters) - others
     of_command = set(Triangulating.__dataclass_fields__)
     assert of_python <= of_command
     assert of_command - of_python == {
         "soft_breaklines",
         "water_z",
-        "lines_z_unit",
+        "lines_elevation_unit",
         "drape",
         "codes",
         "code_table",

@@ -32,7 +32,7 @@ def site(tmp_path):
 def test_convert_to_and_from(site, tmp_path, name):
     done = run("convert", site, "-o", tmp_path / name)
     assert done.exit_code == 0, done.stderr
-    done = run("convert", tmp_path / name, "-o", tmp_path / "back.ply", "--z-unit", "m")
+    done = run("convert", tmp_path / name, "-o", tmp_path / "back.ply", "--elevation-unit", "m")
     assert done.exit_code == 0, done.stderr
     tin, back = ts.read(site), ts.read(tmp_path / "back.ply")
     assert np.array_equal(back.triangles, tin.triangles)

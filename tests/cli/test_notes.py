@@ -9,7 +9,7 @@ from support.commands import run_command
 from tinsmith.cli.command_list import SUMMARIES
 
 RING = [[700_030, 4_000_030], [700_060, 4_000_030], [700_060, 4_000_060], [700_030, 4_000_060]]
-CRS = ("--crs", "EPSG:32616", "--z-unit", "m", "--skip-bad")
+CRS = ("--crs", "EPSG:32616", "--elevation-unit", "m", "--skip-bad")
 SLOPES = ("--cut-slope", 2, "--fill-slope", 2)
 
 COMMANDS = {

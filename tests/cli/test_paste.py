@@ -18,7 +18,7 @@ INNER = (SQUARE - CORNER) * (0.5, 0.5, 1) + CORNER + (10, 10, 2)
 
 @pytest.fixture
 def square(tmp_path):
-    return write_tin(tmp_path / "square.ply", SQUARE, crs="EPSG:32616", z_unit="m")
+    return write_tin(tmp_path / "square.ply", SQUARE, crs="EPSG:32616", elevation_unit="m")
 
 
 def write_tin(path, points, **known):
@@ -27,10 +27,10 @@ def write_tin(path, points, **known):
 
 def test_points_are_pasted_as_by_the_library(tmp_path):
     out = tmp_path / "pasted.gpkg"
-    known = ("--codes", "--crs", "EPSG:32616", "--z-unit", "m")
+    known = ("--codes", "--crs", "EPSG:32616", "--elevation-unit", "m")
     done = run("paste", SITE, PAD, *known, "-o", out, "--json")
     base, patch = (
-        ts.triangulate(ts.lines_from_codes(ts.read(path, crs="EPSG:32616", z_unit="m")))
+        ts.triangulate(ts.lines_from_codes(ts.read(path, crs="EPSG:32616", elevation_unit="m")))
         for path in (SITE, PAD)
     )
     pasted = ts.paste(base, patch)
@@ -46,7 +46,7 @@ def test_points_are_pasted_as_by_the_library(tmp_path):
 
 def test_units_are_converted_and_events_told(tmp_path, square):
     feet = INNER * (1, 1, 1 / 0.3048)
-    patch = write_tin(tmp_path / "patch.ply", feet, crs="EPSG:32616", z_unit="ft")
+    patch = write_tin(tmp_path / "patch.ply", feet, crs="EPSG:32616", elevation_unit="ft")
     out = tmp_path / "pasted.ply"
     done = run("paste", square, patch, "-o", out, "--events")
     events = [json.loads(line) for line in done.stderr.splitlines()]
@@ -59,7 +59,7 @@ def test_units_are_converted_and_events_told(tmp_path, square):
 
 def test_a_patch_that_reaches_beyond_is_told(tmp_path, square):
     moved = np.add(INNER, [25, 0, 0])
-    patch = write_tin(tmp_path / "patch.ply", moved, crs="EPSG:32616", z_unit="m")
+    patch = write_tin(tmp_path / "patch.ply", moved, crs="EPSG:32616", elevation_unit="m")
     out = tmp_path / "pasted.ply"
     done = run("paste", square, patch, "-o", out)
     assert "reaches beyond the base, which becomes larger by" in " ".join(done.output.split())
@@ -69,7 +69,7 @@ def test_a_patch_that_reaches_beyond_is_told(tmp_path, square):
 @pytest.mark.parametrize(
     ("points", "known", "text"),
     [
-        (INNER, {"crs": "EPSG:32617", "z_unit": "m"}, "EPSG:32617"),
+        (INNER, {"crs": "EPSG:32617", "elevation_unit": "m"}, "EPSG:32617"),
         (INNER, {}, "the CRS of the patch is not known"),
     ],
 )

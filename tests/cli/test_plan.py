@@ -20,7 +20,7 @@ UTM = "EPSG:32616"
 def road(tmp_path):
     x = np.arange(0.0, 1000.0, 20.0)
     points = [[500000 + a, 4e6 + b, 300 + a / 50] for a in x for b in (0.0, 15.0)]
-    return ts.write(ts.triangulate(points, crs=UTM, z_unit="m"), tmp_path / "road.ply")
+    return ts.write(ts.triangulate(points, crs=UTM, elevation_unit="m"), tmp_path / "road.ply")
 
 
 def test_a_survey_becomes_pdf_svg_and_png(tmp_path):

@@ -146,11 +146,13 @@ def files(tmp_path_factory):
     folder = tmp_path_factory.mktemp("site")
     other = HILL.points.copy()
     other[:, 2] += np.sin(other[:, 0] / 9)
-    patch = ts.triangulate(add_height(RING, 330), crs=HILL.crs, z_unit="m")
+    patch = ts.triangulate(add_height(RING, 330), crs=HILL.crs, elevation_unit="m")
     line = ts.Features.of_lines(LINE, [0, 2], columns={"name": ["a"]}, crs=HILL.crs)
     made = {
         "SITE": ts.write(HILL, folder / "site.gpkg"),
-        "OTHER": ts.write(ts.triangulate(other, crs=HILL.crs, z_unit="m"), folder / "other.gpkg"),
+        "OTHER": ts.write(
+            ts.triangulate(other, crs=HILL.crs, elevation_unit="m"), folder / "other.gpkg"
+        ),
         "PATCH": ts.write(patch, folder / "patch.gpkg"),
         "LINE": ts.write(line, folder / "line.gpkg"),
     }

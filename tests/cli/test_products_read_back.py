@@ -33,7 +33,7 @@ def points():
 def make(points, unit):
     """Return the same ground with elevations in a unit."""
     z = points[:, 2:] / (FOOT if unit == "ft" else 1.0)
-    return ts.triangulate(np.column_stack([points[:, :2], z]), crs=CRS, z_unit=unit)
+    return ts.triangulate(np.column_stack([points[:, :2], z]), crs=CRS, elevation_unit=unit)
 
 
 @pytest.mark.parametrize("unit", ["m", "ft"])
@@ -45,13 +45,13 @@ def test_contours_are_read_back(points, tmp_path, unit, suffix, command):
     lines = ts.contours(tin, interval=interval)
     file = tmp_path / f"c{suffix}"
     ts.write(lines, file)
-    declared = ["--z-unit", unit] if suffix == ".shp" else []  # which has no place for it
+    declared = ["--elevation-unit", unit] if suffix == ".shp" else []  # which has no place for it
     if command == "--from-contours":
         crs = ["--crs", CRS] if "json" in suffix else []
         arguments = ["--from-contours", file, *crs, *declared]
     else:
         ts.write(ts.Survey(points=tin.points, crs=CRS, elevation_unit=unit), tmp_path / "p.gpkg")
-        declared = ["--lines-z-unit", unit] if suffix == ".shp" else []
+        declared = ["--lines-elevation-unit", unit] if suffix == ".shp" else []
         arguments = [tmp_path / "p.gpkg", "--breaklines", file, *declared]
     out = run("build", *arguments, "-o", tmp_path / "o.ply", "-q")
     assert out.exit_code == 0, out.output

@@ -27,7 +27,7 @@ def test_the_unit_that_a_warning_advises_is_taken(local):
     assert "no units" not in told.stderr
     assert 'linearUnit="foot"' in (local.parent / "ft.xml").read_text()
     assert ts.read(local, columns="PNEZD", unit="ft").elevation_unit == ts.read(
-        local, columns="PNEZD", z_unit="ft"
+        local, columns="PNEZD", elevation_unit="ft"
     ).elevation_unit  # fmt: skip
 
 

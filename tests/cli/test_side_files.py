@@ -30,7 +30,7 @@ def folder(tmp_path, monkeypatch):
 
 def write(name, crs=CRS):
     """Write the points, or cells, as a file in a CRS."""
-    tin = ts.triangulate(POINTS, crs=crs, z_unit="m")
+    tin = ts.triangulate(POINTS, crs=crs, elevation_unit="m")
     if name.endswith((".tif", ".asc")):
         ts.write(ts.rasterize(tin, spacing=1.0), name)
     else:
@@ -71,7 +71,7 @@ def test_a_command_leaves_every_other_file_as_it_was(folder, first, output):
 def test_the_projection_of_another_data_set_is_not_replaced(folder, crs):
     write("site.shp")
     before = contents()
-    tin = ts.triangulate(POINTS, crs=crs, z_unit="m")
+    tin = ts.triangulate(POINTS, crs=crs, elevation_unit="m")
     raster = ts.rasterize(tin, spacing=1.0)
     if crs == CRS:  # which the file says already
         ts.write(raster, "site.asc")

@@ -16,7 +16,7 @@ RIDGE = [[0, 0, 0], [0, 4, 0], [4, 0, 2], [4, 4, 2], [8, 0, 0], [8, 4, 0]]
 @pytest.fixture
 def site(tmp_path):
     path = tmp_path / "site.ply"
-    ts.write(ts.triangulate(np.array(RIDGE, float), crs="EPSG:32616", z_unit="m"), path)
+    ts.write(ts.triangulate(np.array(RIDGE, float), crs="EPSG:32616", elevation_unit="m"), path)
     return path
 
 
@@ -70,7 +70,8 @@ def test_triangles_are_judged_as_wholes_if_asked(tmp_path):
     rng = np.random.default_rng(3)
     path = tmp_path / "hills.ply"
     ts.write(
-        ts.triangulate(rng.uniform(0, [50, 50, 9], (90, 3)), crs="EPSG:32616", z_unit="m"), path
+        ts.triangulate(rng.uniform(0, [50, 50, 9], (90, 3)), crs="EPSG:32616", elevation_unit="m"),
+        path,
     )
     start = ("sight", path, "--from", 25, 25, "--eye-height", 3, "--json", "-o")
     divided = run(*start, tmp_path / "a.geojson")

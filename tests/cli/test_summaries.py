@@ -129,7 +129,7 @@ def test_a_pyramid_in_words_and_numbers():
     assert found["elevation"]["unit_assumed"] == "metre"
     assert found["hull_vertices"] == 4
     assert (found["crs"], found["crs_name"]) == (UTM, "WGS 84 / UTM zone 16N")
-    known = ts.triangulate(TETRA, crs=UTM, z_unit="ft")
+    known = ts.triangulate(TETRA, crs=UTM, elevation_unit="ft")
     assert summaries.find_symbols(known) == (" m", " ft")
     assert summaries.note_assumed_unit(known) == ""
     assert ("Elevation", "0.000 to 2.000 ft") in summaries.summarise_tin(known)

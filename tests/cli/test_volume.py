@@ -15,7 +15,7 @@ import tinsmith as ts
 
 SAMPLES = Path(__file__).parents[2] / "sample_data"
 SITE, PAD = SAMPLES / "site_survey.csv", SAMPLES / "design_pad.csv"
-CRS = ("--crs", "EPSG:32616", "--z-unit", "m")
+CRS = ("--crs", "EPSG:32616", "--elevation-unit", "m")
 PNG = b"\x89PNG"
 
 
@@ -27,7 +27,7 @@ def files(tmp_path_factory):
     corners += [752_000, 4_024_000]
     return [
         ts.write(
-            ts.triangulate(np.column_stack([corners, z]), crs="EPSG:32616", z_unit="m"),
+            ts.triangulate(np.column_stack([corners, z]), crs="EPSG:32616", elevation_unit="m"),
             folder / f"{name}.ply",
         )
         for name, z in (("flat", [1, 1, 1, 1]), ("ramp", [0, 4, 4, 0]))
@@ -40,7 +40,7 @@ def test_the_pad_is_measured_drawn_and_written(tmp_path):
     result = run("volume", SITE, PAD, "--codes", *CRS, *outputs, "--json")
     (row,) = json.loads(result.stdout)["rows"]
     tins = [
-        ts.triangulate(ts.lines_from_codes(ts.read(path, crs="EPSG:32616", z_unit="m")))
+        ts.triangulate(ts.lines_from_codes(ts.read(path, crs="EPSG:32616", elevation_unit="m")))
         for path in (SITE, PAD)
     ]
     table = ts.volume(*tins)

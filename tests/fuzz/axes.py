@@ -98,8 +98,8 @@ def carry(tin: ts.TIN, case: Case) -> ts.TIN:
 
 def examine(case: Case) -> str:
     points, plain = make(case)
-    tin = carry(ts.triangulate(points, crs=case["crs"], z_unit="m"), case)
-    other = ts.triangulate(plain, crs=PLAIN, z_unit="m")
+    tin = carry(ts.triangulate(points, crs=case["crs"], elevation_unit="m"), case)
+    other = ts.triangulate(plain, crs=PLAIN, elevation_unit="m")
     east, north = case["slope"]
     facing = float(np.degrees(np.arctan2(-east, -north)) % 360)
     if np.hypot(east, north) > 0.05:

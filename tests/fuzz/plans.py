@@ -105,7 +105,7 @@ def build(case: Case) -> Any:
     lines = [ts.Breakline(points[rows], kind=kind) for rows in case["lines"] if len(set(rows)) == 4]
     try:
         return ts.triangulate(
-            points, breaklines=lines, max_edge=case["max_edge"], crs=case["crs"], z_unit="m"
+            points, breaklines=lines, max_edge=case["max_edge"], crs=case["crs"], elevation_unit="m"
         )
     except ts.TinsmithError:
         return None

@@ -101,7 +101,7 @@ def examine(case: Case) -> str:
     """Ask for all that a raster can hold."""
     try:
         tin = ts.triangulate(
-            case["points"], max_edge=case["max_edge"], crs=case["crs"], z_unit=case["unit"]
+            case["points"], max_edge=case["max_edge"], crs=case["crs"], elevation_unit=case["unit"]
         )
         where = case["cells"]
         if "corner" not in where and tin.bounds.width * tin.bounds.height > (
@@ -181,7 +181,9 @@ def require_no_order(tin: Any, made: Any, case: Case) -> None:
     rng = np.random.default_rng(len(tin.triangles))
     order, turn = rng.permutation(len(tin.triangles)), int(rng.integers(3))
     triangles = np.roll(tin.triangles[order], turn, axis=1)
-    other = ts.TIN.from_triangles(tin.points, triangles, crs=tin.crs, z_unit=tin.elevation_unit)
+    other = ts.TIN.from_triangles(
+        tin.points, triangles, crs=tin.crs, elevation_unit=tin.elevation_unit
+    )
     name, (azimuth, altitude) = case["value"], case["light"]
     for smooth in (False, True):
         one, again = (

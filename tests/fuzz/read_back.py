@@ -45,7 +45,7 @@ def generate(rng: np.random.Generator) -> Case:
 def examine(case: Case) -> str:
     points = np.array(case["points"], float).reshape(-1, 3) + CORNER
     try:
-        tin = ts.triangulate(points, crs="EPSG:32616", z_unit=case["unit"])
+        tin = ts.triangulate(points, crs="EPSG:32616", elevation_unit=case["unit"])
         made = PRODUCTS[case["product"]](tin)
     except ts.TinsmithError:
         return "no product"
@@ -63,7 +63,7 @@ def examine(case: Case) -> str:
 
 def require_levels(made: ts.Features, path: Path, case: Case) -> None:
     """Read contours as breaklines of points in metres: each lies at its level."""
-    declared = {"z_unit": case["unit"]} if case["suffix"] == ".shp" else {}
+    declared = {"elevation_unit": case["unit"]} if case["suffix"] == ".shp" else {}
     corners = np.array([[0, 0, 305], [80, 0, 305], [0, 80, 305], [80, 80, 305.0]]) + CORNER
     points = ts.Survey(points=corners, crs="EPSG:32616", elevation_unit="m")
     lines = ts.io.with_lines(points, breaklines=[path], **declared).breaklines

@@ -65,7 +65,7 @@ def make_set(suffix: str) -> dict[str, bytes]:
     with tempfile.TemporaryDirectory(dir=MEMORY) as folder, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         path = Path(folder, f"site{suffix}")
-        tin = ts.triangulate(POINTS, crs=CRS, z_unit="m")
+        tin = ts.triangulate(POINTS, crs=CRS, elevation_unit="m")
         if suffix in (".tif", ".asc"):
             ts.write(ts.rasterize(tin, spacing=2.0), path)
         elif suffix in (".ply", ".obj"):

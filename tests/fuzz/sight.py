@@ -48,7 +48,7 @@ def _require_curved(tin: ts.TIN, eye: np.ndarray, targets: np.ndarray, case: Cas
     above, target_above = case["heights"]
     how = {"curvature": True, "refraction": -1.0}
     big = ts.TIN.from_triangles(
-        tin.points * (1024.0, 1024.0, 1.0), tin.triangles, crs=tin.crs, z_unit="m"
+        tin.points * (1024.0, 1024.0, 1.0), tin.triangles, crs=tin.crs, elevation_unit="m"
     )
     eye, targets = 1024.0 * eye, 1024.0 * targets
     heights = {"eye_height": above, "target_height": target_above}

@@ -119,7 +119,7 @@ def examine_slope(tin: TIN, source: pyproj.CRS, up: float, suffix: str) -> None:
     other = Unit.of("cm")
     factor = up / 0.01
     again = TIN.from_triangles(
-        tin.points * (1, 1, factor), tin.triangles, crs=flat(source), z_unit=other
+        tin.points * (1, 1, factor), tin.triangles, crs=flat(source), elevation_unit=other
     )
     assert abs(float(ts.terrain.slope(again)[0]) - found) <= 1e-9, "slope depends on the unit"
     with tempfile.TemporaryDirectory() as folder:
@@ -165,7 +165,7 @@ def examine_move(tin: TIN, source: pyproj.CRS, target_text: str, up: float) -> N
     """Elevations in metres are the same after a reprojection, and again on the way back."""
     target = pyproj.CRS(target_text)
     unit = tin.elevation_unit
-    moved = ts.io.transform_points(tin.points, source, target, z_unit=unit)
+    moved = ts.io.transform_points(tin.points, source, target, elevation_unit=unit)
     metres = tin.points[:, 2] * up
     after = moved[:, 2] * usual_metres(target)
     assert np.allclose(after, metres, rtol=1e-9, atol=1e-9), f"{after} m for {metres} m"

@@ -252,7 +252,7 @@ WRITTEN = [name for name, one in READ.items() if one.write]
 def test_feet_are_feet_after_a_file_or_its_format_says_that_it_loses_them(tmp_path, name):
     one = READ[name]
     feet = SITE / [1, 1, 0.3048]
-    tin = ts.triangulate(feet, crs=CRS, z_unit="ft")
+    tin = ts.triangulate(feet, crs=CRS, elevation_unit="ft")
     survey = ts.Survey(points=feet, crs=CRS, elevation_unit="ft")
     for given in [tin] * ("TIN" in one.writes) + [survey] * ("Survey" in one.writes):
         path = ts.write(given, tmp_path / f"{type(given).__name__}{one.suffixes[0]}", format=name)
@@ -263,7 +263,7 @@ def test_feet_are_feet_after_a_file_or_its_format_says_that_it_loses_them(tmp_pa
             continue
         assert (found.points[:, 2] * unit.metres).max() == pytest.approx(SITE[:, 2].max(), abs=0.01)
         with pytest.raises(ts.OptionError, match="must be"):
-            ts.read(path, format=name, crs=CRS, z_unit="yd")
+            ts.read(path, format=name, crs=CRS, elevation_unit="yd")
 
 
 @pytest.mark.parametrize("role", ["breaklines", "boundary", "water"])
@@ -273,7 +273,7 @@ def test_lines_and_polygons_in_feet_join_points_in_metres(tmp_path, name, role):
         return  # which has no polygons
     path = write_lines_in_feet(name, role, tmp_path)
     points = ts.Survey(points=SITE, crs=CRS, elevation_unit="m")
-    declared = {"z_unit": "ft"} if "elevation unit" in READ[name].loses else {}
+    declared = {"elevation_unit": "ft"} if "elevation unit" in READ[name].loses else {}
     if name in DRAWINGS:
         declared = {}  # whose units are those of all lengths
     found = getattr(ts.io.with_lines(points, **{role: [path]}, **declared), role)

@@ -150,7 +150,7 @@ def _write_polygons(suffix: str) -> Any:
         path = folder / f"a{suffix}"
         shapes = [shapely.Polygon(corners) for corners in points[triangles]]
         geopandas.GeoDataFrame(geometry=shapes, crs="EPSG:32616").to_file(path, engine="pyogrio")
-        return path, {"z_unit": "m"}
+        return path, {"elevation_unit": "m"}
 
     return write
 

@@ -21,7 +21,7 @@ def make_square(crs="EPSG:32616", *, n=400, height=8.0):
     xy = np.vstack([xy, [[0, 0], [SIDE, 0], [0, SIDE], [SIDE, SIDE]]])
     z = 300 + height * np.sin(xy[:, 0] / 40) * np.cos(xy[:, 1] / 55)
     points = np.round(np.column_stack([xy + np.array([WEST, NORTH - SIDE]), z]), 3)
-    return ts.triangulate(points, crs=crs, z_unit="m")
+    return ts.triangulate(points, crs=crs, elevation_unit="m")
 
 
 def paint_quarters(pixels, *, top=255, dtype=np.uint8):

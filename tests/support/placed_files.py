@@ -31,7 +31,7 @@ def write_points(name: str, points: Any, folder: Path) -> Path:
 
 def _write_landxml(points: Any, path: Path) -> Path:
     """Write points with a unit, which the format asks for."""
-    ts.write(ts.triangulate(points, z_unit="m"), path, format="landxml")
+    ts.write(ts.triangulate(points, elevation_unit="m"), path, format="landxml")
     return path
 
 

@@ -42,7 +42,11 @@ def stretch_triangles(tin, factors):
     corner = tin.points.min(axis=0) * (1.0, 1.0, 0.0)
     points = (tin.points - corner) * (*factors, 1.0) + corner
     return ts.TIN.from_triangles(
-        points, tin.triangles, crs=tin.crs, z_unit=tin.elevation_unit, attributes=tin.attributes
+        points,
+        tin.triangles,
+        crs=tin.crs,
+        elevation_unit=tin.elevation_unit,
+        attributes=tin.attributes,
     )
 
 

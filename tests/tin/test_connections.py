@@ -223,9 +223,9 @@ def test_vertex_normals_are_means_by_area(tin):
 
 def test_normals_convert_elevations():
     points = [[0, 0, 0], [1, 0, 1], [0, 1, 0]]
-    metres = TIN.from_triangles(points, [[0, 1, 2]], crs=32616, z_unit="m")
+    metres = TIN.from_triangles(points, [[0, 1, 2]], crs=32616, elevation_unit="m")
     feet = TIN.from_triangles(
-        np.array(points) / (1, 1, 0.3048), [[0, 1, 2]], crs=32616, z_unit="ft"
+        np.array(points) / (1, 1, 0.3048), [[0, 1, 2]], crs=32616, elevation_unit="ft"
     )
     assert metres.triangle_normals == pytest.approx(feet.triangle_normals)
     assert metres.vertex_normals == pytest.approx(feet.vertex_normals)

@@ -81,7 +81,7 @@ def test_other_things_are_not_equal_and_a_tin_has_no_hash():
 def test_to_crs_is_reproject():
     tin = ts.triangulate(np.add(POINTS, [751_428, 4_020_862, 0]), crs="EPSG:32616")
     assert tin.to_crs("EPSG:32617") == ts.reproject(tin, "EPSG:32617")
-    assert tin.to_crs(2274, z_unit="m").elevation_unit.name == "US survey foot"
+    assert tin.to_crs(2274, elevation_unit="m").elevation_unit.name == "US survey foot"
     with pytest.raises(ts.CrsError, match="not known"):
         ts.triangulate(POINTS).to_crs("EPSG:32617")
 

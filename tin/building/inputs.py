@@ -178,7 +178,7 @@ def gather_inputs(
     erase: Sequence[Any] | GeometriesLike,
     water: Sequence[Water] | GeometriesLike,
     crs: CrsLike | None,
-    z_unit: UnitLike | None,
+    elevation_unit: UnitLike | None,
 ) -> BuildInputs:
     """Check everything; lines come on top of the survey's own.
 
@@ -188,7 +188,7 @@ def gather_inputs(
         As :func:`tinsmith.triangulate`.
     """
     own = points if isinstance(points, Survey) else _make_empty_survey()
-    system, unit = _settle_reference(own, CRS.of(crs), Unit.of(z_unit))
+    system, unit = _settle_reference(own, CRS.of(crs), Unit.of(elevation_unit))
     given = zip(_NAMES, (points, breaklines, boundary, holes, erase, water), strict=True)
     system, told = settle_crs(system, dict(given))
     rows = points.points if isinstance(points, Survey) else points

@@ -43,7 +43,7 @@ def read(
     path: Path,
     *,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     unit: UnitLike | None = None,
     layer: str | None = None,
     content: DrawingContent | None = None,
@@ -88,7 +88,7 @@ def read(
     """
     if content is not None:
         choice("content", content, DrawingContent)
-    declared = Declared.of(crs, unit, z_unit)
+    declared = Declared.of(crs, unit, elevation_unit)
     drawing = read_drawing(path, layer=layer, texts=texts, tolerance=tolerance)
     kind = content or _choose_content(drawing)
     measures = _choose_measures(drawing, declared)

@@ -34,7 +34,7 @@ def read(
     path: Path,
     *,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     unit: UnitLike | None = None,
     surface: str | int | None = None,
     content: DrawingContent | None = None,
@@ -72,7 +72,7 @@ def read(
     if content is not None:
         choice("content", content, DrawingContent)
     wanted = _as_wanted(surface)
-    declared = Declared.of(crs, unit, z_unit)
+    declared = Declared.of(crs, unit, elevation_unit)
     found = parse(path, surface=wanted, points_only=content == "points")
     chosen = None if content == "points" else _choose_surface(found, wanted, content)
     kind = content or _choose_content(found, chosen)
@@ -215,7 +215,8 @@ def _choose_measures(found: Content, chosen: Surface | None, declared: Declared)
     if all(one is None for one in told) and (system is None or system.vertical_unit is None):
         raise ReadError(
             f"{FILE} does not say its units: declare that of the elevations, such as "
-            "`z_unit='m'` or `z_unit='US survey foot'`, or that of all lengths, `unit='ft'`."
+            "`elevation_unit='m'` or `elevation_unit='US survey foot'`, or that of all lengths, "
+            "`unit='ft'`."
         )
     return choose_measures(stated, declared, sample=sample).tell(*notes, first=True)
 

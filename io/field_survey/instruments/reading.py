@@ -19,11 +19,11 @@ def read_dc(
     path: Path,
     *,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     encoding: str | None = None,
     source_crs: CrsLike | None = None,
 ) -> Survey:
-    """Read points of a Trimble DC file; ``z_unit`` says which feet it is in, if it is in feet.
+    """Read points of a Trimble DC file; ``elevation_unit`` says which feet a file in feet is in.
 
     Returns
     -------
@@ -38,14 +38,14 @@ def read_dc(
         If it has no header, a number is none, or no point has coordinates.
     """
     book = dc.read_book(path, encoding=encoding)
-    return book.make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
+    return book.make_survey(crs=crs, elevation_unit=elevation_unit, source_crs=source_crs)
 
 
 def read_gsi(
     path: Path,
     *,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     encoding: str | None = None,
     source_crs: CrsLike | None = None,
     code_blocks: str | None = None,
@@ -78,14 +78,14 @@ def read_gsi(
     book = gsi.read_book(
         path, encoding=encoding, code_blocks=code_blocks, oriented=oriented, refraction=refraction
     )
-    return book.make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
+    return book.make_survey(crs=crs, elevation_unit=elevation_unit, source_crs=source_crs)
 
 
 def read_sdr(
     path: Path,
     *,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     encoding: str | None = None,
     source_crs: CrsLike | None = None,
     refraction: float | None = None,
@@ -106,14 +106,14 @@ def read_sdr(
         by what.
     """
     book = sdr.read_book(path, encoding=encoding, refraction=refraction)
-    return book.make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
+    return book.make_survey(crs=crs, elevation_unit=elevation_unit, source_crs=source_crs)
 
 
 def read_jobxml(
     path: Path,
     *,
     crs: CrsLike | None = None,
-    z_unit: UnitLike | None = None,
+    elevation_unit: UnitLike | None = None,
     source_crs: CrsLike | None = None,
 ) -> Survey:
     """Read points of a Trimble JobXML file.
@@ -133,4 +133,6 @@ def read_jobxml(
         If it is no well-formed JobXML, declares a document type, has a grid that does not count
         to north and east, or no point has coordinates.
     """
-    return jobxml.read_book(path).make_survey(crs=crs, z_unit=z_unit, source_crs=source_crs)
+    return jobxml.read_book(path).make_survey(
+        crs=crs, elevation_unit=elevation_unit, source_crs=source_crs
+    )

@@ -76,7 +76,11 @@ class Book:
         self.left_out.setdefault(what, []).append(line)
 
     def make_survey(
-        self, *, crs: CrsLike | None, z_unit: UnitLike | None, source_crs: CrsLike | None = None
+        self,
+        *,
+        crs: CrsLike | None,
+        elevation_unit: UnitLike | None,
+        source_crs: CrsLike | None = None,
     ) -> Survey:
         """Return the survey.
 
@@ -90,7 +94,7 @@ class Book:
         target, source = CRS.of(crs), CRS.of(source_crs)
         self._sort()
         points = np.array(self.points, np.float64)
-        unit = self._settle(source or target, Unit.of(z_unit))
+        unit = self._settle(source or target, Unit.of(elevation_unit))
         points[:, :2] = self._scale(points[:, :2], source or target, unit)
         placed = place(points, source=source, target=target, unit=unit, looks_at_order=False)
         numbers = parse_names(self.names)
@@ -153,8 +157,8 @@ class Book:
             )
             return known
         raise ReadError(
-            f"{FILE} is in feet and does not say which: give `z_unit='ft'` (0.3048 m) or "
-            "`z_unit='US survey foot'` (1200/3937 m).",
+            f"{FILE} is in feet and does not say which: give `elevation_unit='ft'` (0.3048 m) or "
+            "`elevation_unit='US survey foot'` (1200/3937 m).",
         )
 
     def _scale(self, xy: Any, crs: CRS | None, unit: Unit) -> Any:

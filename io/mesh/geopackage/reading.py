@@ -33,7 +33,7 @@ _CHANGED = (
 )
 
 
-def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = None) -> TIN:
+def read(path: Path, *, crs: CrsLike | None = None, elevation_unit: UnitLike | None = None) -> TIN:
     """Read the TIN of a GeoPackage that :func:`write` wrote, with all that was known of it.
 
     Parameters
@@ -41,7 +41,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     path : Path
     crs : CRS, str, int or pyproj.CRS, optional
         Declares the CRS where the file has none.
-    z_unit : Unit or str, optional
+    elevation_unit : Unit or str, optional
         Declares the unit of the elevations where the file has none.
 
     Returns
@@ -78,7 +78,7 @@ def read(path: Path, *, crs: CrsLike | None = None, z_unit: UnitLike | None = No
     text = answer.value["document"]
     if digest_arrays(*record.arrays.values(), text=text) != digests.get("record"):
         raise ReadError(f"{FILE} is damaged: its record of the TIN is not as written.")
-    reference = _choose_reference(record, crs, z_unit)
+    reference = _choose_reference(record, crs, elevation_unit)
     mesh = digest_arrays(points, triangles, constrained)
     if (mesh, answer.value["lines"]) != (digests.get("mesh"), digests.get("lines")):
         tin = make_tin(points, triangles, constrained=constrained, reference=reference)
@@ -119,12 +119,14 @@ def _load_json(answer: Answer, name: str) -> dict[str, Any]:
     return found
 
 
-def _choose_reference(record: Record, crs: CrsLike | None, z_unit: UnitLike | None) -> Reference:
+def _choose_reference(
+    record: Record, crs: CrsLike | None, elevation_unit: UnitLike | None
+) -> Reference:
     found = {}
     for name, key in (("crs", "crs"), ("elevation_unit", "unit")):
         tree = record.document.get(name)
         found[key] = tree.get(key) if isinstance(tree, dict) else None
-    return choose_reference(crs, z_unit, found_crs=found["crs"], found_unit=found["unit"])
+    return choose_reference(crs, elevation_unit, found_crs=found["crs"], found_unit=found["unit"])
 
 
 def _declare(record: Record, reference: Reference) -> Record:

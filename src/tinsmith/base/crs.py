@@ -101,7 +101,7 @@ class Unit:
             return value
         found = _find_unit(value) if isinstance(value, str) else None
         if found is None:
-            raise OptionError("z_unit", value, _ALLOWED_UNITS, what="unit of elevations")
+            raise OptionError("elevation_unit", value, _ALLOWED_UNITS, what="unit of elevations")
         return found
 
     @property
@@ -493,7 +493,7 @@ def require_same_unit(known: Unit, declared: Unit, why: str) -> None:
     """
     if known != declared:
         raise OptionError(
-            "z_unit", declared.name, f"{known.name}, {why}", what="unit of elevations"
+            "elevation_unit", declared.name, f"{known.name}, {why}", what="unit of elevations"
         )
 
 

@@ -91,9 +91,9 @@ _LINES = under(
         help="Elevation of the water, or the column that holds it.",
     ),
     click.option(
-        "--lines-z-unit",
+        "--lines-elevation-unit",
         cls=LibraryOption,
-        sets=("z_unit",),
+        sets=("elevation_unit",),
         metavar="UNIT",
         help="Unit of the elevations in the files of lines, if they do not state it.",
     ),

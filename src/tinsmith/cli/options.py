@@ -51,7 +51,7 @@ class Reading:
     """How the input is read; None leaves it to the reader."""
 
     crs: str | None = None
-    z_unit: str | None = None
+    elevation_unit: str | None = None
     source_crs: str | None = None
     to_crs: str | None = None
     format: str | None = None
@@ -68,7 +68,7 @@ class Reading:
         """All that :func:`tinsmith.io.read` is to take, by the names of its options."""
         usual = {
             "crs": self.crs,
-            "z_unit": self.z_unit,
+            "elevation_unit": self.elevation_unit,
             "source_crs": self.source_crs,
             "format": self.format,
             "unit": self.length_unit,
@@ -122,7 +122,7 @@ class Triangulating(Coding):
     erase: tuple[Path, ...] = ()
     water: tuple[Path, ...] = ()
     water_z: float | str | None = None
-    lines_z_unit: str | None = None
+    lines_elevation_unit: str | None = None
     drape: bool = False
 
     @property
@@ -139,7 +139,7 @@ class Triangulating(Coding):
         return given | {
             "water_z": self.water_z,
             "drape": self.drape,
-            "z_unit": self.lines_z_unit,
+            "elevation_unit": self.lines_elevation_unit,
         }
 
     @property
@@ -211,7 +211,7 @@ _COORDINATES = under(
         "points in another CRS are reprojected to it.",
     ),
     click.option(
-        "--z-unit",
+        "--elevation-unit",
         metavar="UNIT",
         help="Unit of the elevations, if the file does not state it: m, ft, 'US survey foot'. "
         "Points that are reprojected get the unit of --crs.",

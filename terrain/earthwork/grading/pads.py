@@ -34,7 +34,7 @@ def build_patch(tin: TIN, pad: Any, level: float, slopes: list[Slope]) -> TIN:
         boundary=rings,
         duplicates="last",
         crs=tin.crs,
-        z_unit=tin.elevation_unit,
+        elevation_unit=tin.elevation_unit,
     )
 
 

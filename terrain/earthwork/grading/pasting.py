@@ -139,7 +139,7 @@ def join_surfaces(
         breaklines=lines,
         duplicates="last",
         crs=agreed.crs,
-        z_unit=agreed.elevation_unit,
+        elevation_unit=agreed.elevation_unit,
         progress=done.stage(0.7, 1.0),
         **(_join_rings(area, cut, seam) if reaches else _list_rings(area, cut, seam)),
     )

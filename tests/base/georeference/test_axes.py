@@ -34,9 +34,9 @@ def twins(request, rng):
     e = east + np.append([0, 300, 0, 300], rng.integers(0, 300, 60)).astype(float)
     n = north + np.append([0, 0, 200, 200], rng.integers(0, 200, 60)).astype(float)
     z = 100 + 0.05 * (e - east) + 6 * np.sin((n - north) / 40) + rng.random(64)
-    usual = ts.triangulate(np.column_stack([e, n, z]), crs=twin, z_unit="m")
+    usual = ts.triangulate(np.column_stack([e, n, z]), crs=twin, elevation_unit="m")
     points = np.column_stack([*EXCHANGE[code](*usual.points[:, :2].T), usual.points[:, 2]])
-    turned = ts.TIN.from_triangles(points, usual.triangles, crs=code, z_unit="m")
+    turned = ts.TIN.from_triangles(points, usual.triangles, crs=code, elevation_unit="m")
     return turned, usual
 
 
@@ -230,7 +230,7 @@ def _draw(tin, kind):
     if kind == "blunders":
         return ts.blunder_map(tin, ts.blunders(tin))
     higher = tin.points + np.array([0.0, 0.0, 1.0])
-    other = ts.TIN.from_triangles(higher, tin.triangles, crs=tin.crs, z_unit="m")
+    other = ts.TIN.from_triangles(higher, tin.triangles, crs=tin.crs, elevation_unit="m")
     return ts.earthwork_map(ts.difference(tin, other), ground=tin)
 
 

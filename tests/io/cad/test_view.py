@@ -14,7 +14,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::tinsmith.LossWarning")
 @pytest.mark.parametrize("unit", ["m", "ft"])
 @pytest.mark.parametrize("kind", ["tin", "contours", "points"])
 def test_extents_and_active_view_are_those_of_the_data(tmp_path, version, unit, kind):
-    tin = ts.triangulate(POINTS, crs="EPSG:32616", z_unit=unit)
+    tin = ts.triangulate(POINTS, crs="EPSG:32616", elevation_unit=unit)
     made = {
         "tin": tin,
         "contours": ts.contours(tin, interval=1),

@@ -116,7 +116,7 @@ def test_elevations_of_the_earth_are_not_refused_in_their_unit(unit, factor):
 
 @pytest.mark.parametrize("unit", [None, "m", "ft"])
 def test_elevations_where_no_ground_is_are_refused_until_columns_or_unit_are_said(unit):
-    with pytest.raises(ReadError, match=r"no ground is: .*`columns`.*`z_unit`"):
+    with pytest.raises(ReadError, match=r"no ground is: .*`columns`.*`elevation_unit`"):
         require_ground(np.full(9, 320_412.0), Unit.of(unit), is_free=False)
 
 

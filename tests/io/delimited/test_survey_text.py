@@ -1321,7 +1321,7 @@ def test_a_unit_in_every_row_is_told(survey):
     assert found.elevation_unit is None
     assert found.notes == [
         "'Unit' begins with 'ft' in every row: if this is the unit of the elevations, the option "
-        "`z_unit` says so."
+        "`elevation_unit` says so."
     ]
 
 
@@ -1553,8 +1553,8 @@ def test_a_line_that_gives_the_unit_of_elevations_is_followed(survey, line, unit
     assert bool(found.notes) == ("5 ft" not in line)
     if unit is not None:
         assert "gives the unit of the elevations" in found.notes[0]
-        said = str(fault(survey, f"{line}\n{WITH_HEADER}", z_unit="cm"))
-        assert "as the unit of the elevations, and the option `z_unit` another" in said
+        said = str(fault(survey, f"{line}\n{WITH_HEADER}", elevation_unit="cm"))
+        assert "as the unit of the elevations, and the option `elevation_unit` another" in said
 
 
 def test_geocentric_coordinates_are_no_eastings(survey):

@@ -181,13 +181,13 @@ def test_gsi_shots_with_coordinates_prove_the_orientation(tmp_path):
 
 def test_gsi_feet(tmp_path):
     text = "110001+00000001 81..01+00515836 82..01+00525871 83..01+00003079\n"
-    refused("in feet and does not say which: give `z_unit='ft'`", tmp_path, "a.gsi", text)
-    assert read(tmp_path, "a.gsi", text, z_unit="ft").elevation_unit == ts.Unit.of("ft")
+    refused("in feet and does not say which: give `elevation_unit='ft'`", tmp_path, "a.gsi", text)
+    assert read(tmp_path, "a.gsi", text, elevation_unit="ft").elevation_unit == ts.Unit.of("ft")
     survey = read(tmp_path, "a.gsi", text, crs="EPSG:2274")
     assert survey.points[0].tolist() == [515.836, 525.871, 3.079]
     assert survey.elevation_unit == ts.Unit.of("US survey foot")
     assert "feet, taken to be the US survey foot of EPSG:2274" in " ".join(survey.notes)
-    refused("must be foot", tmp_path, "a.gsi", text, ts.OptionError, z_unit="m")
+    refused("must be foot", tmp_path, "a.gsi", text, ts.OptionError, elevation_unit="m")
     both = text + "110002+00000002 81..00+00515836 82..00+00525871 83..00+00003079\n"
     refused("metres .line 2. and in feet .line 1.", tmp_path, "a.gsi", both)
 
@@ -388,7 +388,7 @@ def test_dc_feet_are_of_whoever_says_which(tmp_path, length):
     survey = read(tmp_path, "a.dc", text, crs="EPSG:2264")
     assert survey.points.tolist() == [[100, 200, 50]]
     assert survey.elevation_unit == ts.Unit.of("US survey foot")
-    assert read(tmp_path, "a.dc", text, z_unit="ft").elevation_unit == ts.Unit.of("ft")
+    assert read(tmp_path, "a.dc", text, elevation_unit="ft").elevation_unit == ts.Unit.of("ft")
 
 
 def test_dc_positions_and_observations_are_left_out_and_told(tmp_path):
@@ -491,7 +491,7 @@ def test_jobxml_is_in_metres_whatever_it_shows(tmp_path):
     survey = read(tmp_path, "a.jxl", text, crs="EPSG:2274")
     assert np.allclose(survey.points, [[200 * 3937 / 1200, 100 * 3937 / 1200, 5]])
     assert survey.elevation_unit == ts.Unit.of("m")
-    refused("must be metre", tmp_path, "a.jxl", text, ts.OptionError, z_unit="ft")
+    refused("must be metre", tmp_path, "a.jxl", text, ts.OptionError, elevation_unit="ft")
 
 
 @pytest.mark.parametrize(

@@ -341,7 +341,7 @@ def test_a_tile_without_unit_is_not_mixed_with_others(tmp_path, target):
     with_keys(tmp_path / "b.las", (3072, 32616), (4099, 9003))
     assert "unknown and US survey foot" in refuse(tmp_path, crs=target)
     with_keys(tmp_path / "b.las", (3072, 32616), (4099, 9001))
-    assert read_lidar(tmp_path, crs=target, z_unit="m").elevation_unit.name == "metre"
+    assert read_lidar(tmp_path, crs=target, elevation_unit="m").elevation_unit.name == "metre"
 
 
 @pytest.mark.parametrize(

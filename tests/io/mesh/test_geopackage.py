@@ -60,7 +60,7 @@ def path(tmp_path):
 
 @pytest.mark.parametrize("crs", CRSES)
 def test_all_comes_back_bit_for_bit(path, crs):
-    tin = make_tin(crs=crs, z_unit=None if crs and "+" in crs[:10] else "US survey foot")
+    tin = make_tin(crs=crs, elevation_unit=None if crs and "+" in crs[:10] else "US survey foot")
     found = reread(tin, path)
     assert find_differences(tin, found) == []
     assert found.report.to_dict() == tin.report.to_dict()
@@ -130,7 +130,7 @@ def test_the_same_tin_gives_the_same_bytes(tmp_path):
 
 def test_reference_can_be_declared_where_there_is_none(path):
     ts.write(make_tin(), path)
-    found = ts.read(path, crs=32616, z_unit="ft")
+    found = ts.read(path, crs=32616, elevation_unit="ft")
     assert (found.crs, found.elevation_unit) == ("EPSG:32616", ts.Unit.of("ft"))
     edit(found)
     ts.write(make_tin(crs=32616), path)

@@ -27,7 +27,9 @@ def test_there_and_back_bit_for_bit(make, seed):
     rng = np.random.default_rng(seed)
     size = 10.0 ** rng.integers(-6, 7, 3)
     points = rng.random((50, 3)) * size + rng.choice([0, 1 / 3, 5e5, -4.2e6], 3)
-    tin = ts.triangulate(points, crs=[None, "EPSG:2274"][seed % 2], z_unit=["m", "ft"][seed % 2])
+    tin = ts.triangulate(
+        points, crs=[None, "EPSG:2274"][seed % 2], elevation_unit=["m", "ft"][seed % 2]
+    )
     back = ts.from_mesh(make(tin))
     assert arrays_of(back) == arrays_of(tin)
     assert list(back.report.notes) == []
@@ -58,7 +60,7 @@ def test_constrained_edges_and_attributes_go_along():
 
 
 def test_a_lifted_tin_comes_back_without_its_exaggeration():
-    tin = ts.triangulate(np.add(ROOF, [5e5, 4e6, 100]), crs="EPSG:2274", z_unit="m")
+    tin = ts.triangulate(np.add(ROOF, [5e5, 4e6, 100]), crs="EPSG:2274", elevation_unit="m")
     back = ts.from_mesh(ts.lift(tin, exaggeration=2))
     np.testing.assert_allclose(back.points, tin.points, rtol=1e-12)
     assert (back.crs, back.elevation_unit) == (tin.crs, tin.elevation_unit)
@@ -70,7 +72,9 @@ def test_files_of_the_libraries_keep_the_surface(tmp_path):
     assert ts.read(tmp_path / "a.vtp").points.tobytes() == tin.points.tobytes()
     assert ts.from_mesh(pyvista.read(tmp_path / "a.vtp")).crs == tin.crs
     ts.to_meshio(tin).write(tmp_path / "a.vtu")
-    back = ts.from_mesh(meshio.read(tmp_path / "a.vtu"), crs=tin.crs, z_unit=tin.elevation_unit)
+    back = ts.from_mesh(
+        meshio.read(tmp_path / "a.vtu"), crs=tin.crs, elevation_unit=tin.elevation_unit
+    )
     assert arrays_of(back) == arrays_of(tin)
 
 
@@ -115,7 +119,7 @@ def test_another_crs_than_that_of_the_mesh_is_refused():
         with pytest.raises(ts.CrsError, match="EPSG:32617 is another CRS"):
             ts.from_mesh(mesh, crs="EPSG:32617")
         with pytest.raises(ts.OptionError, match="unit of elevations 'foot'"):
-            ts.from_mesh(mesh, z_unit="ft")
+            ts.from_mesh(mesh, elevation_unit="ft")
 
 
 def overlapping():

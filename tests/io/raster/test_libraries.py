@@ -89,7 +89,7 @@ def test_windows_strides_bands_and_a_crs_that_is_wanted(tmp_path):
         {"window": (740_010, 4_029_985, 740_040, 4_029_998)},
         {"window": ts.Bounds(740_010, 4_029_985, 740_040, 4_029_998)},
         {"crs": "EPSG:32617"},
-        {"nodata": 107, "z_unit": "ft"},
+        {"nodata": 107, "elevation_unit": "ft"},
     ):
         with rasterio.open(path) as dataset:
             require_same(ts.from_raster(dataset, **options), ts.read(path, **options))
@@ -138,7 +138,7 @@ def test_rasters_of_our_own_come_back():
 
 def test_a_dataset_in_memory_is_that_of_the_file(tmp_path):
     tin = ts.triangulate(
-        np.random.default_rng(1).random((40, 3)) * [90, 60, 9], crs=CRS, z_unit="m"
+        np.random.default_rng(1).random((40, 3)) * [90, 60, 9], crs=CRS, elevation_unit="m"
     )
     raster = ts.rasterize(tin, spacing=2.5)
     dataset = ts.to_rasterio(raster)

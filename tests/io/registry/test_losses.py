@@ -48,7 +48,7 @@ def test_an_attribute_comes_back_or_is_named(tmp_path, name, attribute):
 def read(path, name):
     """Read a file; readers of text call a column as they understand its header."""
     given = {
-        "landxml": {"z_unit": "metre"},
+        "landxml": {"elevation_unit": "metre"},
         "geojson": {"crs": "EPSG:32616"},
         "geojsonseq": {"crs": "EPSG:32616"},
         "las": {"attributes": "all"},
@@ -62,7 +62,9 @@ def test_a_line_break_becomes_a_blank_and_is_told(tmp_path, suffix):
     survey = make_survey(description=np.array(["two\nlines", "one", ""]))
     (told,) = write(survey, tmp_path / f"a{suffix}")
     assert "line breaks within the texts of description became blanks" in told
-    again = ts.read(tmp_path / f"a{suffix}", **({"z_unit": "m"} if suffix == ".xml" else {}))
+    again = ts.read(
+        tmp_path / f"a{suffix}", **({"elevation_unit": "m"} if suffix == ".xml" else {})
+    )
     assert list(again.attributes["description"]) == ["two lines", "one", ""]
 
 
@@ -70,7 +72,7 @@ def test_a_line_break_becomes_a_blank_and_is_told(tmp_path, suffix):
 def test_numbers_that_landxml_does_not_allow_are_told(tmp_path, numbers):
     (told,) = write(make_survey(number=np.array(numbers)), tmp_path / "a.xml")
     assert "points are numbered 1, 2, 3 ... anew" in told
-    again = ts.read(tmp_path / "a.xml", z_unit="m")
+    again = ts.read(tmp_path / "a.xml", elevation_unit="m")
     assert list(again.attributes["number"]) == ["1", "2", "3"]
 
 

@@ -91,7 +91,7 @@ def test_edits_are_part_of_it_and_go_on():
 
 def test_triangles_of_a_file_are_kept():
     tin = ts.triangulate(make_survey())
-    given = ts.TIN.from_triangles(tin.points, tin.triangles[::-1], crs=UTM, z_unit="m")
+    given = ts.TIN.from_triangles(tin.points, tin.triangles[::-1], crs=UTM, elevation_unit="m")
     moved = ts.reproject(given, "EPSG:32617")
     assert np.array_equal(moved.triangles, given.triangles)
     assert np.array_equal(moved.points[:, :2], proj(tin.points, UTM, "EPSG:32617"))
@@ -105,7 +105,7 @@ def test_a_crs_that_is_not_known_and_degrees_are_refused():
     with pytest.raises(CrsError, match="degrees"):
         ts.reproject(ts.triangulate(survey), "EPSG:4326")
     with pytest.raises(OptionError, match="foot"):
-        ts.reproject(survey, FEET, z_unit="ft")
+        ts.reproject(survey, FEET, elevation_unit="ft")
 
 
 def test_there_and_back_is_where_it_was():

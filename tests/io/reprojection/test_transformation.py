@@ -109,7 +109,7 @@ SUMMIT = np.array([[751_428.0, 4_020_862.0, 1_032.0]])
     ],
 )
 def test_elevations_change_their_unit_with_the_crs(source, unit, target, elevation):
-    moved = transform_points(SUMMIT, source, target, z_unit=unit)
+    moved = transform_points(SUMMIT, source, target, elevation_unit=unit)
     assert moved[0, 2] == pytest.approx(elevation, rel=1e-12)
     flat = transform_points(SUMMIT, source, target)
     assert np.array_equal(moved[:, :2], flat[:, :2])

@@ -18,7 +18,9 @@ geopandas = pytest.importorskip("geopandas")
 
 X, Y = np.divmod(np.arange(100.0), 10)
 TIN = ts.triangulate(
-    np.column_stack([700_000 + X, 4_000_000 + Y, 320 + X + 0.1 * Y]), crs="EPSG:32616", z_unit="m"
+    np.column_stack([700_000 + X, 4_000_000 + Y, 320 + X + 0.1 * Y]),
+    crs="EPSG:32616",
+    elevation_unit="m",
 )
 LINES = ts.contours(TIN, 1.0)
 CLASSES = ts.slope_classes(TIN)

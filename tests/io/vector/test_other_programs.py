@@ -100,7 +100,7 @@ def test_a_column_names_the_unit_of_its_elevations(tmp_path, name, crs, unit):
     assert survey.elevation_unit.name == unit
     assert f"in {unit} as its name says" in survey.notes[0]
     with pytest.raises(OptionError, match=unit):
-        read(path, z_unit="yard")
+        read(path, elevation_unit="yard")
 
 
 def test_elevations_in_feet_of_a_column_become_metres_with_the_eastings(tmp_path):
@@ -146,7 +146,7 @@ def test_two_heights_of_water_that_differ_are_refused_until_told(tmp_path):
 def test_a_height_of_water_in_feet_is_converted(tmp_path):
     ring = shapely.to_wkb(shapely.polygons(POINTS[[0, 1, 3, 2], :2]))
     path = write_wkb(tmp_path / "a.gpkg", ring, kind="Polygon", level_ft=[100.0])
-    water = read_water(path, z="level_ft", crs=UTM, elevation_unit="m")
+    water = read_water(path, z="level_ft", crs=UTM, target_unit="m")
     assert water[0].z == pytest.approx(30.48)
 
 

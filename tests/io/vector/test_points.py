@@ -204,10 +204,10 @@ def test_a_unit_is_that_of_the_file_or_told(tmp_path):
     points = make_points(4)
     path = by_ogr(tmp_path / "p.gpkg", shapely.points(points))
     assert read(path).elevation_unit is None
-    assert read(path, z_unit="ft").elevation_unit.name == "foot"
+    assert read(path, elevation_unit="ft").elevation_unit.name == "foot"
     compound = by_ogr(tmp_path / "q.gpkg", shapely.points(points), crs="EPSG:32616+5703")
     assert read(compound).elevation_unit.name == "metre"
-    assert "metre" in refuse(compound, OptionError, z_unit="ft")
+    assert "metre" in refuse(compound, OptionError, elevation_unit="ft")
 
 
 # ------------------------------------------------------------------------------- lines
@@ -380,7 +380,7 @@ def test_the_undefined_cartesian_crs_of_a_geopackage_has_no_unit(tmp_path):
     assert np.array_equal(found.points, survey.points)
     assert found.crs is None
     assert found.elevation_unit is None
-    told = read(tmp_path / "s.gpkg", crs=UTM, z_unit="ft")
+    told = read(tmp_path / "s.gpkg", crs=UTM, elevation_unit="ft")
     assert told.crs == UTM
     assert told.elevation_unit.name == "foot"
 

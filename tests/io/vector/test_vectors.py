@@ -446,19 +446,19 @@ def test_elevations_of_kml_are_absolute_or_told(tmp_path):
 def test_lines_have_the_unit_that_their_layer_tells(tmp_path, suffix):
     """As points of the same file have it."""
     metres = survey()
-    feet = ts.triangulate(metres.points / [1, 1, 0.3048], crs=UTM, z_unit="ft")
+    feet = ts.triangulate(metres.points / [1, 1, 0.3048], crs=UTM, elevation_unit="ft")
     path, options = tmp_path / f"lines.{suffix}", {}
     if suffix == "geojson":
         options = {"projected": True}
     ts.write(ts.contours(feet, interval=0.5), path, **options)
     notes = []
-    lines = read_lines(path, crs=UTM, elevation_unit="m", notes=notes)
+    lines = read_lines(path, crs=UTM, target_unit="m", notes=notes)
     elevations = np.concatenate([line.coords[:, 2] for line in lines])
     assert metres.points[:, 2].min() <= elevations.min()
     assert elevations.max() <= metres.points[:, 2].max()
     assert any("converted from foot to metre" in note for note in notes)
     with pytest.raises(ts.OptionError, match="foot"):
-        read_lines(path, crs=UTM, z_unit="m")
+        read_lines(path, crs=UTM, elevation_unit="m")
 
 
 def test_a_column_of_elevations_that_lines_do_not_take_is_told(tmp_path):

@@ -10,10 +10,10 @@ import tinsmith as ts
 pytest.importorskip("matplotlib")
 
 FLAT = ts.triangulate(
-    [[0, 0, 1], [40, 0, 1], [40, 40, 1], [0, 40, 1]], crs="EPSG:32616", z_unit="m"
+    [[0, 0, 1], [40, 0, 1], [40, 40, 1], [0, 40, 1]], crs="EPSG:32616", elevation_unit="m"
 )
 RAMP = ts.triangulate(
-    [[0, 0, 0], [40, 0, 4], [40, 40, 4], [0, 40, 0]], crs="EPSG:32616", z_unit="m"
+    [[0, 0, 0], [40, 0, 4], [40, 40, 4], [0, 40, 0]], crs="EPSG:32616", elevation_unit="m"
 )
 
 

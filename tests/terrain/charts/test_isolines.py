@@ -17,7 +17,7 @@ def tin():
     rng = np.random.default_rng(1)
     xy = rng.uniform((500_000, 4_000_000), (500_100, 4_000_100), (400, 2))
     z = 300 + 8 * np.sin(xy[:, 0] / 15) * np.cos(xy[:, 1] / 12)
-    return ts.triangulate(np.column_stack([xy, z]), crs="EPSG:32616", z_unit="m")
+    return ts.triangulate(np.column_stack([xy, z]), crs="EPSG:32616", elevation_unit="m")
 
 
 def test_lines_labels_and_units_are_shown(tin):

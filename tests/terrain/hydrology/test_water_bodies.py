@@ -140,7 +140,7 @@ def test_the_order_of_points_does_not_matter():
 
 def test_feet_and_metres_are_minded():
     tin = bowl_with_a_notch()
-    feet = ts.triangulate(tin.points, crs="EPSG:32616", z_unit="ft")
+    feet = ts.triangulate(tin.points, crs="EPSG:32616", elevation_unit="ft")
     found = ts.depressions(feet)
     plain = ts.depressions(tin).columns["volume"]
     assert found.columns["volume"] == pytest.approx(0.3048 * plain)

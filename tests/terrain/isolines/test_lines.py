@@ -263,7 +263,7 @@ def test_levels_outside_the_surface_are_told():
 
 def test_units_are_those_of_the_tin():
     points = [[0, 0, 0], [100, 0, 0], [100, 100, 9], [0, 100, 9]]
-    found = ts.contours(ts.triangulate(points, crs="EPSG:2274", z_unit="m"), interval=4)
+    found = ts.contours(ts.triangulate(points, crs="EPSG:2274", elevation_unit="m"), interval=4)
     assert found.units["elevation"].symbol == "m"
     assert found.units["length"].symbol == "US ft"
     assert ts.contours(ts.triangulate(points), interval=4).units["length"] is None

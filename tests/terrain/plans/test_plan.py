@@ -20,7 +20,7 @@ SQUARE = [[500000, 4e6, 5], [500040, 4e6, 6], [500040, 4e6 + 30, 7], [500000, 4e
 
 
 def square(**how):
-    return ts.triangulate(SQUARE, crs="EPSG:32616", z_unit="m", **how)
+    return ts.triangulate(SQUARE, crs="EPSG:32616", elevation_unit="m", **how)
 
 
 def draw(tin, folder, **how):
@@ -216,7 +216,7 @@ def test_one_triangle():
 def test_a_flat_surface_has_no_contours_and_says_so(tmp_path):
     flat = np.array(SQUARE)
     flat[:, 2] = 7.0
-    made, (page,) = draw(ts.triangulate(flat, crs="EPSG:32616", z_unit="m"), tmp_path)
+    made, (page,) = draw(ts.triangulate(flat, crs="EPSG:32616", elevation_unit="m"), tmp_path)
     assert "contours" not in page.paths
     assert "No contours: no level lies within the elevations" in texts(page, "fact")
     assert any("there is no line" in note for note in made.notes)

@@ -18,7 +18,7 @@ CAPITAL = 0.73
 
 @pytest.fixture(scope="module")
 def site():
-    survey = ts.lines_from_codes(ts.read(SITE, crs="EPSG:32616", z_unit="m"))
+    survey = ts.lines_from_codes(ts.read(SITE, crs="EPSG:32616", elevation_unit="m"))
     return survey, ts.triangulate(survey, max_edge=20.0)
 
 

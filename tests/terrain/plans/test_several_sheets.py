@@ -25,7 +25,11 @@ def corridor(length=2000.0, width=40.0, sway=400.0, turns=7.0, angle=0.0, steps=
     rows = [place(offset, heights - abs(offset) / 10) for offset in (-width / 2, 0, width / 2)]
     ring = np.concatenate([rows[0], rows[2][::-1]])[:, :2]
     tin = ts.triangulate(
-        np.concatenate(rows), boundary=[ring], breaklines=[rows[1]], crs="EPSG:32616", z_unit="m"
+        np.concatenate(rows),
+        boundary=[ring],
+        breaklines=[rows[1]],
+        crs="EPSG:32616",
+        elevation_unit="m",
     )
     return tin, rows[1][:, :2]
 

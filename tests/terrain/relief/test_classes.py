@@ -186,7 +186,7 @@ def test_breaks_that_are_none(breaks):
 
 def test_units_of_both_axes_are_taken_into_account():
     feet = rough(crs="EPSG:2274")
-    metres = ts.triangulate(feet.points, crs="EPSG:2274", z_unit="m")
+    metres = ts.triangulate(feet.points, crs="EPSG:2274", elevation_unit="m")
     steep = ts.slope_classes(feet, unit="percent").columns["lower"]
     steeper = ts.slope_classes(metres, unit="percent").columns["lower"]
     assert steeper.max() > steep.max() or len(steeper) < len(steep)

@@ -73,9 +73,9 @@ def test_ridges_are_convex_and_valleys_concave():
 def test_feet_and_metres_are_one_surface():
     """The same ground with eastings in feet and elevations in metres or in feet."""
     foot = 1200 / 3937
-    metres = scattered(lambda x, y: 0.02 * x * x + 0.1 * y, crs="EPSG:2274", z_unit="m")
+    metres = scattered(lambda x, y: 0.02 * x * x + 0.1 * y, crs="EPSG:2274", elevation_unit="m")
     scaled = metres.points * (1.0, 1.0, 1 / foot)
-    feet = ts.triangulate(scaled, crs="EPSG:2274", z_unit="US survey foot")
+    feet = ts.triangulate(scaled, crs="EPSG:2274", elevation_unit="US survey foot")
     for kind in KINDS:
         one, other = ts.curvature(metres, kind=kind), ts.curvature(feet, kind=kind)
         np.testing.assert_allclose(one, other, rtol=1e-6, atol=1e-9)

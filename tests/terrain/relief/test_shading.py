@@ -52,7 +52,7 @@ def test_a_plane_has_the_light_of_gdaldem(east, north, azimuth, altitude, factor
 
 
 def test_slopes_are_those_of_the_true_surface():
-    feet = plane(0.5, 0.2, crs="EPSG:2274", z_unit="m")
+    feet = plane(0.5, 0.2, crs="EPSG:2274", elevation_unit="m")
     factor = 3937 / 1200
     assert set(ts.hillshade(feet, spacing=1.0).bands["hillshade"].ravel()) == {
         gdal_shade(0.5 * factor, 0.2 * factor, 315, 45)

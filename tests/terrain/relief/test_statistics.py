@@ -12,7 +12,7 @@ def rough(n=300):
     return ts.triangulate(
         np.column_stack([random.uniform(0, 100, (n, 2)), random.uniform(0, 9, n)]),
         crs="EPSG:32616",
-        z_unit="m",
+        elevation_unit="m",
     )
 
 

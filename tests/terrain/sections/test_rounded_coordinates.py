@@ -26,7 +26,7 @@ def make_road(decimals):
             np.stack([corner, corner + 6, corner + 1], axis=1),
         ]
     )
-    return ts.TIN.from_triangles(points, triangles, crs="EPSG:25832", z_unit="m")
+    return ts.TIN.from_triangles(points, triangles, crs="EPSG:25832", elevation_unit="m")
 
 
 def axis(length=200.0):

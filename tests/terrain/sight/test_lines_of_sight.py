@@ -72,7 +72,9 @@ def test_sight_is_the_same_there_and_back():
 def test_the_horizon_of_the_sea_is_where_geometry_puts_it(crs, metres):
     size = 40_000.0 / metres
     sea = [[-size, -size, 0], [size, -size, 0], [size, size, 0], [-size, size, 0]]
-    tin = ts.triangulate(np.array(sea) + np.array([500_000, 500_000, 0]), crs=crs, z_unit="m")
+    tin = ts.triangulate(
+        np.array(sea) + np.array([500_000, 500_000, 0]), crs=crs, elevation_unit="m"
+    )
     height, coefficient = 20.0, 0.13
     radius = 6_371_000.0 / (1 - coefficient)
     horizon = np.sqrt(2 * radius * height) / metres
@@ -92,7 +94,7 @@ def test_the_horizon_of_the_sea_is_where_geometry_puts_it(crs, metres):
 def test_ground_that_bulges_hides_what_is_beyond_the_horizon_on_any_slope(height):
     places = np.array([[0.0, 0], [40_000, 0], [40_000, 40_000], [0, 40_000]])
     rise = 3.3 + places @ [0.0337, 0.0071]
-    tin = ts.triangulate(np.column_stack([places, rise]), crs="EPSG:32616", z_unit="m")
+    tin = ts.triangulate(np.column_stack([places, rise]), crs="EPSG:32616", elevation_unit="m")
     rng = np.random.default_rng(0)
     # More than twice the horizon of two metres: the ground between is metres above each line.
     targets = np.column_stack([rng.uniform(15_000, 39_000, 2000), rng.uniform(100, 900, 2000)])

@@ -119,7 +119,7 @@ def test_elevations_beyond_exact_arithmetic_are_looked_at_in_fractions():
 def test_classes_tile_the_surface_and_a_radius_limits_them():
     rng = np.random.default_rng(2)
     points = np.column_stack([rng.uniform(0, 90, (400, 2)), rng.uniform(0, 9, 400)])
-    tin = ts.triangulate(points, crs="EPSG:32616", z_unit="m")
+    tin = ts.triangulate(points, crs="EPSG:32616", elevation_unit="m")
     found = ts.viewshed(tin, [45, 45], eye_height=5)
     assert found.columns["area"].sum() == pytest.approx(tin.area)
     assert found.columns["triangles"].sum() >= len(tin.triangles)
@@ -141,7 +141,7 @@ def test_within_a_radius_all_is_told_and_beyond_it_nothing_wrong(seed, radius):
     rng = np.random.default_rng(seed)
     xy = rng.random((int(rng.integers(8, 150)), 2)) * 100
     points = np.column_stack([xy, 10 * rng.random(len(xy))])
-    tin = ts.triangulate(points, crs="EPSG:32616", z_unit="m")
+    tin = ts.triangulate(points, crs="EPSG:32616", elevation_unit="m")
     places = rng.random((400, 2)) * 100
     eye, *others = places[tin.locate(places) >= 0]
     found = ts.viewshed(tin, eye, eye_height=2.0, radius=radius)
@@ -210,7 +210,11 @@ def test_triangles_are_judged_as_wholes_where_they_cannot_be_divided():
     rng = np.random.default_rng(9)
     points = make_surface(rng, "grid")
     for tin, options, words in (
-        (ts.triangulate(points, crs="EPSG:32616", z_unit="m"), {"curvature": True}, "curved earth"),
+        (
+            ts.triangulate(points, crs="EPSG:32616", elevation_unit="m"),
+            {"curvature": True},
+            "curved earth",
+        ),
         (ts.triangulate(points * [1, 1, 1e-90]), {}, "With such elevations"),
     ):
         found = ts.viewshed(tin, [4, 4], **options)
@@ -226,7 +230,7 @@ def test_gdal_sees_the_same_on_a_fine_raster(tmp_path):
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(0, 101, 5.0), np.arange(0, 101, 5.0)))
     z = 6 * np.sin(x / 13) * np.cos(y / 11) + rng.uniform(0, 0.5, len(x))
     origin = np.array([500_000.0, 4_000_000.0, 0.0])
-    tin = ts.triangulate(np.column_stack([x, y, z]) + origin, crs="EPSG:32616", z_unit="m")
+    tin = ts.triangulate(np.column_stack([x, y, z]) + origin, crs="EPSG:32616", elevation_unit="m")
     eye = origin[:2] + 50.25
     ts.write(ts.rasterize(tin, spacing=0.5), tmp_path / "dem.tif")
     # GDAL's own line of sight: no curvature, targets on the ground.

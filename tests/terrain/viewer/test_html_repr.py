@@ -20,13 +20,13 @@ from tinsmith.terrain.viewer.html_repr import draw_map
 CORNER = np.array([742_000.0, 4_030_000.0])
 
 
-def hills(count=3000, *, width=1000.0, height=600.0, crs="EPSG:32616", z_unit=None):
+def hills(count=3000, *, width=1000.0, height=600.0, crs="EPSG:32616", elevation_unit=None):
     xy = np.random.default_rng(3).random((count, 2)) * (width, height)
     corners = [(0, 0), (width, 0), (width, height), (0, height)]
     xy = np.concatenate([xy, corners])
     z = 300 + 20 * np.sin(xy[:, 0] / 150) + 10 * np.cos(xy[:, 1] / 90)
     points = np.column_stack([xy + CORNER, z])
-    return ts.triangulate(points, crs=crs, z_unit=z_unit)
+    return ts.triangulate(points, crs=crs, elevation_unit=elevation_unit)
 
 
 # ------------------------------------------------------------------ figures
@@ -48,7 +48,7 @@ def test_a_card_tells_counts_crs_units_and_bounds():
 
 
 @pytest.mark.parametrize(
-    ("crs", "z_unit", "units"),
+    ("crs", "elevation_unit", "units"),
     [
         ("EPSG:2264", "US survey foot", "US survey foot"),
         ("EPSG:32616", "foot", "metre, elevations foot"),
@@ -56,8 +56,8 @@ def test_a_card_tells_counts_crs_units_and_bounds():
         ("EPSG:32616", "m", "metre"),
     ],
 )
-def test_units_are_those_that_are_known(crs, z_unit, units):
-    words = read(hills(50, crs=crs, z_unit=z_unit)._repr_html_()).words
+def test_units_are_those_that_are_known(crs, elevation_unit, units):
+    words = read(hills(50, crs=crs, elevation_unit=elevation_unit)._repr_html_()).words
     assert units in words
     assert ("not known" in words) == (crs is None)
 

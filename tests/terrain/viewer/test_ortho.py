@@ -337,7 +337,7 @@ def test_the_page_shows_each_colour_at_its_place(tmp_path, crs):
     tin = make_square()
     if crs != "EPSG:32616":
         moved = ts.transform_points(tin.points, "EPSG:32616", crs)
-        tin = ts.TIN.from_triangles(moved, tin.triangles, crs=crs, z_unit="m")
+        tin = ts.TIN.from_triangles(moved, tin.triangles, crs=crs, elevation_unit="m")
     places, colors = list_places()
     if crs == "EPSG:32616":
         made = ts.preview(tin, ortho=path)
@@ -381,7 +381,7 @@ def test_the_tints_stay_where_there_is_no_picture(tmp_path):
 def test_all_surfaces_of_a_page_are_draped(tmp_path):
     tin = make_square()
     raised = ts.TIN.from_triangles(
-        tin.points + np.array([0, 0, 20]), tin.triangles, crs=tin.crs, z_unit="m"
+        tin.points + np.array([0, 0, 20]), tin.triangles, crs=tin.crs, elevation_unit="m"
     )
     path = write_raster(tmp_path / "a.tif", paint_quarters(200))
     made = ts.preview({"Existing": tin, "Design": raised}, ortho=path)

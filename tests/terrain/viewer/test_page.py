@@ -26,11 +26,13 @@ PAGE = Path(__file__).parents[3] / "terrain" / "viewer" / "page"
 CORNER = np.array([742_000.0, 4_030_000.0, 0.0])
 
 
-def hills(n=400, *, seed=3, crs="EPSG:32616", z_unit="m"):
+def hills(n=400, *, seed=3, crs="EPSG:32616", elevation_unit="m"):
     rng = np.random.default_rng(seed)
     xy = np.round(rng.random((n, 2)) * 300, 3)
     z = 300 + 8 * np.sin(xy[:, 0] / 40) + 5 * np.cos(xy[:, 1] / 25)
-    return ts.triangulate(np.column_stack([xy, np.round(z, 3)]) + CORNER, crs=crs, z_unit=z_unit)
+    return ts.triangulate(
+        np.column_stack([xy, np.round(z, 3)]) + CORNER, crs=crs, elevation_unit=elevation_unit
+    )
 
 
 def unpack(packed):
@@ -98,7 +100,7 @@ def test_one_blunder_hides_no_relief(tmp_path):
     """Tints, contours and the first view are those of the ground; the note tells of the blunder."""
     points = hills(300).points.copy()
     points[77, 2] = 9999.0
-    tin = ts.triangulate(points, crs="EPSG:32616", z_unit="m")
+    tin = ts.triangulate(points, crs="EPSG:32616", elevation_unit="m")
     shown = ts.preview(tin, tint="slope", contours=2.5)
     page = content(shown.to_html())
     assert page["elevations"] == page["relief"] == [points[:, 2].min(), np.sort(points[:, 2])[-2]]
@@ -301,7 +303,7 @@ def test_keys_turn_move_and_look_from_above(opened):
 def test_two_surfaces_have_cut_and_fill(tmp_path):
     ground, design = hills(), hills()
     raised = design.points + np.array([0, 0, 1.5])
-    design = ts.TIN.from_triangles(raised, design.triangles, crs=design.crs, z_unit="m")
+    design = ts.TIN.from_triangles(raised, design.triangles, crs=design.crs, elevation_unit="m")
     path = ts.preview({"Existing": ground, "Design": design}).save(tmp_path / "a.html")
     with open_page(path) as page:
         names, most = run(
@@ -367,7 +369,7 @@ def test_labels_are_in_the_unit_of_the_page():
 
 
 def test_an_assumed_unit_is_told():
-    page = ts.preview(hills(60, z_unit=None)).to_html()
+    page = ts.preview(hills(60, elevation_unit=None)).to_html()
     told = "The unit of elevations is not known: taken to be the metre."
     assert any(words.endswith(told) for words in re.findall("<p>(.*)</p>", page))
 

@@ -45,10 +45,14 @@ SURFACES = {
     "huge": lambda: grid(8, 1e12, wave(5e3)),
     "almost flat": lambda: grid(6, 50, lambda u, v: 300 + np.round(5 * u) * 1e-12),
     "almost flat at 0": lambda: grid(6, 50, lambda u, v: np.round(5 * u) * 1e-12),
-    "degrees": lambda: grid(12, 0.5, wave(300), (8, 60), crs="EPSG:4326", z_unit="m"),
-    "degrees, feet": lambda: grid(9, 0.01, wave(99), (-84, 36), crs="EPSG:4326", z_unit="ft"),
+    "degrees": lambda: grid(12, 0.5, wave(300), (8, 60), crs="EPSG:4326", elevation_unit="m"),
+    "degrees, feet": lambda: grid(
+        9, 0.01, wave(99), (-84, 36), crs="EPSG:4326", elevation_unit="ft"
+    ),
     "feet": lambda: grid(12, 1000, wave(30), (1.8e6, 6e5), crs="EPSG:2274"),
-    "feet, metres": lambda: grid(12, 1000, wave(30), (1.8e6, 6e5), crs="EPSG:2274", z_unit="m"),
+    "feet, metres": lambda: grid(
+        12, 1000, wave(30), (1.8e6, 6e5), crs="EPSG:2274", elevation_unit="m"
+    ),
     "steep": lambda: grid(9, 10, wave(200), UTM),
     "clipped": lambda: ts.triangulate(
         grid(20, 90, wave(9)).points, boundary=[[[5, 5], [80, 9], [70, 85], [11, 60]]]
@@ -101,8 +105,8 @@ def check_words(found, places, truth, tolerance):
 
 
 def test_readouts_of_the_second_surface(tmp_path):
-    ground = grid(12, 300, wave(8), UTM, crs="EPSG:32616", z_unit="m")
-    design = grid(5, 300, lambda u, v: 20 + 9 * u, UTM, crs="EPSG:32616", z_unit="m")
+    ground = grid(12, 300, wave(8), UTM, crs="EPSG:32616", elevation_unit="m")
+    design = grid(5, 300, lambda u, v: 20 + 9 * u, UTM, crs="EPSG:32616", elevation_unit="m")
     path = ts.preview({"Ground": ground, "Design": design}).save(tmp_path / "a.html")
     with open_page(path) as page:
         for k, tin in enumerate((ground, design)):
@@ -228,7 +232,7 @@ def scatter(triangles):
     xy = np.random.default_rng(1).random((triangles // 2, 2)) * 2000
     z = 300 + 30 * np.sin(xy[:, 0] / 150) * np.cos(xy[:, 1] / 210)
     return ts.triangulate(
-        np.round(np.column_stack([xy + np.array(UTM), z]), 3), crs="EPSG:32616", z_unit="m"
+        np.round(np.column_stack([xy + np.array(UTM), z]), 3), crs="EPSG:32616", elevation_unit="m"
     )
 
 

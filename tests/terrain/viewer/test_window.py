@@ -18,12 +18,12 @@ pytestmark = pytest.mark.usefixtures("can_draw")
 SIZE = (800, 500)
 
 
-def hills(*, crs="EPSG:32616", z_unit="m", scale=1.0, corner=(742_000.0, 4_030_000.0)):
+def hills(*, crs="EPSG:32616", elevation_unit="m", scale=1.0, corner=(742_000.0, 4_030_000.0)):
     rng = np.random.default_rng(5)
     xy = rng.random((600, 2)) * [300, 200]
     z = 310 + 9 * np.sin(xy[:, 0] / 45) + 6 * np.cos(xy[:, 1] / 30)
     points = np.column_stack([xy * scale + corner, z])
-    return ts.triangulate(points, crs=crs, z_unit=z_unit)
+    return ts.triangulate(points, crs=crs, elevation_unit=elevation_unit)
 
 
 @pytest.fixture
@@ -57,9 +57,11 @@ def find_pixel(window, place):
 
 
 @pytest.mark.parametrize("options", [{"view": "top"}, {"azimuth": 200.0, "tilt": 60.0}])
-@pytest.mark.parametrize(("crs", "z_unit"), [("EPSG:32616", "m"), ("EPSG:2264", "m"), (None, None)])
-def test_a_pick_reads_what_the_surface_is_there(opened, options, crs, z_unit):
-    tin = hills(crs=crs, z_unit=z_unit)
+@pytest.mark.parametrize(
+    ("crs", "elevation_unit"), [("EPSG:32616", "m"), ("EPSG:2264", "m"), (None, None)]
+)
+def test_a_pick_reads_what_the_surface_is_there(opened, options, crs, elevation_unit):
+    tin = hills(crs=crs, elevation_unit=elevation_unit)
     window = opened(tin, exaggeration=1.5, **options)
     slopes = ts.slope(tin)
     for place in tin.points[tin.triangles[100:400:60]].mean(axis=1):
@@ -87,7 +89,7 @@ def test_lines_and_marks_are_not_picked(opened):
 
 
 @pytest.mark.parametrize(
-    ("crs", "z_unit", "words"),
+    ("crs", "elevation_unit", "words"),
     [
         (
             "EPSG:32616",
@@ -99,10 +101,10 @@ def test_lines_and_marks_are_not_picked(opened):
         ("EPSG:32616", None, "Elevation 312.250 m assumed"),
     ],
 )
-def test_readings_are_written_in_the_units_of_the_crs(opened, crs, z_unit, words):
+def test_readings_are_written_in_the_units_of_the_crs(opened, crs, elevation_unit, words):
     from tinsmith.terrain.viewer.window import Reading
 
-    window = opened(hills(crs=crs, z_unit=z_unit))
+    window = opened(hills(crs=crs, elevation_unit=elevation_unit))
     said = window.describe(Reading(742_120.5, 4_030_100.25, 312.25, 12.34))
     assert words in said
     assert said.endswith("Slope 12.3°")

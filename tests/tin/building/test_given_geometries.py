@@ -200,7 +200,7 @@ def test_a_vertical_axis_may_be_added_to_the_crs():
     compound = geopandas.GeoSeries(shapely.points(POINTS), crs="EPSG:32616+6360")
     assert ts.triangulate(compound).elevation_unit.name == "US survey foot"
     with pytest.raises(ts.OptionError, match="vertical axis"):
-        ts.triangulate(compound, z_unit="m")
+        ts.triangulate(compound, elevation_unit="m")
 
 
 def test_places_and_edits_in_another_crs_are_refused():

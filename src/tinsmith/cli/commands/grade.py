@@ -59,7 +59,7 @@ def grade(
     planned = job.plan(job.list_inputs(file, more=name_features(pad, "--pad")), "TIN")
     tin = job.read_tin(file)
     notes: list[str] = []
-    ring = _read_pad(pad, tin, elevation, job.how.lines_z_unit, notes)
+    ring = _read_pad(pad, tin, elevation, job.how.lines_elevation_unit, notes)
     with job.step("Grading") as progress:
         graded = grade_tin(
             tin,
@@ -83,7 +83,7 @@ def grade(
 
 
 def _read_pad(
-    path: Path, tin: TIN, elevation: float | None, z_unit: str | None, notes: list[str]
+    path: Path, tin: TIN, elevation: float | None, elevation_unit: str | None, notes: list[str]
 ) -> Any:
     """Return the one ring of a file, in the CRS and unit of the ground."""
     from ...io import read_polygons
@@ -93,8 +93,8 @@ def _read_pad(
     found = read_polygons(
         file,
         crs=tin.crs,
-        elevation_unit=tin.elevation_unit,
-        z_unit=z_unit,
+        target_unit=tin.elevation_unit,
+        elevation_unit=elevation_unit,
         layer=layer,
         drape=elevation is not None,
         notes=notes,

@@ -264,7 +264,7 @@ def test_units_of_the_header_are_honoured(drawing, save):
     tin = ts.read(save(drawing))
     assert tin.elevation_unit is None
     assert "names no unit of lengths" in notes_of(tin)
-    assert ts.read(save(drawing), z_unit="ft").elevation_unit.name == "foot"
+    assert ts.read(save(drawing), elevation_unit="ft").elevation_unit.name == "foot"
 
 
 # ------------------------------------------------------------------ lines for other points

@@ -220,7 +220,7 @@ def test_a_file_without_units_is_refused_until_told(write):
     path = write(document(surface(), units=""))
     text = refused("does not say its units", path)
     assert "--" not in text
-    assert ts.read(path, z_unit="ft").elevation_unit.name == "foot"
+    assert ts.read(path, elevation_unit="ft").elevation_unit.name == "foot"
     assert ts.read(path, unit="m").elevation_unit.name == "metre"
 
 
@@ -240,7 +240,7 @@ def test_a_file_without_units_is_refused_until_told(write):
 def test_units_of_lengths(write, system, name, unit):
     path = write(document(surface(), units=f'<Units><{system} linearUnit="{name}"/></Units>'))
     assert ts.read(path).elevation_unit.name == unit
-    refused("unit of elevations", path, error=ts.OptionError, z_unit="yd")
+    refused("unit of elevations", path, error=ts.OptionError, elevation_unit="yd")
 
 
 def test_an_unknown_unit_and_two_units_are_refused(write):
@@ -251,10 +251,10 @@ def test_an_unknown_unit_and_two_units_are_refused(write):
 def test_another_unit_of_elevations_has_two_readings(write):
     units = '<Units><Imperial linearUnit="foot" elevationUnit="meter"/></Units>'
     path = write(document(surface(), units=units))
-    refused("`z_unit='foot'` or `z_unit='metre'`", path)
-    tin = ts.read(path, z_unit="foot")
+    refused("`elevation_unit='foot'` or `elevation_unit='metre'`", path)
+    tin = ts.read(path, elevation_unit="foot")
     assert (tin.elevation_unit.name, tin.points[0, 2]) == ("foot", 1)
-    tin = ts.read(path, z_unit="m")
+    tin = ts.read(path, elevation_unit="m")
     assert tin.elevation_unit.name == "foot"
     assert tin.points[0, 2] == pytest.approx(1 / 0.3048)
     feet = units.replace("foot", "USSurveyFoot").replace("meter", "feet")

@@ -92,7 +92,7 @@ def test_units_are_those_of_the_crs(tmp_path, crs, system, name):
 
 
 def test_elevations_come_to_the_one_unit_and_that_is_told(tmp_path):
-    tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs=32616, z_unit="ft")
+    tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [0, 3, 8]], crs=32616, elevation_unit="ft")
     with pytest.warns(ts.LossWarning, match="converted from foot to metre"):
         path = ts.write(tin, tmp_path / "a.xml")
     assert ts.read(path).points[0, 2] == pytest.approx(5 * 0.3048)

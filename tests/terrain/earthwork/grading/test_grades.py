@@ -114,7 +114,7 @@ def test_the_ring_gives_the_elevation_and_feet_count():
     ground = ts.triangulate(FLAT)
     level = ts.grade(ground, SQUARE, 3.0, cut_slope=2, fill_slope=3)
     assert ts.grade(ground, ring, cut_slope=2, fill_slope=3) == level
-    feet = ts.triangulate(FLAT, crs="EPSG:32616", z_unit="ft")
+    feet = ts.triangulate(FLAT, crs="EPSG:32616", elevation_unit="ft")
     graded = ts.grade(feet, SQUARE, 3.0, cut_slope=2, fill_slope=3)
     # Two metres along rise one metre.
     assert graded.interpolate([[35.3, 30]]) == pytest.approx([3 + 0.15 / 0.3048])

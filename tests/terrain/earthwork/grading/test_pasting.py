@@ -142,9 +142,9 @@ def test_the_base_stays_in_holes_of_the_patch_and_its_own_holes_stay():
 
 
 def test_elevations_are_converted_to_the_unit_of_the_base():
-    base = make_base(crs="EPSG:32616", z_unit="m")
+    base = make_base(crs="EPSG:32616", elevation_unit="m")
     ring = np.column_stack([np.array([[80, 80], [120, 80], [100, 120]]) + UTM, [300.0, 300, 300]])
-    pasted = ts.paste(base, ts.triangulate(ring, crs="EPSG:32616", z_unit="ft"))
+    pasted = ts.paste(base, ts.triangulate(ring, crs="EPSG:32616", elevation_unit="ft"))
     assert pasted.interpolate(np.add(UTM, [[100, 100]])) == pytest.approx([91.44])
     assert any("converted" in note for note in pasted.report.notes)
 
