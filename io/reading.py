@@ -47,23 +47,23 @@ __all__ = [
     "detect",
     "join_files",
     "read",
-    "read_as_wished",
     "read_points",
     "read_stream",
     "read_tin",
+    "read_with_fallbacks",
 ]
 
-_NO_WISHES: Mapping[str, Any] = MappingProxyType({})
+_NO_FALLBACKS: Mapping[str, Any] = MappingProxyType({})
 _SHOWN = 5
 
 
 class _Asked(NamedTuple):
-    """What a caller says of a file: format, CRS and unit, options, wishes, and whom to tell."""
+    """What a caller says of a file: format, CRS and unit, options, fallbacks, and progress."""
 
     format: str | None
     declared: Mapping[str, Any]
     options: Mapping[str, Any]
-    wishes: Mapping[str, Any]
+    fallbacks: Mapping[str, Any]
     progress: Tell | None = None
 
 
@@ -170,7 +170,7 @@ def read(
     ...     ts.read(path, crs="EPSG:32616")
     <Survey: 3 points from site.csv, attributes number, crs EPSG:32616>
     """
-    return read_as_wished(
+    return read_with_fallbacks(
         path,
         {},
         format=format,
@@ -183,9 +183,9 @@ def read(
     )
 
 
-def read_as_wished(
+def read_with_fallbacks(
     path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
-    wishes: Mapping[str, Any],
+    fallbacks: Mapping[str, Any],
     *,
     format: str | None = None,  # noqa: A002 - as in read
     crs: CrsLike | None = None,
@@ -200,13 +200,13 @@ def read_as_wished(
     Parameters
     ----------
     path : path-like or sequence of path-like
-    wishes : mapping of str to object
+    fallbacks : mapping of str to object
         Options of readers; one that the chosen reader does not have is left out.
     """
     remote = as_flag("remote", remote)
     done = Progress(progress)
     declared = _collect_declared(crs, elevation_unit)
-    asked = _Asked(format, declared, options, wishes, done.stage(0.0, 1.0))
+    asked = _Asked(format, declared, options, fallbacks, done.stage(0.0, 1.0))
     places = path if isinstance(path, list | tuple) else [cast("str | os.PathLike[str]", path)]
     with ExitStack() as copies:
         if remote:
@@ -378,7 +378,7 @@ def _collect_declared(crs: CrsLike | None, elevation_unit: UnitLike | None) -> d
 def read_stream(
     stream: IO[bytes],
     name: str,
-    wishes: Mapping[str, Any] = _NO_WISHES,
+    fallbacks: Mapping[str, Any] = _NO_FALLBACKS,
     *,
     format: str | None = None,  # noqa: A002 - as in read
     crs: CrsLike | None = None,
@@ -393,8 +393,8 @@ def read_stream(
     stream : binary file object
     name : str
         What reports and errors call it.
-    wishes : mapping of str to object
-        As of :func:`read_as_wished`.
+    fallbacks : mapping of str to object
+        As of :func:`read_with_fallbacks`.
     """
     source = Path(name)
     declared = _collect_declared(crs, elevation_unit)
@@ -404,7 +404,9 @@ def read_stream(
         unpack(local) as inner,
         checking_crs(check_crs),
     ):
-        return _restore_source(_read_file(inner, format, declared, options, wishes), inner, source)
+        return _restore_source(
+            _read_file(inner, format, declared, options, fallbacks), inner, source
+        )
 
 
 def _read_file(
@@ -412,7 +414,7 @@ def _read_file(
     name: str | None,
     declared: Mapping[str, Any],
     options: Mapping[str, Any],
-    wishes: Mapping[str, Any],
+    fallbacks: Mapping[str, Any],
     progress: Tell | None = None,
 ) -> Survey | TIN:
     chosen = _choose_format(file, name, options)
@@ -423,9 +425,9 @@ def _read_file(
             known=lookup.find_suffixes("read"),
         )
     reader = chosen.load("read")
-    of_file, told = _take_options(chosen, declared, options)
+    of_file, stated = _take_options(chosen, declared, options)
     require_options(chosen, "read", reader, of_file)
-    of_file |= {name: wishes[name] for name in chosen.options("read") if name in wishes}
+    of_file |= {name: fallbacks[name] for name in chosen.options("read") if name in fallbacks}
     if progress is not None and takes_progress(reader):
         of_file["progress"] = progress
     try:
@@ -439,7 +441,7 @@ def _read_file(
             raise
         raise _blame_plug_in(chosen, file, describe_failure(error)) from error
     if isinstance(found, Survey | TIN):
-        _require_unit(found, told, options)
+        _require_unit(found, stated, options)
         return _name_source(found, file)
     raise _blame_plug_in(chosen, file, f"it gives a {type(found).__name__}, no Survey and no TIN")
 
@@ -454,24 +456,24 @@ def _take_options(
     taken = {name: value for name, value in declared.items() if name != "crs"} | dict(options)
     if "unit" in chosen.options("read"):
         return taken, None
-    told = Unit.of(taken.pop("unit", None))
-    if told is not None:
-        taken.setdefault("elevation_unit", told)
-    return taken, told
+    stated = Unit.of(taken.pop("unit", None))
+    if stated is not None:
+        taken.setdefault("elevation_unit", stated)
+    return taken, stated
 
 
-def _require_unit(found: Survey | TIN, told: Unit | None, options: Mapping[str, Any]) -> None:
+def _require_unit(found: Survey | TIN, stated: Unit | None, options: Mapping[str, Any]) -> None:
     """Refuse a unit of lengths that the CRS of the coordinates does not have.
 
     Raises
     ------
     OptionError
     """
-    if told is None or found.crs is None or "source_crs" in options:
+    if stated is None or found.crs is None or "source_crs" in options:
         return
-    if found.crs.is_geographic or found.crs.horizontal_unit != told:
+    if found.crs.is_geographic or found.crs.horizontal_unit != stated:
         unit = found.crs.horizontal_unit.name
-        raise OptionError("unit", told.name, f"{unit}, the unit of {found.crs.label}")
+        raise OptionError("unit", stated.name, f"{unit}, the unit of {found.crs.label}")
 
 
 def _name_source(found: Survey | TIN, file: Path) -> Survey | TIN:
@@ -538,9 +540,9 @@ def _list_tiles(folder: Path, name: str | None) -> list[Path]:
     tiles = [file for file, one in known.items() if one.name in kinds]
     if len(kinds) > 1:
         first = {one.name: file.name for file, one in reversed(known.items())}
-        told = ", ".join(f"'{file}' ({kind})" for kind, file in sorted(first.items()))
+        stated = ", ".join(f"'{file}' ({kind})" for kind, file in sorted(first.items()))
         raise ReadError(
-            f"The folder '{folder}' has files of several formats: {told}; name the files, or the "
+            f"The folder '{folder}' has files of several formats: {stated}; name the files, or the "
             "format that is wanted.",
             path=folder,
         )

@@ -15,7 +15,7 @@ from ..tin import Surface, Survey
 from .door import naming_file
 from .registry.format import require_options, takes_progress
 from .registry.lookup import find_writer
-from .registry.losses import tell_lost_lines
+from .registry.losses import warn_of_lost_lines
 
 if TYPE_CHECKING:
     import os
@@ -93,7 +93,7 @@ def write(
     with done.passing_on(), naming_file(file):
         _call_writer(chosen, writer, obj, file, options)
         if isinstance(obj, Survey) and options.get("kind") != "points":
-            tell_lost_lines(obj, chosen)
+            warn_of_lost_lines(obj, chosen)
     done.end()
     return file
 

@@ -67,10 +67,10 @@ class Measures:
     """Whether the first of two coordinates is the other one than the format says."""
     notes: tuple[str, ...] = ()
 
-    def tell(self, *notes: str, first: bool = False, **changes: Any) -> Measures:
+    def noting(self, *notes: str, first: bool = False, **changes: Any) -> Measures:
         """Return them with further notes, at the end or first, and other changes."""
-        told = (*notes, *self.notes) if first else (*self.notes, *notes)
-        return replace(self, notes=told, **changes)
+        noted = (*notes, *self.notes) if first else (*self.notes, *notes)
+        return replace(self, notes=noted, **changes)
 
     def apply(self, rows: Float64Array) -> Float64Array:
         """Return easting, northing and, where there is one, elevation as they are wanted."""
@@ -108,7 +108,7 @@ def choose_measures(stated: Stated, declared: Declared, *, sample: Float64Array)
     if along is not None and along.metres is not None:
         _require_agreement(stated, declared, along, source)
         if unit is not None and unit.metres is not None and unit != along:
-            measures = measures.tell(
+            measures = measures.noting(
                 f"Coordinates were converted from {unit.name} to {along.name}, the unit of the "
                 "CRS.",
                 scale=unit.metres / along.metres,
@@ -147,16 +147,16 @@ def _choose_elevation_unit(stated: Stated, declared: Declared, unit: Unit | None
 
 def _require_agreement(stated: Stated, declared: Declared, along: Unit, source: CRS | None) -> None:
     """Refuse a file whose unit is not that of its CRS, until the caller tells which is right."""
-    told, label = stated.unit, "" if source is None else source.label
+    unit, label = stated.unit, "" if source is None else source.label
     if declared.unit is not None:
-        if told is not None and declared.unit not in (told, along):
-            allowed = f"{told.name}, as {FILE} says, or {along.name}, the unit of {label}"
+        if unit is not None and declared.unit not in (unit, along):
+            allowed = f"{unit.name}, as {FILE} says, or {along.name}, the unit of {label}"
             raise OptionError("unit", declared.unit.name, allowed)
         return
-    if told is not None and told != along:
+    if unit is not None and unit != along:
         raise ReadError(
-            f"{stated.what} says that coordinates are in {told.name}, and {label} "
-            f"measures in {along.name}: tell which is right, `unit='{told.name}'` or "
+            f"{stated.what} says that coordinates are in {unit.name}, and {label} "
+            f"measures in {along.name}: tell which is right, `unit='{unit.name}'` or "
             f"`unit='{along.name}'`."
         )
 
@@ -166,7 +166,7 @@ def _convert_elevations(measures: Measures, unit: Unit, what: str) -> Measures:
     known = measures.elevation_unit
     if known is None or known == unit or known.metres is None or unit.metres is None:
         return measures
-    return measures.tell(
+    return measures.noting(
         f"Elevations were converted from {known.name} to {unit.name}, {what}.",
         elevation_scale=known.metres / unit.metres,
         elevation_unit=unit,
@@ -180,11 +180,11 @@ def _look_at_area(measures: Measures, target: CRS | None, sample: Float64Array) 
     if area is None or len(rows) == 0 or area.covers_most(rows):
         return measures
     if area.covers_most(rows[:, ::-1]):
-        return measures.tell(
+        return measures.noting(
             "Easting and northing were taken in the other order than the format says: only so do "
             f"they lie in the area of {area.label}.",
             is_swapped=True,
         )
     if area.is_local(rows):
         return measures
-    return measures.tell(f"Most points lie outside the area of {area.label}.")
+    return measures.noting(f"Most points lie outside the area of {area.label}.")

@@ -85,8 +85,8 @@ def make_tin_with_lines(
     )
     if not lines:
         return tin
-    tin, told = _add_lines(tin, lines)
-    return add_notes(tin, told) if told else tin
+    tin, noted = _add_lines(tin, lines)
+    return add_notes(tin, noted) if noted else tin
 
 
 # ------------------------------------------------------------------ lines along edges

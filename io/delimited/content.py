@@ -354,10 +354,10 @@ def _describe_refusal(
         faults = "; ".join(f"{one.word} {_name_objection(one, area)}" for one in candidates)
         return f"it has no header, and no customary layout fits: {faults}. Say which by {settled}."
     first = " (its first column may be point numbers)" if {one.start for one in left} > {0} else ""
-    may_tell = "; the CRS of the points may decide, too" if area is None else ""
+    may_decide = "; the CRS of the points may decide, too" if area is None else ""
     return (
         f"it has no header, and its columns may be {' or '.join(one.word for one in left)}{first}: "
-        f"say which by {settled}{may_tell}."
+        f"say which by {settled}{may_decide}."
     )
 
 

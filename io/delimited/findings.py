@@ -257,12 +257,12 @@ def find_unit_words(attributes: Mapping[str, AnyArray]) -> list[str]:
             continue
         shown = " or ".join(f"'{word}'" for word in units[:_SHOWN])
         place = "every row" if n_rows == len(texts) else f"{n_rows:,} of {len(texts):,} rows"
-        told = (
+        advice = (
             "if this is the unit of the elevations, the option `elevation_unit` says so"
             if len(units) == 1
             else "if these are the units of the elevations, make them one"
         )
-        notes.append(f"'{name[:_SHOWN_NAME]}' begins with {shown} in {place}: {told}.")
+        notes.append(f"'{name[:_SHOWN_NAME]}' begins with {shown} in {place}: {advice}.")
     return notes
 
 
@@ -298,7 +298,7 @@ def _require_no_exchange(
             )
 
 
-def require_unit_of_crs(columns: Columns, crs: CRS | None, *, is_told: bool) -> list[str]:
+def require_unit_of_crs(columns: Columns, crs: CRS | None, *, is_stated: bool) -> list[str]:
     """Say where the header gives eastings and northings another unit than their CRS has.
 
     Parameters
@@ -306,7 +306,7 @@ def require_unit_of_crs(columns: Columns, crs: CRS | None, *, is_told: bool) -> 
     columns : Columns
     crs : CRS or None
         Of the coordinates in the file.
-    is_told : bool
+    is_stated : bool
         Whether the caller has said what the columns are, against the header.
 
     Raises
@@ -315,7 +315,7 @@ def require_unit_of_crs(columns: Columns, crs: CRS | None, *, is_told: bool) -> 
         If they are not both feet, of either kind, and the caller has not told the columns.
     """
     if crs is None:
-        return _require_units_of_a_kind(columns, is_told=is_told)
+        return _require_units_of_a_kind(columns, is_stated=is_stated)
     if crs.is_geographic:
         return []
     wanted = crs.horizontal_unit
@@ -327,7 +327,7 @@ def require_unit_of_crs(columns: Columns, crs: CRS | None, *, is_told: bool) -> 
         sentence = (
             f"the header gives the {role} in {unit.name}, and {crs.label} measures in {wanted.name}"
         )
-        if is_far and not is_told:
+        if is_far and not is_stated:
             raise CrsError(
                 f"{sentence}: the options `source_crs` and `crs` name the CRS that the "
                 "points are in, and the one that they go to; `columns` tells the columns whatever "
@@ -338,18 +338,18 @@ def require_unit_of_crs(columns: Columns, crs: CRS | None, *, is_told: bool) -> 
     return []
 
 
-def _require_units_of_a_kind(columns: Columns, *, is_told: bool) -> list[str]:
+def _require_units_of_a_kind(columns: Columns, *, is_stated: bool) -> list[str]:
     """Say where the header gives eastings another unit than elevations, or refuse it."""
     across, up = (_find_unit(columns.units.get(role)) for role in ("easting", "elevation"))
     if across is None or across == (up or METRE):
         return []
-    if up is not None and not is_told:
+    if up is not None and not is_stated:
         raise CrsError(
             f"the header gives the easting in {across.name} and the elevation in "
             f"{up.name}: the option `crs` names the CRS that the points are in, `columns` tells "
             "the columns whatever the header says."
         )
-    if not is_told and across.metres is not None and not 0.3 < across.metres <= 1.0:
+    if not is_stated and across.metres is not None and not 0.3 < across.metres <= 1.0:
         raise CrsError(
             f"the header gives the easting in {across.name}, in which elevations are not given: "
             "the option `crs` names the CRS that the points are in, `columns` tells the columns "

@@ -30,15 +30,15 @@ if TYPE_CHECKING:
     from .lines import TextLines
 
 __all__ = [
-    "Told",
+    "GivenColumns",
     "TopLines",
-    "count_told_columns",
+    "count_stated_columns",
     "find_named_columns",
     "join_brackets",
     "join_numbers",
 ]
 
-Told: TypeAlias = "str | Sequence[str] | Mapping[str, str | int]"
+GivenColumns: TypeAlias = "str | Sequence[str] | Mapping[str, str | int]"
 """What the caller says that the columns are."""
 
 _SHOWN_NAMES = 100
@@ -57,7 +57,7 @@ def find_named_columns(
     top: TopLines,
     shape: tuple[str, int],
     body: Sequence[Sequence[str]],
-    told: Told | None,
+    stated: GivenColumns | None,
 ) -> tuple[Columns | None, Heading | None]:
     """Return what the caller, a header or a line near the table says of the columns.
 
@@ -68,7 +68,7 @@ def find_named_columns(
         Delimiter, and number of columns.
     body : sequence of sequence of str
         Cells of some rows.
-    told : str, sequence of str or mapping, optional
+    stated : str, sequence of str or mapping, optional
         What the caller says.
 
     Returns
@@ -83,14 +83,14 @@ def find_named_columns(
     header = top.header or _find_header_in_comment(top.lines, first_row, delimiter, count)
     header = None if header is None else _drop_label(header)
     heading = None
-    if told is None and (header is None or names_coordinates(header) is None):
+    if stated is None and (header is None or names_coordinates(header) is None):
         heading = find_heading(top.lines, top.rows, count)
     if heading is not None and heading.names:
         found = _find_columns_by_name(list(heading.names), heading.units, count, None)
         return replace(found, notes=(heading.note, *found.notes)), None
-    named = _fit_header(header, count, body, told)
-    if named or told is not None:
-        return _find_columns_by_name(named, top.units, count, told), None
+    named = _fit_header(header, count, body, stated)
+    if named or stated is not None:
+        return _find_columns_by_name(named, top.units, count, stated), None
     return None, heading
 
 
@@ -128,7 +128,7 @@ def _find_header_in_comment(
 
 
 def _fit_header(
-    header: list[str] | None, count: int, body: Sequence[Sequence[str]], told: Told | None
+    header: list[str] | None, count: int, body: Sequence[Sequence[str]], stated: GivenColumns | None
 ) -> list[str]:
     """Return one name a column; a delimiter at the end of rows or header makes no column."""
     if header is None or len(header) == count:
@@ -137,9 +137,9 @@ def _fit_header(
         return [*header, ""]
     if len(header) == count + 1 and not header[-1]:
         return header[:-1]
-    n_told = count_told_columns(told)
+    n_stated = count_stated_columns(stated)
     is_known = names_coordinates(header) is not None
-    if n_told and (n_told >= count or not is_known):
+    if n_stated and (n_stated >= count or not is_known):
         return []
     raise ReadError(
         f"the header names {counted(len(header), 'column')} ({list_names(header)}), but rows have "
@@ -149,11 +149,11 @@ def _fit_header(
 
 
 def _find_columns_by_name(
-    header: list[str], units: Sequence[str], count: int, told: Told | None
+    header: list[str], units: Sequence[str], count: int, stated: GivenColumns | None
 ) -> Columns:
     """Find the columns by the caller's word, else by the header."""
-    if told is not None:
-        return find_columns_by_word(told, header, count, units)
+    if stated is not None:
+        return find_columns_by_word(stated, header, count, units)
     columns = find_columns_by_header(header, units)
     if columns is None:
         found = [f"{find_role(name)} '{name}'" for name in header[:_SHOWN_NAMES] if find_role(name)]
@@ -217,6 +217,6 @@ def _fits(header: Sequence[str], body: Sequence[Sequence[str]]) -> bool:
     )
 
 
-def count_told_columns(told: Told | None) -> int:
+def count_stated_columns(stated: GivenColumns | None) -> int:
     """Return how many columns the caller names, 0 if not in their order."""
-    return 0 if told is None or isinstance(told, Mapping) else len(list_meanings(told))
+    return 0 if stated is None or isinstance(stated, Mapping) else len(list_meanings(stated))

@@ -21,7 +21,7 @@ from .columns import (
 from .content import require_no_split_decimals
 from .header import (
     TopLines,
-    count_told_columns,
+    count_stated_columns,
     find_named_columns,
     join_brackets,
     join_numbers,
@@ -72,7 +72,7 @@ class Layout:
     """One letter; ``BLANKS`` for runs of spaces and tabs."""
     decimal: str
     """Decimal mark, "." or ","."""
-    is_decimal_told: bool
+    is_decimal_stated: bool
     """Whether the caller named the decimal mark."""
     count: int
     """Number of columns."""
@@ -112,7 +112,7 @@ class Layout:
 
 
 @dataclass(frozen=True, slots=True)
-class _Wishes:
+class _Options:
     """What the caller says about the layout; None is found by looking."""
 
     columns: str | Sequence[str] | Mapping[str, str | int] | None = None
@@ -156,12 +156,12 @@ def find_layout(
     4. Columns are found by the caller's word, else by the header; their content is judged when all
        of it has been read.
     """
-    wishes = _Wishes(columns, parse_delimiter(delimiter), parse_decimal_mark(decimal), comment)
-    data, skipped = _select_data_lines(lines, wishes)
+    options = _Options(columns, parse_delimiter(delimiter), parse_decimal_mark(decimal), comment)
+    data, skipped = _select_data_lines(lines, options)
     if len(data) == 0:
         raise ReadError(f"'{path}' holds no points: only blank and comment lines.", path=path)
     sample = lines.decode_lines(_sample_lines(data))
-    found = wishes.delimiter or find_delimiter(sample)
+    found = options.delimiter or find_delimiter(sample)
     if found is None and all(text.lstrip().startswith(COMMENT_PREFIXES) for text in sample):
         raise ReadError(f"'{path}' holds no points: only blank and comment lines.", path=path)
     if found is None:
@@ -170,16 +170,16 @@ def find_layout(
             f" gives three columns of numbers; its first line is '{sample[0][:60]}'.",
             path=path,
         )
-    data, skipped = _drop_fillers(lines, data, skipped, found, wishes)
+    data, skipped = _drop_fillers(lines, data, skipped, found, options)
     rows = lines.decode_lines(_sample_lines(data))
     cells = _split_rows(rows, found)
     try:
-        if found == "," and wishes.delimiter is None:
+        if found == "," and options.delimiter is None:
             require_one_kind_of_comma(rows)
         if found == BLANKS:
-            require_no_blank_groups(rows, count_told_columns(wishes.columns))
-        mark = _choose_decimal_mark(lines, data, cells, found, wishes)
-        return _lay_out_table(lines, data, skipped, cells, (found, mark), wishes, path)
+            require_no_blank_groups(rows, count_stated_columns(options.columns))
+        mark = _choose_decimal_mark(lines, data, cells, found, options)
+        return _lay_out_table(lines, data, skipped, cells, (found, mark), options, path)
     except ReadError as error:
         raise ReadError(f"'{path}': {error}", path=path, lines=error.lines) from None
 
@@ -209,12 +209,12 @@ def _choose_decimal_mark(
     data: Int64Array,
     cells: list[list[str]],
     delimiter: str,
-    wishes: _Wishes,
+    options: _Options,
 ) -> DecimalMark:
     """Return the mark that the caller names, else that of the lines looked at, else of any."""
-    if wishes.decimal is not None:
-        require_no_delimiter(wishes.decimal, delimiter, cells)
-        return DecimalMark(wishes.decimal)
+    if options.decimal is not None:
+        require_no_delimiter(options.decimal, delimiter, cells)
+        return DecimalMark(options.decimal)
     found = find_decimal_mark(cells, delimiter)
     if found is None and delimiter != ",":
         divided = lines.find_with_decimals(data)
@@ -231,11 +231,11 @@ def _lay_out_table(
     skipped: Counter[str],
     cells: list[list[str]],
     marks: tuple[str, DecimalMark],
-    wishes: _Wishes,
+    options: _Options,
     path: Path,
 ) -> Layout:
     delimiter, (decimal, note) = marks
-    count, has_text_tail = _count_columns(cells, delimiter, decimal, wishes)
+    count, has_text_tail = _count_columns(cells, delimiter, decimal, options)
     if count > _MOST_COLUMNS:
         raise ReadError(f"its rows have {count:,} columns; at most {_MOST_COLUMNS:,} are read.")
     top = _find_top(cells[:_TOP_LINES], count, decimal)
@@ -244,15 +244,15 @@ def _lay_out_table(
     below = [row for row in cells[top.n_lines :] if row not in headers]
     body = _select_even_rows(below, count, has_text_tail=has_text_tail)
     header = TopLines(lines, rows, top.header, tuple(top.units))
-    columns, heading = find_named_columns(header, (delimiter, count), body, wishes.columns)
-    if columns is None and wishes.decimal is None:
+    columns, heading = find_named_columns(header, (delimiter, count), body, options.columns)
+    if columns is None and options.decimal is None:
         require_no_split_decimals(body, delimiter)
     kinds = _Kinds.of(body, count, decimal)
     is_described = columns is not None and columns.roles.get("description") == count - 1
     return Layout(
         delimiter=delimiter,
         decimal=decimal,
-        is_decimal_told=wishes.decimal is not None,
+        is_decimal_stated=options.decimal is not None,
         count=count,
         columns=columns,
         rows=rows,
@@ -304,16 +304,16 @@ def _select_even_rows(
 # ------------------------------------------------------------------ lines
 
 
-def _select_data_lines(lines: TextLines, wishes: _Wishes) -> tuple[Int64Array, Counter[str]]:
+def _select_data_lines(lines: TextLines, options: _Options) -> tuple[Int64Array, Counter[str]]:
     """Set blank and comment lines aside; ``;`` is judged when the delimiter is known."""
     is_blank = lines.is_blank
     is_comment = np.zeros(len(lines), np.bool_)
-    prefixes = COMMENT_PREFIXES if wishes.comment is None else (wishes.comment,)
+    prefixes = COMMENT_PREFIXES if options.comment is None else (options.comment,)
     for prefix in prefixes:
-        if prefix and not (wishes.comment is None and prefix == ";"):
+        if prefix and not (options.comment is None and prefix == ";"):
             is_comment |= lines.starts_with(prefix)
     data = np.flatnonzero(~is_blank & ~is_comment)
-    if len(data) == 0 and wishes.comment is None:
+    if len(data) == 0 and options.comment is None:
         is_comment[:] = False
         data = np.flatnonzero(~is_blank)
     counts = {"blank lines": int(is_blank.sum()), "comment lines": int(is_comment.sum())}
@@ -325,7 +325,7 @@ def _drop_fillers(
     data: Int64Array,
     skipped: Counter[str],
     delimiter: str,
-    wishes: _Wishes,
+    options: _Options,
 ) -> tuple[Int64Array, Counter[str]]:
     """Set aside rows of nothing but delimiters, and comments that start with a semicolon."""
     if delimiter != BLANKS:
@@ -333,7 +333,7 @@ def _drop_fillers(
         fillers = [i for i in starters if not lines.decode_line(i).strip(f"{delimiter} \t")]
         data = np.delete(data, np.searchsorted(data, np.array(fillers, np.int64)))
         skipped = skipped + Counter({"blank lines": len(fillers)})
-    if wishes.comment is None and delimiter != ";":
+    if options.comment is None and delimiter != ";":
         is_comment = lines.starts_with(";")[data]
         if not is_comment.all():
             data = data[~is_comment]
@@ -351,7 +351,7 @@ def _sample_lines(data: Int64Array) -> list[int]:
 
 
 def _count_columns(
-    rows: Sequence[Sequence[str]], delimiter: str, decimal: str, wishes: _Wishes
+    rows: Sequence[Sequence[str]], delimiter: str, decimal: str, options: _Options
 ) -> tuple[int, bool]:
     """Return the number of columns, and whether the last is text that may hold the delimiter."""
     body = [row for row in rows if sum(is_number(cell, decimal) for cell in row) >= 2] or rows
@@ -359,9 +359,9 @@ def _count_columns(
     count = counts.most_common(1)[0][0]
     if delimiter != BLANKS and not any(row[-1] for row in body):  # delimiters at their ends
         return count, False
-    told = _count_named_columns(rows, wishes)
-    if told and (max(counts) >= told if delimiter == BLANKS else told <= count):
-        return told, True
+    n_named = _count_named_columns(rows, options)
+    if n_named and (max(counts) >= n_named if delimiter == BLANKS else n_named <= count):
+        return n_named, True
     if _MOST_ROWS * len(body) <= counts[count] and _is_headed(rows, count):
         return count, False
     tails = Counter(_find_text_tail(row, decimal) for row in body)
@@ -377,10 +377,10 @@ def _is_headed(rows: Sequence[Sequence[str]], count: int) -> bool:
     return any(names_coordinates(row) is not None for row in top)
 
 
-def _count_named_columns(rows: Sequence[Sequence[str]], wishes: _Wishes) -> int | None:
+def _count_named_columns(rows: Sequence[Sequence[str]], options: _Options) -> int | None:
     """Return the number of columns if caller or header say that the last is a description."""
-    if wishes.columns is not None and not isinstance(wishes.columns, Mapping):
-        given = list_meanings(wishes.columns)
+    if options.columns is not None and not isinstance(options.columns, Mapping):
+        given = list_meanings(options.columns)
         return len(given) if given[-1:] == ["description"] else None
     for row in rows[:_TOP_LINES]:
         known = names_coordinates(row)

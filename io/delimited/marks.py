@@ -205,14 +205,14 @@ def require_one_kind_of_comma(sample: Sequence[str]) -> None:
         )
 
 
-def require_no_blank_groups(sample: Sequence[str], n_told: int) -> None:
+def require_no_blank_groups(sample: Sequence[str], n_stated: int) -> None:
     """Raise if blanks separate columns, and single ones among wider ones may group digits.
 
     Parameters
     ----------
     sample : sequence of str
         Lines of the file.
-    n_told : int
+    n_stated : int
         Columns that the caller names: as many as there are between blanks of any width leave
         nothing open.
 
@@ -226,8 +226,8 @@ def require_no_blank_groups(sample: Sequence[str], n_told: int) -> None:
         next((cell for cell in _WIDE_BLANK.split(row.strip()) if _is_grouped_by_blanks(cell)), None)
         for row in rows
     ]
-    is_told = any(len(split_line(row, BLANKS)) <= n_told for row in rows)
-    if rows and all(grouped) and not is_told:
+    is_stated = any(len(split_line(row, BLANKS)) <= n_stated for row in rows)
+    if rows and all(grouped) and not is_stated:
         raise ReadError(
             f"its blanks may separate columns or thousands ('{grouped[0]}', beside wider blanks): "
             "write the table with another delimiter, or say with the option `columns` what all of "

@@ -152,52 +152,62 @@ def read(
     source = _find_source_crs(layout, declared, target)
     area = AreaOfUse.of(source, target)
     meaning, notes = _find_columns(cells, layout, area, left_out)
-    told_units = require_unit_of_crs(meaning, source or target, is_told=columns is not None)
+    noted_units = require_unit_of_crs(meaning, source or target, is_stated=columns is not None)
     require_one_mark(cells, meaning, layout)
     table = read_table(cells, layout, meaning, lines)
-    table, told_cut = leave_out_cut_row(table, lines, layout, meaning, skip_bad=skip_bad)
+    table, noted_cut = leave_out_cut_row(table, lines, layout, meaning, skip_bad=skip_bad)
     _require_few_faults(table.faults, lines, layout, skip_bad=skip_bad)
     require_one_header(table.faults, lines, layout.delimiter, meaning)
-    told = _account_for_rows(table, left_out)
-    unit, told_unit = _find_unit(layout, lines, Unit.of(elevation_unit))
+    accounted = _account_for_rows(table, left_out)
+    unit, noted_unit = _find_unit(layout, lines, Unit.of(elevation_unit))
     where = _Reference(source, target, area)
-    told = _settle_places(told, lines, layout, meaning, where, is_told=columns is not None)
+    accounted = _settle_places(
+        accounted, lines, layout, meaning, where, is_stated=columns is not None
+    )
     is_free = columns is not None or where.area is None  # a plan of its own may lie anywhere
-    on_ground = require_ground(told.points[:, 2], unit, is_free=is_free)
-    notes = [*layout.notes, *notes, *told_units, *told_cut, *told_unit, *on_ground, *told.notes]
-    placed = place(told.points, source=source, target=target, unit=unit, looks_at_area=False)
-    left_out_lines = {**layout.left_out, **told.lines}
+    on_ground = require_ground(accounted.points[:, 2], unit, is_free=is_free)
+    notes = [
+        *layout.notes,
+        *notes,
+        *noted_units,
+        *noted_cut,
+        *noted_unit,
+        *on_ground,
+        *accounted.notes,
+    ]
+    placed = place(accounted.points, source=source, target=target, unit=unit, looks_at_area=False)
+    left_out_lines = {**layout.left_out, **accounted.lines}
     return Survey(
         points=placed.points,
-        attributes=told.attributes,
+        attributes=accounted.attributes,
         crs=placed.crs,
         elevation_unit=placed.elevation_unit,
         source=path.name,
         skipped={**layout.skipped, **{what: len(at) for what, at in left_out_lines.items()}},
         skipped_lines=left_out_lines,
         notes=[*notes, *placed.notes],
-        row_sources=RowSources.of_file(path.name, told.rows + 1),
+        row_sources=RowSources.of_file(path.name, accounted.rows + 1),
     )
 
 
 def _find_odd(
-    told: _Accounted, lines: TextLines, layout: Layout, columns: Columns, *, in_degrees: bool
+    accounted: _Accounted, lines: TextLines, layout: Layout, columns: Columns, *, in_degrees: bool
 ) -> list[str]:
-    numbers, names = (told.attributes.get(role) for role in ("number", "description"))
+    numbers, names = (accounted.attributes.get(role) for role in ("number", "description"))
     return [
-        *find_odd_elevations(told.points, in_degrees=in_degrees),
-        *find_repeated_numbers(numbers, told.rows),
-        *find_rounded_coordinates(lines, told.rows, layout.delimiter, columns),
-        *find_summary_rows(told.points, told.rows, (numbers, names)),
+        *find_odd_elevations(accounted.points, in_degrees=in_degrees),
+        *find_repeated_numbers(numbers, accounted.rows),
+        *find_rounded_coordinates(lines, accounted.rows, layout.delimiter, columns),
+        *find_summary_rows(accounted.points, accounted.rows, (numbers, names)),
         *find_commented_points(lines, layout.rows, layout, columns),
-        *(() if layout.columns is None else _find_split(told, layout, columns)),
+        *(() if layout.columns is None else _find_split(accounted, layout, columns)),
     ]
 
 
-def _find_split(told: _Accounted, layout: Layout, columns: Columns) -> list[str]:
+def _find_split(accounted: _Accounted, layout: Layout, columns: Columns) -> list[str]:
     unnamed = {f"column {i + 1}" for i in range(max(columns.coordinates) + 1, layout.count)}
-    beyond = {name: values for name, values in told.attributes.items() if name in unnamed}
-    return find_split_thousands(told.points, beyond, layout.delimiter)
+    beyond = {name: values for name, values in accounted.attributes.items() if name in unnamed}
+    return find_split_thousands(accounted.points, beyond, layout.delimiter)
 
 
 class _Reference(NamedTuple):
@@ -209,29 +219,29 @@ class _Reference(NamedTuple):
 
 
 def _settle_places(
-    told: _Accounted,
+    accounted: _Accounted,
     lines: TextLines,
     layout: Layout,
     columns: Columns,
     where: _Reference,
     *,
-    is_told: bool,
+    is_stated: bool,
 ) -> _Accounted:
     """Refuse places that no header can mean, take X for the northing where the CRS does; note."""
-    is_headed = layout.columns is not None and not is_told
-    notes = list(told.notes)
-    points = told.points
+    is_headed = layout.columns is not None and not is_stated
+    notes = list(accounted.notes)
+    points = accounted.points
     if is_headed:
         if columns.is_degrees:
-            require_one_hemisphere(told.attributes)
+            require_one_hemisphere(accounted.attributes)
         require_no_geocentric(points, columns)
         crs, line = where.source or where.target, find_axes_line(lines, layout.rows)
         points, columns, turned = settle_axes(points, columns, crs, where.area, line)
         notes += turned
-    told = told._replace(points=points)
-    notes += require_in_area(points, told.rows, columns, where.area, is_headed=is_headed)
-    notes += _find_odd(told, lines, layout, columns, in_degrees=is_geographic(where.source))
-    return told._replace(notes=notes)
+    accounted = accounted._replace(points=points)
+    notes += require_in_area(points, accounted.rows, columns, where.area, is_headed=is_headed)
+    notes += _find_odd(accounted, lines, layout, columns, in_degrees=is_geographic(where.source))
+    return accounted._replace(notes=notes)
 
 
 def _find_unit(
@@ -242,13 +252,13 @@ def _find_unit(
     line = find_unit_line(lines, layout.rows)
     if line is None or not line.unit:
         return settle_unit(declared, named), [line.note] if line else []
-    told = _find_known_unit(line.unit)
-    if named not in (None, told) or declared not in (None, told):
+    own = _find_known_unit(line.unit)
+    if named not in (None, own) or declared not in (None, own):
         raise ReadError(
             f"{line.label} tells {line.unit} as the unit of the elevations, and the "
             f"{'header' if named else 'option `elevation_unit`'} another: make them agree.",
         )
-    return told, [line.note]
+    return own, [line.note]
 
 
 def _find_known_unit(word: str | None) -> Unit | None:

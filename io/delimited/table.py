@@ -301,7 +301,7 @@ def _has_groups(cells: Cells, columns: Iterable[int], layout: Layout) -> bool:
 
     1,234 alone may be 1.234; beside 12.5 or 4,024,240 it is a thousand and more.
     """
-    if layout.is_decimal_told or layout.divided.intersection(columns):
+    if layout.is_decimal_stated or layout.divided.intersection(columns):
         return True
     mark = layout.decimal
     return any(
@@ -367,7 +367,7 @@ def require_one_mark(cells: Cells, columns: Columns, layout: Layout) -> None:
     texts = {
         i: _strip_texts(cells.columns[i])
         for i in columns.coordinates
-        if cells.columns[i].dtype.kind not in "fib" and not layout.is_decimal_told
+        if cells.columns[i].dtype.kind not in "fib" and not layout.is_decimal_stated
     }
     grouped = {i: [c for c in column if is_grouped(c, mark)] for i, column in texts.items()}
     if any(mark in c or proves_groups(c, mark) for found in grouped.values() for c in found):

@@ -256,7 +256,7 @@ class _Builder:
         self._find_marks_before(order, texts)
         survey = self.survey
         words = self.reading.style.list_words()
-        told, findings = describe_faults(self.faults, _make_namer(survey), words)
+        noted, findings = describe_faults(self.faults, _make_namer(survey), words)
         made = replace(
             survey,
             breaklines=[*survey.breaklines, *(self._make_breakline(*one) for one in lines["line"])],
@@ -267,7 +267,7 @@ class _Builder:
             notes=[
                 *survey.notes,
                 *notes,
-                *told,
+                *noted,
                 *self._note_curves(),
                 *(self._note_water_level(figure) for figure, _ in lines["water"]),
             ],

@@ -136,7 +136,7 @@ class _Follower:
 
     def _append(self, one: Coded, row: int, marks: tuple[Meaning, ...]) -> None:
         name = one.name
-        self._tell_doubts(name, row, marks)
+        self._note_doubts(name, row, marks)
         figure = self.running.get(name)
         if figure is None or "begin" in marks:
             figure = Figure(name, self.rules[one.code], is_begun="begin" in marks)
@@ -151,7 +151,7 @@ class _Follower:
             figure.is_closed = "close" in marks
             figure.is_rectangle = "rectangle" in marks
 
-    def _tell_doubts(self, name: str, row: int, marks: tuple[Meaning, ...]) -> None:
+    def _note_doubts(self, name: str, row: int, marks: tuple[Meaning, ...]) -> None:
         is_alone = name not in self.running and "begin" not in marks
         if is_alone and "end" in marks:
             self.faults.append(Fault("end without a begin", name, (row,)))
@@ -179,7 +179,7 @@ def _say_nothing(fault: Fault) -> None:
     del fault
 
 
-def find_curves(figure: Figure, tell: Callable[[Fault], None] = _say_nothing) -> list[Curve]:
+def find_curves(figure: Figure, note: Callable[[Fault], None] = _say_nothing) -> list[Curve]:
     """Find the curves of a line, and tell of those that have too few shots, or no begin.
 
     A curve goes on to its end; without one it is the arc through three shots.
@@ -190,16 +190,16 @@ def find_curves(figure: Figure, tell: Callable[[Fault], None] = _say_nothing) ->
         for meaning in _order_marks(marks, is_open=begun is not None):
             if meaning == "end_curve":
                 if begun is None:
-                    tell(Fault("end of no curve", figure.name, (figure.rows[i],)))
+                    note(Fault("end of no curve", figure.name, (figure.rows[i],)))
                 else:
-                    _close_curve(figure, Curve(begun[0], i, begun[1]), curves, tell)
+                    _close_curve(figure, Curve(begun[0], i, begun[1]), curves, note)
                 begun = None
             else:
                 if begun is not None:
-                    _take_three(figure, begun[0], i, curves, tell)
+                    _take_three(figure, begun[0], i, curves, note)
                 begun = (i, meaning == "begin_tangent_curve")
     if begun is not None:
-        _take_three(figure, begun[0], len(figure.rows) - 1, curves, tell)
+        _take_three(figure, begun[0], len(figure.rows) - 1, curves, note)
     return curves
 
 
@@ -212,23 +212,23 @@ def _order_marks(marks: Sequence[Meaning], *, is_open: bool) -> list[Meaning]:
 
 
 def _close_curve(
-    figure: Figure, curve: Curve, curves: list[Curve], tell: Callable[[Fault], None]
+    figure: Figure, curve: Curve, curves: list[Curve], note: Callable[[Fault], None]
 ) -> None:
     least = 1 if curve.is_tangent else 2
     if curve.last - curve.first < least:
         rows = tuple(figure.rows[curve.first : curve.last + 1])
-        tell(Fault("curve of too few points", figure.name, rows))
+        note(Fault("curve of too few points", figure.name, rows))
     else:
         curves.append(curve)
 
 
 def _take_three(
-    figure: Figure, first: int, last: int, curves: list[Curve], tell: Callable[[Fault], None]
+    figure: Figure, first: int, last: int, curves: list[Curve], note: Callable[[Fault], None]
 ) -> None:
     """Take the arc through three shots for a curve that has no end."""
     rows = tuple(figure.rows[first : min(first + 2, last) + 1])
     if last - first < 2:
-        tell(Fault("curve of too few points", figure.name, rows))
+        note(Fault("curve of too few points", figure.name, rows))
         return
-    tell(Fault("curve without an end", figure.name, rows))
+    note(Fault("curve without an end", figure.name, rows))
     curves.append(Curve(first, first + 2, is_tangent=False))

@@ -31,7 +31,7 @@ def build_polyline(
     figure: Figure,
     points: Float64Array,
     tolerance: float,
-    tell: Callable[[Fault], None],
+    note: Callable[[Fault], None],
 ) -> Float64Array:
     """Return the vertices of a figure; those of a ring without the first one at its end.
 
@@ -42,7 +42,7 @@ def build_polyline(
         All points of the survey.
     tolerance : float
         By which chords may leave arcs, CRS units.
-    tell : callable
+    note : callable
         Is told what is odd.
 
     Raises
@@ -51,17 +51,17 @@ def build_polyline(
         If an arc would need too many vertices.
     """
     curves = find_curves(figure)
-    kept = _drop_repeated(figure, points, curves, tell)
+    kept = _drop_repeated(figure, points, curves, note)
     all_rows = figure.rows
     rows = [all_rows[i] for i in kept]
     shots = points[rows]
-    line = _Line(figure, shots, rows, tell)
+    line = _Line(figure, shots, rows, note)
     for curve in curves:
         line.bend(*_find_span(curve, kept), is_tangent=curve.is_tangent)
     vertices = line.join(tolerance)
     figure.n_added = len(vertices) - len(shots)
     if figure.is_rectangle:
-        vertices = np.vstack([vertices, *_find_corner(figure, shots, tell)])
+        vertices = np.vstack([vertices, *_find_corner(figure, shots, note)])
     is_back = len(vertices) > 1 and (vertices[0] == vertices[-1]).all()
     return vertices[:-1] if figure.is_ring and is_back else vertices
 
@@ -70,7 +70,7 @@ def _drop_repeated(
     figure: Figure,
     points: Float64Array,
     curves: Sequence[Curve],
-    tell: Callable[[Fault], None],
+    note: Callable[[Fault], None],
 ) -> list[int]:
     """Return the shots of a figure but those at the place of the one before."""
     rows = figure.rows
@@ -86,7 +86,7 @@ def _drop_repeated(
         before = points[rows[kept[-1]]]
         same = before[:2] == points[row, :2]
         if same.all() and (is_in_curve or before[2] == points[row, 2]):
-            tell(Fault("repeated point", figure.name, (rows[kept[-1]], row)))
+            note(Fault("repeated point", figure.name, (rows[kept[-1]], row)))
         else:
             kept.append(i)
     return kept
@@ -106,7 +106,7 @@ class _Line:
     figure: Figure
     shots: Float64Array
     rows: list[int]
-    tell: Callable[[Fault], None]
+    note: Callable[[Fault], None]
 
     def __post_init__(self) -> None:
         self.arcs: dict[int, list[Arc]] = {}
@@ -123,7 +123,7 @@ class _Line:
             if arc is not None:
                 self.arcs[first] = [arc]
             return
-        self._tell("curve of too few points", first, last)
+        self._note("curve of too few points", first, last)
 
     def _find_tangent_arc(self, first: int, last: int) -> Arc | None:
         """Return the arc between two shots that is tangent to the leg before, or behind it."""
@@ -135,14 +135,14 @@ class _Line:
                 leaving is not None
                 and abs(_measure(_rotate(end - start, arc.angle), leaving)) > _KINK
             ):
-                self._tell("curve not tangent to the leg behind it", first, last)
+                self._note("curve not tangent to the leg behind it", first, last)
         elif leaving is not None:
             arc = Arc(start, end, _measure(end - start, leaving))
         else:
-            self._tell("curve without a leg", first, last)
+            self._note("curve without a leg", first, last)
             return None
         if abs(arc.angle) > _MOST_TURN:
-            self._tell("curve that turns back", first, last)
+            self._note("curve that turns back", first, last)
             return None
         return arc
 
@@ -184,8 +184,8 @@ class _Line:
                 "`arc_tolerance` needs fewer."
             )
 
-    def _tell(self, kind: str, first: int, last: int) -> None:
-        self.tell(Fault(kind, self.figure.name, tuple(self.rows[first : last + 1])))
+    def _note(self, kind: str, first: int, last: int) -> None:
+        self.note(Fault(kind, self.figure.name, tuple(self.rows[first : last + 1])))
 
 
 def _rotate(vector: Float64Array, angle: float) -> Float64Array:
@@ -199,7 +199,7 @@ def _measure(from_: Float64Array, to: Float64Array) -> float:
 
 
 def _find_corner(
-    figure: Figure, shots: Float64Array, tell: Callable[[Fault], None]
+    figure: Figure, shots: Float64Array, note: Callable[[Fault], None]
 ) -> list[Float64Array]:
     """Return the last corner of a rectangle: where perpendiculars to both end legs meet."""
     rows = tuple(figure.rows)
@@ -208,10 +208,10 @@ def _find_corner(
     first, last = shots[1, :2] - shots[0, :2], shots[-1, :2] - shots[-2, :2]
     angle = abs(_measure(first, last))
     if min(angle, math.pi - angle) < _KINK:
-        tell(Fault("no rectangle", figure.name, rows))
+        note(Fault("no rectangle", figure.name, rows))
         return []
     if len(shots) == 3 and abs(angle - math.pi / 2) > _SQUARE:
-        tell(Fault("rectangle out of square", figure.name, rows))
+        note(Fault("rectangle out of square", figure.name, rows))
     across = shots[-1, :2] - shots[0, :2]
     move = np.linalg.solve(np.array([first, last]), np.array([0.0, float(across @ last)]))
     if len(shots) == 3:

@@ -81,12 +81,12 @@ def _find_name(address: str) -> str:
 
 def _copy(address: str, copy: Path) -> None:
     with _make_opener().open(address, timeout=_SECONDS) as answer, copy.open("wb") as file:
-        told = answer.headers.get("Content-Length")
+        stated = answer.headers.get("Content-Length")
         count = 0
         while chunk := answer.read(_CHUNK):
             count += file.write(chunk)
-    if told is not None and count != int(told):
-        raise OSError(0, f"the connection ended after {count:,} of {int(told):,} bytes")
+    if stated is not None and count != int(stated):
+        raise OSError(0, f"the connection ended after {count:,} of {int(stated):,} bytes")
 
 
 def _make_opener() -> Any:

@@ -299,7 +299,7 @@ class _Gathered:
         ):
             self._points[start : self.count] = points
 
-    def tell_progress(self) -> None:
+    def report_progress(self) -> None:
         """Tell the share of the points that were seen, taken or not."""
         if self._progress is not None:
             self._progress((self.count + self.tally.left_out) / len(self._points))
@@ -353,7 +353,7 @@ def _read_tile(
         for part in parts:
             gathered.tally.add(part.value, part.arrays["classes"])
             gathered.append(part.arrays, header)
-            gathered.tell_progress()
+            gathered.report_progress()
     own = gathered._points[start : gathered.count]
     odd = _describe_outside(own, header)
     placed = place(own, source=tile.reference.crs, target=target, unit=tile.unit)

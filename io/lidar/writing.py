@@ -16,7 +16,7 @@ from ...base.progress import Progress
 from ...base.sentences import FILE, coordinate
 from ...tin import TIN, Survey
 from ..mesh.common import require_writable
-from ..registry.losses import tell_lost_attributes
+from ..registry.losses import warn_of_lost_attributes
 from ..reprojection.crs_kept import require_kept
 
 if TYPE_CHECKING:
@@ -208,7 +208,7 @@ def _choose_columns(attributes: Mapping[str, AnyArray]) -> dict[str, AnyArray]:
             columns[name] = _require_range(name, values)
         else:
             texts.append(name)
-    tell_lost_attributes(texts, "LAS has numbers, with names of 32 bytes")
+    warn_of_lost_attributes(texts, "LAS has numbers, with names of 32 bytes")
     return columns
 
 
@@ -231,8 +231,8 @@ def _require_range(name: str, values: AnyArray) -> AnyArray:
 
 def _warn_of_unit(surface: TIN | Survey) -> None:
     unit, crs = surface.elevation_unit, surface.crs
-    told = None if crs is None else crs.vertical_unit
-    if unit is not None and told is None:
+    stated = None if crs is None else crs.vertical_unit
+    if unit is not None and stated is None:
         warn(
             f"{FILE} does not tell the unit of the elevations, the {unit}: its CRS has no "
             "vertical axis."

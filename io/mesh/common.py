@@ -302,13 +302,13 @@ def make_tin(
         )
 
     try:
-        tin, told = make_surface(make, points, triangles, faces=faces, rounding=rounding)
+        tin, noted = make_surface(make, points, triangles, faces=faces, rounding=rounding)
     except PointsError as error:
         raise ReadError(f"{FILE} holds no TIN. {error}") from error
     placed = _look_at_crs(tin.points, reference) if looks_at_crs else ()
-    told = [*notes, *told, *placed, *describe_oddities(tin)]
-    told += _describe_suspects(tin.points[:, 2])
-    return add_notes(tin, told) if told else tin
+    noted = [*notes, *noted, *placed, *describe_oddities(tin)]
+    noted += _describe_suspects(tin.points[:, 2])
+    return add_notes(tin, noted) if noted else tin
 
 
 def _look_at_crs(points: Float64Array, reference: Reference) -> tuple[str, ...]:

@@ -59,17 +59,17 @@ def read(path: Path) -> Mesh:
     others, arrays = run_isolated(
         f"{__package__}.gmsh_child:read_mesh", {"path": str(path.absolute())}, path=path
     )
-    told = ", ".join(f"{count:,} of the kind {kind}" for kind, count in others.items())
+    listed = ", ".join(f"{count:,} of the kind {kind}" for kind, count in others.items())
     if len(arrays["corners"]) == 0 and others:
         raise ReadError(
-            f"{FILE} holds no faces, but other cells ({told}): triangles and quadrilaterals "
+            f"{FILE} holds no faces, but other cells ({listed}): triangles and quadrilaterals "
             "can be read."
         )
     return Mesh(
         arrays["points"],
         arrays["corners"],
         arrays["offsets"],
-        notes=[f"Not read: other cells ({told})."] * bool(others),
+        notes=[f"Not read: other cells ({listed})."] * bool(others),
         constrained_edges=arrays["lines"],
     )
 

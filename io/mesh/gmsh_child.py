@@ -74,8 +74,8 @@ def _read_with_meshio(path: str) -> Any:
     except MemoryError:
         raise
     except Exception as error:  # meshio lets through whatever a damaged file leads to
-        told = str(error).strip().rstrip(".") if isinstance(error, meshio.ReadError) else ""
-        reason = told or "it ends early, or holds something else than the format asks for"
+        stated = str(error).strip().rstrip(".") if isinstance(error, meshio.ReadError) else ""
+        reason = stated or "it ends early, or holds something else than the format asks for"
         raise Refusal(f"{FILE} is a damaged Gmsh file: {reason}.") from error
     if "not closed" in said.getvalue():
         raise Refusal(f"{FILE} is a Gmsh file that was cut short.")

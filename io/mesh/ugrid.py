@@ -115,11 +115,11 @@ def _choose_reference(
     crs: CrsLike | None, elevation_unit: UnitLike | None, value: Mapping[str, Any]
 ) -> Reference:
     unit = value["unit"] if _is_unit(value["unit"]) else None
-    told = [text for text in value["crs"] if text not in _NO_CRS]
-    found = _find_known_crs(told)
-    if found is None and told and crs is None:
+    stated = [text for text in value["crs"] if text not in _NO_CRS]
+    found = _find_known_crs(stated)
+    if found is None and stated and crs is None:
         raise CrsError(
-            f"{FILE} names the CRS '{told[0][:60]}', which is unknown: declare it.", crs=told[0]
+            f"{FILE} names the CRS '{stated[0][:60]}', which is unknown: declare it.", crs=stated[0]
         )
     return choose_reference(crs, elevation_unit, found_crs=found, found_unit=unit)
 

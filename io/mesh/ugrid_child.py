@@ -122,13 +122,13 @@ def _find_coordinates(data: Any, mesh: Any) -> tuple[Any, Any]:
             f"{FILE} is a damaged UGRID file: mesh '{mesh.name}' names no node_coordinates."
         )
     found = [_get_variable(data, name, mesh, "node_coordinates") for name in names]
-    axes = [_tell_axis(one) for one in found]
+    axes = [_find_axis(one) for one in found]
     if "x" in axes and "y" in axes:
         return found[axes.index("x")], found[axes.index("y")]
     return found[0], found[1]
 
 
-def _tell_axis(variable: Any) -> str:
+def _find_axis(variable: Any) -> str:
     """Return what a variable of coordinates is by its attributes: x, y or z, else nothing."""
     name, unit = _get_text(variable, "standard_name"), _get_text(variable, "units").lower()
     if name in ("projection_x_coordinate", "longitude") or unit.startswith(
@@ -174,13 +174,17 @@ def _find_elevations(data: Any, mesh: Any, count: int, wanted: str | None) -> An
         )
     own = [one for one in data.variables.values()
            if one.shape == (count,) and _is_at_nodes(one, data, mesh)]  # fmt: skip
-    told = [one for one in own if _get_text(one, "standard_name") == "altitude"]
-    told = told or [one for one in own if _tell_axis(one) == "z" or _get_text(one, "positive")]
-    told = told or [one for one in own if one.name in (f"{mesh.name}_node_z", f"{mesh.name}_z")]
-    if len(told) == 1:
-        return told[0]
-    what = "no elevations of its nodes are told" if not told else (
-        f"{_list_names(one.name for one in told)} may be the elevations")  # fmt: skip
+    candidates = [one for one in own if _get_text(one, "standard_name") == "altitude"]
+    candidates = candidates or [
+        one for one in own if _find_axis(one) == "z" or _get_text(one, "positive")
+    ]
+    candidates = candidates or [
+        one for one in own if one.name in (f"{mesh.name}_node_z", f"{mesh.name}_z")
+    ]
+    if len(candidates) == 1:
+        return candidates[0]
+    what = "no elevations of its nodes are told" if not candidates else (
+        f"{_list_names(one.name for one in candidates)} may be the elevations")  # fmt: skip
     others = _list_names(one.name for one in own) or "there is none with one number for each node"
     raise Refusal(f"{what}: name the variable that they are in ({others}).")
 
@@ -188,7 +192,7 @@ def _find_elevations(data: Any, mesh: Any, count: int, wanted: str | None) -> An
 def _is_at_nodes(variable: Any, data: Any, mesh: Any) -> bool:
     """Whether a variable belongs to the nodes of the mesh, and is no coordinate in the plane."""
     named = _get_text(mesh, "node_coordinates").split()
-    if _tell_axis(variable) in ("x", "y") or variable.name in named[:2]:
+    if _find_axis(variable) in ("x", "y") or variable.name in named[:2]:
         return False
     return (
         variable.dimensions == data.variables[named[0]].dimensions
@@ -200,8 +204,8 @@ def _is_at_nodes(variable: Any, data: Any, mesh: Any) -> bool:
 
 def _is_depth(variable: Any) -> bool:
     """Whether the numbers grow downwards."""
-    told = _get_text(variable, "positive").lower()
-    return told == "down" if told else _get_text(variable, "standard_name") in _DEPTHS
+    candidates = _get_text(variable, "positive").lower()
+    return candidates == "down" if candidates else _get_text(variable, "standard_name") in _DEPTHS
 
 
 def _read_faces(data: Any, mesh: Any) -> tuple[Int64Array, Int64Array]:

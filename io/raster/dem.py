@@ -206,10 +206,10 @@ def make_survey(
     """
     path, target = dataset.path, CRS.of(crs)
     number, dataset, said = choose_elevations(dataset, choice.band)
-    dataset, source, told = settle_axes(dataset, target)
-    unit, told_unit = find_elevation_unit(dataset, number, source, Unit.of(elevation_unit))
+    dataset, source, noted = settle_axes(dataset, target)
+    unit, noted_unit = find_elevation_unit(dataset, number, source, Unit.of(elevation_unit))
     cells = _choose_cells(dataset, choice)
-    said = [*said, *told, *told_unit, *_describe_window(dataset, choice)]
+    said = [*said, *noted, *noted_unit, *_describe_window(dataset, choice)]
     left_out = 0 if choice.most_cells is None else cells.width * cells.height - cells.count
     marks = parse_nodata(choice.nodata)
     _require_few_cells(cells)
@@ -421,10 +421,10 @@ def choose_band(dataset: Header, band: int | None) -> int:
     return int(number)
 
 
-def require_elevation_band(dataset: Header, band: int, is_told: bool) -> None:
+def require_elevation_band(dataset: Header, band: int, is_stated: bool) -> None:
     """Refuse pictures, complex numbers and rasters whose place is unknown."""
     meaning = dataset.colours[band - 1]
-    if meaning in _COLOURS and not is_told:
+    if meaning in _COLOURS and not is_stated:
         raise ReadError(
             f"{FILE} is a picture (band 1 is its {meaning}), not a raster of elevations: name "
             "the band if one holds them.",

@@ -122,7 +122,7 @@ def _make_raster(
 ) -> Raster:
     path = header.path
     number, header, said = choose_elevations(header, band)
-    header, source, told = settle_axes(header, target)
+    header, source, noted = settle_axes(header, target)
     unit, notes = find_elevation_unit(header, number, source, declared)
     grid = to_grid(header.transform, (header.height, header.width), os.fspath(path))
     if source is not None and target is not None and not source.is_same(target):
@@ -135,7 +135,7 @@ def _make_raster(
         crs=placed.crs,
         units={"elevation": placed.elevation_unit},
         name=path.stem,
-        notes=[*said, *told, *notes, *placed.notes],
+        notes=[*said, *noted, *notes, *placed.notes],
     )
 
 

@@ -110,15 +110,15 @@ def _turn_depths(header: Header, band: int, notes: list[str]) -> Meaning:
         reason = "positive is 'down'" if positive else f"its standard name is '{name}'"
         scales, offsets = list(header.scales), list(header.offsets)
         scales[band - 1], offsets[band - 1] = -scales[band - 1], -offsets[band - 1]
-        told = f"Band {band} holds depths ({reason}): their sign was changed."
-        return Meaning(band, replace(header, scales=scales, offsets=offsets), [*notes, told])
+        note = f"Band {band} holds depths ({reason}): their sign was changed."
+        return Meaning(band, replace(header, scales=scales, offsets=offsets), [*notes, note])
     words = _words(header, band)
     if words & _DEPTH and not positive and not words & _ELEVATION:
-        told = (
+        note = (
             f"Band {band} is called '{_label(header, band)}', and its values are taken as "
             "elevations, positive upwards: check that they are no depths."
         )
-        return Meaning(band, header, [*notes, told])
+        return Meaning(band, header, [*notes, note])
     return Meaning(band, header, notes)
 
 
@@ -160,9 +160,9 @@ def settle_axes(header: Header, target: CRS | None) -> tuple[Header, CRS | None,
     if unit is None or unit.metres is None or wanted.metres is None or unit == wanted:
         return header, None, []
     factor = unit.metres / wanted.metres
-    told = f"Eastings and northings were converted from {unit.name} to {wanted.name}."
+    note = f"Eastings and northings were converted from {unit.name} to {wanted.name}."
     transform = type(header.transform)(*(factor * one for one in header.transform))
-    return replace(header, transform=transform), None, [told]
+    return replace(header, transform=transform), None, [note]
 
 
 def _find_axis_unit(header: Header) -> str | None:
@@ -187,8 +187,8 @@ def _take_degrees(header: Header, target: CRS) -> tuple[CRS | None, list[str]]:
     area = AreaOfUse.of(None, target)
     if area is None or not area.is_local(corners) or not area.covers_as_degrees(corners):
         return None, []
-    told = (
+    note = (
         f"It has no CRS, and lies inside the area of use of {area.label} as longitude and latitude "
         f"alone (west {west:.10g}, south {south:.10g}): they were taken to be degrees of WGS 84."
     )
-    return CRS.of(_WGS84), [told]
+    return CRS.of(_WGS84), [note]

@@ -87,16 +87,16 @@ def read_ortho(
         opacity=opacity,
     )
     gap = ortho.measure_gap(tins)
-    told = [
-        *value["told"],
-        *_tell_placement(value, tins, crs),
-        *_tell_size(value, most_pixels),
+    noted = [
+        *value["notes"],
+        *_describe_placement(value, tins, crs),
+        *_describe_size(value, most_pixels),
     ]
     if gap > 0.0:
-        told.append(f"'{path}' does not reach over {gap:.1%} of the vertices: {beyond}.")
-    for sentence in told:
+        noted.append(f"'{path}' does not reach over {gap:.1%} of the vertices: {beyond}.")
+    for sentence in noted:
         warn(sentence)
-    return replace(ortho, gap=gap, told=tuple(told))
+    return replace(ortho, gap=gap, notes=tuple(noted))
 
 
 def as_picture_path(source: object, option: str) -> Path:
@@ -147,7 +147,9 @@ def _ask_child(
     return value, arrays
 
 
-def _tell_placement(value: dict[str, Any], tins: Sequence[TIN], crs: CRS | None) -> Iterator[str]:
+def _describe_placement(
+    value: dict[str, Any], tins: Sequence[TIN], crs: CRS | None
+) -> Iterator[str]:
     """Yield what was done, or taken for granted, to place a picture."""
     known = CRS.of(value["crs"])
     if value["is_warped"]:
@@ -163,7 +165,7 @@ def _tell_placement(value: dict[str, Any], tins: Sequence[TIN], crs: CRS | None)
         yield f"The surface has no CRS: it is taken to be in that of {FILE}, {known.label}."
 
 
-def _tell_size(value: dict[str, Any], most_pixels: int) -> Iterator[str]:
+def _describe_size(value: dict[str, Any], most_pixels: int) -> Iterator[str]:
     """Yield the loss of detail, where pixels were averaged."""
     width, height = value["part"]
     rows, columns = value["shape"]

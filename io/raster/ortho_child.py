@@ -37,7 +37,7 @@ class _Source(NamedTuple):
 
     dataset: Any
     shown: str
-    told: list[str]
+    notes: list[str]
 
 
 class _Bands(NamedTuple):
@@ -91,7 +91,7 @@ def read_picture(
     The value holds the ``kind`` of the bytes in the array ``content``, the ``shape`` and
     ``transform`` of the picture, the ``part`` of it that was read before it was made smaller
     (width, height), whether it has a CRS (``crs``), the CRS that it was warped from if any
-    (``warped``), and what was taken for granted (``told``). The array ``opacity`` is there where
+    (``warped``), and what was taken for granted (``notes``). The array ``opacity`` is there where
     the picture is partly transparent.
     """
     import rasterio
@@ -138,7 +138,7 @@ def _read_source(source: _Source, target: _Target) -> Answer:
         "is_reduced": picture.is_reduced,
         "is_warped": is_elsewhere,
         "crs": own,
-        "told": source.told,
+        "notes": source.notes,
     }
     arrays = {"content": np.frombuffer(content, np.uint8)}
     return Answer(value, arrays if is_opaque else {**arrays, "opacity": picture.colors[3]})
@@ -181,7 +181,7 @@ def _choose_colors(names: list[str], rest: list[int], source: _Source) -> tuple[
             f"'{source.shown}' is no picture: it has {len(rest)} bands, and does not say which "
             "are red, green and blue."
         )
-    source.told.append(
+    source.notes.append(
         f"'{source.shown}' does not say which of its {len(rest)} bands are red, green and blue: "
         "the first three are taken for them."
     )
@@ -288,7 +288,7 @@ def _find_white(source: _Source, bands: _Bands, values: Any) -> int:
     most = int(values.max(initial=0))
     bits = max(8, most.bit_length())
     if bits < 16:
-        source.told.append(
+        source.notes.append(
             f"'{source.shown}' holds 16-bit colours up to {most:,}: they are taken for colours of "
             f"{bits} bits, of which {(1 << bits) - 1:,} is white."
         )

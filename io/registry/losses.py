@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 __all__ = [
     "keep_on_one_line",
     "select_attributes",
-    "tell_formulas",
-    "tell_lost_attributes",
-    "tell_lost_lines",
-    "tell_unknown_elevations",
+    "warn_of_formulas",
+    "warn_of_lost_attributes",
+    "warn_of_lost_lines",
+    "warn_of_unknown_elevations",
 ]
 
 _FORMULA = re.compile(r"\s*[=+@-].")
@@ -32,7 +32,7 @@ _BREAKS = re.compile("[\r\n\x00]+")
 _PLURALS = {"boundary": "boundaries", "water body": "water bodies"}
 
 
-def tell_lost_attributes(names: Iterable[str], reason: str) -> None:
+def warn_of_lost_attributes(names: Iterable[str], reason: str) -> None:
     """Warn of attributes of points that a file does not hold, and why, if there are any."""
     lost = ", ".join(names)
     if lost:
@@ -43,7 +43,7 @@ def select_attributes(
     attributes: Mapping[str, Any], names: tuple[str, ...], reason: str
 ) -> dict[str, AnyArray]:
     """Return the attributes of points that a format holds, on one line each; tell of the others."""
-    tell_lost_attributes((name for name in attributes if name not in names), reason)
+    warn_of_lost_attributes((name for name in attributes if name not in names), reason)
     held = {name: attributes[name] for name in names if name in attributes}
     return keep_on_one_line(held)
 
@@ -65,7 +65,7 @@ def keep_on_one_line(columns: Mapping[str, Any]) -> dict[str, AnyArray]:
     return kept
 
 
-def tell_formulas(columns: Mapping[str, Any]) -> None:
+def warn_of_formulas(columns: Mapping[str, Any]) -> None:
     """Warn of texts that spreadsheets compute as formulas; numbers written as texts are none."""
     found = [
         text
@@ -89,7 +89,7 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def tell_lost_lines(survey: Survey, chosen: Format) -> None:
+def warn_of_lost_lines(survey: Survey, chosen: Format) -> None:
     """Warn of lines of a survey that the format does not hold."""
     counts = {
         "breakline": len(survey.breaklines),
@@ -108,7 +108,7 @@ def tell_lost_lines(survey: Survey, chosen: Format) -> None:
         )
 
 
-def tell_unknown_elevations(obj: object) -> None:
+def warn_of_unknown_elevations(obj: object) -> None:
     """Warn of features with vertices of unknown elevation, where a file has all or none of them."""
     if not isinstance(obj, Features) or not obj.has_elevations:
         return

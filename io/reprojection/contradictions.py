@@ -127,13 +127,13 @@ def look_at_place(points: Float64Array, source: CRS | None, target: CRS | None) 
     if len(outside) == 0:
         return ()
     lie = "lies" if len(outside) == 1 else "lie"
-    told = (
+    sentence = (
         f"{len(outside):,} of {counted(len(points), 'point')} {lie} outside the area of use of "
         f"{area.label}"
     )
     if not area.covers_most(points[outside][:, [1, 0]]):
-        return (f"{told}: check that the CRS is the right one.",)
-    exchanged = f"{told} and, with easting and northing exchanged, inside"
+        return (f"{sentence}: check that the CRS is the right one.",)
+    exchanged = f"{sentence} and, with easting and northing exchanged, inside"
     if 2 * len(outside) > len(points):
         return (refuse(f"{exchanged}: the coordinates are in the other order", area.source),)
     return (f"{exchanged}: check the order of the coordinates.",)
@@ -178,17 +178,17 @@ def look_at_degrees(points: Float64Array, crs: CRS | None) -> tuple[str, ...]:
     if (np.abs(points[:, :2]).max(axis=0) > _MOST_DEGREES).any():
         return (_describe_local(crs, first),)
     if area.covers_as_degrees(points[:, :2]):
-        told = (
+        sentence = (
             f"the points lie outside the area of use of {area.label} and, as longitude and "
             f"latitude in degrees, inside ({first}): the CRS of the file is to be one in degrees"
         )
-        return (refuse(told, crs),)
+        return (refuse(sentence, crs),)
     if area.covers_as_degrees(points[:, [1, 0]]):
-        told = (
+        sentence = (
             f"the points lie outside the area of use of {area.label} and, as latitude and "
             f"longitude in degrees, inside ({first}): the coordinates are in the other order"
         )
-        return (refuse(told, crs),)
+        return (refuse(sentence, crs),)
     return (_describe_local(crs, first),)
 
 

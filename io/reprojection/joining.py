@@ -174,12 +174,12 @@ def _describe_shared_places(
     row, other = int(rows[least]), int(earlier[least])
     gap = float(np.abs(points[rows, 2] - points[earlier, 2]).max())
     x, y = points[row, :2].tolist()
-    told = f"elevations differ by up to {gap:.6g}" if gap else "with the same elevations"
+    difference = f"elevations differ by up to {gap:.6g}" if gap else "with the same elevations"
     stand = "stands" if len(rows) == 1 else "stand"
     first_two = f"'{names[file_of[row]]}' and '{names[file_of[other]]}'"
     return [
         f"{counted(len(rows), 'point')} of one file {stand} where a point of another does (first: "
-        f"{first_two} at x {coordinate(x)}, y {coordinate(y)}): {told}."
+        f"{first_two} at x {coordinate(x)}, y {coordinate(y)}): {difference}."
     ]
 
 

@@ -37,7 +37,7 @@ class Placed(NamedTuple):
     """None if it is not known."""
     notes: tuple[str, ...]
     """What was done to the elevations, and whether points lie where the CRS does not apply."""
-    told: tuple[str, ...] = ()
+    noted: tuple[str, ...] = ()
     """The latter alone."""
 
 
@@ -78,12 +78,12 @@ def place(
     outside = look_at_place(points, source, target) if looks_at_area else ()
     is_open = source is None and (looks_at_area if looks_at_order is None else looks_at_order)
     order = look_at_order(points, target) if is_open else ()
-    told = (*notes, *(outside or look_at_degrees(points, source or target)), *order)
+    noted = (*notes, *(outside or look_at_degrees(points, source or target)), *order)
     if source is None or wanted is None or source.is_same(wanted):
         placed = _keep_in_place(points, wanted, unit)
-        return placed._replace(notes=(*told, *placed.notes), told=told)
+        return placed._replace(notes=(*noted, *placed.notes), noted=noted)
     moved = reproject(points, source, wanted, unit=unit)
-    return Placed(moved.points, wanted, moved.unit, (*told, *moved.notes), told)
+    return Placed(moved.points, wanted, moved.unit, (*noted, *moved.notes), noted)
 
 
 def _keep_in_place(points: Float64Array, crs: CRS | None, unit: Unit | None) -> Placed:

@@ -37,10 +37,10 @@ def judge(source: CRS, target: CRS, transformer: Any) -> Quality:
         used = transformer.get_last_used_operation()
     except (ProjError, AttributeError):
         used = transformer
-    told = str(used.description).lower()
-    keeps_datum = "ballpark vertical" in told
+    text = str(used.description).lower()
+    keeps_datum = "ballpark vertical" in text
     names = f"from {source.label} to {target.label}"
-    if "ballpark geographic" in told:
+    if "ballpark geographic" in text:
         return Quality(
             keeps_datum,
             f"PROJ knows no transformation {names} without grids{_name_missing(source, target)}: "

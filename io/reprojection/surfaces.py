@@ -113,32 +113,32 @@ def _settle_unit(surface: TIN | Survey, declared: Unit | None) -> Unit | None:
 
 
 def _move_tin(tin: TIN, source: CRS, target: CRS, unit: Unit | None) -> TIN:
-    told = reproject_points(tin.points, source, target, unit=unit)
+    placed = reproject_points(tin.points, source, target, unit=unit)
     along, across = source.horizontal_unit, target.horizontal_unit
 
     def move(points: Float64Array) -> Float64Array:
         return reproject_points(points, source, target, unit=unit).points
 
     moved = tin.transform(
-        move, crs=target, elevation_unit=told.unit, length=find_conversion_factor(along, across)
+        move, crs=target, elevation_unit=placed.unit, length=find_conversion_factor(along, across)
     )
-    if not told.notes:
+    if not placed.notes:
         return moved
-    return moved._with_report(notes=(*moved.report.notes, *told.notes))
+    return moved._with_report(notes=(*moved.report.notes, *placed.notes))
 
 
 def _move_survey(survey: Survey, source: CRS, target: CRS, unit: Unit | None) -> Survey:
-    told = reproject_points(survey.points, source, target, unit=unit)
+    placed = reproject_points(survey.points, source, target, unit=unit)
 
     def move(points: Float64Array) -> Float64Array:
         return reproject_points(points, source, target, unit=unit).points
 
     return replace(
         survey,
-        points=told.points,
+        points=placed.points,
         crs=target,
-        elevation_unit=told.unit,
-        notes=[*survey.notes, *told.notes],
+        elevation_unit=placed.unit,
+        notes=[*survey.notes, *placed.notes],
         **_Mover(move, target).move_lines(survey),
     )
 

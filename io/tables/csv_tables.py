@@ -13,7 +13,7 @@ from ...base.errors import FormatError
 from ...base.results import Features, Table
 from ...base.results.columns import unit_text
 from ...base.sentences import FILE
-from ..registry.losses import tell_formulas
+from ..registry.losses import warn_of_formulas
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -45,7 +45,7 @@ def write(obj: Table | Features, path: Path, *, progress: Tell | None = None) ->
     table = obj if isinstance(obj, Table) else _require_points(obj)
     names = [header_text(name, table.units) for name in table.columns]
     columns = list(table.columns.values())
-    tell_formulas(table.columns)
+    warn_of_formulas(table.columns)
     delimiter = "\t" if path.suffix.lower() == ".tsv" else ","
     with replacing(path, binary=False) as file:
         writer = csv.writer(file, delimiter=delimiter, lineterminator="\r\n")

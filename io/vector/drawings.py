@@ -102,17 +102,17 @@ def _gather_shapes(
     shapely = optional.load("shapely")
     shapes = [shapely.LineString(rows) for rows in drawing.lines]
     layers = drawing.arrays["line_layers"].tolist()
-    told = drawing.value["line_names"] or [[]] * len(shapes)
-    told = [[*one, "", ""][:2] for one in told]
+    stated = drawing.value["line_names"] or [[]] * len(shapes)
+    stated = [[*one, "", ""][:2] for one in stated]
     if not lines_only:
         points = drawing.arrays["points"]
         shapes += list(shapely.points(points)) if len(points) else []
         layers += drawing.arrays["point_layers"].tolist()
-        told += [["", ""]] * len(points)
+        stated += [["", ""]] * len(points)
     columns = {
         "layer": [drawing.value["layers"][k] for k in layers],
-        "name": [name for _, name in told],
-        "kind": [kind if kind in ("hard", "soft") else "" for kind, _ in told],
+        "name": [name for _, name in stated],
+        "kind": [kind if kind in ("hard", "soft") else "" for kind, _ in stated],
     }
     packed = np.empty(len(shapes), object)
     packed[:] = shapes

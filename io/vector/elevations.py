@@ -55,11 +55,11 @@ def find_elevation_unit(features: Features, declared: Unit | None) -> Unit | Non
         If the two differ.
     """
     try:
-        told = Unit.of(features.elevation_unit or None)
+        stated = Unit.of(features.elevation_unit or None)
     except OptionError:  # such as "unknown", which is what we write
-        told = None
+        stated = None
     vertical = None if features.crs is None else features.crs.vertical_unit
-    return settle_unit(declared, told or vertical)
+    return settle_unit(declared, stated or vertical)
 
 
 def list_elevation_columns(features: Features) -> list[str]:
@@ -229,8 +229,8 @@ def _take_column(
                 f"differ: {', '.join(columns)}; the option `z_field` chooses ({name} or {other})."
             )
     unit = find_named_unit(name, features)
-    told = "" if unit is None else f", in {unit.name} as its name says"
-    note = f"Elevations are those of the column '{name}'{told}."
+    stated = "" if unit is None else f", in {unit.name} as its name says"
+    note = f"Elevations are those of the column '{name}'{stated}."
     return Elevations(values[rows], unit, (note,))
 
 

@@ -201,9 +201,9 @@ def _drop_heights_above_ground(features: Features) -> Features:
         return features
     shapely = optional.load("shapely")
     has_z = shapely.has_z(features.geometries)
-    told = np.array([str(mode or "") for mode in modes.tolist()], object)
-    is_above_ground = np.isin(told, _ABOVE_GROUND) & has_z
-    silent = int((has_z & (told == "")).sum())
+    stated = np.array([str(mode or "") for mode in modes.tolist()], object)
+    is_above_ground = np.isin(stated, _ABOVE_GROUND) & has_z
+    silent = int((has_z & (stated == "")).sum())
     if silent:
         note = (
             f"'{features.path.name}': {counted(silent, 'feature')} with heights and without an "
@@ -214,7 +214,7 @@ def _drop_heights_above_ground(features: Features) -> Features:
         return features
     shapes = features.geometries.copy()
     shapes[is_above_ground] = shapely.force_2d(shapes[is_above_ground])
-    named = sorted(set(told[is_above_ground].tolist()))
+    named = sorted(set(stated[is_above_ground].tolist()))
     note = (
         f"'{features.path.name}': heights of {counted(int(is_above_ground.sum()), 'feature')} are "
         f"no elevations, by their altitudeMode {' and '.join(named)}, and are left out."

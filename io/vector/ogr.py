@@ -100,14 +100,14 @@ def describe(features: Features) -> dict[str, str]:
         ``elevation_unit`` of the coordinates, ``unit of <column>``, and ``notes``; a unit that is
         not known is "unknown".
     """
-    told = {}
+    metadata = {}
     if features.has_elevations:
         unit = features.elevation_unit
-        told["elevation_unit"] = UNKNOWN_UNIT if unit is None else unit.name
-    told |= {f"unit of {name}": unit_text(features.units, name) for name in features.units}
+        metadata["elevation_unit"] = UNKNOWN_UNIT if unit is None else unit.name
+    metadata |= {f"unit of {name}": unit_text(features.units, name) for name in features.units}
     if features.notes:
-        told["notes"] = " ".join(features.notes)
-    return told
+        metadata["notes"] = " ".join(features.notes)
+    return metadata
 
 
 def require_int64(name: str, values: AnyArray) -> None:

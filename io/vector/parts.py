@@ -177,7 +177,7 @@ def move_to_crs(
     level = np.column_stack([xy, np.zeros(len(xy))])
     source, target = _drop_vertical_axis(features.crs), _drop_vertical_axis(crs)
     placed = place(level, source=source, target=target)
-    notes.extend(f"'{features.path.name}': {note}" for note in placed.told)
+    notes.extend(f"'{features.path.name}': {note}" for note in placed.noted)
     return placed.points[:, :2]
 
 

@@ -28,7 +28,7 @@ class Command:
     path: str
     origin: str
 
-    def tell_version(self) -> str:
+    def find_version(self) -> str:
         """Return its name and version, such as ``tinsmith 0.1.0``."""
         return _ask_version(self.path, Path(self.path).stat().st_mtime)
 

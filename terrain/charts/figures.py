@@ -73,10 +73,10 @@ def picture(function: F) -> F:
         shown = [*given, *options.values()]
         surfaces = [one for one in shown if isinstance(one, Surface)]
         results = [one for one in shown if not isinstance(one, Surface)]
-        told = [note for one in results for note in getattr(one, "notes", ())]
+        noted = [note for one in results for note in getattr(one, "notes", ())]
         of_surfaces = notes_of_surfaces(surfaces) if surfaces else ()
-        lacking = [note for note in of_surfaces if not any(one.endswith(note) for one in told)]
-        write_notes(figure, list(dict.fromkeys([*lacking, *told])))
+        lacking = [note for note in of_surfaces if not any(one.endswith(note) for one in noted)]
+        write_notes(figure, list(dict.fromkeys([*lacking, *noted])))
         return figure
 
     return product(cast("F", draw))
@@ -88,10 +88,10 @@ def write_notes(figure: Any, notes: Sequence[str]) -> None:
         return
     width, height = figure.get_size_inches()
     letters = int((width - 2 * _NOTE_EDGE) / _LETTER)
-    told = [*notes[:_MOST_NOTES]]
+    noted = [*notes[:_MOST_NOTES]]
     if len(notes) > _MOST_NOTES:
-        told.append(f"{len(notes) - _MOST_NOTES:,} more notes.")
-    lines = [line for note in told for line in textwrap.wrap(note, letters)]
+        noted.append(f"{len(notes) - _MOST_NOTES:,} more notes.")
+    lines = [line for note in noted for line in textwrap.wrap(note, letters)]
     strip = _LINE * len(lines) + 2 * _NOTE_EDGE
     _add_below(figure, strip / (height + strip))
     figure.set_size_inches(width, height + strip)

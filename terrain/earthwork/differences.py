@@ -84,15 +84,15 @@ class Difference:
         >>> ts.difference(flat, flat).with_notes(["One row was left out."]).zones.notes
         ('One row was left out.', ...)
         """
-        told = join_notes(notes, self.notes)
-        if told == self.notes:
+        joined = join_notes(notes, self.notes)
+        if joined == self.notes:
             return self
-        reference = replace(self._reference, notes=told)
+        reference = replace(self._reference, notes=joined)
         return replace(
             self,
-            tin=self.tin.with_notes(told),
+            tin=self.tin.with_notes(joined),
             volumes=self.volumes.with_notes(notes),
-            notes=told,
+            notes=joined,
             _reference=reference,
         )
 

@@ -136,12 +136,12 @@ def rasterize(
     cells, notes = as_grid(tin, spacing=spacing, like=like, grid=grid, in_memory=not is_lazy)
     is_mean = at == "mean"
     require_covered(tin, cells, is_mean=is_mean)
-    told: tuple[str, ...] = ()
+    noted: tuple[str, ...] = ()
     if value == "elevation":
         band = SurfaceBand(tin, cells, None, method=method, is_mean=is_mean, threads=threads)
     else:
         is_smooth, how = choose_smooth(tin, smooth, is_mean=is_mean)
-        measure, told = PlaneMeasure(value, light), (how,)
+        measure, noted = PlaneMeasure(value, light), (how,)
         band = ReliefBand(
             tin, cells, measure, is_smooth=is_smooth, is_mean=is_mean, threads=threads
         )
@@ -152,7 +152,7 @@ def rasterize(
         crs=tin.crs if tin.crs is None or value == "elevation" else tin.crs.horizontal,
         units=_list_units(tin, value),
         name=value,
-        notes=[*describe_unknown(tin.crs, tin.elevation_unit), *notes, *told],
+        notes=[*describe_unknown(tin.crs, tin.elevation_unit), *notes, *noted],
     )
     done.end()
     return raster

@@ -110,8 +110,8 @@ def catchments(
     notes: tuple[str, ...] = (FILLED_NOTE,) if is_filled else ()
     network = build_network(tin, fill(tin) if is_filled else None, done.stage(0.1, 0.7))
     if outlets is not None:
-        named, told = _place_outlets(tin, network, outlets)
-        notes += told
+        named, noted = _place_outlets(tin, network, outlets)
+        notes += noted
     elif is_filled:
         named = network.find_leaving()
     else:

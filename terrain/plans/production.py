@@ -149,8 +149,8 @@ class Plan:
         >>> ts.plan(tin).with_notes(["One row was left out."]).notes[0]
         'One row was left out.'
         """
-        told = join_notes(notes, self._notes)
-        return Plan(self._sheets, self._contents, self._style, self._caption, told)
+        joined = join_notes(notes, self._notes)
+        return Plan(self._sheets, self._contents, self._style, self._caption, joined)
 
     @property
     def frames(self) -> Float64Array:

@@ -92,7 +92,7 @@ def hillshade(
     light, factor = as_light(azimuth, altitude), as_number("exaggeration", exaggeration, above=0)
     if spacing is not None and grid is not None:
         raise OptionError("spacing", spacing, allowed="None where a grid is given")
-    is_smooth, told = choose_smooth(tin, smooth)
+    is_smooth, note = choose_smooth(tin, smooth)
     side = _choose_spacing(tin) if spacing is None and grid is None else spacing
     cells, _ = as_grid(tin, spacing=side, grid=grid, in_memory=True)
     require_covered(tin, cells)
@@ -108,7 +108,7 @@ def hillshade(
         crs=None if tin.crs is None else tin.crs.horizontal,
         nodata=0,
         name="hillshade",
-        notes=[*describe_unknown(tin.crs, tin.elevation_unit), told],
+        notes=[*describe_unknown(tin.crs, tin.elevation_unit), note],
     )
 
 

@@ -99,7 +99,7 @@ def drape(tin: TIN, features: Any, *, outside: OutsidePolicy = "error") -> Featu
     lines = segments.lines[rows.places.segments]
     is_outside = np.zeros(len(given.offsets[0]) - 1, np.bool_)
     is_outside[lines[np.isnan(rows.elevations[:, 0])]] = True
-    given = _tell(given, is_outside, outside, rows, lines)
+    given = _note_pieces(given, is_outside, outside, rows, lines)
     return _cut_runs(given, rows, lines) if outside == "cut" else _keep_whole(given, rows, lines)
 
 
@@ -115,7 +115,7 @@ def _drape_points(tin: TIN, given: Features, outside: OutsidePolicy) -> Features
     return _choose(given, xyz[~is_outside], (), np.flatnonzero(~is_outside))
 
 
-def _tell(
+def _note_pieces(
     given: Features,
     is_outside: BoolArray,
     outside: OutsidePolicy,

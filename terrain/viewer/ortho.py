@@ -52,7 +52,7 @@ class Ortho:
     """(rows, columns), 0 where there is no picture; None where there is everywhere."""
     gap: float = 0.0
     """Share of the vertices of the surfaces at which there is no picture."""
-    told: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
     """What was done to it, or taken for granted."""
 
     def __post_init__(self) -> None:

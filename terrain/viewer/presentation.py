@@ -106,8 +106,8 @@ class Preview:
         >>> ts.preview(tin).with_notes(["One row was left out."]).notes[0]
         'One row was left out.'
         """
-        told = join_notes(notes, self._notes)
-        return Preview(self._aligned, self._look, self._survey, self._ortho, told)
+        joined = join_notes(notes, self._notes)
+        return Preview(self._aligned, self._look, self._survey, self._ortho, joined)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write a page (.html) or a picture (.png, .jpg, .jpeg, .tif, .tiff).
@@ -189,7 +189,7 @@ class Preview:
             start=self._choose_start(ground),
             changes=changes,
             labels=labels,
-            notes=(*self.notes, *(self._ortho.told if self._ortho else ())),
+            notes=(*self.notes, *(self._ortho.notes if self._ortho else ())),
             ortho=self._ortho,
         )
         return make_document(content)

@@ -610,7 +610,7 @@ def test_interrupt_after_the_first_file_names_it(folder, monkeypatch):
 
 
 def test_bug_is_one_sentence_that_tells_how_to_see_more(folder, monkeypatch):
-    monkeypatch.setattr("tinsmith.io.reading.read_as_wished", lambda *_, **__: {}["nothing"])
+    monkeypatch.setattr("tinsmith.io.reading.read_with_fallbacks", lambda *_, **__: {}["nothing"])
     result = CliRunner().invoke(main, ["info", "in.csv"])
     assert result.exit_code == 1
     assert result.stderr.startswith("Error: A bug in tinsmith: KeyError: 'nothing'")
@@ -630,7 +630,7 @@ def test_system_errors_are_sentences(folder, monkeypatch, error, sentence):
     def fail(*_, **__):
         raise error
 
-    monkeypatch.setattr("tinsmith.io.reading.read_as_wished", fail)
+    monkeypatch.setattr("tinsmith.io.reading.read_with_fallbacks", fail)
     result = CliRunner().invoke(main, ["info", "in.csv"])
     assert_sentence(result.exit_code, result.stdout, result.stderr, sentence)
 
@@ -640,7 +640,7 @@ def test_warning_of_a_library_is_one_line(folder, monkeypatch):
 
     from tinsmith.io import reading
 
-    read = reading.read_as_wished
+    read = reading.read_with_fallbacks
 
     def warned(*arguments, **options):
         with warnings.catch_warnings():
@@ -648,7 +648,7 @@ def test_warning_of_a_library_is_one_line(folder, monkeypatch):
             warnings.warn("the datum\nis old", UserWarning, stacklevel=1)
         return read(*arguments, **options)
 
-    monkeypatch.setattr(reading, "read_as_wished", warned)
+    monkeypatch.setattr(reading, "read_with_fallbacks", warned)
     Path("in.csv").write_text(SQUARE)
     result = CliRunner().invoke(main, ["info", "in.csv"])
     assert result.stderr == "Warning: the datum is old\n"

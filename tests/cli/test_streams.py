@@ -86,7 +86,7 @@ def test_what_cannot_be_told_silences_stderr(monkeypatch):
 
     monkeypatch.setattr(streams.click, "echo", fail)
     monkeypatch.setattr(streams, "silence", silenced.append)
-    streams.tell("anything")
+    streams.write_error("anything")
     assert silenced == [sys.stderr]
 
 

@@ -35,8 +35,8 @@ def add_tin(writer: EntityWriter, tin: TIN, factor: float) -> None:
     """Add triangles and lines."""
     points = _scale(tin.points, factor)
     writer.add_faces("TIN", points[tin.triangles])
-    told = zip(tin.lines.kinds, tin.lines.names, tin.lines.sources.tolist(), strict=True)
-    for chain, (kind, name, source) in zip(tin.lines.chains(), told, strict=True):
+    stated = zip(tin.lines.kinds, tin.lines.names, tin.lines.sources.tolist(), strict=True)
+    for chain, (kind, name, source) in zip(tin.lines.chains(), stated, strict=True):
         writer.add_line(_LAYER_OF_KIND[kind], points[chain], (kind, name, str(source)))
     for edge in _find_other_edges(tin):
         writer.add_line("CONSTRAINED_EDGES", points[edge], (CONSTRAINED, "", ""))
@@ -73,8 +73,8 @@ def add_survey(
     for line in survey.breaklines:
         one = line if isinstance(line, Breakline) else Breakline(line)
         rows = _scale(one.coords, factor)
-        told = (one.kind, one.name, "", str(one.priority))
-        writer.add_line(_LAYER_OF_KIND[one.kind], rows, told)
+        stated = (one.kind, one.name, "", str(one.priority))
+        writer.add_line(_LAYER_OF_KIND[one.kind], rows, stated)
     for regions, what, layer in (
         (survey.boundary, "boundary", "BOUNDARY"),
         (survey.holes, "hole", "HOLES"),

@@ -68,28 +68,28 @@ class EntityWriter:
         self.parts += [template % (first + k, *row) for k, row in enumerate(rows)]
         self.next_handle += len(rows)
 
-    def add_points(self, layer: str, points: Float64Array, told: Sequence[Sequence[str]]) -> None:
+    def add_points(self, layer: str, points: Float64Array, stated: Sequence[Sequence[str]]) -> None:
         """Add points with texts of their extended data."""
-        for row, texts in zip(points.tolist(), told, strict=True):
+        for row, texts in zip(points.tolist(), stated, strict=True):
             head = self._begin("POINT", layer, "AcDbPoint")
-            self.parts.append(f"{head}{_format_place(row)}{format_told(texts)}")
+            self.parts.append(f"{head}{_format_place(row)}{format_stated(texts)}")
 
-    def add_line(self, layer: str, rows: Float64Array, told: Sequence[str] = ()) -> None:
+    def add_line(self, layer: str, rows: Float64Array, stated: Sequence[str] = ()) -> None:
         """Add a polyline: in space, or in the plane if it has no elevations or just one."""
         is_closed = len(rows) > 3 and bool((rows[0] == rows[-1]).all())
         if is_closed:
             rows = rows[:-1]
         is_flat = rows.shape[1] == 2
         if is_flat:
-            self._add_plane_line(layer, rows, 0.0, is_closed=is_closed, told=told)
+            self._add_plane_line(layer, rows, 0.0, is_closed=is_closed, stated=stated)
         else:
-            self._add_polyline(layer, rows, _IN_SPACE | is_closed, told)
+            self._add_polyline(layer, rows, _IN_SPACE | is_closed, stated)
 
     def add_contour(self, layer: str, rows: Float64Array) -> None:
         """Add a line of one elevation as a polyline in the plane."""
         is_closed = len(rows) > 3 and bool((rows[0] == rows[-1]).all())
         plane = rows[:-1, :2] if is_closed else rows[:, :2]
-        self._add_plane_line(layer, plane, float(rows[0, 2]), is_closed=is_closed, told=())
+        self._add_plane_line(layer, plane, float(rows[0, 2]), is_closed=is_closed, stated=())
 
     def _add_plane_line(
         self,
@@ -98,17 +98,17 @@ class EntityWriter:
         elevation: float,
         *,
         is_closed: bool,
-        told: Sequence[str],
+        stated: Sequence[str],
     ) -> None:
         if self._is_r12:
             places = np.column_stack([rows, np.full(len(rows), elevation)])
-            self._add_polyline(layer, places, int(is_closed), told, elevation=elevation)
+            self._add_polyline(layer, places, int(is_closed), stated, elevation=elevation)
             return
         head = self._begin("LWPOLYLINE", layer, "AcDbPolyline")
         corners = "".join(f"10\n{x!r}\n20\n{y!r}\n" for x, y in rows.tolist())
         self.parts.append(
             f"{head}90\n{len(rows)}\n70\n{int(is_closed)}\n38\n{elevation!r}\n{corners}"
-            f"{format_told(told)}"
+            f"{format_stated(stated)}"
         )
 
     def _add_polyline(
@@ -116,7 +116,7 @@ class EntityWriter:
         layer: str,
         places: Float64Array,
         flags: int,
-        told: Sequence[str],
+        stated: Sequence[str],
         *,
         elevation: float = 0.0,
     ) -> None:
@@ -124,7 +124,7 @@ class EntityWriter:
         handle = f"{self.next_handle:X}"
         head = self._begin("POLYLINE", layer, "AcDb3dPolyline")
         self.parts.append(
-            f"{head}66\n1\n10\n0.0\n20\n0.0\n30\n{elevation!r}\n70\n{flags}\n{format_told(told)}"
+            f"{head}66\n1\n10\n0.0\n20\n0.0\n30\n{elevation!r}\n70\n{flags}\n{format_stated(stated)}"
         )
         vertex_flags = "70\n32\n" if flags & _IN_SPACE else ""
         for row in places.tolist():
@@ -150,7 +150,7 @@ def _format_place(row: Sequence[float]) -> str:
     return f"10\n{row[0]!r}\n20\n{row[1]!r}\n30\n{row[2]!r}\n"
 
 
-def format_told(texts: Sequence[str]) -> str:
+def format_stated(texts: Sequence[str]) -> str:
     """Return texts as extended data; nothing if all are empty."""
     if not any(texts):
         return ""

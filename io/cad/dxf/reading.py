@@ -122,9 +122,9 @@ def _choose_measures(drawing: Drawing, declared: Declared) -> Measures:
     sample = rows[:: max(1, len(rows) // _SAMPLE), :2]
     measures = choose_measures(stated, declared, sample=sample)
     if stated.unit is not None and declared.unit is None:
-        return measures.tell(f"Lengths are in {stated.unit.name}, by $INSUNITS.", first=True)
+        return measures.noting(f"Lengths are in {stated.unit.name}, by $INSUNITS.", first=True)
     if stated.unit is None and declared.unit is None and measures.elevation_unit is None:
-        return measures.tell("The drawing names no unit of lengths ($INSUNITS).", first=True)
+        return measures.noting("The drawing names no unit of lengths ($INSUNITS).", first=True)
     return measures
 
 
@@ -152,24 +152,24 @@ def _read_tin(drawing: Drawing, measures: Measures, declared: Declared, policy: 
 def _select_edge_lines(drawing: Drawing, measures: Measures) -> list[EdgeLine]:
     kinds: tuple[LineKind, ...] = get_args(LineKind)
     found = []
-    for rows, told in zip(drawing.lines, _name_lines(drawing), strict=True):
-        kind = next((one for one in kinds if one == told[0]), None)
-        if told[0] != CONSTRAINED and kind is None:
+    for rows, stated in zip(drawing.lines, _name_lines(drawing), strict=True):
+        kind = next((one for one in kinds if one == stated[0]), None)
+        if stated[0] != CONSTRAINED and kind is None:
             kind = "hard"
-        source = int(told[2]) if told[2].isdecimal() and len(told[2]) < 10 else None
-        found.append(EdgeLine(measures.apply(rows), kind, told[1], source))
+        source = int(stated[2]) if stated[2].isdecimal() and len(stated[2]) < 10 else None
+        found.append(EdgeLine(measures.apply(rows), kind, stated[1], source))
     return found
 
 
 def _name_lines(drawing: Drawing) -> list[list[str]]:
     """Return kind, name, source and priority of each line; unnamed ones are called by layers."""
-    told = drawing.value["line_names"]
+    stated = drawing.value["line_names"]
     layers, numbers = drawing.value["layers"], drawing.arrays["line_layers"].tolist()
-    if not told:
+    if not stated:
         return [["", layers[number], "", ""] for number in numbers]
     return [
         ([*one, "", "", "", ""][:4] if one else ["", layers[number], "", ""])
-        for one, number in zip(told, numbers, strict=True)
+        for one, number in zip(stated, numbers, strict=True)
     ]
 
 
@@ -186,9 +186,9 @@ def _read_survey(
             f"{FILE} has {'neither points nor lines' if with_lines else 'no points'} in "
             "the layers read."
         )
-    told = _name_lines(drawing) if with_lines else []
+    stated = _name_lines(drawing) if with_lines else []
     n_draped = sum(
-        line.shape[1] == 2 and one[0] not in _RINGS for line, one in zip(lines, told, strict=True)
+        line.shape[1] == 2 and one[0] not in _RINGS for line, one in zip(lines, stated, strict=True)
     )
     if n_draped:
         notes.append(
@@ -212,18 +212,18 @@ def _read_survey(
         ],
     )
     try:
-        return _add_lines(survey, placing.rows[1:], told)
+        return _add_lines(survey, placing.rows[1:], stated)
     except LinesError as error:
         raise ReadError(f"{error}") from error
 
 
 def _add_lines(
-    survey: Survey, lines: Sequence[Float64Array], told: Sequence[Sequence[str]]
+    survey: Survey, lines: Sequence[Float64Array], stated: Sequence[Sequence[str]]
 ) -> Survey:
     """Add breaklines, and of drawings that were written here rings and water by their kinds."""
     found: dict[str, list[Any]] = {kind: [] for kind in ("boundary", "hole", "erase", "water", "")}
     polygons: dict[tuple[str, str], list[Float64Array]] = {}
-    for rows, (kind, name, number, priority) in zip(lines, told, strict=True):
+    for rows, (kind, name, number, priority) in zip(lines, stated, strict=True):
         if kind == "water" and rows.shape[1] == 3:
             found[kind].append(Water(as_ring(rows, "water"), float(rows[0, 2]), name=name))
         elif kind in _RINGS:
@@ -243,8 +243,8 @@ def _add_lines(
     )
 
 
-def _make_breakline(rows: Float64Array, told: str, name: str, priority: str) -> Breakline:
-    kind: BreaklineKind = "soft" if told == "soft" else "hard"
+def _make_breakline(rows: Float64Array, stated: str, name: str, priority: str) -> Breakline:
+    kind: BreaklineKind = "soft" if stated == "soft" else "hard"
     rank = int(priority) if _PRIORITY.fullmatch(priority) else 0
     return Breakline(rows, kind=kind, name=name, priority=rank)
 

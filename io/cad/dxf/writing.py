@@ -23,7 +23,7 @@ from ....base.policies import DrawingVersion
 from ....base.results import Features
 from ....base.sentences import FILE
 from ....tin import TIN, Surface, Survey
-from ...registry.losses import tell_unknown_elevations
+from ...registry.losses import warn_of_unknown_elevations
 from ..lengths import choose_length_unit
 from .content import add_features, add_survey, add_tin, select_texts
 from .entities import EntityWriter
@@ -97,7 +97,7 @@ def write(
         document = _make_document(ezdxf, obj, version, along, factor)
         head, tail, encoding, writer = _split(document, version)
     _add_content(writer, obj, select_texts(obj), factor, labels=labels)
-    tell_unknown_elevations(obj)
+    warn_of_unknown_elevations(obj)
     with replacing(path) as file:
         file.write(_encode(_count_handles(head, writer), encoding))
         for start in range(0, len(writer.parts), _CHUNK):

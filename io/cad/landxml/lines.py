@@ -36,9 +36,9 @@ def write_source_of_tin(file: IO[str], tin: TIN, points: Float64Array) -> None:
     A feature of each tells which line it is, so that a reader that knows it restores their order.
     """
     rings, lines = [], []
-    told = zip(tin.lines.kinds, tin.lines.names, tin.lines.sources.tolist(), strict=True)
+    described = zip(tin.lines.kinds, tin.lines.names, tin.lines.sources.tolist(), strict=True)
     for number, (chain, (kind, name, source)) in enumerate(
-        zip(tin.lines.chains(), told, strict=True)
+        zip(tin.lines.chains(), described, strict=True)
     ):
         extra = {LINE: str(number), SOURCE: str(source)}
         if kind in _BOUNDARIES and chain[0] == chain[-1]:

@@ -84,7 +84,7 @@ def read(
         raise ReadError(f"{FILE} has no surface with {has}.")
     source = chosen if kind == "source" else None
     measures = _choose_measures(found, source, declared)
-    measures = measures.tell(*notes, first=True)
+    measures = measures.noting(*notes, first=True)
     if source is not None:
         return make_survey_of_source(found, source, measures, declared, path)
     return make_survey_of_points(found.points, measures, declared, path)
@@ -197,8 +197,8 @@ def _describe_rest(found: Content, chosen: Surface | None, kind: str) -> list[st
             "`content='points'` gives."
         )
     if found.others:
-        told = ", ".join(counted(n, what) for what, n in found.others.items())
-        notes.append(f"Not read: {told}.")
+        listed = ", ".join(counted(n, what) for what, n in found.others.items())
+        notes.append(f"Not read: {listed}.")
     if kind == "source" and chosen is not None and not chosen.n_visible:
         notes.append("There are no visible faces: the source data were read.")
     return notes
@@ -211,14 +211,14 @@ def _choose_measures(found: Content, chosen: Surface | None, declared: Declared)
     sample = _take_sample(found, chosen)
     stated, notes = find_stated(found, sample=sample, is_crs_declared=declared.crs is not None)
     system = stated.crs or declared.crs
-    told = (stated.unit, declared.unit, declared.elevation_unit)
-    if all(one is None for one in told) and (system is None or system.vertical_unit is None):
+    units = (stated.unit, declared.unit, declared.elevation_unit)
+    if all(one is None for one in units) and (system is None or system.vertical_unit is None):
         raise ReadError(
             f"{FILE} does not say its units: declare that of the elevations, such as "
             "`elevation_unit='m'` or `elevation_unit='US survey foot'`, or that of all lengths, "
             "`unit='ft'`."
         )
-    return choose_measures(stated, declared, sample=sample).tell(*notes, first=True)
+    return choose_measures(stated, declared, sample=sample).noting(*notes, first=True)
 
 
 def _take_sample(found: Content, chosen: Surface | None) -> Float64Array:

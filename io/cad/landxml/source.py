@@ -74,11 +74,11 @@ def make_survey_of_points(
 def _describe_states(points: Points, kept: Int64Array) -> list[str]:
     """Tell of points that are no longer there, or not yet: a design stands among the ground."""
     found = Counter(points.states[row] for row in kept.tolist())
-    told = [f"{n:,} {state}" for state, n in found.items() if state not in ("", "existing")]
-    if not told:
+    listed = [f"{n:,} {state}" for state, n in found.items() if state not in ("", "existing")]
+    if not listed:
         return []
     return [
-        f"Of {counted(len(kept), 'survey point')} {' and '.join(told)}, by their state, are read "
+        f"Of {counted(len(kept), 'survey point')} {' and '.join(listed)}, by their state, are read "
         "as the others are: the attribute state tells them apart."
     ]
 

@@ -18,7 +18,7 @@ from ....base.notes import warn
 from ....base.results import Features
 from ....base.sentences import FILE
 from ....tin import TIN, Surface, Survey
-from ...registry.losses import select_attributes, tell_unknown_elevations
+from ...registry.losses import select_attributes, warn_of_unknown_elevations
 from ..lengths import choose_length_unit
 from .content import ELEVATION_UNIT, FEATURE, UNKNOWN
 from .lines import quote, write_features, write_source_of_survey, write_source_of_tin
@@ -110,7 +110,7 @@ def write(
         file.write("</LandXML>\n")
     if progress is not None:
         progress(1.0)
-    tell_unknown_elevations(obj)
+    warn_of_unknown_elevations(obj)
 
 
 def _write_content(

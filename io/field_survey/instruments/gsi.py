@@ -91,7 +91,7 @@ def read_book(
     for i, block in enumerate(blocks):
         if not block.is_code:
             reader.add(block, codes.get(i, ""))
-    reader.tell()
+    reader.note_missing()
     return reader.book
 
 
@@ -263,7 +263,7 @@ class _Reader:
             xyz = reduce_shot(station, shot, refraction=self.refraction, metres=self._metres)
             self.book.add(name, xyz, code, block.line, "reduced")
 
-    def tell(self) -> None:
+    def note_missing(self) -> None:
         """Say what is missing for shots that were left out."""
         if self._without_orientation:
             self.book.notes.append(

@@ -212,9 +212,9 @@ def _find_reference(
 ) -> tuple[str | None, str | None]:
     """Return CRS and unit of elevations as the file tells them."""
     metadata = city.get("metadata")
-    told = str(metadata.get("referenceSystem", "")) if isinstance(metadata, dict) else ""
-    found = _URL.search(told)
-    crs = f"{found[1]}:{found[2]}" if found else told.strip() or None
+    stated = str(metadata.get("referenceSystem", "")) if isinstance(metadata, dict) else ""
+    found = _URL.search(stated)
+    crs = f"{found[1]}:{found[2]}" if found else stated.strip() or None
     own = reliefs[0].attributes
     kept = {name: own[name] for name in ("crs", "elevationUnit") if isinstance(own.get(name), str)}
     return crs or kept.get("crs"), kept.get("elevationUnit")

@@ -84,10 +84,10 @@ def read(path: Path, *, crs: CrsLike | None = None, elevation_unit: UnitLike | N
         tin = make_tin(points, triangles, constrained=constrained, reference=reference)
         return _add_note(tin)
     declared = _declare(record, reference)
-    told = look_at_crs(points, reference.crs, is_declared=True) if reference.is_declared else ()
+    noted = look_at_crs(points, reference.crs, is_declared=True) if reference.is_declared else ()
     try:
         tin = unpack_tin(declared, points, triangles, constrained)
-        return add_notes(tin, told) if told else tin
+        return add_notes(tin, noted) if noted else tin
     except PointsError as error:
         raise ReadError(f"{FILE} holds no TIN. {error}") from error
 

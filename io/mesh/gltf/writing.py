@@ -171,14 +171,14 @@ def _find_areas(positions: Float32Array, triangles: Int32Array) -> BoolArray:
     a, b, c = (positions[triangles[:, k]].astype(np.float64) for k in range(3))
     has_area: BoolArray = (np.cross(b - a, c - a) != 0.0).any(axis=1)
     count = int(np.count_nonzero(~has_area))
-    told = (
+    flat = (
         f"{counted(count, 'triangle')} without area in float32, whose precision is a sixteen "
         "millionth of the extent"
     )
     if not has_area.any():
-        raise WriteError(f"Cannot write {FILE}: it has nothing but {told}.")
+        raise WriteError(f"Cannot write {FILE}: it has nothing but {flat}.")
     if count:
-        warn(f"{FILE} does not hold {told}.")
+        warn(f"{FILE} does not hold {flat}.")
     return has_area
 
 

@@ -20,7 +20,7 @@ from ....base.atomic import replacing
 from ....base.errors import ReadError
 from ....base.sentences import FILE, counted
 from ....tin import TIN, Surface, Survey
-from ...registry.losses import tell_lost_attributes
+from ...registry.losses import warn_of_lost_attributes
 from .. import common
 from ..common import Mesh, flag_edges, mesh_reader
 from .body import Table, read_tables
@@ -152,7 +152,7 @@ def write(surface: TIN | Survey, path: Path, *, progress: Tell | None = None) ->
     surface = common.require_writable(surface)
     columns, lost = _select_number_columns(surface.attributes)
     if isinstance(surface, Survey):
-        tell_lost_attributes(lost, "PLY has doubles, and names of one ASCII word")
+        warn_of_lost_attributes(lost, "PLY has doubles, and names of one ASCII word")
     body = {"vertex": _pack_vertices(surface.points, columns)}
     comments: list[str] = []
     if isinstance(surface, Surface):
@@ -229,8 +229,8 @@ def _fits_double(column: AnyArray) -> bool:
 
 def _pack_faces(tin: TIN, edges: AnyArray) -> AnyArray:
     """Return the rows of the faces, with flags only where the edges do not tell them."""
-    is_told = (flag_edges(tin.triangles, edges, len(tin.points)) == tin.constrained).all()
-    flags = () if is_told else _FLAGS
+    is_stated = (flag_edges(tin.triangles, edges, len(tin.points)) == tin.constrained).all()
+    flags = () if is_stated else _FLAGS
     fields: list[Any] = [(_LIST[0], "u1"), (_LIST[1], "<i4", (3,))]
     rows = np.empty(len(tin.triangles), [*fields, *((name, "u1") for name in flags)])
     rows[_LIST[0]] = 3

@@ -113,15 +113,15 @@ def parse_header(content: bytes) -> Header:
                 )
     if byte_order is None:
         raise ReadError("the PLY header has no line 'format'.")
-    crs, unit, told = _read_comments(lines)
-    return Header(byte_order, elements, crs, size, unit, told)
+    crs, unit, stated = _read_comments(lines)
+    return Header(byte_order, elements, crs, size, unit, stated)
 
 
 def _read_comments(lines: list[str]) -> tuple[str | None, str | None, list[LineComment] | None]:
     """Return what comments say of the CRS, the unit of elevations, and lines."""
     crs: str | None = None
     unit: str | None = None
-    told: list[LineComment] | None = None
+    stated: list[LineComment] | None = None
     for number, line in enumerate(lines, start=1):
         match line.split():
             case ["comment", "crs:", _, *_]:
@@ -129,10 +129,10 @@ def _read_comments(lines: list[str]) -> tuple[str | None, str | None, list[LineC
             case ["comment", "elevation", "unit:", _, *_]:
                 unit = line.split("unit:", 1)[1].strip()
             case ["comment", "edges:", "constrained"]:
-                told = []
-            case ["comment", "line:", *_] if told is not None:
-                told.append(_require_line_comment(line, number))
-    return crs, unit, told
+                stated = []
+            case ["comment", "line:", *_] if stated is not None:
+                stated.append(_require_line_comment(line, number))
+    return crs, unit, stated
 
 
 def _require_line_comment(line: str, number: int) -> LineComment:

@@ -71,10 +71,10 @@ def format_line_comments(tin: TIN) -> list[str]:
     lines = tin.lines
     counts = np.diff(lines.offsets) - 1
     rows = zip(lines.kinds, lines.sources.tolist(), counts.tolist(), lines.names, strict=True)
-    told = [
+    stated = [
         f"comment line: {kind} {source} {n} {json.dumps(name)}" for kind, source, n, name in rows
     ]
-    return ["comment edges: constrained", *told]
+    return ["comment edges: constrained", *stated]
 
 
 def parse_line_comment(text: str) -> LineComment | None:
@@ -106,7 +106,7 @@ def require_edges(table: Table, n_vertices: int) -> Int64Array:
     return ends.astype(np.int64)
 
 
-def read_lines(told: Sequence[LineComment], edges: Int64Array) -> Lines:
+def read_lines(stated: Sequence[LineComment], edges: Int64Array) -> Lines:
     """Return the lines that the header tells of, as chains of vertices.
 
     Raises
@@ -114,7 +114,7 @@ def read_lines(told: Sequence[LineComment], edges: Int64Array) -> Lines:
     ReadError
         If the edges of a line do not follow each other.
     """
-    counts = np.array([one.n_edges for one in told], np.int64)
+    counts = np.array([one.n_edges for one in stated], np.int64)
     if counts.sum() > len(edges) or (counts < 1).any():
         raise ReadError(f"its lines have {counts.sum()} edges, and there are {len(edges)}.")
     starts = np.cumsum(counts) - counts
@@ -129,7 +129,7 @@ def read_lines(told: Sequence[LineComment], edges: Int64Array) -> Lines:
     return Lines(
         vertices=vertices.astype(np.int32),
         offsets=topology.find_offsets(counts + 1).astype(np.int32),
-        kinds=tuple(one.kind for one in told),
-        sources=np.array([one.source for one in told], np.int32),
-        names=tuple(one.name for one in told),
+        kinds=tuple(one.kind for one in stated),
+        sources=np.array([one.source for one in stated], np.int32),
+        names=tuple(one.name for one in stated),
     )

@@ -42,8 +42,8 @@ def read_json_members(head: bytes, path: Path) -> Members:
     around = head[: found.start()] if found else head
     around += b"," + _read_tail(path)
     unit = _UNIT.search(around)
-    told = _decode(unit.group(1)) if unit else ""
-    return Members(_NO_CRS.search(around) is not None, told, True)
+    stated = _decode(unit.group(1)) if unit else ""
+    return Members(_NO_CRS.search(around) is not None, stated, True)
 
 
 def _read_tail(path: Path) -> bytes:

@@ -63,7 +63,7 @@ class Run:
         self.feedback = feedback
         self.files = Files(Path(folder))
         self._command = find_command()
-        version = self._command.tell_version()
+        version = self._command.find_version()
         feedback.pushInfo(f"{version} ({self._command.path}, {self._command.origin})")
 
     def list_surface(self, surface: Surface) -> list[str]:
@@ -344,7 +344,7 @@ class CommandAlgorithm(QgsProcessingAlgorithm):
 
     def make_mesh(self, run: Run, name: str, volumes: tuple[str, ...] = ()) -> dict[str, Any]:
         """Run a command that makes a TIN; return the output, its counts and some volumes."""
-        paths, told = self.run_command(run, "OUTPUT")
+        paths, record = self.run_command(run, "OUTPUT")
         self.load_later(run, paths["OUTPUT"], name)
-        counts = {one.upper(): told["tin"][one] for one in ("vertices", "triangles")}
-        return {**paths, **counts, **{one.upper(): told["volume"][one] for one in volumes}}
+        counts = {one.upper(): record["tin"][one] for one in ("vertices", "triangles")}
+        return {**paths, **counts, **{one.upper(): record["volume"][one] for one in volumes}}

@@ -84,7 +84,7 @@ class GroundAlgorithm(CommandAlgorithm):
 
     def make(self, run: Run) -> dict[str, Any]:
         """Classify."""
-        paths, told = self.run_command(run, "OUTPUT", "CLASSIFIED", chosen=["--as-points"])
+        paths, record = self.run_command(run, "OUTPUT", "CLASSIFIED", chosen=["--as-points"])
         style_on_loading(paths["OUTPUT"], style_ground, run.context)
-        counts = told["classes"]
+        counts = record["classes"]
         return {**paths, **{name: counts.get(key, 0) for name, key in _CLASSES.items()}}

@@ -44,6 +44,6 @@ class InspectAlgorithm(CommandAlgorithm):
 
     def make(self, run: Run) -> dict[str, Any]:
         """Check."""
-        paths, told = self.run_command(run, "OUTPUT", "TABLE", "PICTURE")
+        paths, record = self.run_command(run, "OUTPUT", "TABLE", "PICTURE")
         style_on_loading(paths["OUTPUT"], style_suspects, run.context)
-        return {**paths, "SUSPECTS": len(told["blunders"])}
+        return {**paths, "SUSPECTS": len(record["blunders"])}

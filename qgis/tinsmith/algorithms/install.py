@@ -74,10 +74,10 @@ class InstallAlgorithm(QgsProcessingAlgorithm):
         if source:
             python = find_python(self.parameterAsFile(parameters, "PYTHON", context))
             installed = str(install(python, source, feedback))
-            version = Command(installed, "installed for this profile").tell_version()
+            version = Command(installed, "installed for this profile").find_version()
             feedback.pushInfo(f"{version} is installed: {installed}")
         command = find_command()
-        version = command.tell_version()
+        version = command.find_version()
         feedback.pushInfo(f"{version} is used: {command.path} ({command.origin})")
         if source and command.path != installed:
             feedback.pushWarning("Another command comes first, so the one installed is not used.")

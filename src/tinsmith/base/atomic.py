@@ -99,7 +99,7 @@ def replacing_path(path: Path) -> Iterator[Path]:
         beside = _choose_path_beside(target)
         try:  # begins before the file is there, so that no signal can come in between
             _create(beside, target)
-            with _telling_full_disks(path, target):
+            with _naming_full_disks(path, target):
                 yield beside
                 beside.replace(target)
         finally:
@@ -145,7 +145,7 @@ def _translate_faults(path: Path) -> Iterator[None]:
 
 
 @contextmanager
-def _telling_full_disks(path: Path, target: Path) -> Iterator[None]:
+def _naming_full_disks(path: Path, target: Path) -> Iterator[None]:
     """Name a full disk as the cause of a failure, which libraries tell in words of their own.
 
     Looked at before what was written is removed again.
@@ -296,7 +296,7 @@ def replacing_files(path: Path, *, parts: Sequence[str] = ()) -> Iterator[Path]:
         folder = _name_beside(target)
         try:  # begins before the folder is there, so that no signal can come in between
             folder.mkdir()
-            with _telling_full_disks(path, target):
+            with _naming_full_disks(path, target):
                 yield folder / target.name
                 _move(folder, target, parts)
         finally:

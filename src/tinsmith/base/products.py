@@ -89,13 +89,13 @@ def _add_notes(made: Any, surfaces: Iterable[_Surface]) -> Any:
 
 def notes_of_surfaces(surfaces: Iterable[_Surface]) -> tuple[str, ...]:
     """Return the notes of surfaces; of several ones each with the name of its surface."""
-    told = list(surfaces)
-    if len(told) == 1:
-        return told[0].notes
-    names = _name_apart(told)
+    named = list(surfaces)
+    if len(named) == 1:
+        return named[0].notes
+    names = _name_apart(named)
     return tuple(
         f"{name}: {note}"
-        for name, surface in zip(names, told, strict=True)
+        for name, surface in zip(names, named, strict=True)
         for note in surface.notes
     )
 

@@ -19,7 +19,7 @@ class Progress:
 
     Parameters
     ----------
-    tell : callable or None
+    report : callable or None
         Called with each fraction that is larger than the last; None takes no notice. What it raises
         is passed on.
 
@@ -40,28 +40,28 @@ class Progress:
     [0.4, 0.6, 1.0]
     """
 
-    def __init__(self, tell: Tell | None) -> None:
-        if tell is not None and not callable(tell):
-            raise OptionError("progress", tell, "a function of the fraction done", or_none=True)
-        self._tell = tell
-        self._told = 0.0
+    def __init__(self, report: Tell | None) -> None:
+        if report is not None and not callable(report):
+            raise OptionError("progress", report, "a function of the fraction done", or_none=True)
+        self._report = report
+        self._reported = 0.0
         self._raised: BaseException | None = None
 
     def __call__(self, fraction: float) -> None:
         """Tell a fraction below 1, if it is larger than the last."""
-        if self._tell is not None and self._told < fraction < 1.0:
-            self._told = fraction
-            self._tell_caller(fraction)
+        if self._report is not None and self._reported < fraction < 1.0:
+            self._reported = fraction
+            self._call(fraction)
 
     def end(self) -> None:
         """Tell that all is done."""
-        self._tell_caller(1.0)
+        self._call(1.0)
 
-    def _tell_caller(self, fraction: float) -> None:
-        if self._tell is None:
+    def _call(self, fraction: float) -> None:
+        if self._report is None:
             return
         try:
-            self._tell(fraction)
+            self._report(fraction)
         except BaseException as error:
             self._raised = error
             raise
@@ -78,6 +78,6 @@ class Progress:
 
     def stage(self, start: float, end: float) -> Tell | None:
         """Return the function that a stage tells its own fraction; None if nobody listens."""
-        if self._tell is None:
+        if self._report is None:
             return None
         return lambda fraction: self(start + (end - start) * fraction)

@@ -98,7 +98,7 @@ def read_inputs(paths: Sequence[Path], reading: Reading, console: Console) -> Su
 def _read_once(
     path: Path, reading: Reading, progress: Callable[[float], None] | None = None
 ) -> Survey | TIN:
-    from ..io.reading import read_as_wished, read_stream
+    from ..io.reading import read_stream, read_with_fallbacks
 
     asked = reading.given
     fallbacks = {
@@ -107,7 +107,7 @@ def _read_once(
     if path == STANDARD:
         asked.pop("remote", None)
         return read_stream(open_standard_input(), name_file(path), fallbacks, **asked)
-    return read_as_wished(path, fallbacks, **asked, progress=progress)
+    return read_with_fallbacks(path, fallbacks, **asked, progress=progress)
 
 
 def _read_to_reproject(path: Path, reading: Reading, target: str) -> Survey | TIN:

@@ -217,8 +217,8 @@ def _word_help(one: FormatOption) -> str:
     """Return what the docstring says, with flags for the options that it names."""
     plain = re.sub(r":\w+:`\.?(.*?)`", r"\1", one.text)
     text = plain.replace("`", "")
-    is_told = isinstance(one.default, str | int | float) and not isinstance(one.default, bool)
-    return text + (f"  [default: {one.default}]" if is_told else "")
+    is_stated = isinstance(one.default, str | int | float) and not isinstance(one.default, bool)
+    return text + (f"  [default: {one.default}]" if is_stated else "")
 
 
 def _parse_several(

@@ -15,7 +15,7 @@ from .. import __version__
 from ..base.sentences import suggest
 from .command_list import SECTIONS, SUMMARIES
 from .output.events import note_events
-from .output.failures import show_failure, tell_warning, translate_failures
+from .output.failures import report_warning, show_failure, translate_failures
 from .output.streams import (
     Terminated,
     accept_any_text,
@@ -59,7 +59,7 @@ class _Commands(click.Group):
         added = self.list_commands(ctx)[len(_BUILT_IN) :]
         self._list_commands_under("Commands of plug-ins", added, ctx, formatter)
         for fault in describe_faults(_BUILT_IN):
-            tell_warning(fault)
+            report_warning(fault)
 
     def _list_commands_under(
         self,
@@ -112,7 +112,7 @@ class _Commands(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """Find the command, and tell if a plug-in has one of the same name."""
         for fault in describe_faults(_BUILT_IN, args[0]) if args and args[0] in _BUILT_IN else []:
-            tell_warning(fault)
+            report_warning(fault)
         name = args[0] if args else ""
         if not name.startswith("-") and self.get_command(ctx, name) is None:
             if ctx.resilient_parsing:
@@ -122,7 +122,7 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-def _tell_version(
+def _print_version(
     ctx: click.Context,
     param: click.Parameter,  # noqa: ARG001 - click's signature
     value: bool,
@@ -147,7 +147,7 @@ def _tell_version(
     is_flag=True,
     is_eager=True,
     expose_value=False,
-    callback=_tell_version,
+    callback=_print_version,
     help="Show the version, that of the compiled core and Python's, and exit.",
 )
 def main() -> None:

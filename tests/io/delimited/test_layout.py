@@ -240,10 +240,10 @@ def test_scans_are_known_by_their_suffix(name, is_scan):
     assert found_in("1 2 3\n", name).is_scan is is_scan
 
 
-@pytest.mark.parametrize(("decimal", "is_told"), [(None, False), (".", True)])
-def test_a_decimal_mark_that_is_told_is_known_to_be(decimal, is_told):
+@pytest.mark.parametrize(("decimal", "is_stated"), [(None, False), (".", True)])
+def test_a_decimal_mark_that_is_told_is_known_to_be(decimal, is_stated):
     layout = found_in("1.5;2.5;3.5\n", decimal=decimal)
-    assert (layout.is_decimal_told, layout.decimal) == (is_told, ".")
+    assert (layout.is_decimal_stated, layout.decimal) == (is_stated, ".")
 
 
 @pytest.mark.parametrize(

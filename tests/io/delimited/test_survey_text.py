@@ -1070,7 +1070,7 @@ def test_the_examples_of_the_page_on_survey_text_run(tmp_path, monkeypatch, caps
 
 
 @pytest.mark.parametrize(
-    ("rows", "is_told"),
+    ("rows", "is_stated"),
     [
         ("1.5,2.5,100\n300,20,101\n40,400,103\n", True),  # a local grid
         ("500001,5200002,100\n500300,5200020,101\n500040,5200400,103\n", False),
@@ -1078,12 +1078,12 @@ def test_the_examples_of_the_page_on_survey_text_run(tmp_path, monkeypatch, caps
         ("900001,5300002,100\n900300,5300020,101\n900040,5300400,103\n", False),
     ],
 )
-def test_local_coordinates_with_a_projected_crs_are_told(tmp_path, rows, is_told):
+def test_local_coordinates_with_a_projected_crs_are_told(tmp_path, rows, is_stated):
     """Easting 0 and northing 0 of UTM lie within the margin of its area of use."""
     path = tmp_path / "in.csv"
     path.write_text("x,y,z\n" + rows)
     told = [note for note in ts.read(path, crs="EPSG:32632").notes if "local coordinates" in note]
-    assert len(told) == is_told
+    assert len(told) == is_stated
 
 
 @pytest.mark.parametrize(

@@ -57,20 +57,20 @@ def test_the_diagonal_of_a_quadrilateral_is_told_to_be_a_guess(tmp_path, write, 
 
 
 @pytest.mark.parametrize("order", "<>")
-@pytest.mark.parametrize(("number", "is_told"), [("float", True), ("double", False)])
+@pytest.mark.parametrize(("number", "is_stated"), [("float", True), ("double", False)])
 @pytest.mark.parametrize("faces", [[(0, 1, 2)], []])
 def test_ply_of_single_precision_says_how_far_it_is_rounded(
-    tmp_path, order, number, is_told, faces
+    tmp_path, order, number, is_stated, faces
 ):
     found = ts.read(write_ply(tmp_path / "a.ply", number=number, order=order, faces=faces))
     notes = found.report.notes if faces else found.notes
-    assert any(f"{ROUNDED} multiples of 0.25" in note for note in notes) == is_told
+    assert any(f"{ROUNDED} multiples of 0.25" in note for note in notes) == is_stated
 
 
-@pytest.mark.parametrize(("dtype", "is_told"), [(np.float32, True), (np.float64, False)])
-def test_vtk_of_single_precision_says_how_far_it_is_rounded(tmp_path, dtype, is_told):
+@pytest.mark.parametrize(("dtype", "is_stated"), [(np.float32, True), (np.float64, False)])
+def test_vtk_of_single_precision_says_how_far_it_is_rounded(tmp_path, dtype, is_stated):
     tin = ts.read(write_vtp(tmp_path / "a.vtp", dtype=dtype, faces=[(0, 1, 2)]))
-    assert any(ROUNDED in note for note in tin.report.notes) == is_told
+    assert any(ROUNDED in note for note in tin.report.notes) == is_stated
 
 
 def test_stl_at_map_coordinates_says_how_far_it_is_rounded_and_ours_does_not(tmp_path):

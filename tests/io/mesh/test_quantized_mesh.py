@@ -343,10 +343,10 @@ def test_holes_and_parts_stay_open(tmp_path, seed):
 
 
 @pytest.mark.parametrize(
-    ("crs", "metres", "is_told"),
+    ("crs", "metres", "is_stated"),
     [("UTM 3D", 1.0, False), ("EPSG:32616+5703", 1.0, True), ("EPSG:2274+6360", 1200 / 3937, True)],
 )
-def test_heights_above_the_ellipsoid(tmp_path, crs, metres, is_told):
+def test_heights_above_the_ellipsoid(tmp_path, crs, metres, is_stated):
     """A 3D CRS has them; of a geoid there is no grid here, and feet become metres all the same."""
     pyproj = pytest.importorskip("pyproj")
     system = pyproj.CRS("EPSG:32616").to_3d() if crs == "UTM 3D" else crs
@@ -358,7 +358,7 @@ def test_heights_above_the_ellipsoid(tmp_path, crs, metres, is_told):
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         tiles = load(ts.write(tin, tmp_path / "a", format="quantized-mesh", max_level=15))
-    assert [one.category for one in told] == [ts.LossWarning] * is_told
+    assert [one.category for one in told] == [ts.LossWarning] * is_stated
     finest = [tile["places"][:, 2] for (level, _, _), tile in tiles.items() if level == 15]
     z = np.concatenate(finest)
     assert z.min() == pytest.approx(1000 * metres, abs=0.2)

@@ -110,10 +110,10 @@ def test_elements(tmp_path, element, triangles):
     assert len(read(tmp_path, f"{NODES}{element}\n").triangles) == triangles
 
 
-@pytest.mark.parametrize(("material", "is_told"), [("1", False), ("2", True)])
-def test_several_materials_are_told(tmp_path, material, is_told):
+@pytest.mark.parametrize(("material", "is_stated"), [("1", False), ("2", True)])
+def test_several_materials_are_told(tmp_path, material, is_stated):
     tin = read(tmp_path, f"{NODES}E3T 1 1 2 3 1\nE3T 2 1 3 4 {material}\n")
-    assert any("materials" in note for note in tin.report.notes) is is_told
+    assert any("materials" in note for note in tin.report.notes) is is_stated
 
 
 def test_eight_and_nine_nodes_are_cut_at_their_sides(tmp_path):

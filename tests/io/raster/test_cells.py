@@ -170,10 +170,10 @@ def test_cells_given_as_a_window_are_refused_with_the_option_to_use(cells):
 def test_a_window_that_may_be_meant_as_cells_is_told():
     raster = header(transform=dem.Affine(1.0, 0.0, 0.0, 0.0, -1.0, 5.0))
     choice = {"band": None, "cells": None, "stride": None, "nodata": None, "fill": False}
-    for window, is_told in [((1, 1, 3, 4), True), ((1, 1, 3.0, 4), False), ((1, 1, 7, 5), False),
+    for window, is_stated in [((1, 1, 3, 4), True), ((1, 1, 3.0, 4), False), ((1, 1, 7, 5), False),
                             (Bounds(1, 1, 3, 4), False), (None, False)]:  # fmt: skip
         notes = dem._describe_window(raster, dem.Choice(window=window, **choice))
-        assert bool(notes) == is_told
+        assert bool(notes) == is_stated
     notes = dem._describe_window(raster, dem.Choice(window=(1, 1, 3, 4), **choice))
     assert notes == [
         "The window 1, 1, 3, 4 is in coordinates (west, south, east, north); cells by column, row, "
@@ -324,7 +324,7 @@ def test_the_first_band_is_the_default():
 
 
 @pytest.mark.parametrize(
-    ("given", "band", "is_told", "words"),
+    ("given", "band", "is_stated", "words"),
     [
         ({"colours": ["red", "gray"]}, 1, False, "is a picture (band 1 is its red), not a raster"),
         ({"colours": ["gray", "alpha"]}, 1, False, None),
@@ -339,12 +339,12 @@ def test_the_first_band_is_the_default():
         ({"transform": dem.Affine(0, 2, 0, 3, 0, 0)}, 1, False, None),
     ],
 )
-def test_what_has_no_elevations_or_no_place_is_refused(given, band, is_told, words):
+def test_what_has_no_elevations_or_no_place_is_refused(given, band, is_stated, words):
     raster = header(**given)
     if words is None:
-        dem.require_elevation_band(raster, band, is_told)
+        dem.require_elevation_band(raster, band, is_stated)
     else:
-        said = sentence_of(ReadError, dem.require_elevation_band, raster, band, is_told)
+        said = sentence_of(ReadError, dem.require_elevation_band, raster, band, is_stated)
         assert words in said
 
 

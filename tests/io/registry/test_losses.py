@@ -39,10 +39,10 @@ def test_an_attribute_comes_back_or_is_named(tmp_path, name, attribute):
     values = ATTRIBUTES[attribute]
     path = tmp_path / f"a{WRITERS[name].suffixes[0]}"
     told = write(make_survey(**{attribute: values}), path, format=name)
-    is_told = bool(re.search(rf"\b{attribute}\b", " ".join(told).replace(str(path), "")))
+    is_stated = bool(re.search(rf"\b{attribute}\b", " ".join(told).replace(str(path), "")))
     found = read(path, name).attributes.values()
     comes_back = any(list(column) == list(values) for column in found)
-    assert is_told or comes_back
+    assert is_stated or comes_back
 
 
 def read(path, name):

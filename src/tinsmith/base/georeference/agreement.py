@@ -138,16 +138,16 @@ def _require_one_crs(first: Referenced, its_name: str, other: Referenced, name: 
 
 def _require_one_datum(surfaces: Sequence[Referenced], names: Sequence[str]) -> None:
     """Refuse elevations that refer to different vertical CRSs."""
-    told = [
+    stated = [
         (one.crs, name)
         for one, name in zip(surfaces, names, strict=True)
         if one.crs is not None and one.crs.vertical_unit is not None
     ]
-    for crs, name in told[1:]:
-        if not crs.is_same(told[0][0]):
+    for crs, name in stated[1:]:
+        if not crs.is_same(stated[0][0]):
             raise CrsError(
-                f"The elevations of {told[0][1]} are those of {told[0][0].label}, of {name} those "
-                f"of {crs.label}: both must refer to one vertical CRS.",
+                f"The elevations of {stated[0][1]} are those of {stated[0][0].label}, of {name} "
+                f"those of {crs.label}: both must refer to one vertical CRS.",
                 crs=crs,
             )
 
@@ -158,11 +158,11 @@ def _describe_datum(surfaces: Sequence[Referenced], names: Sequence[str]) -> lis
         for one, name in zip(surfaces, names, strict=True)
         if one.crs is not None and one.crs.vertical_unit is None
     ]
-    told = next((one.crs for one in surfaces if one.crs and one.crs.vertical_unit), None)
-    if told is None:
+    stated = next((one.crs for one in surfaces if one.crs and one.crs.vertical_unit), None)
+    if stated is None:
         return []
     return [
-        f"The vertical CRS of {name} is not known: taken to be that of {told.label}."
+        f"The vertical CRS of {name} is not known: taken to be that of {stated.label}."
         for name in silent
     ]
 

@@ -239,8 +239,8 @@ class Features(Frozen):
         >>> ts.Features.of_points([[0, 0]]).with_notes(["One row was left out."]).notes
         ('One row was left out.',)
         """
-        told = join_notes(notes, self.notes)
-        return self if told == self.notes else replace(self, notes=told)
+        joined = join_notes(notes, self.notes)
+        return self if joined == self.notes else replace(self, notes=joined)
 
     # ------------------------------------------------------------------ what it is
 

@@ -134,8 +134,8 @@ class Raster(Frozen):
         >>> raster.with_notes(["One row was left out."]).notes
         ('One row was left out.',)
         """
-        told = join_notes(notes, self.notes)
-        return self if told == self.notes else replace(self, notes=told)
+        joined = join_notes(notes, self.notes)
+        return self if joined == self.notes else replace(self, notes=joined)
 
     def __repr__(self) -> str:
         rows, columns = self.grid.shape

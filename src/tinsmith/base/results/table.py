@@ -109,8 +109,8 @@ class Table(Frozen):
         >>> ts.Table({"level": [318.0]}).with_notes(["One row was left out."]).notes
         ('One row was left out.',)
         """
-        told = join_notes(notes, self.notes)
-        return self if told == self.notes else replace(self, notes=told)
+        joined = join_notes(notes, self.notes)
+        return self if joined == self.notes else replace(self, notes=joined)
 
     def __repr__(self) -> str:
         title = f" {self.name}" if self.name else ""

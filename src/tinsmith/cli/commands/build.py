@@ -67,7 +67,7 @@ def build(
     from ...terrain import mend_flats
     from ..files import add_lines, build_tin, note_surfaces, read_inputs, write_text
     from ..inputs import as_contours, require_contours
-    from ..output.blunder_summaries import describe_suspects, tell_suspects
+    from ..output.blunder_summaries import describe_suspects, report_suspects
     from ..output.console import format_json
     from ..output.summaries import describe_report
 
@@ -88,7 +88,7 @@ def build(
     account = describe_report(tin.report, survey, console.notes) | describe_suspects(suspects)
     if report is not None:
         write_text(report, format_json(account) + "\n")
-    facts = _list_facts(points, survey, tin, tell_suspects(suspects), is_mended=from_contours)
+    facts = _list_facts(points, survey, tin, report_suspects(suspects), is_mended=from_contours)
     facts.record(
         report=account,
         outputs=lambda: [
@@ -130,7 +130,7 @@ def _require_survey(found: Survey | TIN, path: Path) -> Survey:
 
 
 def _list_facts(
-    points: Sequence[Path], survey: Survey, tin: TIN, told: list[Row], *, is_mended: bool
+    points: Sequence[Path], survey: Survey, tin: TIN, rows: list[Row], *, is_mended: bool
 ) -> Facts:
     from ..output.facts import Facts
     from ..output.line_summaries import count_lines, describe_counts, summarise_lines
@@ -146,13 +146,13 @@ def _list_facts(
     facts = Facts()
     facts.record(input=describe_inputs(points), survey=lambda: describe_survey(survey))
     facts.add("Points", f"{len(survey):,} from {name_files(points)}")
-    facts.tell(summarise_reading(survey))
-    facts.tell(summarise_merges(tin.report, survey))
-    facts.tell(summarise_lines(survey, tin))
+    facts.extend(summarise_reading(survey))
+    facts.extend(summarise_merges(tin.report, survey))
+    facts.extend(summarise_lines(survey, tin))
     facts.add("TIN", describe_counts(tin), tin=lambda: describe_tin(tin))
     facts.record(counts=lambda: count_lines(tin.report))
-    facts.tell([*told, *_summarise_flats(tin, is_mended=is_mended)])
-    facts.tell([*summarise_extent(tin), summarise_crs(tin.crs)])
+    facts.extend([*rows, *_summarise_flats(tin, is_mended=is_mended)])
+    facts.extend([*summarise_extent(tin), summarise_crs(tin.crs)])
     return facts
 
 

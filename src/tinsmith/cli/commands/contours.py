@@ -142,8 +142,8 @@ def _list_facts(file: Path, made: Features) -> Facts:
         facts.add("Labels", counted(len(made), "label"))
     else:
         closed = int(made.columns["is_closed"].sum())
-        told = f"{counted(len(made), 'line')}, {closed:,} of them closed"
-        facts.add("Contours", told, closed=closed, length=float(made.columns["length"].sum()))
+        text = f"{counted(len(made), 'line')}, {closed:,} of them closed"
+        facts.add("Contours", text, closed=closed, length=float(made.columns["length"].sum()))
         facts.add("Points", f"{len(made.coordinates):,}")
         _add_levels(facts, made)
     return facts

@@ -73,7 +73,7 @@ def _list_facts(files: Sequence[Path], found: Difference, surfaces: Sequence[TIN
 
     table, tin = found.statistics, found.tin
     facts = Facts(*files)
-    facts.tell(zip(("First", "Other"), map(mesh_counts, surfaces), strict=True))
+    facts.extend(zip(("First", "Other"), map(mesh_counts, surfaces), strict=True))
     facts.add(
         "Difference", mesh_counts(tin), vertices=len(tin.points), triangles=len(tin.triangles)
     )

@@ -171,7 +171,7 @@ def _list_facts(points: Sequence[Path], made: GroundPoints) -> Facts:
     facts.record(input=describe_inputs(points), classes=made.counts)
     facts.record(survey=lambda: describe_survey(made.given), parameters=dict(made.parameters))
     facts.add("Points", f"{total:,} from {name_files(points)}")
-    facts.tell(summarise_reading(made.given))
+    facts.extend(summarise_reading(made.given))
     for what, count in made.counts.items():
         facts.add(what.capitalize(), f"{counted(count, 'point')}, {count / total:.1%}")
     facts.note(made.notes)

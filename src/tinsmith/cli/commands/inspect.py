@@ -86,6 +86,6 @@ def _list_facts(points: Sequence[Path], tin: TIN, table: Table) -> Facts:
     facts.add("Points", f"{len(tin.vertex_of):,} from {name_files(points)}")
     facts.add("TIN", describe_counts(tin))
     facts.add("Findings", count_reasons(table), blunders=lambda: list_rows(table.columns))
-    facts.tell(list_findings(table, _SHOWN))
+    facts.extend(list_findings(table, _SHOWN))
     facts.note(table.notes)
     return facts

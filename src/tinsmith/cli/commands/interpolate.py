@@ -92,12 +92,12 @@ def interpolate(
     planned.write("Table", table)
     elevations = table[asked["column"]]
     outside = int((elevations != elevations).sum())
-    told = f"{outside:,} outside the surface, without elevation" if outside else "all inside"
+    text = f"{outside:,} outside the surface, without elevation" if outside else "all inside"
     if asked["extrapolate"]:
-        told = "elevations outside are those of the nearest point of the boundary"
+        text = "elevations outside are those of the nearest point of the boundary"
     facts = Facts(file)
     facts.add("Surface", mesh_counts(tin))
-    facts.add("Points", f"{len(table):,}, {told}", points=len(table), outside=outside)
+    facts.add("Points", f"{len(table):,}, {text}", points=len(table), outside=outside)
     facts.add("Method", asked["method"], method=asked["method"])
     facts.note(notes)
     job.finish(planned, facts)

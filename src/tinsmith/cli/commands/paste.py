@@ -45,7 +45,7 @@ def paste(base: Path, patch: Path, job: Job) -> None:
     planned.write("TIN", pasted)
     facts = Facts(*files)
     counts = map(mesh_counts, (*surfaces, pasted))
-    facts.tell(zip(("Base", "Patch", "Pasted"), counts, strict=True))
+    facts.extend(zip(("Base", "Patch", "Pasted"), counts, strict=True))
     facts.record(tin=lambda: describe_tin(pasted), report=pasted.report.to_dict)
     facts.note(pasted.report.notes)
     job.finish(planned, facts)

@@ -117,7 +117,7 @@ def profile(
     measured = [name for name, values in table.columns.items() if values.dtype.kind == "f"]
     facts = Facts()
     facts.record(inputs=[str(file) for file in files])
-    facts.tell(("Surface", f"{name}: {mesh_counts(tin)}") for name, tin in surfaces.items())
+    facts.extend(("Surface", f"{name}: {mesh_counts(tin)}") for name, tin in surfaces.items())
     facts.add("Rows", f"{len(table):,}", rows=len(table), columns=list(table.columns))
     facts.record(ranges={name: _find_range(table[name]) for name in measured})
     facts.note([*getattr(lines, "notes", ()), *table.notes])

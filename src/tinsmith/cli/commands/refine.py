@@ -86,8 +86,8 @@ def refine(
         report=refined.report.to_dict,
     )
     facts.add("Angles", f"from {least:.1f}° on, before from {before:.1f}°")
-    facts.tell(("", sentence) for sentence in refined.report.unmended.sentences())
-    facts.tell(("Note", note) for note in describe_flips(tin))
+    facts.extend(("", sentence) for sentence in refined.report.unmended.sentences())
+    facts.extend(("Note", note) for note in describe_flips(tin))
     job.finish(planned, facts)
 
 

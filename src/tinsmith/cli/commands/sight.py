@@ -79,8 +79,8 @@ def sight(file: Path, job: Job, **asked: Any) -> None:
     planned.write("Features", found)
     planned.write("Table", tabulate_columns(found))
     facts = describe_features(file, tin, found)
-    tell = _tell_line if "visible" in found.columns else _tell_class
-    facts.tell(tell(found, row) for row in range(min(len(found), _SHOWN)))
+    describe = _describe_line if "visible" in found.columns else _name_class
+    facts.extend(describe(found, row) for row in range(min(len(found), _SHOWN)))
     job.finish(planned, facts)
 
 
@@ -122,7 +122,7 @@ def _look(tin: TIN, asked: dict[str, Any], progress: Callable[[float], None]) ->
     return terrain.viewshed(tin, eye, progress=progress, **of_viewshed, **how)
 
 
-def _tell_line(found: Features, row: int) -> Row:
+def _describe_line(found: Features, row: int) -> Row:
     from ..output.line_summaries import name_unit
 
     columns, unit = found.columns, name_unit(found.units, "distance")
@@ -136,7 +136,7 @@ def _tell_line(found: Features, row: int) -> Row:
     return f"Target {row}", text
 
 
-def _tell_class(found: Features, row: int) -> Row:
+def _name_class(found: Features, row: int) -> Row:
     from ..output.line_summaries import name_unit
 
     columns, unit = found.columns, name_unit(found.units, "area")

@@ -151,4 +151,4 @@ def _add_errors(facts: Facts, simple: TIN, given: TIN | Raster) -> None:
         simplification=found.to_dict(),
     )
     facts.add("Kept", f"{counted(found.required, 'point')} of lines, boundary and those to be kept")
-    facts.tell(summarise_news(simple, [*before, found.sentence()]))
+    facts.extend(summarise_news(simple, [*before, found.sentence()]))

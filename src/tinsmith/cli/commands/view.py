@@ -10,7 +10,7 @@ import click
 from ...base.policies import Tint
 from ..command import command
 from ..options import console_options, reading_options, triangulating_options
-from ..output.failures import note_written, tell_warning
+from ..output.failures import note_written, report_warning
 from ..parameters import (
     choice_option,
     file_option,
@@ -150,7 +150,7 @@ def view(
             shown.save(output)
     for note in shown.notes:
         if note not in console.notes:
-            tell_warning(note)
+            report_warning(note)
     if output is not None:
         note_written(output)
         console.summarise(_summarise_picture(output))

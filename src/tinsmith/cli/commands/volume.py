@@ -154,8 +154,8 @@ def _list_facts(files: Sequence[Path], table: Table, surfaces: Sequence[TIN]) ->
     facts = Facts()
     facts.record(inputs=[str(file) for file in files])
     facts.record(rows=list_rows(table.columns), units=name_units(table.units))
-    facts.tell(zip(("Ground", "Design"), map(mesh_counts, surfaces)))  # noqa: B905 - one or both
-    facts.tell(_list_stages(table) if "level" in table.columns else _list_volumes(table))
+    facts.extend(zip(("Ground", "Design"), map(mesh_counts, surfaces)))  # noqa: B905 - one or both
+    facts.extend(_list_stages(table) if "level" in table.columns else _list_volumes(table))
     if len(table) > _SHOWN:
         facts.add("", f"... {len(table) - _SHOWN} more")
     facts.note(table.notes)

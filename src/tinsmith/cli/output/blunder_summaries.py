@@ -19,7 +19,7 @@ __all__ = [
     "count_reasons",
     "describe_suspects",
     "list_findings",
-    "tell_suspects",
+    "report_suspects",
 ]
 
 _SHOWN = 5
@@ -68,7 +68,7 @@ class Suspects(NamedTuple):
     """(k,), rows that were left out; None if that was not asked for."""
 
 
-def tell_suspects(found: Suspects) -> list[Row]:
+def report_suspects(found: Suspects) -> list[Row]:
     """Return the lines of a build on what looks like a blunder, but for what is doubtful."""
     from ...terrain.inspection.dropping import list_wrong_rows
 
@@ -84,11 +84,11 @@ def tell_suspects(found: Suspects) -> list[Row]:
     names = "; ".join(one[:1].lower() + one[1:] for one in shown)
     more = "; ..." if len(rows) > _SHOWN else ""
     looks = "looks like a blunder" if len(rows) == 1 else "look like blunders"
-    told = f"{counted(len(rows), 'point')} {looks}: {names}{more}"
+    text = f"{counted(len(rows), 'point')} {looks}: {names}{more}"
     done = "'tinsmith inspect' lists them"
     if found.dropped is not None:
         done = f"{len(found.dropped):,} left out"
-    return [("Blunders", f"{told}; {done}"), *others]
+    return [("Blunders", f"{text}; {done}"), *others]
 
 
 def describe_suspects(found: Suspects) -> dict[str, Any]:

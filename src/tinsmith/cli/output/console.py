@@ -16,7 +16,7 @@ from ..flags import name_flags
 from .events import send_event
 from .failures import Failure, note_answer
 from .progress import Steps
-from .streams import escape_unprintable, silence, tell
+from .streams import escape_unprintable, silence, write_error
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -44,7 +44,7 @@ class Console:
     """Write summary and progress as events, for programs."""
     notes: list[str] = field(default_factory=list, compare=False)
     """What is known of all that was read, which summary and record tell."""
-    _told: set[str] = field(default_factory=set, compare=False)
+    _reported: set[str] = field(default_factory=set, compare=False)
     """Those that a summary told."""
 
     def note(self, notes: Iterable[str]) -> None:
@@ -67,7 +67,7 @@ class Console:
             return
         rows = self._add_notes(rows)
         if not self.events:
-            tell(_format_rows(rows))
+            write_error(_format_rows(rows))
             return
         for label, text in rows:
             send_event("summary", label=label, text=name_flags(text))
@@ -88,9 +88,9 @@ class Console:
     def _add_notes(self, rows: Iterable[Row]) -> list[Row]:
         """Return rows with the notes that they lack and nobody told yet, before the last ones."""
         shown = list(rows)
-        self._told.update(text for label, text in shown if label == "Note")
-        lacking = [("Note", note) for note in self.notes if note not in self._told]
-        self._told.update(self.notes)
+        self._reported.update(text for label, text in shown if label == "Note")
+        lacking = [("Note", note) for note in self.notes if note not in self._reported]
+        self._reported.update(self.notes)
         labels = [label for label, _ in shown]
         end = next((i for i, label in enumerate(labels) if label in _LAST), len(shown))
         return [*shown[:end], *lacking, *shown[end:]]

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
-from .streams import tell
+from .streams import write_error
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -46,4 +46,4 @@ def wants_events() -> bool:
 
 def send_event(kind: Literal["step", "summary", "warning", "error"], **what: Any) -> None:
     """Write an event to stderr."""
-    tell(json.dumps({"event": kind, **what}))
+    write_error(json.dumps({"event": kind, **what}))

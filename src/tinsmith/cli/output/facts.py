@@ -36,7 +36,7 @@ class Facts:
         self.rows.append((label, text))
         self.record(**values)
 
-    def tell(self, rows: Iterable[Row]) -> None:
+    def extend(self, rows: Iterable[Row]) -> None:
         """Add lines whose values the record has already, or has not."""
         self.rows += rows
 

@@ -19,7 +19,7 @@ import click
 
 from ..flags import find_flag, find_given_flag, name_flags
 from .events import has_flag, send_event, wants_events
-from .streams import Terminated, escape_unprintable, silence, tell
+from .streams import Terminated, escape_unprintable, silence, write_error
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -32,8 +32,8 @@ __all__ = [
     "note_answer",
     "note_written",
     "refuse_option",
+    "report_warning",
     "show_failure",
-    "tell_warning",
     "translate_failures",
 ]
 
@@ -60,7 +60,7 @@ class Failure(click.ClickException):
         label = click.style(self.label, fg="red", bold=True) if self.label else ""
         text = f"{label}{self.format_message()}"
         if file is None:
-            tell(text)
+            write_error(text)
         else:
             click.echo(text, file=file)
 
@@ -89,7 +89,7 @@ def note_answer() -> None:
 
 def show_failure(error: click.ClickException, arguments: Sequence[str]) -> int:
     """Tell a failure on stderr, and on stdout if JSON is wanted there; return the exit code."""
-    _tell_failure(error, arguments)
+    _report_failure(error, arguments)
     if has_flag("--json", arguments) and not getattr(error, "is_answered", False):
         record = {"error": error.format_message(), "exit_code": error.exit_code}
         try:
@@ -101,7 +101,7 @@ def show_failure(error: click.ClickException, arguments: Sequence[str]) -> int:
     return error.exit_code
 
 
-def _tell_failure(error: click.ClickException, arguments: Sequence[str]) -> None:
+def _report_failure(error: click.ClickException, arguments: Sequence[str]) -> None:
     if has_flag("--events", arguments):
         send_event("error", text=error.format_message(), exit_code=error.exit_code)
         return
@@ -196,13 +196,13 @@ def refuse_option(error: OptionError, **renamed: str) -> click.ClickException:
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
-    tell_warning(name_flags(" ".join(str(message).split())))
+    report_warning(name_flags(" ".join(str(message).split())))
 
 
-def tell_warning(text: str) -> None:
+def report_warning(text: str) -> None:
     """Write a warning to stderr."""
     if wants_events():
         send_event("warning", text=text)
         return
     label = click.style("Warning: ", fg="yellow", bold=True)
-    tell(f"{label}{escape_unprintable(text)}")
+    write_error(f"{label}{escape_unprintable(text)}")

@@ -89,8 +89,8 @@ def mesh_counts(tin: TIN) -> str:
 
 def summarise_news(made: TIN, known: Iterable[str]) -> list[Row]:
     """Return the notes of a report that were not told in other words or before."""
-    told = set(known)
-    return [("Note", note) for note in made.report.notes if note not in told]
+    reported = set(known)
+    return [("Note", note) for note in made.report.notes if note not in reported]
 
 
 def count_lines(report: Report) -> dict[str, Any]:

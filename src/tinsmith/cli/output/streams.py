@@ -24,7 +24,7 @@ __all__ = [
     "raise_for_signals",
     "reserve_standard_streams",
     "silence",
-    "tell",
+    "write_error",
 ]
 
 _SIGNALS = ("SIGTERM", "SIGHUP")
@@ -114,7 +114,7 @@ def accept_any_text() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
-def tell(text: str) -> None:
+def write_error(text: str) -> None:
     """Write a line to stderr; what cannot be written there cannot be told anywhere."""
     try:
         click.echo(text, err=True)
