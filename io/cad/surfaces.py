@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast, get_args
 
 import numpy as np
 
+from ...base.policies import LineKind
 from ...base.sentences import counted
 from ...tin import TIN
 from ...tin.constraints.breaklines import Lines
@@ -16,27 +17,33 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...base.arrays import BoolArray, Float64Array, Int64Array
-    from ...base.policies import FacePolicy, LineKind
+    from ...base.policies import FacePolicy
     from ..mesh.common import Reference
 
-__all__ = ["EdgeLine", "Mesh", "make_tin_with_lines", "merge_equal_points"]
+__all__ = ["Line", "Mesh", "make_tin_with_lines", "merge_equal_points"]
 
 
+_KINDS = get_args(LineKind)
 _SAME_PLACE = 1e-6
 """CAD programs write the vertices of surfaces and those of lines with other last digits: at a
 millionth of a metre or foot they are the same."""
 
 
-class EdgeLine(NamedTuple):
-    """A line that may run along edges of a surface."""
+class Line(NamedTuple):
+    """A line or ring of a drawing."""
 
     coordinates: Float64Array
-    """(k, 2) or (k, 3)."""
-    kind: LineKind | None
-    """None for what is constrained, but no line."""
-    name: str
+    """(k, 2) or (k, 3), easting, northing, elevation."""
+    kind: str = "hard"
+    """A LineKind, "erase", "island" of a hole, or "constrained" for edges that are no line."""
+    name: str = ""
     source: int | None = None
-    """Its number as ``Lines.sources`` has it; default it is counted."""
+    """Of a line of a TIN its number as ``Lines.sources`` has it; default it is counted."""
+    polygon: str | None = None
+    """What the rings of one polygon share; None for a ring alone."""
+    priority: int = 0
+    place: str = ""
+    """What sentences call a ring; default its kind."""
 
 
 class Mesh(NamedTuple):
@@ -72,7 +79,7 @@ def merge_equal_points(mesh: Mesh) -> Mesh:
 
 
 def make_tin_with_lines(
-    mesh: Mesh, lines: Sequence[EdgeLine], *, reference: Reference, faces: FacePolicy
+    mesh: Mesh, lines: Sequence[Line], *, reference: Reference, faces: FacePolicy
 ) -> TIN:
     """Make a TIN as every mesh does; lines that run along its edges become its lines."""
     tin = make_tin(
@@ -92,7 +99,7 @@ def make_tin_with_lines(
 # ------------------------------------------------------------------ lines along edges
 
 
-def _add_lines(tin: TIN, lines: Sequence[EdgeLine]) -> tuple[TIN, list[str]]:
+def _add_lines(tin: TIN, lines: Sequence[Line]) -> tuple[TIN, list[str]]:
     """Return the TIN with the parts of lines that are chains of its edges."""
     edges = np.stack(directed_edges(tin.triangles), axis=-1)
     keys = edge_keys(edges, len(tin.points))
@@ -119,7 +126,7 @@ def _add_lines(tin: TIN, lines: Sequence[EdgeLine]) -> tuple[TIN, list[str]]:
 
 def _with_chains(
     tin: TIN,
-    lines: Sequence[EdgeLine],
+    lines: Sequence[Line],
     chains: Sequence[Int64Array],
     owners: Sequence[int],
     keys: Int64Array,
@@ -127,23 +134,23 @@ def _with_chains(
     segments = np.concatenate([np.stack([one[:-1], one[1:]], axis=1) for one in chains])
     flags = tin.constrained | np.isin(keys, edge_keys(segments, len(tin.points)))
     sources = _count_within_kinds(lines)
-    kept = [(k, chain) for k, chain in zip(owners, chains, strict=True) if lines[k].kind]
+    kept = [(k, chain) for k, chain in zip(owners, chains, strict=True) if lines[k].kind in _KINDS]
     held = Lines(
         vertices=np.concatenate([[], *(chain for _, chain in kept)]).astype(np.int32),
         offsets=find_offsets(len(chain) for _, chain in kept).astype(np.int32),
-        kinds=tuple(kind for k, _ in kept if (kind := lines[k].kind) is not None),
+        kinds=tuple(cast("LineKind", lines[k].kind) for k, _ in kept),
         sources=np.array([sources[k] for k, _ in kept], np.int32),
         names=tuple(lines[k].name for k, _ in kept),
     )
     return tin.replace(constrained=flags, lines=held)
 
 
-def _count_within_kinds(lines: Sequence[EdgeLine]) -> list[int]:
+def _count_within_kinds(lines: Sequence[Line]) -> list[int]:
     """Count lines within breaklines, boundary rings, holes and water, as a TIN does."""
     counts: dict[str, int] = {}
     numbers = []
     for line in lines:
-        kind = "breakline" if line.kind in ("hard", "soft") else line.kind or ""
+        kind = "breakline" if line.kind in ("hard", "soft") else line.kind
         count = counts.get(kind, 0)
         numbers.append(count if line.source is None else line.source)
         counts[kind] = count + 1

@@ -11,7 +11,7 @@ import numpy as np
 from ...base import optional
 from ...base.errors import OptionError, ReadError
 from ...base.sentences import FILE, counted
-from ..cad.dxf.drawing import Drawing, read_drawing
+from ..cad.dxf.model_space import ModelSpace, read_model_space
 from ..cad.dxf.names import ELEVATION_PROPERTY, UNKNOWN
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def read_drawing_features(
         If the file is damaged, there is nothing in it, or the condition is none.
     """
     try:
-        drawing = read_drawing(path, layer=None if layer == _WHOLE else layer)
+        drawing = read_model_space(path, layer=None if layer == _WHOLE else layer)
     except OptionError as error:
         raise ReadError(
             f"{FILE} has no layer '{layer}' with lines: there must be {error.allowed}."
@@ -89,7 +89,7 @@ def read_drawing_features(
     )
 
 
-def _find_elevation_unit(drawing: Drawing) -> str:
+def _find_elevation_unit(drawing: ModelSpace) -> str:
     crs, unit = drawing.stated.crs, drawing.stated.unit
     if crs is None or unit is None or crs.horizontal_unit != unit:
         return ""
@@ -97,7 +97,7 @@ def _find_elevation_unit(drawing: Drawing) -> str:
 
 
 def _gather_shapes(
-    drawing: Drawing, *, lines_only: bool
+    drawing: ModelSpace, *, lines_only: bool
 ) -> tuple[ObjectArray, dict[str, AnyArray]]:
     shapely = optional.load("shapely")
     shapes = [shapely.LineString(rows) for rows in drawing.lines]
@@ -119,7 +119,7 @@ def _gather_shapes(
     return packed, {name: np.array(column, object) for name, column in columns.items()}
 
 
-def _describe_rest(drawing: Drawing, *, lines_only: bool) -> list[str]:
+def _describe_rest(drawing: ModelSpace, *, lines_only: bool) -> list[str]:
     name, arrays = drawing.path.name, drawing.arrays
     rest = [counted(len(arrays["faces"]), "face")] if len(arrays["faces"]) else []
     if lines_only and len(arrays["points"]):

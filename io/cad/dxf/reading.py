@@ -4,38 +4,33 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
-from ....base.errors import LinesError, ReadError, choice
-from ....base.policies import BreaklineKind, DrawingContent, FacePolicy, LineKind
+from ....base.errors import ReadError, choice
+from ....base.policies import DrawingContent, FacePolicy, LineKind
 from ....base.sentences import FILE, counted
-from ....tin import Breakline, Survey, Water
-from ....tin.constraints.breaklines import as_ring
-from ....tin.screening.nodata import describe_elevations
-from ...mesh.common import Reference, require_own_crs
-from ..placing import place_rows
+from ..drawing import Drawing
 from ..reference import Declared, Measures, choose_measures
-from ..surfaces import EdgeLine, make_tin_with_lines, merge_equal_points
-from .drawing import Drawing, read_drawing
+from ..surfaces import Line
 from .faces import make_mesh
+from .model_space import ModelSpace, read_model_space
 from .names import CONSTRAINED
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
     from ....base.arrays import AnyArray, Float64Array
     from ....base.crs import CrsLike, UnitLike
-    from ....tin import TIN
+    from ....tin import TIN, Survey
 
 __all__ = ["read"]
 
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)", re.ASCII)
 _PRIORITY = re.compile(r"-?[0-9]{1,15}", re.ASCII)
 _SAMPLE = 64
-_RINGS = frozenset({"boundary", "hole", "erase"})
+_KINDS = (*get_args(LineKind), "erase", CONSTRAINED)
 _NUMBER_NAMES = ("number", "description")
 
 
@@ -89,17 +84,22 @@ def read(
     if content is not None:
         choice("content", content, DrawingContent)
     declared = Declared.of(crs, unit, elevation_unit)
-    drawing = read_drawing(path, layer=layer, texts=texts, tolerance=tolerance)
-    kind = content or _choose_content(drawing)
-    measures = _choose_measures(drawing, declared)
+    found = read_model_space(path, layer=layer, texts=texts, tolerance=tolerance)
+    kind = content or _choose_content(found)
+    frame = Drawing(
+        path=path,
+        measures=_choose_measures(found, declared),
+        declared=declared,
+        is_crs_declared=found.stated.crs is None,
+    )
     if kind == "surface":
-        return _read_tin(drawing, measures, declared, faces)
-    return _read_survey(drawing, measures, declared, with_lines=kind == "source")
+        return _gather_surface(found, frame).to_tin(faces)
+    return _gather_source(found, frame, with_lines=kind == "source").to_survey()
 
 
-def _choose_content(drawing: Drawing) -> str:
+def _choose_content(found: ModelSpace) -> str:
     """Return "surface" if there are faces, and all points are corners of them."""
-    faces, points = drawing.arrays["faces"], drawing.arrays["points"]
+    faces, points = found.arrays["faces"], found.arrays["points"]
     if len(faces) == 0:
         return "source"
     corners = faces.reshape(-1, 3)
@@ -115,10 +115,10 @@ def _choose_content(drawing: Drawing) -> str:
     return "surface"
 
 
-def _choose_measures(drawing: Drawing, declared: Declared) -> Measures:
-    arrays = drawing.arrays
+def _choose_measures(found: ModelSpace, declared: Declared) -> Measures:
+    arrays = found.arrays
     rows = np.concatenate([arrays[name].reshape(-1, 3) for name in ("points", "faces", "lines")])
-    stated = drawing.stated
+    stated = found.stated
     sample = rows[:: max(1, len(rows) // _SAMPLE), :2]
     measures = choose_measures(stated, declared, sample=sample)
     if stated.unit is not None and declared.unit is None:
@@ -131,132 +131,70 @@ def _choose_measures(drawing: Drawing, declared: Declared) -> Measures:
 # ------------------------------------------------------------------ a surface
 
 
-def _read_tin(drawing: Drawing, measures: Measures, declared: Declared, policy: FacePolicy) -> TIN:
-    require_own_crs(measures.source, declared.crs)
-    faces = drawing.arrays["faces"]
+def _gather_surface(found: ModelSpace, frame: Drawing) -> Drawing:
+    faces = found.arrays["faces"]
     if len(faces) == 0:
         raise ReadError(f"{FILE} has no faces (3DFACE, polyface or MESH) in the layers read.")
-    mesh = make_mesh(measures.apply(faces.reshape(-1, 3)).reshape(-1, 4, 3))
-    mesh = merge_equal_points(mesh)
-    notes = [*measures.notes, *mesh.notes, *drawing.describe_left_out()]
-    return make_tin_with_lines(
-        mesh._replace(notes=notes),
-        _select_edge_lines(drawing, measures),
-        reference=Reference(
-            measures.source, measures.elevation_unit, is_declared=drawing.stated.crs is None
-        ),
-        faces=policy,
-    )
+    notes = found.describe_left_out()
+    return replace(frame, mesh=make_mesh(faces), lines=_name_lines(found), notes=notes)
 
 
-def _select_edge_lines(drawing: Drawing, measures: Measures) -> list[EdgeLine]:
-    kinds: tuple[LineKind, ...] = get_args(LineKind)
-    found = []
-    for rows, stated in zip(drawing.lines, _name_lines(drawing), strict=True):
-        kind = next((one for one in kinds if one == stated[0]), None)
-        if stated[0] != CONSTRAINED and kind is None:
-            kind = "hard"
-        source = int(stated[2]) if stated[2].isdecimal() and len(stated[2]) < 10 else None
-        found.append(EdgeLine(measures.apply(rows), kind, stated[1], source))
-    return found
-
-
-def _name_lines(drawing: Drawing) -> list[list[str]]:
-    """Return kind, name, source and priority of each line; unnamed ones are called by layers."""
-    stated = drawing.value["line_names"]
-    layers, numbers = drawing.value["layers"], drawing.arrays["line_layers"].tolist()
-    if not stated:
-        return [["", layers[number], "", ""] for number in numbers]
-    return [
-        ([*one, "", "", "", ""][:4] if one else ["", layers[number], "", ""])
-        for one, number in zip(stated, numbers, strict=True)
-    ]
+def _name_lines(found: ModelSpace) -> list[Line]:
+    """Return lines with what drawings that were written here say of them, else their layers."""
+    layers, numbers = found.value["layers"], found.arrays["line_layers"].tolist()
+    stated = found.value["line_names"] or [()] * len(numbers)
+    lines = []
+    for rows, own, layer in zip(found.lines, stated, numbers, strict=True):
+        kind, name, number, priority = (
+            [*own, "", "", "", ""] if own else ["", layers[layer], "", ""]
+        )[:4]
+        lines.append(
+            Line(
+                rows,
+                kind if kind in _KINDS else "hard",
+                name,
+                source=int(number) if number.isdecimal() and len(number) < 10 else None,
+                polygon=number or None,
+                priority=int(priority) if _PRIORITY.fullmatch(priority) else 0,
+            )
+        )
+    return lines
 
 
 # ------------------------------------------------------------------ points and lines
 
 
-def _read_survey(
-    drawing: Drawing, measures: Measures, declared: Declared, *, with_lines: bool
-) -> Survey:
-    points, attributes, notes = _gather_points(drawing)
-    lines = drawing.lines if with_lines else []
+def _gather_source(found: ModelSpace, frame: Drawing, *, with_lines: bool) -> Drawing:
+    points, attributes, notes = _gather_points(found)
+    lines = _name_lines(found) if with_lines else []
     if not len(points) and not lines:
         raise ReadError(
             f"{FILE} has {'neither points nor lines' if with_lines else 'no points'} in "
             "the layers read."
         )
-    stated = _name_lines(drawing) if with_lines else []
     n_draped = sum(
-        line.shape[1] == 2 and one[0] not in _RINGS for line, one in zip(lines, stated, strict=True)
+        one.coordinates.shape[1] == 2 and one.kind not in ("boundary", "hole", "erase")
+        for one in lines
     )
     if n_draped:
         notes.append(
             f"{counted(n_draped, 'line')} of plane entities without elevation will be draped on "
             "the surface."
         )
-    if len(drawing.arrays["faces"]):
-        notes.append(f"Not read: {counted(len(drawing.arrays['faces']), 'face')}.")
-    placing = place_rows([points, *lines], measures, declared)
-    survey = Survey(
-        points=placing.rows[0],
-        attributes=attributes,
-        crs=placing.crs,
-        elevation_unit=placing.elevation_unit,
-        source=drawing.path.name,
-        notes=[
-            *placing.notes,
-            *notes,
-            *describe_elevations(placing.rows[0][:, 2]),
-            *drawing.describe_left_out(),
-        ],
-    )
-    try:
-        return _add_lines(survey, placing.rows[1:], stated)
-    except LinesError as error:
-        raise ReadError(f"{error}") from error
-
-
-def _add_lines(
-    survey: Survey, lines: Sequence[Float64Array], stated: Sequence[Sequence[str]]
-) -> Survey:
-    """Add breaklines, and of drawings that were written here rings and water by their kinds."""
-    found: dict[str, list[Any]] = {kind: [] for kind in ("boundary", "hole", "erase", "water", "")}
-    polygons: dict[tuple[str, str], list[Float64Array]] = {}
-    for rows, (kind, name, number, priority) in zip(lines, stated, strict=True):
-        if kind == "water" and rows.shape[1] == 3:
-            found[kind].append(Water(as_ring(rows, "water"), float(rows[0, 2]), name=name))
-        elif kind in _RINGS:
-            key = (kind, number or f"alone {len(polygons)}")
-            polygons.setdefault(key, []).append(as_ring(rows, kind))
-        else:
-            found[""].append(_make_breakline(rows, kind, name, priority))
-    for (kind, _), rings in polygons.items():
-        found[kind].append(rings[0] if len(rings) == 1 else rings)
-    return replace(
-        survey,
-        breaklines=found[""],
-        boundary=found["boundary"],
-        holes=found["hole"],
-        erase=found["erase"],
-        water=found["water"],
-    )
-
-
-def _make_breakline(rows: Float64Array, stated: str, name: str, priority: str) -> Breakline:
-    kind: BreaklineKind = "soft" if stated == "soft" else "hard"
-    rank = int(priority) if _PRIORITY.fullmatch(priority) else 0
-    return Breakline(rows, kind=kind, name=name, priority=rank)
+    if len(found.arrays["faces"]):
+        notes.append(f"Not read: {counted(len(found.arrays['faces']), 'face')}.")
+    notes += found.describe_left_out()
+    return replace(frame, points=points, attributes=attributes, lines=lines, notes=notes)
 
 
 def _gather_points(
-    drawing: Drawing,
+    found: ModelSpace,
 ) -> tuple[Float64Array, dict[str, AnyArray], list[str]]:
     """Return points, those of texts that are numbers last, their columns, and notes."""
-    points, value = drawing.arrays["points"], drawing.value
-    layers = [value["layers"][k] for k in drawing.arrays["point_layers"].tolist()]
+    points, value = found.arrays["points"], found.value
+    layers = [value["layers"][k] for k in found.arrays["point_layers"].tolist()]
     attributes: dict[str, AnyArray] = {}
-    places = drawing.arrays["text_places"]
+    places = found.arrays["text_places"]
     is_number = np.array([_NUMBER.fullmatch(one.strip()) is not None for one in value["texts"]])
     notes = []
     if len(places):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,13 +10,12 @@ import numpy as np
 from ....base.errors import OptionError, ReadError, choice
 from ....base.policies import DrawingContent, FacePolicy
 from ....base.sentences import FILE, counted, shown
-from ...mesh.common import Reference, require_own_crs
+from ..drawing import Drawing
 from ..reference import Declared, Measures, choose_measures
-from ..surfaces import make_tin_with_lines, merge_equal_points
 from .content import Content, Surface
 from .parser import parse
-from .source import make_survey_of_points, make_survey_of_source
-from .surface import make_mesh, select_edge_lines
+from .source import gather_points, gather_source
+from .surface import list_edge_lines, make_mesh
 from .units import find_stated
 
 if TYPE_CHECKING:
@@ -77,17 +77,17 @@ def read(
     chosen = None if content == "points" else _choose_surface(found, wanted, content)
     kind = content or _choose_content(found, chosen)
     notes = _describe_rest(found, chosen, kind)
-    if kind == "surface" and chosen is not None:
-        return _read_tin(found, chosen, declared, notes, faces)
     if kind != "points" and chosen is None:
         has = "source data" if kind == "source" else "visible faces"
         raise ReadError(f"{FILE} has no surface with {has}.")
-    source = chosen if kind == "source" else None
-    measures = _choose_measures(found, source, declared)
-    measures = measures.noting(*notes, first=True)
-    if source is not None:
-        return make_survey_of_source(found, source, measures, declared, path)
-    return make_survey_of_points(found.points, measures, declared, path)
+    measures = _choose_measures(found, chosen, declared).noting(*notes, first=True)
+    frame = Drawing(path=path, measures=measures, declared=declared, names_axes=True)
+    if chosen is None:
+        return gather_points(found.points, frame).to_survey()
+    if kind == "source":
+        return gather_source(found, chosen, frame).to_survey()
+    drawing = replace(frame, mesh=make_mesh(found, chosen), lines=list_edge_lines(chosen))
+    return drawing.to_tin(faces).with_name(chosen.name)
 
 
 def _as_wanted(surface: str | int | None) -> str | int | None:
@@ -96,25 +96,6 @@ def _as_wanted(surface: str | int | None) -> str | int | None:
     if isinstance(surface, str) and surface.strip():
         return surface.strip()
     raise OptionError("surface", surface, "the name of a surface, or its number from 1")
-
-
-def _read_tin(
-    found: Content, chosen: Surface, declared: Declared, notes: list[str], faces: FacePolicy
-) -> TIN:
-    mesh = make_mesh(found, chosen)
-    measures = _choose_measures(found, chosen, declared)
-    require_own_crs(measures.source, declared.crs)
-    points = measures.apply(mesh.points[:, [1, 0, 2]])
-    mesh = merge_equal_points(
-        mesh._replace(points=points, notes=[*notes, *measures.notes, *mesh.notes])
-    )
-    tin = make_tin_with_lines(
-        mesh,
-        select_edge_lines(chosen, measures),
-        reference=Reference(measures.source, measures.elevation_unit),
-        faces=faces,
-    )
-    return tin.with_name(chosen.name)
 
 
 # ------------------------------------------------------------------ what is read

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ....base import optional
-from ....base.errors import LinesError, ReadError
-from ....base.policies import BreaklineKind
+from ....base.errors import ReadError
 from ....base.sentences import FILE, counted
-from ....tin import Breakline, Survey, Water
-from ....tin.constraints.breaklines import as_ring
-from ....tin.screening.nodata import describe_elevations
-from ..placing import Placing, place_rows
+from ..surfaces import Line
+from . import content
 from .content import KIND, PRIORITY
 from .numbers import fault
 from .surface import (
@@ -27,22 +23,20 @@ from .surface import (
 )
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ....base.arrays import AnyArray, Float64Array, Int64Array
-    from ..reference import Declared, Measures
-    from .content import Content, Line, Points, Surface
+    from ..drawing import Drawing
+    from .content import Content, Points, Surface
 
-__all__ = ["make_survey_of_points", "make_survey_of_source"]
+__all__ = ["gather_points", "gather_source"]
+
+_RINGS = {"outer": "boundary", "void": "hole", "island": "island"}
 
 
 # ------------------------------------------------------------------ survey points
 
 
-def make_survey_of_points(
-    points: Points, measures: Measures, declared: Declared, path: Path
-) -> Survey:
-    """Return the survey points that have an elevation.
+def gather_points(points: Points, frame: Drawing) -> Drawing:
+    """Add the survey points that have an elevation to a drawing.
 
     Raises
     ------
@@ -55,19 +49,12 @@ def make_survey_of_points(
         raise ReadError(
             f"{FILE} has no survey point with an elevation{f' ({why})' if why else ''}."
         )
-    placing = place_rows([points.rows[kept][:, [1, 0, 2]]], measures, declared, names_axes=True)
-    return Survey(
-        points=placing.rows[0],
+    return replace(
+        frame,
+        points=points.rows[kept][:, [1, 0, 2]],
         attributes=_gather_attributes(points, kept),
-        crs=placing.crs,
-        elevation_unit=placing.elevation_unit,
-        source=path.name,
         skipped=skipped,
-        notes=[
-            *placing.notes,
-            *_describe_states(points, kept),
-            *describe_elevations(placing.rows[0][:, 2]),
-        ],
+        notes=_describe_states(points, kept),
     )
 
 
@@ -109,10 +96,8 @@ def _gather_attributes(points: Points, kept: Int64Array) -> dict[str, AnyArray]:
 # ------------------------------------------------------------------ source data
 
 
-def make_survey_of_source(
-    found: Content, surface: Surface, measures: Measures, declared: Declared, path: Path
-) -> Survey:
-    """Return the data that a surface was made of, with its lines.
+def gather_source(found: Content, surface: Surface, frame: Drawing) -> Drawing:
+    """Add the data that a surface was made of to a drawing, with its lines.
 
     Raises
     ------
@@ -132,22 +117,27 @@ def make_survey_of_source(
         if len(kept):
             notes.append(f"Its points are the {counted(len(kept), 'survey point')} of the file.")
     lines = [*_iterate_lines(surface), *_resolve_chains(found, surface)]
-    placing = place_rows(
-        [*points, *(rows for _, rows in lines)], measures, declared, names_axes=True
-    )
-    rows = placing.rows[: len(points)]
-    survey = Survey(
-        points=np.concatenate([np.empty((0, 3)), *rows]),
+    drawn = [_describe_line(line, rows) for line, rows in lines]
+    return replace(
+        frame,
+        points=np.concatenate([np.empty((0, 3)), *points]),
         attributes=attributes,
-        crs=placing.crs,
-        elevation_unit=placing.elevation_unit,
-        source=path.name,
-        notes=[*placing.notes, *notes],
+        lines=[one for one in drawn if len(one.coordinates) > 1 or one.place],
+        notes=notes,
     )
-    try:
-        return _add_lines(survey, [one for one, _ in lines], placing, len(points))
-    except LinesError as error:
-        raise ReadError(f"{error}") from error
+
+
+def _describe_line(line: content.Line, rows: Float64Array) -> Line:
+    """Return a line as every drawing has it."""
+    kind, place = line.properties.get(KIND, ""), ""
+    if line.element == "Boundary":
+        kind, place = _RINGS[find_boundary_kind(line)], f"the boundary of line {line.line}"
+    elif line.element == "Contour":
+        kind = "soft"
+    priority = line.properties.get(PRIORITY, "0")
+    number = int(priority) if priority.lstrip("-").isdecimal() and len(priority) < 10 else 0
+    known = kind if place or kind in ("soft", "water") else "hard"
+    return Line(rows, known, name_line(line), priority=number, place=place)
 
 
 def _turn(part: Float64Array, *, one: str) -> Float64Array:
@@ -156,7 +146,7 @@ def _turn(part: Float64Array, *, one: str) -> Float64Array:
     return part[:, [1, 0, 2]]
 
 
-def _iterate_lines(surface: Surface) -> list[tuple[Line, Float64Array]]:
+def _iterate_lines(surface: Surface) -> list[tuple[content.Line, Float64Array]]:
     """Return the lines as easting, northing, and elevation where it counts."""
     found = []
     for line in surface.lines:
@@ -172,12 +162,12 @@ def _iterate_lines(surface: Surface) -> list[tuple[Line, Float64Array]]:
     return found
 
 
-def _is_foreign_boundary(line: Line) -> bool:
+def _is_foreign_boundary(line: content.Line) -> bool:
     """Whether a boundary clips nothing, such as one of a texture."""
     return line.element == "Boundary" and not find_boundary_kind(line)
 
 
-def _raise_contour(line: Line, rows: Float64Array) -> Float64Array:
+def _raise_contour(line: content.Line, rows: Float64Array) -> Float64Array:
     try:
         elevation = float(line.attributes.get("elev", "nan"))
     except ValueError:
@@ -188,75 +178,15 @@ def _raise_contour(line: Line, rows: Float64Array) -> Float64Array:
     return np.column_stack([rows[:, :2], np.full(len(rows), elevation)])
 
 
-def _resolve_chains(found: Content, surface: Surface) -> list[tuple[Line, Float64Array]]:
+def _resolve_chains(found: Content, surface: Surface) -> list[tuple[content.Line, Float64Array]]:
     """Return the lines that are given by the names of survey points."""
-    from .content import Line
-
     lines = []
     for text, attributes, number in surface.chains:
         names = dict(enumerate(text.split()))
         rows = resolve_references(np.zeros((len(names), 3)), names, found)[:, [1, 0, 2]]
         rows = rows if np.isfinite(rows).all() else rows[:, :2]
-        lines.append((Line("Breakline", attributes, number), rows))
+        lines.append((content.Line("Breakline", attributes, number), rows))
     return lines
-
-
-def _add_lines(survey: Survey, lines: list[Line], placing: Placing, first: int) -> Survey:
-    breaklines: list[Any] = []
-    water: list[Water] = []
-    rings: dict[str, list[Float64Array]] = {"outer": [], "void": [], "island": []}
-    for line, rows in zip(lines, placing.rows[first:], strict=True):
-        name = name_line(line)
-        own = line.properties.get(KIND, "")
-        if line.element == "Boundary":
-            rings[find_boundary_kind(line)].append(
-                as_ring(rows, f"the boundary of line {line.line}")
-            )
-        elif own == "water" and rows.shape[1] == 3:
-            water.append(Water(rows[:, :2], float(rows[0, 2]), name=name))
-        elif len(rows) > 1:
-            breaklines.append(_make_breakline(line, rows, name))
-    holes, left = _join_islands(rings["void"], rings["island"])
-    notes = list(survey.notes)
-    if left:
-        notes.append(
-            f"{counted(left, 'boundary', 'boundaries')} of type island in no void left out."
-        )
-    return replace(
-        survey,
-        breaklines=breaklines,
-        boundary=rings["outer"],
-        holes=holes,
-        water=water,
-        notes=notes,
-    )
-
-
-def _make_breakline(line: Line, rows: Float64Array, name: str) -> Breakline:
-    kind: BreaklineKind = "hard"
-    if line.element == "Contour" or line.properties.get(KIND) == "soft":
-        kind = "soft"
-    priority = line.properties.get(PRIORITY, "0")
-    number = int(priority) if priority.lstrip("-").isdecimal() and len(priority) < 10 else 0
-    return Breakline(rows, kind=kind, priority=number, name=name)
-
-
-def _join_islands(voids: list[Float64Array], islands: list[Float64Array]) -> tuple[list[Any], int]:
-    """Return each void with the islands in it, and the number of islands in none."""
-    if not islands:
-        return list(voids), 0
-    shapely = optional.load("shapely")
-    areas = [shapely.Polygon(ring[:, :2]) for ring in voids]
-    polygons: list[list[Any]] = [[ring] for ring in voids]
-    left = 0
-    for island in islands:
-        place = shapely.Point(island[0, :2])
-        holder = next((k for k, area in enumerate(areas) if area.intersects(place)), None)
-        if holder is None:
-            left += 1
-        else:
-            polygons[holder].append(island)
-    return [one[0] if len(one) == 1 else one for one in polygons], left
 
 
 def _describe_parts_left_out(surface: Surface) -> list[str]:

@@ -9,22 +9,22 @@ import numpy as np
 from ....base.errors import ReadError
 from ....base.policies import LineKind
 from ....base.sentences import counted
-from ..surfaces import EdgeLine, Mesh
+from ..surfaces import Line, Mesh
 from .content import KIND, LINE, SOURCE
 
 if TYPE_CHECKING:
     from ....base.arrays import BoolArray, Float64Array, Int64Array
-    from ..reference import Measures
-    from .content import Content, Line, Surface
+    from . import content
+    from .content import Content, Surface
 
 __all__ = [
     "NO_ELEVATIONS",
     "describe_point_files",
     "find_boundary_kind",
+    "list_edge_lines",
     "make_mesh",
     "name_line",
     "resolve_references",
-    "select_edge_lines",
 ]
 
 NO_ELEVATIONS = frozenset({"nondestructive", "proximity"})
@@ -38,7 +38,7 @@ _OPPOSITE = (2, 0, 1)
 
 
 def make_mesh(found: Content, surface: Surface) -> Mesh:
-    """Return the points, northing first, and the visible triangles of a surface.
+    """Return the points and the visible triangles of a surface.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def make_mesh(found: Content, surface: Surface) -> Mesh:
     notes = [f"Skipped: {counted(surface.n_hidden, 'invisible face')}."] * bool(surface.n_hidden)
     if surface.point_files:
         notes.append(describe_point_files(surface))
-    return Mesh(points, triangles, _find_flags(surface), notes)
+    return Mesh(points[:, [1, 0, 2]], triangles, _find_flags(surface), notes)
 
 
 def _gather_points(surface: Surface) -> Float64Array:
@@ -136,38 +136,31 @@ def resolve_references(
     return points
 
 
-def select_edge_lines(surface: Surface, measures: Measures) -> list[EdgeLine]:
+def list_edge_lines(surface: Surface) -> list[Line]:
     """Return the breaklines and boundaries that may run along edges, in their order of old."""
-    found = [
-        (
-            _find_number(line, LINE, len(surface.lines)),
-            EdgeLine(
-                measures.apply(_close(line, part)[:, [1, 0]]),
-                kind,
-                name_line(line),
-                _find_number(line, SOURCE, None),
-            ),
-        )
-        for line in surface.lines
-        if (kind := _find_kind(line)) is not None
-        for part in line.coordinates
-        if len(part) > 1
-    ]
-    return [line for _, line in sorted(found, key=lambda one: one[0] or 0)]
+    found = []
+    for line in surface.lines:
+        kind = _find_kind(line)
+        number, source = (_find_number(line, name) for name in (LINE, SOURCE))
+        for part in line.coordinates:
+            if kind is not None and len(part) > 1:
+                one = Line(_close(line, part)[:, [1, 0]], kind, name_line(line), source)
+                found.append((len(surface.lines) if number is None else number, one))
+    return [line for _, line in sorted(found, key=lambda one: one[0])]
 
 
-def _find_number(line: Line, name: str, default: int | None) -> int | None:
+def _find_number(line: content.Line, name: str) -> int | None:
     text = line.properties.get(name, "")
-    return int(text) if text.isascii() and text.isdecimal() and len(text) < 10 else default
+    return int(text) if text.isascii() and text.isdecimal() and len(text) < 10 else None
 
 
-def _close(line: Line, part: Float64Array) -> Float64Array:
+def _close(line: content.Line, part: Float64Array) -> Float64Array:
     """Return the ring of a boundary with its first point at the end too."""
     is_open = line.element == "Boundary" and (part[0, :2] != part[-1, :2]).any()
     return np.concatenate([part, part[:1]]) if is_open else part
 
 
-def _find_kind(line: Line) -> LineKind | None:
+def _find_kind(line: content.Line) -> LineKind | None:
     own = line.properties.get(KIND, "")
     if line.element == "Breakline":
         if own in get_args(LineKind):
@@ -178,11 +171,11 @@ def _find_kind(line: Line) -> LineKind | None:
     return None
 
 
-def find_boundary_kind(line: Line) -> str:
+def find_boundary_kind(line: content.Line) -> str:
     """Return "outer", "void" or "island"; "" for boundaries of other things, such as textures."""
     return _BOUNDARY_KINDS.get(line.attributes.get("bndType", "").strip().lower(), "")
 
 
-def name_line(line: Line) -> str:
+def name_line(line: content.Line) -> str:
     """Return the name of a line, else its description."""
     return line.attributes.get("name", "").strip() or line.attributes.get("desc", "").strip()

@@ -1,4 +1,4 @@
-"""A drawing as arrays: what the child process found, and what is told of it."""
+"""The model space of a drawing as arrays: what the child process found, and notes on it."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
     from ....base.arrays import AnyArray, Float64Array
 
-__all__ = ["Drawing", "read_drawing"]
+__all__ = ["ModelSpace", "read_model_space"]
 
 _SLOWNESS = 5
 """Times the usual time: ezdxf reads about a million bytes in a second, on a busy machine less."""
 
 
-class Drawing(NamedTuple):
+class ModelSpace(NamedTuple):
     """What a drawing holds in its model space, blocks taken apart."""
 
     path: Path
@@ -84,9 +84,9 @@ class Drawing(NamedTuple):
         return notes
 
 
-def read_drawing(
+def read_model_space(
     path: Path, *, layer: str | None = None, texts: bool = False, tolerance: float | None = None
-) -> Drawing:
+) -> ModelSpace:
     """Read the model space of a drawing in a child process.
 
     Parameters
@@ -120,7 +120,7 @@ def read_drawing(
         path=path,
         limits=Limits(usual.seconds + (_SLOWNESS - 1) * size / 1e6, usual.memory),
     )
-    drawing = Drawing(path, answer.value, answer.arrays)
+    drawing = ModelSpace(path, answer.value, answer.arrays)
     _require_layer(drawing, layer)
     _require_finite(drawing)
     return drawing
@@ -133,7 +133,7 @@ def _require_options(layer: object, tolerance: object) -> None:
         as_length("tolerance", tolerance, or_none=True)
 
 
-def _require_layer(drawing: Drawing, layer: str | None) -> None:
+def _require_layer(drawing: ModelSpace, layer: str | None) -> None:
     if layer is not None and not drawing.value["layers"]:
         names = drawing.value["all_layers"]
         shown = ", ".join(f"'{name[:60]}'" for name in names[:20])
@@ -141,7 +141,7 @@ def _require_layer(drawing: Drawing, layer: str | None) -> None:
         raise OptionError("layer", layer, f"a layer with something in it; {FILE} has {shown}{more}")
 
 
-def _require_finite(drawing: Drawing) -> None:
+def _require_finite(drawing: ModelSpace) -> None:
     for name in ("points", "faces", "lines", "text_places"):
         rows = drawing.arrays[name].reshape(-1, 3)
         wrong = ~np.isfinite(rows).all(axis=1)

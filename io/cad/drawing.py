@@ -1,0 +1,171 @@
+"""A drawing as a value, whatever its format, and the TIN or the survey that it becomes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...base import optional
+from ...base.errors import LinesError, ReadError
+from ...base.policies import BreaklineKind
+from ...base.sentences import FILE, counted
+from ...tin import Breakline, Survey, Water
+from ...tin.constraints.breaklines import as_ring
+from ...tin.screening.nodata import describe_elevations
+from ...tin.topology import find_offsets
+from ..mesh.common import Reference, require_own_crs
+from ..reprojection.placement import Placed, place
+from .surfaces import Line, Mesh, make_tin_with_lines, merge_equal_points
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from pathlib import Path
+
+    from ...base.arrays import AnyArray, Float64Array
+    from ...base.policies import FacePolicy
+    from ...tin import TIN
+    from .reference import Declared, Measures
+
+__all__ = ["Drawing"]
+
+_POLYGONS = ("boundary", "hole", "erase", "island")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Drawing:
+    """What is read of a drawing, in the coordinates of the file, and what these are."""
+
+    path: Path
+    measures: Measures
+    """What the file's coordinates are measured in, with notes on it."""
+    declared: Declared
+    names_axes: bool = False
+    """Whether the format says which coordinate is the northing."""
+    is_crs_declared: bool = False
+    """Whether the caller names the CRS, and the file does not."""
+    points: Float64Array = field(default_factory=lambda: np.empty((0, 3)))
+    """(n, 3), easting, northing, elevation."""
+    attributes: dict[str, AnyArray] = field(default_factory=dict)
+    lines: Sequence[Line] = ()
+    mesh: Mesh | None = None
+    skipped: dict[str, int] = field(default_factory=dict)
+    notes: Sequence[str] = ()
+
+    def to_tin(self, faces: FacePolicy) -> TIN:
+        """Return the TIN of the triangles, with the lines that run along their edges."""
+        mesh, measures = self.mesh, self.measures
+        require_own_crs(measures.source, self.declared.crs)
+        if mesh is None:
+            raise ReadError(f"{FILE} has no faces.")
+        mesh = merge_equal_points(mesh._replace(points=measures.apply(mesh.points)))
+        return make_tin_with_lines(
+            mesh._replace(notes=[*measures.notes, *mesh.notes, *self.notes]),
+            [one._replace(coordinates=measures.apply(one.coordinates)) for one in self.lines],
+            reference=Reference(measures.source, measures.elevation_unit, self.is_crs_declared),
+            faces=faces,
+        )
+
+    def to_survey(self) -> Survey:
+        """Return the points and lines in the CRS wanted.
+
+        Raises
+        ------
+        ReadError
+            If a coordinate is not finite, or would be in degrees, or a line is none.
+        CrsError
+            If they cannot be transformed.
+        """
+        parts = [self.points, *(line.coordinates for line in self.lines)]
+        placed, rows = self._place(parts)
+        notes = [*self.measures.notes, *placed.notes, *self.notes]
+        try:
+            lines = _gather_lines(self.lines, rows[1:], notes)
+            return Survey(
+                points=rows[0],
+                attributes=self.attributes,
+                crs=placed.crs,
+                elevation_unit=placed.elevation_unit,
+                source=self.path.name,
+                skipped=self.skipped,
+                notes=[*notes, *describe_elevations(rows[0][:, 2])],
+                **lines,
+            )
+        except LinesError as error:
+            raise ReadError(f"{error}") from error
+
+    def _place(self, parts: Sequence[Float64Array]) -> tuple[Placed, list[Float64Array]]:
+        """Bring arrays of two or three columns into the CRS wanted, all at once."""
+        offsets = find_offsets(len(one) for one in parts)
+        together = np.zeros((int(offsets[-1]), 3))
+        for one, start in zip(parts, offsets.tolist(), strict=False):
+            together[start : start + len(one), : one.shape[1]] = one
+        if not np.isfinite(together).all():
+            row = together[np.argmin(np.isfinite(together).all(axis=1))]
+            raise ReadError(f"{FILE} has coordinates that are not finite (first: {row.tolist()}).")
+        placed = place(
+            self.measures.apply(together),
+            source=self.measures.source,
+            target=self.declared.crs,
+            unit=self.measures.elevation_unit,
+            looks_at_area=False,
+            looks_at_order=not self.names_axes,
+        )
+        return placed, [
+            placed.points[start : start + len(one), : one.shape[1]]
+            for one, start in zip(parts, offsets.tolist(), strict=False)
+        ]
+
+
+def _gather_lines(
+    lines: Iterable[Line], places: Iterable[Float64Array], notes: list[str]
+) -> dict[str, Any]:
+    """Return breaklines, rings and water as a survey has them."""
+    breaklines, water = [], []
+    polygons: dict[object, tuple[str, list[Float64Array]]] = {}
+    for line, rows in zip(lines, places, strict=True):
+        if line.kind == "water" and rows.shape[1] == 3:
+            water.append(Water(as_ring(rows, "water"), float(rows[0, 2]), name=line.name))
+        elif line.kind in _POLYGONS:
+            key = (line.kind, len(polygons) if line.polygon is None else line.polygon)
+            rings = polygons.setdefault(key, (line.kind, []))[1]
+            rings.append(as_ring(rows, line.place or line.kind))
+        else:
+            own: BreaklineKind = "soft" if line.kind == "soft" else "hard"
+            breaklines.append(Breakline(rows, kind=own, name=line.name, priority=line.priority))
+    found: dict[str, list[list[Float64Array]]] = {kind: [] for kind in _POLYGONS}
+    for kind, rings in polygons.values():
+        found[kind].append(rings)
+    left = _put_islands([rings[0] for rings in found["island"]], found["hole"])
+    if left:
+        what = counted(left, "boundary", "boundaries")
+        notes.append(f"{what} of type island in no void left out.")
+    unwrapped = {
+        kind: [rings[0] if len(rings) == 1 else rings for rings in found[kind]]
+        for kind in _POLYGONS
+    }
+    return {
+        "breaklines": breaklines,
+        "boundary": unwrapped["boundary"],
+        "holes": unwrapped["hole"],
+        "erase": unwrapped["erase"],
+        "water": water,
+    }
+
+
+def _put_islands(islands: list[Float64Array], holes: list[list[Float64Array]]) -> int:
+    """Add each island to the hole that it lies in; return the number of those in none."""
+    if not islands:
+        return 0
+    shapely = optional.load("shapely")
+    areas = [shapely.Polygon(rings[0][:, :2]) for rings in holes]
+    left = 0
+    for island in islands:
+        place = shapely.Point(island[0, :2])
+        holder = next((k for k, area in enumerate(areas) if area.intersects(place)), None)
+        if holder is None:
+            left += 1
+        else:
+            holes[holder].append(island)
+    return left
