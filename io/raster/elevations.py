@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.atomic import as_path
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError
 from ...base.results import Raster
@@ -29,6 +29,7 @@ from .meaning import settle_axes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from ...base.arrays import AnyArray, BoolArray, Float64Array
     from ...base.crs import CrsLike, UnitLike
@@ -95,8 +96,8 @@ def read_raster(
     >>> ts.simplify(dem, tolerance=20.0).report.simplification.largest_error <= 20.0
     True
     """
+    file = as_path(path)
     require_local(path)
-    file = Path(path)
     _require_file(file)
     return _make_raster(
         read_header(file), CRS.of(crs), Unit.of(elevation_unit), band, parse_nodata(nodata)

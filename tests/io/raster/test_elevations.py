@@ -19,3 +19,9 @@ def test_a_pipe_is_refused_before_it_is_opened(tmp_path):
 def test_what_is_no_file_is_refused(tmp_path, name, words):
     with pytest.raises(ts.ReadError, match=words):
         ts.read_raster(tmp_path / name)
+
+
+@pytest.mark.parametrize("path", [None, 7, [1.0, 2.0], b"a.tif"])
+def test_what_is_no_path_is_refused(path):
+    with pytest.raises(ts.OptionError, match="the name of a file, as text or Path"):
+        ts.read_raster(path)
