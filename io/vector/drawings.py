@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 from contextlib import closing
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,14 +13,14 @@ from ...base.errors import OptionError, ReadError
 from ...base.sentences import FILE, counted
 from ..cad.dxf.model_space import ModelSpace, read_model_space
 from ..cad.dxf.names import ELEVATION_PROPERTY, UNKNOWN
+from .layers import Layer
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ...base.arrays import AnyArray, Int64Array, ObjectArray
-    from ...base.crs import CRS
 
-__all__ = ["DrawnFeatures", "read_drawing_features"]
+__all__ = ["read_drawing_layer"]
 
 _WHOLE = "entities"
 """What GDAL calls the one layer that it takes a drawing for."""
@@ -28,22 +28,9 @@ _WHOLE = "entities"
 _MOST_STEPS = 1_000_000
 
 
-class DrawnFeatures(NamedTuple):
-    """Features of a drawing, as of another layer: numbers, geometries, columns, CRS, notes."""
-
-    numbers: Int64Array
-    geometries: ObjectArray
-    columns: dict[str, AnyArray]
-    crs: CRS | None
-    notes: tuple[str, ...]
-    names: tuple[str, ...] = ()
-    elevation_unit: str = ""
-    """Where the drawing tells its CRS too: else its unit may be a program's default."""
-
-
-def read_drawing_features(
+def read_drawing_layer(
     path: Path, *, layer: str | None, where: str | None, lines_only: bool
-) -> DrawnFeatures:
+) -> Layer:
     """Read the lines of a drawing, and its points unless they are not wanted.
 
     Parameters
@@ -57,7 +44,7 @@ def read_drawing_features(
 
     Returns
     -------
-    DrawnFeatures
+    Layer
         With these columns; lines of plane entities without elevation have none.
 
     Raises
@@ -79,7 +66,8 @@ def read_drawing_features(
     if len(kept) == 0:
         part = f" where {where}" if where is not None else " that are lines" * lines_only
         raise ReadError(f"{FILE} has no features{part}.")
-    return DrawnFeatures(
+    return Layer(
+        path,
         kept,
         shapes[kept],
         {name: column[kept] for name, column in columns.items()},

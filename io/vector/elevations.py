@@ -14,7 +14,7 @@ from ..reprojection.placement import settle_unit
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
-    from .features import Features
+    from .layers import Layer
 
 __all__ = [
     "Elevations",
@@ -46,7 +46,7 @@ class Elevations(NamedTuple):
     """What was assumed."""
 
 
-def find_elevation_unit(features: Features, declared: Unit | None) -> Unit | None:
+def find_elevation_unit(features: Layer, declared: Unit | None) -> Unit | None:
     """Return the unit of the elevations in geometries that the file or the caller tells.
 
     Raises
@@ -62,12 +62,12 @@ def find_elevation_unit(features: Features, declared: Unit | None) -> Unit | Non
     return settle_unit(declared, stated or vertical)
 
 
-def list_elevation_columns(features: Features) -> list[str]:
+def list_elevation_columns(features: Layer) -> list[str]:
     """Return the names of the columns that hold elevations."""
     return list(_find_columns(features))
 
 
-def find_named_unit(name: str, features: Features) -> Unit | None:
+def find_named_unit(name: str, features: Layer) -> Unit | None:
     """Return the unit that the name of a column tells, as in ``elev_ft``; None if it tells none.
 
     Feet are those of the CRS, as "ft" is written for either kind.
@@ -80,7 +80,7 @@ def find_named_unit(name: str, features: Features) -> Unit | None:
 
 
 def find_elevations(
-    features: Features,
+    features: Layer,
     z: Float64Array,
     has_z: BoolArray,
     rows: Int64Array,
@@ -90,7 +90,7 @@ def find_elevations(
 
     Parameters
     ----------
-    features : Features
+    features : Layer
     z : (n,) float64 array
         Third coordinates.
     has_z : (n,) bool array
@@ -142,7 +142,7 @@ def _find_other_unit(z: Float64Array, values: Float64Array) -> Unit | None:
 
 
 def _take_asked(
-    features: Features,
+    features: Layer,
     z: Float64Array,
     has_z: BoolArray,
     rows: Int64Array,
@@ -165,7 +165,7 @@ def _take_asked(
 
 
 def _require_all(
-    features: Features,
+    features: Layer,
     z: Float64Array,
     has_z: BoolArray,
     rows: Int64Array,
@@ -183,7 +183,7 @@ def _require_all(
     return z
 
 
-def _find_columns(features: Features) -> dict[str, Float64Array]:
+def _find_columns(features: Layer) -> dict[str, Float64Array]:
     """Return the columns that hold elevations, by their names."""
     found = {}
     for name, column in features.columns.items():
@@ -210,9 +210,7 @@ def _as_numbers(column: AnyArray) -> Float64Array | None:
     return None if np.isinf(values).any() else values
 
 
-def _take_column(
-    features: Features, columns: dict[str, Float64Array], rows: Int64Array
-) -> Elevations:
+def _take_column(features: Layer, columns: dict[str, Float64Array], rows: Int64Array) -> Elevations:
     """Take the only column that can be meant; several that agree are one."""
     if not columns:
         known = ", ".join(features.names)
@@ -235,7 +233,7 @@ def _take_column(
 
 
 def _require_same(
-    features: Features,
+    features: Layer,
     z: Float64Array,
     values: Float64Array,
     name: str,

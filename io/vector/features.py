@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections import Counter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,81 +16,20 @@ from ..cad.signatures import is_dxf, is_landxml
 from ..isolated import choose_limits, run_isolated
 from ..isolated.spooling import open_ordinary_file, require_local, translate_system_errors
 from ..registry.signatures import HEAD_BYTES, find_reference_kind
-from .drawings import read_drawing_features
+from .drawings import read_drawing_layer
 from .geojson.members import read_json_members
+from .layers import Layer, name_apart, name_columns
 from .signatures import is_parquet
 from .well_known_binary import replace_surfaces
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
-    from ...base.arrays import AnyArray, Int64Array, ObjectArray
+    from ...base.arrays import AnyArray, ObjectArray
     from ...base.crs import CRS
 
 
-__all__ = ["Features", "name_apart", "name_columns", "read_features"]
-
-
-class Features(NamedTuple):
-    """What a layer holds."""
-
-    path: Path
-    numbers: Int64Array
-    """(n,), feature numbers as GDAL counts them."""
-    geometries: ObjectArray
-    """(n,), Shapely geometries, none of them missing or empty."""
-    columns: dict[str, AnyArray]
-    """Each (n,), by their names in lower case; those that only capitals keep apart by their own."""
-    crs: CRS | None
-    notes: tuple[str, ...]
-    """What was left out."""
-    names: tuple[str, ...] = ()
-    """Of the columns, as the file writes them."""
-    elevation_unit: str = ""
-    """What the file calls the unit of its elevations, apart from its CRS; empty if it does not."""
-
-    def label(self, row: int) -> str:
-        """Return what a feature is called in sentences."""
-        return f"{FILE}: feature {self.numbers[row]}"
-
-    def find_column(self, name: str) -> AnyArray | None:
-        """Return the column of a name, whatever its capitals unless they keep two apart."""
-        if name in self.columns:
-            return self.columns[name]
-        same = [key for key in self.columns if key.lower() == name.lower()]
-        return self.columns[same[0]] if len(same) == 1 else None
-
-
-def name_apart(names: Sequence[str]) -> list[str]:
-    """Return names of which no two are the same: a number follows those that come again.
-
-    Examples
-    --------
-    >>> name_apart(["a", "b", "a", "a_2"])
-    ['a', 'b', 'a_2', 'a_2_2']
-    """
-    taken: dict[str, None] = {}
-    for name in names:
-        candidate, number = name, 1
-        while candidate in taken:
-            number += 1
-            candidate = f"{name}_{number}"
-        taken[candidate] = None
-    return list(taken)
-
-
-def name_columns(names: Sequence[str]) -> list[str]:
-    """Return the names of columns in lower case, as they are where only capitals differ.
-
-    Examples
-    --------
-    >>> name_columns(["Code", "Elev", "elev"])
-    ['code', 'Elev', 'elev']
-    """
-    apart = name_apart(names)
-    counts = Counter(name.lower() for name in apart)
-    return [name.lower() if counts[name.lower()] == 1 else name for name in apart]
+__all__ = ["read_features"]
 
 
 _FOLDERS = (".gdb",)
@@ -105,7 +43,7 @@ _SHAPEFILE = b"\x00\x00\x27\x0a"
 
 def read_features(
     path: Path, *, layer: str | None = None, where: str | None = None, lines_only: bool = False
-) -> Features:
+) -> Layer:
     """Read the features of one layer of a vector file that GDAL reads.
 
     Parameters
@@ -134,13 +72,12 @@ def read_features(
     return features._replace(path=path, notes=notes)
 
 
-def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only: bool) -> Features:
+def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only: bool) -> Layer:
     if path.suffix.lower() not in (*_PARQUET, _DRAWING):
         optional.require("pyogrio", "Reading vector files")
     content = _require_whole_file(path)
     if is_dxf(content) or path.suffix.lower() == _DRAWING:
-        drawn = read_drawing_features(path, layer=layer, where=where, lines_only=lines_only)
-        return Features(path, *drawn)
+        return read_drawing_layer(path, layer=layer, where=where, lines_only=lines_only)
     if is_landxml(content):
         return _read_design(path, layer, where)
     library = "pyarrow" if is_parquet(content) else "pyogrio"
@@ -158,7 +95,7 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
     crs = None if head.names_no_crs else CRS.of(value["crs"])
     in_metres = head.is_json and crs is not None and crs.is_geographic  # by RFC 7946
     unit = value["elevation_unit"] or head.elevation_unit or ("metre" if in_metres else "")
-    found = Features(
+    found = Layer(
         path,
         arrays["numbers"],
         _parse_shapes(arrays, has_surfaces=not lines_only),
@@ -171,7 +108,7 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
     return _drop_heights_above_ground(_drop_without_geometry(found))
 
 
-def _read_design(path: Path, layer: str | None, where: str | None) -> Features:
+def _read_design(path: Path, layer: str | None, where: str | None) -> Layer:
     """Read the lines of a LandXML file: contours and breaklines."""
     from ..cad.landxml.reading import read
 
@@ -189,12 +126,12 @@ def _read_design(path: Path, layer: str | None, where: str | None) -> Features:
     names = np.array([getattr(line, "name", "") for line in lines], object)
     unit = "" if found.elevation_unit is None else found.elevation_unit.text
     numbers = np.arange(len(coords))
-    return Features(
+    return Layer(
         path, numbers, shapes, {"name": names}, found.crs, tuple(found.notes), ("name",), unit
     )
 
 
-def _drop_heights_above_ground(features: Features) -> Features:
+def _drop_heights_above_ground(features: Layer) -> Layer:
     """Leave heights of KML aside that are none above the sea: its altitude modes tell."""
     modes = features.find_column("altitudemode")
     if modes is None:
@@ -300,7 +237,7 @@ def _parse_shapes(arrays: dict[str, AnyArray], *, has_surfaces: bool) -> ObjectA
     return shapes
 
 
-def _drop_without_geometry(features: Features) -> Features:
+def _drop_without_geometry(features: Layer) -> Layer:
     """Leave out the features that have no geometry, and note them."""
     shapely = optional.load("shapely")
     is_empty = shapely.is_missing(features.geometries) | shapely.is_empty(features.geometries)

@@ -84,7 +84,7 @@ FORMATS = (
     ),
     _make(
         *("flatgeobuf", "FlatGeobuf", ".fgb"),
-        writer="flatgeobuf:write",
+        writer="ogr:write_flatgeobuf",
         extra="vector",
         sniff=is_flatgeobuf,
     ),

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Float64Array, ObjectArray
     from ...base.crs import CrsLike
-    from .features import Features as Layer
+    from .layers import Layer
 
 __all__ = ["read_geometries"]
 

@@ -10,11 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base import optional
+from ...base.atomic import replacing_files
 from ...base.errors import WriteError
 from ...base.results.columns import UNKNOWN_UNIT, unit_text
 from ...base.results.geometries import build_geometries
 from ...base.sentences import FILE
+from ...tin import Survey
 from ..reprojection.crs_kept import require_kept
+from .surface_features import make_features
 from .well_known_binary import encode_equal_shapes
 
 if TYPE_CHECKING:
@@ -22,9 +25,17 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...base.arrays import AnyArray, BoolArray, ObjectArray
+    from ...base.policies import FeatureKind
     from ...base.results import Features
+    from .surface_features import Writable
 
-__all__ = ["describe", "encode_geometries", "require_int64", "write_layer"]
+__all__ = [
+    "describe",
+    "encode_geometries",
+    "require_int64",
+    "write_flatgeobuf",
+    "write_layer",
+]
 
 _NO_CLOCK = "1970-01-01T00:00:00.000Z"
 """Time that GDAL writes as the present one, so that the same features give the same bytes."""
@@ -80,6 +91,24 @@ def write_layer(
         _require_last(pyogrio, path, len(features))
         found = pyogrio.read_info(path)["crs"] if features.crs is not None else None
     require_kept(features.crs, found)
+
+
+def write_flatgeobuf(surface: Writable, path: Path, *, kind: FeatureKind | None = None) -> None:
+    """Write a kind of parts of a surface, or features, as FlatGeobuf, named after the product.
+
+    A spatial index gives features another order; points of a survey have none and stand in their
+    own. Coordinates and numbers are the same float64. Units of columns and of elevations, and
+    notes, are metadata of the layer.
+
+    Parameters
+    ----------
+    kind : {"triangles", "points", "edges", "lines", "hull"}, optional
+        Of a TIN; default triangles.
+    """
+    features = make_features(surface, kind)
+    how: dict[str, Any] = {"SPATIAL_INDEX": "NO"} if isinstance(surface, Survey) else {}
+    with replacing_files(path) as new:
+        write_layer(features, new, path, driver="FlatGeobuf", metadata=describe(features), **how)
 
 
 def _require_last(pyogrio: Any, path: Path, count: int) -> None:

@@ -18,7 +18,7 @@ from .elevations import find_elevation_unit
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array, ObjectArray
     from ...base.crs import CRS, Unit
-    from .features import Features
+    from .layers import Layer
 
 __all__ = [
     "Part",
@@ -64,13 +64,13 @@ class _Lines(NamedTuple):
 
 
 def split_into_parts(
-    features: Features, wanted: Wanted, *, drape: bool, notes: list[str] | None
+    features: Layer, wanted: Wanted, *, drape: bool, notes: list[str] | None
 ) -> list[Part]:
     """Return the lines and rings of all features, in their order.
 
     Parameters
     ----------
-    features : Features
+    features : Layer
     wanted : Wanted
         Without a CRS lines stay in the file's own.
     drape : bool
@@ -111,7 +111,7 @@ def split_into_parts(
     ]
 
 
-def _split_geometries(features: Features) -> _Lines:
+def _split_geometries(features: Layer) -> _Lines:
     """Take collections and polygons apart."""
     shapely = optional.load("shapely")
     shapes, rows = features.geometries, np.arange(len(features.geometries))
@@ -131,7 +131,7 @@ def _split_geometries(features: Features) -> _Lines:
     return _Lines(np.concatenate([shapes[~is_polygon], rings])[order], rows[slots], numbers)
 
 
-def _require_lines(types: Int32Array, rows: Int64Array, features: Features) -> None:
+def _require_lines(types: Int32Array, rows: Int64Array, features: Layer) -> None:
     points = np.flatnonzero(types == 0)
     if len(points):
         raise ReadError(
@@ -145,7 +145,7 @@ def _require_finite_vertices(
     has_z: BoolArray,
     bounds: Int64Array,
     rows: Int64Array,
-    features: Features,
+    features: Layer,
 ) -> None:
     wrong = ~np.isfinite(xyz[:, :2]).all(axis=1) | (has_z & ~np.isfinite(xyz[:, 2]))
     if not wrong.any():
@@ -163,7 +163,7 @@ def _require_finite_vertices(
 
 
 def move_to_crs(
-    xy: Float64Array, features: Features, crs: CRS | None, *, notes: list[str]
+    xy: Float64Array, features: Layer, crs: CRS | None, *, notes: list[str]
 ) -> Float64Array:
     """Reproject places of features in the plane.
 
@@ -186,7 +186,7 @@ def _drop_vertical_axis(crs: CRS | None) -> CRS | None:
     return None if crs is None else crs.horizontal
 
 
-def crs_notes(features: Features, wanted: Wanted) -> list[str]:
+def crs_notes(features: Layer, wanted: Wanted) -> list[str]:
     """Tell which CRS is assumed where one of the two is not known."""
     source, crs, name = features.crs, wanted.crs, features.path.name
     if source is None:
@@ -199,12 +199,12 @@ def crs_notes(features: Features, wanted: Wanted) -> list[str]:
 # ------------------------------------------------------------------------- units
 
 
-def find_elevation_factor(features: Features, wanted: Wanted, *, notes: list[str]) -> float:
+def find_elevation_factor(features: Layer, wanted: Wanted, *, notes: list[str]) -> float:
     """Return the factor from a file's elevations to those of the points; their datum stays.
 
     Parameters
     ----------
-    features : Features
+    features : Layer
     wanted : Wanted
     notes : list of str
         What had to be assumed or converted is appended to it.
@@ -237,7 +237,7 @@ def find_elevation_factor(features: Features, wanted: Wanted, *, notes: list[str
 
 
 def _describe_conversion(
-    features: Features, theirs: Unit | None, ours: Unit | None, units: tuple[Unit, Unit]
+    features: Layer, theirs: Unit | None, ours: Unit | None, units: tuple[Unit, Unit]
 ) -> str:
     """Say which elevations were converted, and what was assumed for it."""
     text = f"'{features.path.name}': elevations were converted from {units[0].name} to "

@@ -21,7 +21,8 @@ from ...tin.topology import find_offsets
 from ..mesh.common import Reference, join_places, make_tin
 from ..reprojection.placement import place, settle_unit
 from .elevations import find_elevation_unit, find_elevations
-from .features import Features, read_features
+from .features import read_features
+from .layers import Layer
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -132,7 +133,7 @@ class _Vertices(NamedTuple):
 # ----------------------------------------------------------------------- the geometry
 
 
-def _list_kinds(features: Features) -> set[int]:
+def _list_kinds(features: Layer) -> set[int]:
     """Return the kinds of single geometries, with collections taken apart."""
     shapely = optional.load("shapely")
     shapes, _ = _take_apart(features)
@@ -140,7 +141,7 @@ def _list_kinds(features: Features) -> set[int]:
     return {_LINE if kind == _RING else int(kind) for kind in found}
 
 
-def _take_apart(features: Features) -> tuple[ObjectArray, Int64Array]:
+def _take_apart(features: Layer) -> tuple[ObjectArray, Int64Array]:
     """Return single geometries, and the row of the feature of each; collections may be nested."""
     shapely = optional.load("shapely")
     shapes, rows = features.geometries, np.arange(len(features.geometries))
@@ -150,14 +151,14 @@ def _take_apart(features: Features) -> tuple[ObjectArray, Int64Array]:
     return shapes, rows
 
 
-def _gather_points(features: Features) -> _Vertices:
+def _gather_points(features: Layer) -> _Vertices:
     shapely = optional.load("shapely")
     xyz, rows = shapely.get_coordinates(features.geometries, include_z=True, return_index=True)
     has_z = shapely.has_z(features.geometries)[rows]
     return _Vertices(xyz, rows, np.arange(len(xyz) + 1), has_z)
 
 
-def _gather_lines(features: Features) -> _Vertices:
+def _gather_lines(features: Layer) -> _Vertices:
     """Return the vertices of lines and rings; the last of a closed one is left out of no line."""
     shapely = optional.load("shapely")
     shapes, rows = _take_apart(features)
@@ -174,7 +175,7 @@ def _gather_lines(features: Features) -> _Vertices:
     return _Vertices(xyz, of_lines[line], bounds, shapely.has_z(lines)[line])
 
 
-def _require_finite(vertices: _Vertices, features: Features) -> None:
+def _require_finite(vertices: _Vertices, features: Layer) -> None:
     wrong = ~np.isfinite(vertices.xyz[:, :2]).all(axis=1)
     if wrong.any():
         row = int(np.argmax(wrong))
@@ -187,7 +188,7 @@ def _require_finite(vertices: _Vertices, features: Features) -> None:
 # ------------------------------------------------------------------------ the survey
 
 
-def _make_survey(vertices: _Vertices, features: Features, asked: _Asked) -> Survey:
+def _make_survey(vertices: _Vertices, features: Layer, asked: _Asked) -> Survey:
     _require_finite(vertices, features)
     found = find_elevations(
         features, vertices.xyz[:, 2], vertices.has_z, vertices.rows, asked.z_field
@@ -220,7 +221,7 @@ def _make_survey(vertices: _Vertices, features: Features, asked: _Asked) -> Surv
     )
 
 
-def _collect_attributes(features: Features, rows: Int64Array) -> dict[str, AnyArray]:
+def _collect_attributes(features: Layer, rows: Int64Array) -> dict[str, AnyArray]:
     """Return the columns under the names of the file."""
     names = features.names or tuple(features.columns)
     columns = zip(names, features.columns.values(), strict=True)
@@ -228,7 +229,7 @@ def _collect_attributes(features: Features, rows: Int64Array) -> dict[str, AnyAr
 
 
 def _make_line_survey(
-    vertices: _Vertices, features: Features, asked: _Asked, role: LineReading
+    vertices: _Vertices, features: Layer, asked: _Asked, role: LineReading
 ) -> Survey:
     """Return the vertices as points, those that close a ring once, and the lines if asked for."""
     is_open = ~_find_closing(vertices)
@@ -256,9 +257,7 @@ def _find_closing(vertices: _Vertices) -> BoolArray:
     return found
 
 
-def _make_breaklines(
-    points: Float64Array, vertices: _Vertices, features: Features
-) -> list[Breakline]:
+def _make_breaklines(points: Float64Array, vertices: _Vertices, features: Layer) -> list[Breakline]:
     rows = vertices.rows[vertices.bounds[:-1]]
     names = features.columns.get("name", np.full(len(features.numbers), None, object))[rows]
     lines = np.split(points, vertices.bounds[1:-1])
@@ -277,7 +276,7 @@ def _take_rows(survey: Survey, keep: BoolArray) -> Survey:
 # -------------------------------------------------------------------------- triangles
 
 
-def _are_triangles(features: Features) -> bool:
+def _are_triangles(features: Layer) -> bool:
     """Whether every polygon has three corners with elevations, and no island."""
     shapely = optional.load("shapely")
     shapes, _ = _take_apart(features)
@@ -288,7 +287,7 @@ def _are_triangles(features: Features) -> bool:
     )
 
 
-def _make_triangles(features: Features, asked: _Asked, faces: FacePolicy) -> TIN:
+def _make_triangles(features: Layer, asked: _Asked, faces: FacePolicy) -> TIN:
     """Return the TIN of triangles; corners at one place, to the last bit, are one vertex."""
     shapely = optional.load("shapely")
     if asked.z_field not in (None, "geometry"):

@@ -22,7 +22,8 @@ from ...tin.constraints.breaklines import as_ring
 from ..reprojection.contradictions import checking_crs
 from ..reprojection.placement import settle_unit
 from .elevations import find_named_unit, list_elevation_columns
-from .features import Features, read_features
+from .features import read_features
+from .layers import Layer
 from .parts import Part, Wanted, find_elevation_factor, split_into_parts
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ class LineOptions(TypedDict, total=False):
 class _Lines(NamedTuple):
     """Lines and rings of a file."""
 
-    features: Features
+    features: Layer
     parts: list[Part]
     wanted: Wanted
 
@@ -160,7 +161,7 @@ def read_lines(
         ]
 
 
-def _describe_unused(features: Features, parts: Sequence[Part]) -> list[str]:
+def _describe_unused(features: Layer, parts: Sequence[Part]) -> list[str]:
     """Tell of a column of elevations beside lines that have none in their geometry."""
     columns = list_elevation_columns(features)
     count = sum(part.coords.shape[1] == 2 for part in parts)
@@ -306,7 +307,7 @@ def read_water(
         ]
 
 
-def _require_ring(part: Part, features: Features) -> Float64Array:
+def _require_ring(part: Part, features: Layer) -> Float64Array:
     if not part.is_closed:
         raise ReadError(
             f"{features.label(part.row)} is an open line: a polygon or a closed line is needed."
@@ -317,7 +318,7 @@ def _require_ring(part: Part, features: Features) -> Float64Array:
 # ----------------------------------------------------------------------- columns
 
 
-def _parse_kinds(features: Features) -> list[BreaklineKind]:
+def _parse_kinds(features: Layer) -> list[BreaklineKind]:
     allowed: dict[str, BreaklineKind] = {kind: kind for kind in get_args(BreaklineKind)}
     kinds = []
     for row, text in enumerate(_find_texts(features, "kind")):
@@ -331,7 +332,7 @@ def _parse_kinds(features: Features) -> list[BreaklineKind]:
     return kinds
 
 
-def _parse_priorities(features: Features) -> list[int]:
+def _parse_priorities(features: Layer) -> list[int]:
     priorities = []
     for row, text in enumerate(_find_texts(features, "priority")):
         value = _parse_finite(text or "0")
@@ -344,7 +345,7 @@ def _parse_priorities(features: Features) -> list[int]:
     return priorities
 
 
-def _find_texts(features: Features, name: str) -> list[str]:
+def _find_texts(features: Layer, name: str) -> list[str]:
     """Return a column as text, empty where there is no value or no such column."""
     column = features.find_column(name)
     if column is None:
@@ -368,7 +369,7 @@ def _parse_finite(text: str) -> float | None:
     return value if np.isfinite(value) else None
 
 
-def _find_levels(features: Features, wanted: Wanted, z: float | str | None) -> list[float | None]:
+def _find_levels(features: Layer, wanted: Wanted, z: float | str | None) -> list[float | None]:
     """Return the height of each feature, None where the corners must tell; columns converted."""
     if z is not None and not isinstance(z, str):
         return [float(z)] * len(features.numbers)
@@ -396,7 +397,7 @@ def _find_levels(features: Features, wanted: Wanted, z: float | str | None) -> l
 
 
 def _require_level(
-    ring: Float64Array, levels: list[float | None], row: int, features: Features
+    ring: Float64Array, levels: list[float | None], row: int, features: Layer
 ) -> float:
     level = levels[row]
     if level is not None:
