@@ -11,8 +11,10 @@ from ...base import optional
 from ...base.errors import LinesError, ReadError
 from ...base.policies import BreaklineKind
 from ...base.sentences import FILE, counted
-from ...tin import Breakline, Survey, Water
+from ...tin import Breakline, Surface, Survey, Water
 from ...tin.constraints.breaklines import as_ring
+from ...tin.constraints.constraint_set import as_sequence
+from ...tin.constraints.polygons import gather_rings_of_regions
 from ...tin.screening.nodata import describe_elevations
 from ...tin.topology import find_offsets
 from ..mesh.common import Reference, require_own_crs
@@ -20,15 +22,16 @@ from ..reprojection.placement import Placed, place
 from .surfaces import Line, Mesh, make_tin_with_lines, merge_equal_points
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
     from ...base.arrays import AnyArray, Float64Array
     from ...base.policies import FacePolicy
+    from ...base.results import Features
     from ...tin import TIN
     from .reference import Declared, Measures
 
-__all__ = ["Drawing"]
+__all__ = ["Drawing", "list_lines", "scale_elevations"]
 
 _POLYGONS = ("boundary", "hole", "erase", "island")
 
@@ -118,6 +121,9 @@ class Drawing:
         ]
 
 
+# ------------------------------------------------------------------ what is read
+
+
 def _gather_lines(
     lines: Iterable[Line], places: Iterable[Float64Array], notes: list[str]
 ) -> dict[str, Any]:
@@ -169,3 +175,68 @@ def _put_islands(islands: list[Float64Array], holes: list[list[Float64Array]]) -
         else:
             holes[holder].append(island)
     return left
+
+
+# ------------------------------------------------------------------ what is written
+
+
+def scale_elevations(rows: Float64Array, factor: float) -> Float64Array:
+    """Return coordinates with their elevations, if there are any, times a factor."""
+    return rows if factor == 1.0 or rows.shape[1] == 2 else rows * [1.0, 1.0, factor]
+
+
+def list_lines(obj: TIN | Survey | Features, factor: float) -> list[Line]:
+    """Return the lines and closed rings of an object, elevations times a factor.
+
+    The ``source`` of a line of features is the row of its feature.
+    """
+    if isinstance(obj, Surface):
+        stated = zip(obj.lines.kinds, obj.lines.names, obj.lines.sources.tolist(), strict=True)
+        lines = [
+            Line(obj.points[chain], *own)
+            for chain, own in zip(obj.lines.chains(), stated, strict=True)
+        ]
+    elif isinstance(obj, Survey):
+        lines = _list_lines_of_survey(obj)
+    else:
+        names = obj.columns.get("name")
+        lines = [
+            Line(
+                rows if np.isfinite(rows).all() else rows[:, :2],
+                name="" if names is None else str(names[owner]),
+                source=owner,
+            )
+            for owner, rows in _iterate_parts(obj)
+        ]
+    return [one._replace(coordinates=scale_elevations(one.coordinates, factor)) for one in lines]
+
+
+def _list_lines_of_survey(survey: Survey) -> list[Line]:
+    given = (one if isinstance(one, Breakline) else Breakline(one) for one in survey.breaklines)
+    lines = [Line(one.coords, one.kind, one.name, priority=one.priority) for one in given]
+    for regions, kind in (
+        (survey.boundary, "boundary"),
+        (survey.holes, "hole"),
+        (survey.erase, "erase"),
+    ):
+        polygons = gather_rings_of_regions(as_sequence(regions, kind), kind)
+        for number, rings in enumerate(polygons):
+            lines += [Line(_close(ring), kind, polygon=str(number)) for ring in rings]
+    for water in survey.water:
+        ring = np.column_stack([water.ring, np.full(len(water.ring), water.z)])
+        lines.append(Line(_close(ring), "water", water.name))
+    return lines
+
+
+def _close(ring: Float64Array) -> Float64Array:
+    return np.concatenate([ring, ring[:1]])
+
+
+def _iterate_parts(features: Features) -> Iterator[tuple[int, Float64Array]]:
+    """Yield each line or ring with the row of its feature."""
+    owners = np.arange(len(features))
+    for level in reversed(features.offsets[1:]):
+        owners = np.repeat(owners, np.diff(level))
+    offsets = features.offsets[0].tolist()
+    for owner, start, end in zip(owners.tolist(), offsets[:-1], offsets[1:], strict=True):
+        yield owner, features.coordinates[start:end]

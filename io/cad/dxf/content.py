@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ....base.results import Features
-from ....tin import TIN, Breakline, Surface, Survey
-from ....tin.constraints.constraint_set import as_sequence
-from ....tin.constraints.polygons import gather_rings_of_regions
+from ....tin import TIN, Surface, Survey
 from ....tin.topology import directed_edges, edge_keys
 from ...registry.losses import select_attributes
+from ..drawing import list_lines, scale_elevations
 from .names import CONSTRAINED
 
 if TYPE_CHECKING:
@@ -25,6 +24,7 @@ _LAYER_OF_KIND = {
     "soft": "SOFT_BREAKLINES",
     "boundary": "BOUNDARY",
     "hole": "HOLES",
+    "erase": "ERASE",
     "water": "WATER",
 }
 _SHARE = 0.2
@@ -33,11 +33,11 @@ _SHARE = 0.2
 
 def add_tin(writer: EntityWriter, tin: TIN, factor: float) -> None:
     """Add triangles and lines."""
-    points = _scale(tin.points, factor)
+    points = scale_elevations(tin.points, factor)
     writer.add_faces("TIN", points[tin.triangles])
-    stated = zip(tin.lines.kinds, tin.lines.names, tin.lines.sources.tolist(), strict=True)
-    for chain, (kind, name, source) in zip(tin.lines.chains(), stated, strict=True):
-        writer.add_line(_LAYER_OF_KIND[kind], points[chain], (kind, name, str(source)))
+    for line in list_lines(tin, factor):
+        stated = (line.kind, line.name, str(line.source))
+        writer.add_line(_LAYER_OF_KIND[line.kind], line.coordinates, stated)
     for edge in _find_other_edges(tin):
         writer.add_line("CONSTRAINED_EDGES", points[edge], (CONSTRAINED, "", ""))
 
@@ -69,26 +69,10 @@ def add_survey(
     labels: bool,
 ) -> None:
     """Add points with their texts and labels, and lines."""
-    _add_points(writer, _scale(survey.points, factor), texts, labels=labels)
-    for line in survey.breaklines:
-        one = line if isinstance(line, Breakline) else Breakline(line)
-        rows = _scale(one.coords, factor)
-        stated = (one.kind, one.name, "", str(one.priority))
-        writer.add_line(_LAYER_OF_KIND[one.kind], rows, stated)
-    for regions, what, layer in (
-        (survey.boundary, "boundary", "BOUNDARY"),
-        (survey.holes, "hole", "HOLES"),
-        (survey.erase, "erase", "ERASE"),
-    ):
-        polygons = gather_rings_of_regions(as_sequence(regions, what), what)
-        for number, rings in enumerate(polygons):
-            for ring in rings:
-                closed = np.concatenate([ring, ring[:1]])
-                writer.add_line(layer, _scale(closed, factor), (what, "", str(number)))
-    for one_water in survey.water:
-        ring = np.column_stack([one_water.ring, np.full(len(one_water.ring), one_water.z)])
-        closed = np.concatenate([ring, ring[:1]])
-        writer.add_line("WATER", _scale(closed, factor), ("water", one_water.name))
+    _add_points(writer, scale_elevations(survey.points, factor), texts, labels=labels)
+    for line in list_lines(survey, factor):
+        stated = (line.kind, line.name, line.polygon or "", str(line.priority))
+        writer.add_line(_LAYER_OF_KIND[line.kind], line.coordinates, stated)
 
 
 def add_features(
@@ -104,17 +88,16 @@ def add_features(
         rows = features.coordinates
         if not features.has_elevations:
             rows = np.column_stack([rows, np.zeros(len(rows))])
-        points = _scale(np.nan_to_num(rows, nan=0.0), factor)
+        points = scale_elevations(np.nan_to_num(rows, nan=0.0), factor)
         _add_points(writer, points, texts, labels=labels)
         return
     names = _choose_layers(features)
-    for owner, rows in _iterate_parts(features):
-        scaled = _scale(rows, factor)
-        is_known = np.isfinite(scaled).all()
-        if scaled.shape[1] == 3 and is_known and np.ptp(scaled[:, 2]) == 0 and scaled[0, 2] != 0:
-            writer.add_contour(names[owner], scaled)
+    for line in list_lines(features, factor):
+        rows, layer = line.coordinates, names[line.source or 0]
+        if rows.shape[1] == 3 and np.ptp(rows[:, 2]) == 0 and rows[0, 2] != 0:
+            writer.add_contour(layer, rows)
         else:
-            writer.add_line(names[owner], scaled if is_known else scaled[:, :2])
+            writer.add_line(layer, rows)
 
 
 def _choose_layers(features: Features) -> list[str]:
@@ -127,20 +110,6 @@ def _choose_layers(features: Features) -> list[str]:
     if index is None:
         return ["CONTOURS"] * count
     return ["INDEX_CONTOURS" if one else "CONTOURS" for one in np.asarray(index).tolist()]
-
-
-def _iterate_parts(features: Features) -> Any:
-    """Yield each line or ring with the feature that it belongs to."""
-    owners = np.arange(len(features))
-    for level in reversed(features.offsets[1:]):
-        owners = np.repeat(owners, np.diff(level))
-    offsets = features.offsets[0].tolist()
-    for owner, start, end in zip(owners.tolist(), offsets[:-1], offsets[1:], strict=True):
-        yield owner, features.coordinates[start:end]
-
-
-def _scale(rows: Float64Array, factor: float) -> Float64Array:
-    return rows if factor == 1.0 or rows.shape[1] == 2 else rows * [1.0, 1.0, factor]
 
 
 # ------------------------------------------------------------------ points

@@ -19,9 +19,10 @@ from ....base.results import Features
 from ....base.sentences import FILE
 from ....tin import TIN, Surface, Survey
 from ...registry.losses import select_attributes, warn_of_unknown_elevations
+from ..drawing import scale_elevations
 from ..lengths import choose_length_unit
 from .content import ELEVATION_UNIT, FEATURE, UNKNOWN
-from .lines import quote, write_features, write_source_of_survey, write_source_of_tin
+from .lines import format_source, quote
 from .units import name_unit
 
 if TYPE_CHECKING:
@@ -121,36 +122,25 @@ def _write_content(
     factor: float,
     progress: Tell | None,
 ) -> None:
-    if isinstance(obj, Surface):
-        points = _scale(obj.points, factor)
-        file.write(f"<Surfaces>\n<Surface name={quote(surface)}>\n")
-        write_source_of_tin(file, obj, points)
-        _write_definition(file, obj, points, progress)
+    is_lines = isinstance(obj, Features) and obj.kind != "points"
+    points = scale_elevations(obj.coordinates if isinstance(obj, Features) else obj.points, factor)
+    if not isinstance(obj, Surface) and not is_lines:
+        _write_points(file, points, texts)
+    source = "" if isinstance(obj, Features) and not is_lines else format_source(obj, factor)
+    if source or isinstance(obj, Surface):
+        file.write(f"<Surfaces>\n<Surface name={quote(surface)}>\n{source}")
+        if isinstance(obj, Surface):
+            _write_definition(file, obj, points, progress)
         file.write("</Surface>\n</Surfaces>\n")
-    elif isinstance(obj, Survey):
-        _write_points(file, _scale(obj.points, factor), texts)
-        write_source_of_survey(file, obj, surface, factor)
-    elif obj.kind == "points":
-        _write_points(file, _scale(_require_elevations(obj), factor), texts)
-    else:
-        write_features(file, obj, surface, factor)
-
-
-def _scale(points: Float64Array, factor: float) -> Float64Array:
-    return points if factor == 1.0 else points * [1.0, 1.0, factor]
 
 
 def _require_lines(obj: TIN | Survey | Features) -> None:
-    if isinstance(obj, Features) and obj.kind == "polygons":
+    if not isinstance(obj, Features) or obj.kind == "lines":
+        return
+    if obj.kind == "polygons":
         raise FormatError(f"Cannot write {FILE}: LandXML holds points and lines, not polygons.")
-    if isinstance(obj, Features) and obj.kind == "points":
-        _require_elevations(obj)
-
-
-def _require_elevations(features: Features) -> Float64Array:
-    if not features.has_elevations or not np.isfinite(features.coordinates).all():
+    if not obj.has_elevations or not np.isfinite(obj.coordinates).all():
         raise FormatError("LandXML needs elevations, and some of these points have none.")
-    return features.coordinates
 
 
 # ------------------------------------------------------------------ units and CRS
