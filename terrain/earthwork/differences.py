@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.errors import OptionError
+from ...base.checks import as_percentages
 from ...base.notes import join_notes
 from ...base.products import product
 from ...base.progress import Progress
@@ -164,12 +164,7 @@ class Difference:
         >>> ts.difference(flat, ramp).percentiles([10, 50])
         array([0.8, 4. ])
         """
-        try:
-            wanted = np.asarray(shares, np.float64)
-        except (TypeError, ValueError):
-            wanted = np.full(1, np.nan)
-        if wanted.ndim != 1 or not ((wanted >= 0) & (wanted <= 100)).all():
-            raise OptionError("percentiles", shares, allowed="numbers from 0 to 100")
+        wanted = as_percentages("percentiles", shares)
         return percentiles(Surface(self.tin.points, self.tin.triangles), wanted.tolist())
 
     def __repr__(self) -> str:

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...base.errors import OptionError, choice
+from ...base.checks import as_percentages
+from ...base.errors import choice
 from ...base.georeference import describe_unknown, find_plane_units
 from ...base.policies import SlopeUnit
 from ...base.products import product
@@ -59,7 +60,7 @@ def slope_statistics(
     (array([33.33]), array([0.]), array([75.]))
     """
     choice("unit", unit, SlopeUnit)
-    shares = _as_percentiles(percentiles)
+    shares = as_percentages("percentiles", percentiles)
     values, weights = slope(tin, unit=unit), measure_plane_areas(tin)
     mean = float(np.average(values, weights=weights))
     deviation = float(np.sqrt(np.average((values - mean) ** 2, weights=weights)))
@@ -97,14 +98,3 @@ def find_weighted_percentiles(
     places = np.minimum(np.searchsorted(reached, wanted), len(values) - 1)
     found: Float64Array = values[order][places]
     return found
-
-
-def _as_percentiles(percentiles: ArrayLike) -> Float64Array:
-    allowed = "a sequence of numbers from 0 to 100"
-    try:
-        shares = np.asarray(percentiles, np.float64)
-    except (TypeError, ValueError):
-        raise OptionError("percentiles", percentiles, allowed=allowed) from None
-    if shares.ndim != 1 or not ((shares >= 0) & (shares <= 100)).all():
-        raise OptionError("percentiles", percentiles, allowed=allowed)
-    return shares

@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .errors import OptionError, PointsError
 from .sentences import shown
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from .arrays import Float64Array
+
 __all__ = [
     "as_flag",
     "as_length",
     "as_number",
+    "as_percentages",
     "is_finite_number",
     "is_whole_number",
     "require_count",
@@ -78,6 +84,17 @@ def as_number(
 def as_length(name: str, value: Any, *, unit: str = "in CRS units", or_none: bool = False) -> float:
     """Return a finite number above 0."""
     return as_number(name, value, "a length", above=0, unit=unit, or_none=or_none)
+
+
+def as_percentages(name: str, values: ArrayLike) -> Float64Array:
+    """Return numbers from 0 to 100."""
+    try:
+        shares = np.asarray(values, np.float64)
+    except (TypeError, ValueError):
+        shares = np.empty(())
+    if shares.ndim != 1 or not ((shares >= 0) & (shares <= 100)).all():
+        raise OptionError(name, values, "a sequence of numbers from 0 to 100")
+    return shares
 
 
 def require_count(
