@@ -185,30 +185,28 @@ def scale_elevations(rows: Float64Array, factor: float) -> Float64Array:
     return rows if factor == 1.0 or rows.shape[1] == 2 else rows * [1.0, 1.0, factor]
 
 
-def list_lines(obj: TIN | Survey | Features, factor: float) -> list[Line]:
-    """Return the lines and closed rings of an object, elevations times a factor.
+def list_lines(obj: TIN | Survey | Features, factor: float) -> Iterator[Line]:
+    """Yield the lines and closed rings of an object, elevations times a factor.
 
     The ``source`` of a line of features is the row of its feature.
     """
     if isinstance(obj, Surface):
+        points = scale_elevations(obj.points, factor)
         stated = zip(obj.lines.kinds, obj.lines.names, obj.lines.sources.tolist(), strict=True)
-        lines = [
-            Line(obj.points[chain], *own)
-            for chain, own in zip(obj.lines.chains(), stated, strict=True)
-        ]
+        for chain, own in zip(obj.lines.chains(), stated, strict=True):
+            yield Line(points[chain], *own)
     elif isinstance(obj, Survey):
-        lines = _list_lines_of_survey(obj)
+        for line in _list_lines_of_survey(obj):
+            yield line._replace(coordinates=scale_elevations(line.coordinates, factor))
     else:
         names = obj.columns.get("name")
-        lines = [
-            Line(
-                rows if np.isfinite(rows).all() else rows[:, :2],
-                name="" if names is None else str(names[owner]),
-                source=owner,
-            )
-            for owner, rows in _iterate_parts(obj)
-        ]
-    return [one._replace(coordinates=scale_elevations(one.coordinates, factor)) for one in lines]
+        scaled = scale_elevations(obj.coordinates, factor)
+        is_known = scaled.shape[1] == 2 or bool(np.isfinite(scaled).all())
+        for owner, start, end in _iterate_parts(obj):
+            rows = scaled[start:end]
+            if not is_known and not np.isfinite(rows).all():
+                rows = rows[:, :2]
+            yield Line(rows, "hard", "" if names is None else str(names[owner]), owner)
 
 
 def _list_lines_of_survey(survey: Survey) -> list[Line]:
@@ -232,11 +230,10 @@ def _close(ring: Float64Array) -> Float64Array:
     return np.concatenate([ring, ring[:1]])
 
 
-def _iterate_parts(features: Features) -> Iterator[tuple[int, Float64Array]]:
-    """Yield each line or ring with the row of its feature."""
+def _iterate_parts(features: Features) -> Iterator[tuple[int, int, int]]:
+    """Iterate over the rows of features of lines and rings, and where these begin and end."""
     owners = np.arange(len(features))
     for level in reversed(features.offsets[1:]):
         owners = np.repeat(owners, np.diff(level))
     offsets = features.offsets[0].tolist()
-    for owner, start, end in zip(owners.tolist(), offsets[:-1], offsets[1:], strict=True):
-        yield owner, features.coordinates[start:end]
+    return zip(owners.tolist(), offsets[:-1], offsets[1:], strict=True)

@@ -45,12 +45,12 @@ def format_source(obj: TIN | Survey | Features, factor: float) -> str:
         if line.kind in _BOUNDARIES and (rows[0] == rows[-1]).all():
             extra.pop(KIND)
             kind = _BOUNDARIES[line.kind][line.polygon is not None and line[1:] in seen]
+            seen.add(line[1:])
             found["Boundaries"].append(_format_boundary(rows, kind, line.name, extra))
         elif isinstance(obj, Features) and rows.shape[1] == 3 and np.ptp(rows[:, 2]) == 0:
             found["Contours"].append(_format_contour(rows))
         elif line.kind != "erase":
             found["Breaklines"].append(_format_breakline(rows, line.name, extra))
-        seen.add(line[1:])
     parts = [f"<{name}>\n{''.join(part)}</{name}>\n" for name, part in found.items() if part]
     return f"<SourceData>\n{''.join(parts)}</SourceData>\n" if parts else ""
 
