@@ -35,7 +35,7 @@ inline Triangulation triangulate(const GivenXyz& points, Method method, int thre
 struct GrownArrays {
   Triples triangles, neighbors;
   std::optional<Numbers> kept_row;
-  std::int32_t distinct_count;
+  std::int64_t distinct_count;
 };
 
 inline GrownArrays grow(const GivenXyz& points, Method method, int threads, const std::string& path,
