@@ -10,6 +10,7 @@ import numpy as np
 from ..base.crs import CRS, Unit, require_lengths, require_one_unit, scale_elevations, shorten_crs
 from ..base.errors import choice
 from ..base.lazy import call_method, make_html_repr
+from ..base.notes import join_notes
 from ..base.policies import Extrapolation, FeatureKind, InterpolationMethod
 from ..base.ranges import describe_span, require_degrees
 from ..base.sentences import counted
@@ -23,11 +24,11 @@ from .building.version import Version
 from .constraints.breaklines import Lines
 from .editing.editable import Editable
 from .editing.origin import Origin
-from .report import Report
+from .report import LEFT_OUT, Report
 from .triangulation import Triangulation
 from .validation.points import as_pairs, as_places, as_points, as_xy
 from .validation.triangles import as_flags, as_triangles, turn_counter_clockwise
-from .validation.vertices import as_vertex, as_vertex_pairs
+from .validation.vertices import as_rows, as_vertex, as_vertex_pairs
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -1060,13 +1061,18 @@ class TIN(Editable, Surface):
         >>> tin.with_notes(["Two files were joined."]).report.notes
         ('Two files were joined.',)
         """
-        told = tuple(dict.fromkeys([*notes, *self.report.notes]))
-        return self if told == tuple(self.report.notes) else self._with_report(notes=told)
+        joined = join_notes(notes, self.report.notes)
+        return self if joined == tuple(self.report.notes) else self._with_report(notes=joined)
 
     def with_reason(self, rows: ArrayLike, why: str) -> TIN:
         """Return the TIN with another reason in its report for rows that were left out.
 
-        ``why`` is one of the reasons that reports give.
+        ``why`` is one of the reasons that reports give; of other rows there is nothing to say.
+
+        Raises
+        ------
+        OptionError
+            If rows are no whole numbers, or it is another reason.
 
         Examples
         --------
@@ -1077,7 +1083,7 @@ class TIN(Editable, Surface):
         {'looks like a blunder': [3]}
         """
         version, origin = self._settle()
-        report = version.report.with_reason(np.asarray(rows, np.int64), why)
+        report = version.report.with_reason(as_rows(rows), choice("why", why, LEFT_OUT))
         other = self._replace({"report": report})
         other._resume(origin)
         return other

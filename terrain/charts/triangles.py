@@ -81,6 +81,8 @@ def plot_tin(
     triangles = to_matplotlib(tin)
     numbers, name = _find_values(tin, values)
     is_new = ax is None
+    if not is_new and not hasattr(ax, "tripcolor"):
+        raise OptionError("ax", ax, "the axes of a matplotlib figure", or_none=True)
     if is_new:
         ax = optional.load("matplotlib.pyplot", "Drawing a TIN").subplots(layout="constrained")[1]
     ground = find_ground(tin)

@@ -126,3 +126,18 @@ def test_files_of_the_other_kind_are_refused(tmp_path):
         ts.read_points(surface)
     with pytest.raises(ts.ReadError, match="points alone, no TIN"):
         ts.read_tin(points)
+
+
+@pytest.mark.parametrize(
+    ("rows", "why", "option"),
+    [({}, "trimmed", "rows"), ([0.5], "trimmed", "rows"), ([0], "lost", "why"), ([0], [], "why")],
+)
+def test_another_reason_is_of_rows_and_one_that_reports_give(rows, why, option):
+    with pytest.raises(ts.OptionError, match=f"^Invalid {option} "):
+        build().with_reason(rows, why)
+
+
+@pytest.mark.parametrize("notes", ["a note", 2.0, None, ["a note", 2]])
+def test_notes_are_a_sequence_of_texts(notes):
+    with pytest.raises(ts.OptionError, match=r"^Invalid notes .* a sequence of texts"):
+        build().with_notes(notes)

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.checks import is_whole_number
-from ...base.errors import PointsError
+from ...base.errors import OptionError, PointsError
 from ...base.sentences import shown
 from .tables import is_masked_array
 
 if TYPE_CHECKING:
-    from ...base.arrays import Int64Array
+    from ...base.arrays import AnyArray, Int64Array
 
-__all__ = ["as_vertex", "as_vertex_array", "as_vertex_pairs"]
+__all__ = ["as_rows", "as_vertex", "as_vertex_array", "as_vertex_pairs"]
 
 
 def as_vertex(vertex: Any, n_vertices: int) -> int:
@@ -42,12 +42,8 @@ def as_vertex_array(vertices: Any, n_vertices: int) -> Int64Array:
     PointsError
         If they are not whole numbers, or one of them is no vertex.
     """
-    try:
-        numbers = np.asarray(vertices)
-    except Exception:
-        numbers = np.empty(1, np.float64)
-    numbers = numbers.astype(np.int64) if numbers.size == 0 else numbers
-    if is_masked_array(vertices) or numbers.dtype.kind not in "iu":
+    numbers = _as_whole_numbers(vertices)
+    if numbers is None:
         raise PointsError(f"Invalid vertices {shown(vertices)}: whole numbers are needed.")
     wrong = (numbers < 0) | (numbers >= n_vertices)
     if wrong.any():
@@ -56,6 +52,30 @@ def as_vertex_array(vertices: Any, n_vertices: int) -> Int64Array:
             "allowed."
         )
     return numbers.astype(np.int64)
+
+
+def as_rows(rows: Any) -> Int64Array:
+    """Return numbers of rows as an array.
+
+    Raises
+    ------
+    OptionError
+        If they are not whole numbers.
+    """
+    numbers = _as_whole_numbers(rows)
+    if numbers is None:
+        raise OptionError("rows", rows, "whole numbers")
+    return numbers.astype(np.int64)
+
+
+def _as_whole_numbers(given: Any) -> AnyArray | None:
+    """Return whole numbers as an array of their type, or None for anything else."""
+    try:
+        numbers = np.asarray(given)
+    except Exception:  # whatever an object says to that
+        return None
+    numbers = numbers.astype(np.int64) if numbers.size == 0 else numbers
+    return None if is_masked_array(given) or numbers.dtype.kind not in "iu" else numbers
 
 
 def as_vertex_pairs(a: Any, b: Any, n_vertices: int) -> tuple[Int64Array, Int64Array]:

@@ -55,15 +55,13 @@ def _find_caller() -> int:
 
 def join_notes(*groups: Iterable[str]) -> tuple[str, ...]:
     """Return notes one group after the other, each once."""
-    return tuple(dict.fromkeys(note for group in groups for note in group))
+    return tuple(dict.fromkeys(note for group in groups for note in as_notes(group)))
 
 
 def as_notes(notes: Any) -> tuple[str, ...]:
     """Return notes as a tuple of sentences."""
-    if (
-        isinstance(notes, str)
-        or not isinstance(notes, Iterable)
-        or not all(isinstance(note, str) for note in notes)
-    ):
+    is_several = isinstance(notes, Iterable) and not isinstance(notes, str)
+    texts = tuple(notes) if is_several else (None,)
+    if not all(isinstance(text, str) for text in texts):
         raise OptionError("notes", notes, allowed="a sequence of texts")
-    return tuple(notes)
+    return texts

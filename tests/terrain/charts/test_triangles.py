@@ -94,3 +94,9 @@ def test_longitude_and_latitude_are_drawn_true_to_scale(axes):
 def test_values_that_are_none_are_refused(tin, axes, values):
     with pytest.raises(ts.OptionError, match="Invalid values"):
         tin.plot(axes, values=values)
+
+
+@pytest.mark.parametrize("other", [np.zeros((2, 2)), "axes", matplotlib.figure.Figure()])
+def test_what_is_no_axes_is_refused(tin, other):
+    with pytest.raises(ts.OptionError, match=r"^Invalid ax .*axes of a matplotlib figure"):
+        tin.plot(other)
