@@ -44,13 +44,21 @@ if TYPE_CHECKING:
     from ..base.progress import Tell
 
 __all__ = [
+    "Call",
+    "blaming",
+    "collect_declared",
     "detect",
+    "is_folder",
     "join_files",
+    "list_tiles",
+    "prepare_call",
     "read",
     "read_points",
     "read_stream",
     "read_tin",
     "read_with_fallbacks",
+    "require_paths",
+    "require_unit",
 ]
 
 _NO_FALLBACKS: Mapping[str, Any] = MappingProxyType({})
@@ -205,14 +213,14 @@ def read_with_fallbacks(
     """
     remote = as_flag("remote", remote)
     done = Progress(progress)
-    declared = _collect_declared(crs, elevation_unit)
+    declared = collect_declared(crs, elevation_unit)
     asked = _Asked(format, declared, options, fallbacks, done.stage(0.0, 1.0))
     places = path if isinstance(path, list | tuple) else [cast("str | os.PathLike[str]", path)]
     with ExitStack() as copies:
         if remote:
             places = [copies.enter_context(_localise(place)) for place in places]
         with done.passing_on(), checking_crs(check_crs):
-            found = _read_several(_require_paths(places), asked)
+            found = _read_several(require_paths(places), asked)
     done.end()
     return found
 
@@ -241,7 +249,8 @@ def _name_folder(survey: Survey, folder: Path, tiles: Sequence[Path]) -> Survey:
     return replace(survey, source=folder.name, notes=[*survey.notes, f"{printable(note)}{more}."])
 
 
-def _require_paths(paths: Sequence[Any]) -> list[Path]:
+def require_paths(paths: Sequence[Any]) -> list[Path]:
+    """Return local paths, at least one."""
     if not paths:
         raise OptionError("path", paths, "the name of a file, or a list of at least one")
     for one in paths:
@@ -361,7 +370,7 @@ def _name_apart(paths: Sequence[Path]) -> list[str]:
 
 
 def _read_path(file: Path, asked: _Asked) -> Survey | TIN:
-    if _is_folder(file) and (tiles := _list_tiles(file, asked.format)):
+    if is_folder(file) and (tiles := list_tiles(file, asked.format)):
         found = _read_several(tiles, asked)
         return _name_folder(found, file, tiles) if isinstance(found, Survey) else found
     with naming_file(file), open_ordinary_file(file) as local, unpack(local) as inner:
@@ -369,7 +378,7 @@ def _read_path(file: Path, asked: _Asked) -> Survey | TIN:
     return found if inner == file else _restore_source(found, inner, file)
 
 
-def _collect_declared(crs: CrsLike | None, elevation_unit: UnitLike | None) -> dict[str, Any]:
+def collect_declared(crs: CrsLike | None, elevation_unit: UnitLike | None) -> dict[str, Any]:
     """Return what the caller says of the coordinates, as options of a reader."""
     unit = Unit.of(elevation_unit)
     return {"crs": CRS.of(crs)} | ({} if unit is None else {"elevation_unit": unit})
@@ -397,7 +406,7 @@ def read_stream(
         As of :func:`read_with_fallbacks`.
     """
     source = Path(name)
-    declared = _collect_declared(crs, elevation_unit)
+    declared = collect_declared(crs, elevation_unit)
     with (
         naming_file(source),
         spool(stream, source) as local,
@@ -417,6 +426,47 @@ def _read_file(
     fallbacks: Mapping[str, Any],
     progress: Tell | None = None,
 ) -> Survey | TIN:
+    call = prepare_call(file, name, declared, options, fallbacks)
+    reader = call.format.load("read")
+    if progress is not None and takes_progress(reader):
+        call.options["progress"] = progress
+    with blaming(call.format, file):
+        found = reader(file, **call.options)
+    if isinstance(found, Survey | TIN):
+        require_unit(found.crs, call.stated, options)
+        return _name_source(found, file)
+    reason = f"it gives a {type(found).__name__}, no Survey and no TIN"
+    raise _blame_plug_in(call.format, file, reason)
+
+
+class Call(NamedTuple):
+    """The format of a file, and what its reader is to be called with."""
+
+    format: Format
+    options: dict[str, Any]
+    stated: Unit | None
+    """Unit of lengths that the caller tells, and the reader has no option for."""
+
+
+def prepare_call(
+    file: Path,
+    name: str | None,
+    declared: Mapping[str, Any],
+    options: Mapping[str, Any],
+    fallbacks: Mapping[str, Any] = _NO_FALLBACKS,
+) -> Call:
+    """Choose the format of a file, and check the options of its reader.
+
+    Parameters
+    ----------
+    file : Path
+    name : str, optional
+        Name of the format.
+    declared : mapping
+        As :func:`collect_declared` returns it.
+    options, fallbacks : mapping
+        As of :func:`read_with_fallbacks`.
+    """
     chosen = _choose_format(file, name, options)
     if chosen.read is None:
         raise FormatError(
@@ -424,14 +474,17 @@ def _read_file(
             f"{lookup.list_suffixes('read')} can be read.",
             known=lookup.find_suffixes("read"),
         )
-    reader = chosen.load("read")
     of_file, stated = _take_options(chosen, declared, options)
-    require_options(chosen, "read", reader, of_file)
+    require_options(chosen, "read", chosen.load("read"), of_file)
     of_file |= {name: fallbacks[name] for name in chosen.options("read") if name in fallbacks}
-    if progress is not None and takes_progress(reader):
-        of_file["progress"] = progress
+    return Call(chosen, {"crs": declared["crs"], **of_file}, stated)
+
+
+@contextmanager
+def blaming(chosen: Format, file: Path) -> Iterator[None]:
+    """Raise errors of the system, and those of a plug-in, as sentences about a file."""
     try:
-        found = reader(file, crs=declared["crs"], **of_file)
+        yield
     except OSError as error:  # a file that vanishes, a disk that fails
         if isinstance(error, TinsmithError):
             raise
@@ -440,10 +493,6 @@ def _read_file(
         if chosen.is_built_in or isinstance(error, TinsmithError):
             raise
         raise _blame_plug_in(chosen, file, describe_failure(error)) from error
-    if isinstance(found, Survey | TIN):
-        _require_unit(found, stated, options)
-        return _name_source(found, file)
-    raise _blame_plug_in(chosen, file, f"it gives a {type(found).__name__}, no Survey and no TIN")
 
 
 def _take_options(
@@ -462,18 +511,18 @@ def _take_options(
     return taken, stated
 
 
-def _require_unit(found: Survey | TIN, stated: Unit | None, options: Mapping[str, Any]) -> None:
+def require_unit(crs: CRS | None, stated: Unit | None, options: Mapping[str, Any]) -> None:
     """Refuse a unit of lengths that the CRS of the coordinates does not have.
 
     Raises
     ------
     OptionError
     """
-    if stated is None or found.crs is None or "source_crs" in options:
+    if stated is None or crs is None or "source_crs" in options:
         return
-    if found.crs.is_geographic or found.crs.horizontal_unit != stated:
-        unit = found.crs.horizontal_unit.name
-        raise OptionError("unit", stated.name, f"{unit}, the unit of {found.crs.label}")
+    if crs.is_geographic or crs.horizontal_unit != stated:
+        unit = crs.horizontal_unit.name
+        raise OptionError("unit", stated.name, f"{unit}, the unit of {crs.label}")
 
 
 def _name_source(found: Survey | TIN, file: Path) -> Survey | TIN:
@@ -492,7 +541,7 @@ def _blame_plug_in(one: Format, file: Path, reason: str) -> ReadError:
 def _choose_format(file: Path, name: str | None, options: Iterable[str] = ()) -> Format:
     """Return the format of a file that is there and not empty, or of a folder."""
     named = None if name is None else lookup.find_format(name, "read")
-    if _is_folder(file):
+    if is_folder(file):
         return _choose_format_of_folder(file, named)
     head = _read_head(file)
     if named is not None:
@@ -521,7 +570,7 @@ def _find_format_of_part(file: Path) -> Format | None:
     return next((one for one in lookup.known_formats() if name in one.part_names), None)
 
 
-def _list_tiles(folder: Path, name: str | None) -> list[Path]:
+def list_tiles(folder: Path, name: str | None) -> list[Path]:
     """Return the files of points in a folder that is no format of its own, in order of their names.
 
     Raises
@@ -558,7 +607,8 @@ def _drop_packing(file: Path) -> Path:
     return file.with_suffix("") if file.suffix.lower() in (".gz", ".zip") else file
 
 
-def _is_folder(file: Path) -> bool:
+def is_folder(file: Path) -> bool:
+    """Whether a path is a folder that can be looked at."""
     try:
         return file.is_dir()
     except (OSError, ValueError):  # as the reader of its first bytes tells better

@@ -102,6 +102,7 @@ def _iterate_parts(function: Any, arguments: dict[str, Any], limits: Limits) -> 
     _limit_time(limits)
     found = function(**arguments)
     for part in [found] if isinstance(found, Answer) else found:
+        faulthandler.cancel_dump_traceback_later()  # the program takes the part when it likes
         yield part
         _limit_time(limits)
 

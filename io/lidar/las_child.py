@@ -5,14 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...base.sentences import FILE, inflect
 from ..isolated import Answer, Refusal
 
-__all__ = ["ENVIRONMENT", "prepare", "read_points"]
+__all__ = ["ENVIRONMENT", "prepare", "read_nodes", "read_points"]
 
 _MOST_THREADS = 8
 """Each reserves some memory of its own, and there is a limit for all of them."""
@@ -48,11 +48,14 @@ def read_points(path: str, *, wanted: dict[str, Any]) -> Iterator[Answer]:
 
     ``wanted`` is a Selection as it is sent. The value counts why points were left out, as
     :class:`Tally`. The arrays hold ``xyz``, (n, 3) int32, ``classes``, the points of each class,
-    and the attributes by their names.
+    the attributes by their names, ``range``, the first point of the chunk in the file and the one
+    behind its last, and ``kept``, which of them are taken, if not all are.
     """
-    done = 0
+    done = end = 0
     for points in _prefetch(_iterate_chunks(path, wanted)):
         answer, done = _select(points, wanted, done)
+        start, end = end, end + len(points)
+        answer.arrays["range"] = np.array([start, end], np.int64)
         yield answer
 
 
@@ -158,6 +161,125 @@ def _find_finest_level(reader: Any, resolution: float | None) -> float:
     return max(0.0, float(np.ceil(np.log2(spacing / resolution))))
 
 
+# ------------------------------------------------------------------------------ boxes
+
+
+class _Nodes(NamedTuple):
+    """The nodes of an octree that hold points, in the order of the file."""
+
+    offsets: Any
+    sizes: Any
+    counts: Any
+    """Each (n,) int64: the first byte, how many bytes, and how many points."""
+    starts: Any
+    """(n,) int64, number of the first point in the file."""
+    lows: Any
+    highs: Any
+    """Both (n, 2), the sides of the nodes in the plane."""
+
+
+def read_nodes(path: str, *, wanted: dict[str, Any], box: list[float]) -> Iterator[Answer]:
+    """Yield the points of an octree in a box, as :func:`read_points`, in the order of the file.
+
+    The arrays hold ``rows``, the number of each point in the file.
+    """
+    import laspy
+
+    with open(path, "rb") as file:  # noqa: PTH123 - laspy takes a file
+        state = os.fstat(file.fileno())
+        reader = laspy.CopcReader(file, close_fd=False)
+        reader.decompression_selection = _choose_fields(wanted).to_lazrs()
+        _require_attributes(reader.header, wanted)
+        nodes = _list_nodes(reader, (path, state.st_size, state.st_mtime_ns))
+        slack = np.abs(reader.header.scales[:2])
+        is_met = ((nodes.lows - slack <= box[2:]) & (nodes.highs + slack >= box[:2])).all(axis=1)
+        chosen = np.flatnonzero(is_met)
+        groups = np.cumsum(nodes.counts[chosen]) // _CHUNK
+        for group in np.unique(groups):
+            some = chosen[groups == group]
+            points = _decompress(reader, nodes, some)
+            _require_inside(points, nodes, some, slack)
+            yield _select_in_box(points, wanted, box, _number_points(nodes, some))
+
+
+def _list_nodes(reader: Any, key: tuple[str, int, int]) -> _Nodes:
+    """Return the nodes of an octree; those of the file that was asked for last are kept."""
+    import laspy
+
+    if key not in _LAST_NODES:
+        _LAST_NODES.clear()
+        found = laspy.copc.load_octree_for_query(reader.source, reader.copc_info, reader.root_page)
+        full = sorted((one for one in found if one.point_count), key=lambda one: one.offset)
+        counts = np.array([one.point_count for one in full], np.int64)
+        if counts.sum() != reader.header.point_count:
+            raise Refusal(
+                f"{FILE} is damaged: its octree has {counts.sum():,} points, and the header tells "
+                f"of {reader.header.point_count:,}."
+            )
+        _LAST_NODES[key] = _Nodes(
+            np.array([one.offset for one in full], np.int64),
+            np.array([one.byte_size for one in full], np.int64),
+            counts,
+            np.cumsum(counts) - counts,
+            np.array([one.bounds.mins[:2] for one in full]).reshape(-1, 2),
+            np.array([one.bounds.maxs[:2] for one in full]).reshape(-1, 2),
+        )
+    return _LAST_NODES[key]
+
+
+_LAST_NODES: dict[tuple[str, int, int], _Nodes] = {}
+
+
+def _decompress(reader: Any, nodes: _Nodes, some: Any) -> Any:
+    """Return the points of some nodes."""
+    import laspy
+    import lazrs
+
+    header = reader.header
+    content = bytearray()
+    for offset, size in zip(nodes.offsets[some].tolist(), nodes.sizes[some].tolist(), strict=True):
+        reader.source.seek(offset)
+        content += reader.source.read(size)
+    counts = nodes.counts[some]
+    target = np.zeros(int(counts.sum()) * header.point_format.size, np.uint8)
+    table = list(zip(counts.tolist(), nodes.sizes[some].tolist(), strict=True))
+    lazrs.decompress_points_with_chunk_table(
+        content, reader.laszip_vlr.record_data, target, table, reader.decompression_selection
+    )
+    records = laspy.PackedPointRecord.from_buffer(target, header.point_format)
+    return laspy.ScaleAwarePointRecord(
+        records.array, records.point_format, header.scales, header.offsets
+    )
+
+
+def _number_points(nodes: _Nodes, some: Any) -> Any:
+    """Return the number in the file of each point of some nodes."""
+    counts = nodes.counts[some]
+    behind = np.repeat(nodes.starts[some] - (np.cumsum(counts) - counts), counts)
+    return np.arange(counts.sum()) + behind
+
+
+def _require_inside(points: Any, nodes: _Nodes, some: Any, slack: Any) -> None:
+    """Refuse points that do not lie in their node: others may be missing then."""
+    xy = np.stack([np.asarray(points["x"]), np.asarray(points["y"])], axis=1)
+    low = np.repeat(nodes.lows[some] - slack, nodes.counts[some], axis=0)
+    high = np.repeat(nodes.highs[some] + slack, nodes.counts[some], axis=0)
+    outside = ((xy < low) | (xy > high)).any(axis=1)
+    if outside.any():
+        row = int(_number_points(nodes, some)[np.argmax(outside)])
+        raise Refusal(
+            f"{FILE} is damaged: point {row} lies outside of the node of the octree that it is in."
+        )
+
+
+def _select_in_box(points: Any, wanted: dict[str, Any], box: list[float], rows: Any) -> Answer:
+    keep, counts, classes = _choose_points(points, points.array, wanted)
+    keep &= _test_window(points, box)
+    xyz = np.stack([points.array[axis][keep] for axis in "XYZ"], axis=1)
+    arrays = {"xyz": xyz, "classes": classes, "rows": rows[keep]}
+    return Answer(counts, arrays | _gather_attributes(points, wanted, keep))
+
+
 # -------------------------------------------------------------------------- selection
 
 
@@ -176,6 +298,8 @@ def _select(points: Any, wanted: dict[str, Any], done: int) -> tuple[Answer, int
     xyz = np.stack([record[axis][keep] for axis in "XYZ"], axis=1)
     counts |= _count_marks(points, keep)
     arrays = {"xyz": xyz, "classes": classes}
+    if not isinstance(keep, slice):
+        arrays["kept"] = (np.flatnonzero(keep) if keep.dtype == bool else keep).astype(np.int32)
     return Answer(counts, arrays | _gather_attributes(points, wanted, keep)), done
 
 

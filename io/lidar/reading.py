@@ -10,11 +10,12 @@ import numpy as np
 from ...base import optional
 from ...base.crs import CRS, Unit
 from ...base.errors import CrsError, OptionError, ReadError
+from ...base.progress import Progress
 from ...base.sentences import coordinate, counted, inflect
-from ...tin import Bounds, Survey
 from ..isolated import choose_limits, start_early, stream_isolated
-from ..isolated.limits import measure_free_memory
-from ..reprojection.placement import Placed, place, settle_unit
+from ..registry.chunks import PointChunk, StreamEnd, StreamHead, gathering
+from ..reprojection.placement import Placing, place, settle_unit
+from ..reprojection.transformation import find_conversion_factor
 from .crs import Reference, find_reference
 from .header import Header, parse_header
 from .selection import (
@@ -28,28 +29,33 @@ from .selection import (
 from .signatures import SUFFIXES, list_tiles
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Generator, Sequence
     from pathlib import Path
 
-    from ...base.arrays import AnyArray, Float64Array
+    from ...base.arrays import AnyArray, Float64Array, Int64Array
     from ...base.crs import CrsLike, UnitLike
     from ...base.progress import Tell
+    from ...tin import Bounds
+    from ..isolated import Answer
+    from ..registry.chunks import Blocks
 
-__all__ = ["read"]
+__all__ = [
+    "CHILD",
+    "Tile",
+    "describe_surplus",
+    "locate_tiles",
+    "name_attributes",
+    "read",
+    "scale",
+    "stream",
+]
 
-_CHILD = f"{__package__}.las_child"
-_BYTES_PER_POINT = 24
-_MOST_POINTS = 2**31 - 1
-"""The vertices of a TIN are numbered with 32 bits."""
-
+CHILD = f"{__package__}.las_child"
 _SOME = 4_096
-"""Points that are compared with the bounds of the header."""
-
-_SPARSE = 0.5
-"""Share of the points below which those taken are copied, so that memory is given back."""
+"""Points that are compared with the bounds of the header, spread over all."""
 
 
-def read(
+def stream(
     path: Path,
     *,
     crs: CrsLike | None = None,
@@ -62,7 +68,7 @@ def read(
     withheld: bool = False,
     attributes: str | Sequence[str] | None = None,
     progress: Tell | None = None,
-) -> Survey:
+) -> Blocks:
     """Read a lidar file, or a folder of tiles as one survey.
 
     Of a folder all files ``.las`` and ``.laz`` in it are read, in the order of their names. Points
@@ -114,26 +120,40 @@ def read(
     attributes that are kept without asking, and some 100 MB.
     """
     optional.require("laspy", "Reading lidar")
-    start_early(_CHILD)
+    start_early(CHILD)
     selection = parse_selection(classes, returns, window, resolution, every, withheld, attributes)
+    target = CRS.of(crs)
+    tiles, head = locate_tiles(path, selection, target, Unit.of(elevation_unit))
+    yield head
+    tally = Tally(np.zeros(N_CLASSES, np.int64))
+    seen = _Seen(tally, head.most_points or 0, Progress(progress))
+    notes: list[str] = []
+    for tile in tiles:
+        notes += yield from _stream_tile(tile, selection, target, head, seen)
+    seen.require_points(path, selection)
+    return StreamEnd(_collect_notes(tiles, notes, seen.tally, selection), seen.tally.skipped)
+
+
+read = gathering(stream)
+
+
+def locate_tiles(
+    path: Path, selection: Selection, target: CRS | None, declared: Unit | None
+) -> tuple[list[Tile], StreamHead]:
+    """Read the headers of a file, or of those in a folder: where the points are, and how many.
+
+    Raises
+    ------
+    ReadError, CrsError, OptionError
+        As :func:`stream`.
+    """
     headers = [parse_header(one) for one in _list_files(path)]
     _require_levels(headers, selection)
-    target, declared = CRS.of(crs), Unit.of(elevation_unit)
     tiles = [_locate(header, target, declared) for header in headers]
     _require_one_crs(tiles, target, path)
     units = _require_comparable_units(tiles, target, path)
-    gathered = _Gathered.reserve(headers, path, progress)
-    placed = [_read_tile(tile, selection, target, gathered, units[0]) for tile in tiles]
-    gathered.require_points(path, selection)
-    return Survey(
-        points=gathered.points,
-        attributes=gathered.finish_attributes(),
-        crs=placed[0].crs,
-        elevation_unit=placed[0].elevation_unit,
-        source=path.name,
-        skipped=gathered.tally.skipped,
-        notes=_collect_notes(tiles, placed, gathered.tally, selection),
-    )
+    total = sum(header.count for header in headers)
+    return tiles, StreamHead(target or tiles[0].reference.crs, units[0], total)
 
 
 def _list_files(path: Path) -> list[Path]:
@@ -165,7 +185,7 @@ def _require_levels(headers: list[Header], selection: Selection) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class _Tile:
+class Tile:
     """A file, with what its coordinates are measured in."""
 
     header: Header
@@ -173,7 +193,7 @@ class _Tile:
     unit: Unit | None
 
 
-def _locate(header: Header, target: CRS | None, declared: Unit | None) -> _Tile:
+def _locate(header: Header, target: CRS | None, declared: Unit | None) -> Tile:
     try:
         reference = find_reference(header, is_declared=target is not None)
     except CrsError as error:
@@ -186,10 +206,10 @@ def _locate(header: Header, target: CRS | None, declared: Unit | None) -> _Tile:
     wanted = target or reference.crs
     if wanted is not None and wanted.is_geographic:  # refused before the points are read
         place(middle, source=reference.crs, target=target, unit=unit)
-    return _Tile(header, reference, unit)
+    return Tile(header, reference, unit)
 
 
-def _require_one_crs(tiles: list[_Tile], target: CRS | None, path: Path) -> None:
+def _require_one_crs(tiles: list[Tile], target: CRS | None, path: Path) -> None:
     """Refuse tiles in several CRSs, unless the caller says which is wanted."""
     first = tiles[0]
     for other in tiles[1:]:
@@ -206,7 +226,7 @@ def _require_one_crs(tiles: list[_Tile], target: CRS | None, path: Path) -> None
 
 
 def _require_comparable_units(
-    tiles: list[_Tile], target: CRS | None, path: Path
+    tiles: list[Tile], target: CRS | None, path: Path
 ) -> list[Unit | None]:
     """Return the units of elevations after any reprojection; refuse known ones beside unknown."""
     units = [_foresee_unit(tile, target) for tile in tiles]
@@ -222,7 +242,7 @@ def _require_comparable_units(
     return units
 
 
-def _foresee_unit(tile: _Tile, target: CRS | None) -> Unit | None:
+def _foresee_unit(tile: Tile, target: CRS | None) -> Unit | None:
     header = tile.header
     middle = header.middle[None, :]
     return place(middle, source=tile.reference.crs, target=target, unit=tile.unit).elevation_unit
@@ -235,91 +255,25 @@ def _name_crs(crs: CRS | None) -> str:
 # ----------------------------------------------------------------------- the points
 
 
-class _Gathered:
-    """Points of one file after the other, in memory that is reserved once."""
+@dataclass(slots=True)
+class _Seen:
+    """What was seen of all files so far."""
 
-    def __init__(self, capacity: int, progress: Tell | None) -> None:
-        self._progress = progress
-        self._points = np.empty((capacity, 3))  # the system gives memory to what is filled
-        self._columns: dict[str, AnyArray] = {}
-        self.count = 0
-        self.tally = Tally(np.zeros(N_CLASSES, np.int64))
-
-    @classmethod
-    def reserve(cls, headers: list[Header], path: Path, progress: Tell | None = None) -> _Gathered:
-        """Reserve room for all points, if there is memory for so many.
-
-        Raises
-        ------
-        ReadError
-            If there is not.
-        """
-        count = sum(header.count for header in headers)
-        memory = measure_free_memory()
-        if count > _MOST_POINTS or count * _BYTES_PER_POINT > memory:
-            most = min(_MOST_POINTS, memory // _BYTES_PER_POINT)
-            raise ReadError(
-                f"'{path}' is said to have {count:,} points, and {most:,} are the most that can be "
-                "read here: read a part of it (window), or tile after tile.",
-                path=path,
-            )
-        return cls(count, progress)
-
-    def append(self, arrays: dict[str, AnyArray], header: Header) -> None:
-        """Add a chunk: coordinates are scaled as laspy does, one rounding after the other."""
-        xyz = arrays["xyz"]
-        start, end = self.count, self.count + len(xyz)
-        if end > len(self._points):
-            raise ReadError(
-                f"'{header.path}' is damaged: it holds more points than it says.", path=header.path
-            )
-        target = self._points[start:end]
-        np.multiply(xyz, header.scales, out=target)
-        target += header.offsets
-        for key, values in arrays.items():
-            if key.startswith("attribute "):
-                self._fill_column(key.removeprefix("attribute "), values, start)
-        self.count = end
-
-    def _fill_column(self, name: str, values: AnyArray, start: int) -> None:
-        column = self._columns.get(name)
-        if column is None or column.dtype != np.result_type(column, values):
-            dtype = values.dtype if column is None else np.result_type(column, values)
-            wider = np.zeros(len(self._points), dtype)
-            if column is not None:
-                wider[:start] = column[:start]
-            column = self._columns[name] = wider
-        column[start : start + len(values)] = values
-
-    def replace(self, start: int, points: Float64Array) -> None:
-        """Put other coordinates in the place of those from a row on."""
-        if (
-            points.base is not self._points
-            or points.ctypes.data != self._points[start:].ctypes.data
-        ):
-            self._points[start : self.count] = points
+    tally: Tally
+    total: int
+    """Points that the headers tell of."""
+    progress: Progress
+    taken: int = 0
+    rows: int = 0
 
     def report_progress(self) -> None:
         """Tell the share of the points that were seen, taken or not."""
-        if self._progress is not None:
-            self._progress((self.count + self.tally.left_out) / len(self._points))
-
-    @property
-    def points(self) -> Float64Array:
-        """Coordinates of all points."""
-        return self._shrink(self._points)
-
-    def _shrink(self, values: AnyArray) -> AnyArray:
-        part = values[: self.count]
-        return part.copy() if self.count < _SPARSE * len(values) else part
-
-    def finish_attributes(self) -> dict[str, AnyArray]:
-        """Return the attributes of all points."""
-        return {name: self._shrink(column) for name, column in self._columns.items()}
+        if self.total:
+            self.progress((self.taken + self.tally.left_out) / self.total)
 
     def require_points(self, path: Path, selection: Selection) -> None:
         """Refuse a selection that leaves nothing, and say what there is."""
-        if self.count:
+        if self.taken:
             return
         tally = self.tally
         there = ", ".join(describe_classes(tally, selection)).rstrip(".")
@@ -339,70 +293,126 @@ class _Gathered:
         )
 
 
-def _read_tile(
-    tile: _Tile, selection: Selection, target: CRS | None, gathered: _Gathered, unit: Unit | None
-) -> Placed:
-    """Add the points of a file that are wanted, in the CRS and the unit that are wanted."""
-    header, start = tile.header, gathered.count
+def _stream_tile(
+    tile: Tile, selection: Selection, target: CRS | None, head: StreamHead, seen: _Seen
+) -> Generator[StreamHead | PointChunk, None, list[str]]:
+    """Yield the points of a file that are wanted, in the CRS and the unit that are wanted."""
+    header = tile.header
+    placing = Placing(tile.reference.crs, target, tile.unit)
+    beyond = _Beyond(header)
     with stream_isolated(
-        f"{_CHILD}:read_points",
+        f"{CHILD}:read_points",
         {"path": str(header.path.absolute()), "wanted": selection.to_request()},
         path=header.path,
         limits=choose_limits(header.size),
     ) as parts:
         for part in parts:
-            gathered.tally.add(part.value, part.arrays["classes"])
-            gathered.append(part.arrays, header)
-            gathered.report_progress()
-    own = gathered._points[start : gathered.count]
-    odd = _describe_outside(own, header)
-    placed = place(own, source=tile.reference.crs, target=target, unit=tile.unit)
-    gathered.replace(start, placed.points)
-    placed = placed._replace(notes=(*placed.notes, *odd))
-    theirs = placed.elevation_unit
-    if theirs is None or unit is None or theirs == unit:
-        return placed
-    own[:, 2] *= (theirs.metres or 1.0) / (unit.metres or 1.0)
-    note = f"The elevations of '{header.path.name}' were converted from {theirs} to {unit}."
-    return placed._replace(notes=(*placed.notes, note))
+            own = scale(part.arrays["xyz"], header)
+            rows = _find_rows(part, header) + seen.rows
+            seen.tally.add(part.value, part.arrays["classes"])
+            if len(own) == 0:
+                continue
+            beyond.add(own)
+            placed = placing.add(own)
+            if seen.taken == 0 and (placed.crs, placed.elevation_unit) != head[:2]:
+                head = StreamHead(placed.crs, placed.elevation_unit, head.most_points)
+                yield head
+            seen.taken += len(own)
+            factor = find_conversion_factor(placed.elevation_unit, head.elevation_unit)
+            if factor != 1.0:
+                placed.points[:, 2] *= factor
+            yield PointChunk(placed.points, rows, name_attributes(part))
+            seen.report_progress()
+    seen.rows += header.count
+    notes = [*placing.finish(), *beyond.describe()]
+    theirs, unit = placing.elevation_unit, head.elevation_unit
+    if theirs is not None and unit is not None and theirs != unit:
+        notes.append(
+            f"The elevations of '{header.path.name}' were converted from {theirs} to {unit}."
+        )
+    return notes
 
 
-def _describe_outside(points: Float64Array, header: Header) -> list[str]:
-    """Tell of points beyond the bounds that the header gives, looking at some of them."""
-    some = points[:: max(1, len(points) // _SOME)]
-    low, high = header.low, header.high
-    if len(some) == 0 or not np.isfinite([low, high]).all() or not (low != high).any():
-        return []
-    with np.errstate(over="ignore"):
-        slack = (high - low) / 100 + np.abs(header.scales)
-        count = int(((some < low - slack) | (some > high + slack)).any(axis=1).sum())
-    if count == 0:
-        return []
-    box = [
-        f"{name} {coordinate(a)} to {coordinate(b)}"
-        for name, a, b in zip("xyz", low, high, strict=True)
-    ]
-    return [
-        f"{count:,} of {counted(len(some), 'point')} looked at {inflect('[lies|lie]', count)} "
-        f"outside the bounds that '{header.path.name}' gives ({', '.join(box)}): these, "
-        "its scales or its offsets are wrong."
-    ]
+def scale(xyz: AnyArray, header: Header) -> Float64Array:
+    """Return coordinates of whole numbers as laspy does, one rounding after the other."""
+    points = np.empty(xyz.shape)
+    np.multiply(xyz, header.scales, out=points)
+    points += header.offsets
+    return points
+
+
+def _find_rows(part: Answer, header: Header) -> Int64Array:
+    """Return the place of each point of a chunk among those of its file."""
+    start, end = part.arrays["range"].tolist()
+    if end > header.count:
+        raise ReadError(
+            f"'{header.path}' is damaged: it holds more points than it says.", path=header.path
+        )
+    kept = part.arrays.get("kept")
+    return np.arange(start, end) if kept is None else kept.astype(np.int64) + start
+
+
+def name_attributes(part: Answer) -> dict[str, AnyArray]:
+    """Return the attributes of a chunk by their names."""
+    return {
+        name.removeprefix("attribute "): values
+        for name, values in part.arrays.items()
+        if name.startswith("attribute ")
+    }
+
+
+class _Beyond:
+    """Points beyond the bounds that the header gives, of some that are looked at."""
+
+    def __init__(self, header: Header) -> None:
+        self._header = header
+        low, high = header.low, header.high
+        self._is_bounded = bool(np.isfinite([low, high]).all() and (low != high).any())
+        with np.errstate(over="ignore", invalid="ignore"):
+            slack = (high - low) / 100 + np.abs(header.scales)
+            self._low, self._high = low - slack, high + slack
+        self._stride = max(1, header.count // _SOME)
+        self._seen = self._looked_at = self._count = 0
+
+    def add(self, points: Float64Array) -> None:
+        """Look at some of further points."""
+        some = points[-self._seen % self._stride :: self._stride]
+        self._seen += len(points)
+        self._looked_at += len(some)
+        if self._is_bounded:
+            self._count += int(((some < self._low) | (some > self._high)).any(axis=1).sum())
+
+    def describe(self) -> list[str]:
+        """Tell of the points beyond."""
+        if self._count == 0:
+            return []
+        header = self._header
+        box = [
+            f"{name} {coordinate(a)} to {coordinate(b)}"
+            for name, a, b in zip("xyz", header.low, header.high, strict=True)
+        ]
+        return [
+            f"{self._count:,} of {counted(self._looked_at, 'point')} looked at "
+            f"{inflect('[lies|lie]', self._count)} outside the bounds that "
+            f"'{header.path.name}' gives ({', '.join(box)}): these, its scales or its offsets are "
+            "wrong."
+        ]
 
 
 # ------------------------------------------------------------------------- the notes
 
 
 def _collect_notes(
-    tiles: list[_Tile], placed: list[Placed], tally: Tally, selection: Selection
+    tiles: list[Tile], placed: list[str], tally: Tally, selection: Selection
 ) -> list[str]:
     notes = [note for tile in tiles for note in tile.reference.notes]
-    notes += [note for one in placed for note in one.notes]
+    notes += placed
     notes += describe_classes(tally, selection) + describe_marks(tally)
-    notes += [note for tile in tiles for note in _describe_surplus(tile.header)]
+    notes += [note for tile in tiles for note in describe_surplus(tile.header)]
     return list(dict.fromkeys(notes))
 
 
-def _describe_surplus(header: Header) -> list[str]:
+def describe_surplus(header: Header) -> list[str]:
     """Tell that a file has room for more points than it says it holds."""
     more = header.surplus // header.point_bytes
     if header.is_compressed or more == 0:

@@ -128,13 +128,13 @@ class Tally:
 
 
 def parse_selection(
-    classes: int | str | Sequence[int] | None,
-    returns: int | str | Sequence[int | str] | None,
-    window: Bounds | Sequence[float] | None,
-    resolution: float | None,
-    every: int,
-    withheld: bool,
-    attributes: str | Sequence[str] | None,
+    classes: int | str | Sequence[int] | None = None,
+    returns: int | str | Sequence[int | str] | None = None,
+    window: Bounds | Sequence[float] | None = None,
+    resolution: float | None = None,
+    every: int = 1,
+    withheld: bool = False,
+    attributes: str | Sequence[str] | None = None,
 ) -> Selection:
     """Check what the caller asks for.
 

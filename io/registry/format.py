@@ -89,6 +89,15 @@ class Format:
         Other files that a file names and that are read with it, by its path.
     read_cells : str, optional
         ``"module:function"`` of a function that reads a file of cells as a Raster.
+    stream : str, optional
+        ``"module:function"`` of a generator that takes what the reader does and gives the points
+        chunk by chunk, see :mod:`tinsmith.io.registry.chunks`; the reader gathers them.
+    describe : str, optional
+        ``"module:function"`` of a function that takes what the reader does and returns a
+        SourceHeader, of the file's headers alone.
+    read_box : str, optional
+        ``"module:function"`` of a function that takes a path, Bounds and what the reader does, and
+        reads the points of a box where they are.
     is_text : bool
         Whether a file that was written is text, which a terminal can show.
     has_layers : bool
@@ -149,6 +158,9 @@ class Format:
     side_files: Mapping[str, tuple[str, ...]] = field(default_factory=dict, hash=False)
     find_sources: Callable[[Path], Sequence[Path]] | None = None
     read_cells: str | None = None
+    stream: str | None = None
+    describe: str | None = None
+    read_box: str | None = None
     is_text: bool = False
     has_layers: bool = False
     holds_classes: bool = False

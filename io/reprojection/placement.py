@@ -9,14 +9,14 @@ import numpy as np
 from ...base.crs import CRS, require_same_unit
 from ...base.errors import CrsError, ReadError
 from ...base.sentences import FILE, coordinate
-from .contradictions import are_small_degrees, look_at_degrees, look_at_order, look_at_place
+from .contradictions import Places, are_small_degrees
 from .transformation import convert_elevations, find_utm_zone, reproject, transform_points
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...base.crs import Unit
 
-__all__ = ["DegreesError", "Placed", "place", "settle_unit"]
+__all__ = ["DegreesError", "Placed", "Placing", "place", "settle_unit"]
 
 _WGS84 = "EPSG:4326"
 _MOST_DEGREES = 540.0
@@ -65,25 +65,139 @@ def place(
         If they cannot be transformed, or contradict their CRS: they lie in its area of use only
         exchanged, or only as degrees.
     """
-    notes: tuple[str, ...] = ()
-    if source is None and target is not None and are_small_degrees(points, target):
-        source = CRS.of(_WGS84)
-        notes = (
-            f"The file names no CRS, and its coordinates lie in the area of {target.label} as "
-            "longitude and latitude only: they were taken to be degrees of WGS 84.",
+    placing = Placing(source, target, unit, looks_at_area, looks_at_order)
+    placing.look(points)
+    noted = placing.describe()
+    placed = placing.move(points)
+    return placed._replace(notes=(*noted, *placed.notes), noted=noted)
+
+
+class Placing:
+    """Points of a file that are placed block by block, each by itself: see :func:`place`.
+
+    Parameters
+    ----------
+    source, target, unit, looks_at_area, looks_at_order
+        As of :func:`place`.
+
+    Notes
+    -----
+    What a CRS is contradicted by is told of all points together, at the end. Whether coordinates
+    without a CRS are degrees is decided by the first block; a later one that contradicts is
+    refused.
+    """
+
+    def __init__(
+        self,
+        source: CRS | None,
+        target: CRS | None,
+        unit: Unit | None = None,
+        looks_at_area: bool = True,
+        looks_at_order: bool | None = None,
+    ) -> None:
+        self._source, self._target, self._unit = source, target, unit
+        is_open = looks_at_area if looks_at_order is None else looks_at_order
+        self._looks = (looks_at_area, is_open)
+        self._places: Places | None = None
+        self._degrees: Float64Array | None = None
+        self._count = 0
+        self._notes: tuple[str, ...] = ()
+        self._last = Placed(np.empty((0, 3)), None, None, ())
+
+    def add(self, points: Float64Array) -> Placed:
+        """Place further points, (n, 3); the notes are those of the transformation alone.
+
+        Raises
+        ------
+        ReadError, CrsError
+            As :func:`place`.
+        """
+        if len(points) == 0:
+            return self._last._replace(points=points)
+        self.look(points)
+        try:
+            self._last = self.move(points)
+        except CrsError:
+            self.describe()  # a contradiction tells more than a point without an image
+            raise
+        self._count += len(points)
+        return self._last
+
+    @property
+    def elevation_unit(self) -> Unit | None:
+        """Unit of the elevations of the points that were placed; None before the first."""
+        return self._last.elevation_unit
+
+    def finish(self) -> tuple[str, ...]:
+        """Return what is to be told of all points, in sentences.
+
+        Raises
+        ------
+        CrsError
+            If they contradict their CRS.
+        """
+        return (*self.describe(), *self._last.notes)
+
+    def look(self, points: Float64Array) -> None:
+        """Look at further points as they are in the file."""
+        source, target = self._source, self._target
+        if self._places is None:
+            if source is None and target is not None and are_small_degrees(points, target):
+                self._source = source = CRS.of(_WGS84)
+                self._degrees = points
+                self._notes = (
+                    f"The file names no CRS, and its coordinates lie in the area of {target.label} "
+                    "as longitude and latitude only: they were taken to be degrees of WGS 84.",
+                )
+            wanted = target if target is not None else source
+            if wanted is not None and wanted.is_geographic:
+                _refuse_degrees(points, wanted, source or wanted)
+            looks_at_area, looks_at_order = self._looks
+            self._places = Places(
+                source,
+                target,
+                looks_at_area=looks_at_area,
+                looks_at_order=looks_at_order and source is None,
+            )
+        elif self._degrees is not None:
+            self._degrees = _require_small_degrees(self._degrees, points, target, self._count)
+        self._places.add(points)
+
+    def describe(self) -> tuple[str, ...]:
+        """Tell what is odd of the points that were looked at.
+
+        Raises
+        ------
+        CrsError
+            If they contradict their CRS.
+        """
+        return self._notes if self._places is None else (*self._notes, *self._places.describe())
+
+    def move(self, points: Float64Array) -> Placed:
+        """Bring points to their place."""
+        source = self._source
+        wanted = self._target if self._target is not None else source
+        if source is None or wanted is None or source.is_same(wanted):
+            return _keep_in_place(points, wanted, self._unit)
+        moved = reproject(points, source, wanted, unit=self._unit, first_row=self._count)
+        return Placed(moved.points, wanted, moved.unit, moved.notes)
+
+
+def _require_small_degrees(
+    before: Float64Array, points: Float64Array, target: CRS | None, first_row: int
+) -> Float64Array:
+    """Return the outermost points; refuse further ones that are no degrees as those before were."""
+    both = np.concatenate([before, points])
+    if target is None or not are_small_degrees(both, target):
+        x, y = points[0, :2].tolist()
+        raise CrsError(
+            f"the points before point {first_row} lie in the area of use as longitude and "
+            f"latitude in degrees only, and those from it on ({coordinate(x)}, {coordinate(y)}) do "
+            "not: name the CRS of the file.",
+            crs=target,
         )
-    wanted = target if target is not None else source
-    if wanted is not None and wanted.is_geographic:
-        _refuse_degrees(points, wanted, source or wanted)
-    outside = look_at_place(points, source, target) if looks_at_area else ()
-    is_open = source is None and (looks_at_area if looks_at_order is None else looks_at_order)
-    order = look_at_order(points, target) if is_open else ()
-    noted = (*notes, *(outside or look_at_degrees(points, source or target)), *order)
-    if source is None or wanted is None or source.is_same(wanted):
-        placed = _keep_in_place(points, wanted, unit)
-        return placed._replace(notes=(*noted, *placed.notes), noted=noted)
-    moved = reproject(points, source, wanted, unit=unit)
-    return Placed(moved.points, wanted, moved.unit, (*noted, *moved.notes), noted)
+    outermost = [*both[:, :2].argmin(axis=0), *both[:, :2].argmax(axis=0)]
+    return both[outermost]
 
 
 def _keep_in_place(points: Float64Array, crs: CRS | None, unit: Unit | None) -> Placed:

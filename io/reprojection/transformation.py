@@ -12,6 +12,7 @@ import numpy as np
 from ...base.crs import CRS, METRE, UNKNOWN, Unit, assume_elevation_unit
 from ...base.errors import CrsError
 from ...base.sentences import coordinate, counted
+from ...tin import Bounds
 from ...tin.validation.points import as_points
 from .quality import Quality, describe_missing_grids, judge
 
@@ -24,6 +25,7 @@ __all__ = [
     "LengthUnit",
     "Reprojected",
     "convert_elevations",
+    "find_bounds",
     "find_conversion_factor",
     "find_utm_zone",
     "is_geographic",
@@ -31,6 +33,9 @@ __all__ = [
     "reproject",
     "transform_points",
 ]
+
+_BETWEEN = 99
+"""Points between the corners of a box that is brought to another CRS."""
 
 LengthUnit = Unit
 """The name of :class:`tinsmith.Unit` in the first version."""
@@ -119,6 +124,7 @@ def reproject(
     unit: Unit | None,
     wanted: Unit | None = None,
     needs_datum: bool = True,
+    first_row: int = 0,
 ) -> Reprojected:
     """Transform points, and convert their elevations where the unit changes.
 
@@ -134,6 +140,8 @@ def reproject(
     needs_datum : bool
         Refuse to change the vertical axis where PROJ lacks the grid for it; else elevations keep
         their datum, and ``quality`` says so.
+    first_row : int
+        What the first point is called where a point has no image.
 
     Raises
     ------
@@ -152,12 +160,12 @@ def reproject(
     wanted = target.vertical_unit or wanted or target.usual_elevation_unit or had
     if source.vertical_unit is not None and target.vertical_unit is not None:
         points = _scale_elevations(points, known, source.vertical_unit)
-        moved, quality = _transform(points, source, target)
+        moved, quality = _transform(points, source, target, first_row)
         if quality.keeps_datum and needs_datum:
             raise _describe_missing_datum(source, target)
     else:
         # In the plane alone: PROJ would let the elevation, whatever its unit, move the place.
-        xy, quality = _transform(points[:, :2], source.horizontal, target.horizontal)
+        xy, quality = _transform(points[:, :2], source.horizontal, target.horizontal, first_row)
         moved = np.column_stack([xy, points[:, 2]])
         moved = _scale_elevations(moved, had, wanted)
     is_known = known is not None or target.vertical_unit is not None
@@ -211,7 +219,9 @@ def _note_conversion(
     )
 
 
-def _transform(points: Float64Array, source: CRS, target: CRS) -> tuple[Float64Array, Quality]:
+def _transform(
+    points: Float64Array, source: CRS, target: CRS, first_row: int
+) -> tuple[Float64Array, Quality]:
     import pyproj
     from pyproj.exceptions import ProjError
 
@@ -223,11 +233,14 @@ def _transform(points: Float64Array, source: CRS, target: CRS) -> tuple[Float64A
         moved = np.stack(transformer.transform(*points.T), axis=1)
     except ProjError as error:
         raise CrsError(f"No transformation {names} is known.", crs=target) from error
-    _require_images(points, moved, names, target)
+    _require_images(points, moved, (names, first_row), target)
     return moved, judge(source, target, transformer) if len(points) else Quality()
 
 
-def _require_images(points: Float64Array, moved: Float64Array, names: str, target: CRS) -> None:
+def _require_images(
+    points: Float64Array, moved: Float64Array, named: tuple[str, int], target: CRS
+) -> None:
+    names, first_row = named
     lost = ~np.isfinite(moved).all(axis=1)
     if lost.any():
         row = int(np.argmax(lost))
@@ -235,7 +248,7 @@ def _require_images(points: Float64Array, moved: Float64Array, names: str, targe
         count = int(lost.sum())
         raise CrsError(
             f"{counted(count, 'point')} {'has' if count == 1 else 'have'} no image {names} "
-            f"(first: point {row} at {coordinate(x)}, {coordinate(y)}): "
+            f"(first: point {first_row + row} at {coordinate(x)}, {coordinate(y)}): "
             "check that the CRS of the points is the right one.",
             crs=target,
         )
@@ -255,3 +268,26 @@ def find_utm_zone(longitude: float, latitude: float) -> str:
         return "EPSG:32761"
     zone = int((longitude + 180.0) % 360.0 // 6.0) + 1
     return f"EPSG:{326 if latitude >= 0 else 327}{zone:02d}"
+
+
+def find_bounds(
+    low: Float64Array, high: Float64Array, source: CRS | None, target: CRS | None
+) -> Bounds | None:
+    """Return bounds, given by two corners, in another CRS; None if they are none there.
+
+    The sides are followed by points between, which a curve between them may leave by a little.
+    """
+    import pyproj
+    from pyproj.exceptions import ProjError
+
+    box = [*low.tolist(), *high.tolist()]
+    if source is not None and target is not None and not source.is_same(target):
+        try:
+            transformer = pyproj.Transformer.from_crs(
+                source.horizontal.to_pyproj(), target.horizontal.to_pyproj(), always_xy=True
+            )
+            box = list(transformer.transform_bounds(*box, densify_pts=_BETWEEN))
+        except ProjError:
+            return None
+    is_box = np.isfinite(box).all() and box[0] <= box[2] and box[1] <= box[3]
+    return Bounds(*map(float, box)) if is_box else None

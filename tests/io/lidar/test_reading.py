@@ -593,9 +593,9 @@ def test_no_points(tmp_path):
 def test_points_that_memory_cannot_hold_are_refused_before_any_is_asked_for(
     tmp_path, cloud, monkeypatch
 ):
-    from tinsmith.io.lidar import reading
+    from tinsmith.io.registry import chunks
 
-    monkeypatch.setattr(reading, "measure_free_memory", lambda: 24 * 499)
+    monkeypatch.setattr(chunks, "measure_free_memory", lambda: 24 * 499)
     assert "499 are the most" in refuse(tmp_path / "cloud.laz")
 
 

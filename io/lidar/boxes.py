@@ -1,0 +1,148 @@
+"""What the headers of lidar say of its points, and the points of a box of an octree (COPC)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...base import optional
+from ...base.crs import CRS, Unit
+from ...base.errors import OptionError, ReadError
+from ...tin import Bounds
+from ..isolated import choose_limits, start_early, stream_isolated
+from ..registry.chunks import PointChunk, SourceHeader, join_chunks, make_source_header
+from ..reprojection.contradictions import are_small_degrees
+from ..reprojection.placement import Placing
+from ..reprojection.transformation import find_bounds
+from .reading import CHILD, Tile, describe_surplus, locate_tiles, name_attributes, scale
+from .selection import Selection, parse_selection
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ...base.crs import CrsLike, UnitLike
+
+__all__ = ["describe", "read_box"]
+
+
+def describe(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    elevation_unit: UnitLike | None = None,
+    **options: Any,
+) -> SourceHeader:
+    """Tell what the headers of a file, or of the tiles of a folder, say of its points.
+
+    Parameters
+    ----------
+    path : Path
+    crs, elevation_unit, **options
+        As of the reader.
+
+    Raises
+    ------
+    ReadError, CrsError, OptionError, MissingExtraError
+        As the reader, as far as headers tell.
+    """
+    optional.require("laspy", "Reading lidar")
+    selection = parse_selection(**options)
+    target = CRS.of(crs)
+    tiles, head = locate_tiles(path, selection, target, Unit.of(elevation_unit))
+    notes = [note for tile in tiles for note in tile.reference.notes]
+    notes += [note for tile in tiles for note in describe_surplus(tile.header)]
+    return make_source_header(
+        path,
+        "las",
+        count=head.most_points,
+        bounds=_find_bounds(tiles, target),
+        crs=head.crs,
+        elevation_unit=head.elevation_unit,
+        has_boxes=not _find_obstacle(tiles, target, selection),
+        notes=tuple(dict.fromkeys(notes)),
+    )
+
+
+def _find_bounds(tiles: list[Tile], target: CRS | None) -> Bounds | None:
+    """Return the bounds that the headers give, in the CRS that is wanted."""
+    boxes = [(one.header.low, one.header.high, one.reference.crs) for one in tiles]
+    found = [find_bounds(low[:2], high[:2], source, target) for low, high, source in boxes]
+    known = [box for box in found if box is not None]
+    if not known or len(known) < len(found):
+        return None
+    sides = np.array([[box.xmin, box.ymin, box.xmax, box.ymax] for box in known])
+    return Bounds(*sides[:, :2].min(axis=0).tolist(), *sides[:, 2:].max(axis=0).tolist())
+
+
+def _find_obstacle(tiles: list[Tile], target: CRS | None, selection: Selection) -> str:
+    """Return why points cannot be read by box; empty if they can."""
+    if len(tiles) > 1 or not tiles[0].header.is_copc:
+        return "has no octree (COPC)"
+    source, header = tiles[0].reference.crs, tiles[0].header
+    corners = np.array([header.low, header.high])
+    if target is not None and source is None and are_small_degrees(corners, target):
+        return "may be in degrees"
+    if target is not None and source is not None and not source.is_same(target):
+        return "would be reprojected"
+    if selection.window is not None or selection.resolution is not None:
+        return "is read by the options `window` or `resolution` already"
+    return ""
+
+
+def read_box(
+    path: Path,
+    bounds: Bounds,
+    *,
+    crs: CrsLike | None = None,
+    elevation_unit: UnitLike | None = None,
+    **options: Any,
+) -> PointChunk:
+    """Read the points of an octree that lie in a box, in the order of the file.
+
+    Parameters
+    ----------
+    path : Path
+    bounds : Bounds
+        In the CRS of the file; the edges belong to it.
+    crs, elevation_unit, **options
+        As of the reader.
+
+    Raises
+    ------
+    ReadError
+        If the file has no octree that holds all of its points, or the points lie elsewhere than it
+        says.
+    OptionError
+        If the option ``every`` counts points over the whole file.
+    """
+    optional.require("laspy", "Reading lidar")
+    start_early(CHILD)
+    selection = parse_selection(**options)
+    target = CRS.of(crs)
+    tiles, _ = locate_tiles(path, selection, target, Unit.of(elevation_unit))
+    obstacle = _find_obstacle(tiles, target, selection)
+    if obstacle:
+        raise ReadError(f"'{path}' {obstacle}: its points cannot be read by box.", path=path)
+    if selection.every > 1:
+        raise OptionError("every", selection.every, "1, where points are read by box")
+    return _read_nodes(tiles[0], bounds, selection, target)
+
+
+def _read_nodes(tile: Tile, bounds: Bounds, selection: Selection, target: CRS | None) -> PointChunk:
+    header = tile.header
+    placing = Placing(tile.reference.crs or target, target, tile.unit)
+    box = [bounds.xmin, bounds.ymin, bounds.xmax, bounds.ymax]
+    chunks = []
+    with stream_isolated(
+        f"{CHILD}:read_nodes",
+        {"path": str(header.path.absolute()), "wanted": selection.to_request(), "box": box},
+        path=header.path,
+        limits=choose_limits(header.size),
+    ) as parts:
+        for part in parts:
+            placed = placing.add(scale(part.arrays["xyz"], header))
+            chunks.append(PointChunk(placed.points, part.arrays["rows"], name_attributes(part)))
+    return (
+        join_chunks(chunks) if chunks else PointChunk(np.empty((0, 3)), np.empty(0, np.int64), {})
+    )

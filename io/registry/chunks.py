@@ -1,0 +1,270 @@
+"""What a reader gives that reads a file part by part: chunks of points, and what is told of all."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import wraps
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+
+import numpy as np
+
+from ...base.errors import ReadError
+from ...base.sentences import FILE
+from ...tin import Survey
+from ..isolated.limits import measure_free_memory
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from ...base.arrays import AnyArray, Float64Array, Int64Array
+    from ...base.crs import CRS, Unit
+    from ...tin import Bounds
+
+__all__ = [
+    "Blocks",
+    "PointChunk",
+    "SourceHeader",
+    "StreamEnd",
+    "StreamHead",
+    "gathering",
+    "join_chunks",
+    "make_source_header",
+]
+
+_BYTES_PER_POINT = 24
+_MOST_POINTS = 2**31 - 1
+"""The vertices of a TIN are numbered with 32 bits."""
+
+_SPARSE = 0.5
+"""Share of the points below which those taken are copied, so that memory is given back."""
+
+
+class PointChunk(NamedTuple):
+    """Some points of a file.
+
+    Attributes
+    ----------
+    points : (n, 3) float64 array
+        In the CRS that is wanted.
+    rows : (n,) int64 array
+        Where they stand in the file, ascending: lines of a text counted from 1, else records,
+        features or cells counted from 0, those that are left out included.
+    attributes : dict of str to (n,) array
+        Those of the tiles that the points are from, where tiles have different ones.
+    """
+
+    points: Float64Array
+    rows: Int64Array
+    attributes: dict[str, AnyArray]
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def take(self, part: Any) -> PointChunk:
+        """Return some of the points, by a slice, numbers or a mask."""
+        attributes = {name: values[part] for name, values in self.attributes.items()}
+        return PointChunk(self.points[part], self.rows[part], attributes)
+
+
+class StreamHead(NamedTuple):
+    """What the points of a stream are measured in; it may come again before the first chunk."""
+
+    crs: CRS | None
+    elevation_unit: Unit | None
+    most_points: int | None = None
+    """How many there are at most; None if that is not known."""
+
+
+@dataclass(frozen=True, slots=True)
+class StreamEnd:
+    """What a reader tells once it has seen all points."""
+
+    notes: Sequence[str] = ()
+    skipped: Mapping[str, int] = field(default_factory=dict)
+    more: Mapping[str, Any] = field(default_factory=dict)
+    """Further attributes of the survey."""
+
+
+Blocks: TypeAlias = Generator["StreamHead | PointChunk", None, StreamEnd]
+"""A head, chunks of sizes that the reader chooses, and the end as what the generator returns."""
+
+
+@dataclass(frozen=True, slots=True)
+class SourceHeader:
+    """What the headers of a file say of its points.
+
+    Attributes
+    ----------
+    path : Path
+    format : str
+    size : int
+        Bytes of the file.
+    mtime_ns : int
+        When it was changed last, in nanoseconds.
+    count : int, optional
+        Points in the file, those included that options leave out; None if it does not say.
+    bounds : Bounds, optional
+        Of the points, in the CRS that is wanted, as the file says; None if it does not say.
+    crs : CRS, optional
+        The CRS that is wanted, else that of the file.
+    elevation_unit : Unit, optional
+    has_boxes : bool
+        Whether :func:`tinsmith.io.streaming.read_box` reads it, with these options.
+    notes : tuple of str
+    """
+
+    path: Path
+    format: str
+    size: int
+    mtime_ns: int
+    count: int | None = None
+    bounds: Bounds | None = None
+    crs: CRS | None = None
+    elevation_unit: Unit | None = None
+    has_boxes: bool = False
+    notes: tuple[str, ...] = ()
+
+
+def make_source_header(path: Path, name: str, **told: Any) -> SourceHeader:
+    """Return the header of a file, or of the files of a folder, of a format."""
+    files = [path] if not path.is_dir() else [one for one in path.rglob("*") if one.is_file()]
+    stats = [one.stat() for one in files]
+    size = sum(one.st_size for one in stats)
+    changed = max((one.st_mtime_ns for one in stats), default=path.stat().st_mtime_ns)
+    return SourceHeader(path, name, size, changed, **told)
+
+
+def join_chunks(chunks: Sequence[PointChunk]) -> PointChunk:
+    """Return chunks as one; attributes that some of them lack are 0 there."""
+    if len(chunks) == 1:
+        return chunks[0]
+    names = dict.fromkeys(name for chunk in chunks for name in chunk.attributes)
+    return PointChunk(
+        np.concatenate([chunk.points for chunk in chunks]),
+        np.concatenate([chunk.rows for chunk in chunks]),
+        {name: _join_columns(chunks, name) for name in names},
+    )
+
+
+def _join_columns(chunks: Sequence[PointChunk], name: str) -> AnyArray:
+    known = next(chunk.attributes[name] for chunk in chunks if name in chunk.attributes)
+    columns = [
+        chunk.attributes.get(name, np.zeros(len(chunk), known.dtype))
+        for chunk in chunks
+        if len(chunk)
+    ]
+    return np.concatenate(columns) if columns else known
+
+
+def gathering(stream: Callable[..., Blocks]) -> Callable[..., Survey]:
+    """Return the reader that gathers what a streaming one gives.
+
+    Parameters
+    ----------
+    stream : callable
+        Takes the path and the options of the reader.
+    """
+
+    @wraps(stream)
+    def read(path: Path, **options: Any) -> Survey:
+        return _gather(stream(path, **options), path)
+
+    read.__name__ = "read"
+    return read
+
+
+def _gather(blocks: Blocks, path: Path) -> Survey:
+    gathered = _Gathered()
+    head = StreamHead(None, None)
+    while True:
+        try:
+            item = next(blocks)
+        except StopIteration as stop:
+            end: StreamEnd = stop.value
+            break
+        if isinstance(item, StreamHead):
+            head = item
+            gathered.reserve(head)
+        else:
+            gathered.append(item)
+    return Survey(
+        points=gathered.points,
+        attributes=gathered.finish_attributes(),
+        crs=head.crs,
+        elevation_unit=head.elevation_unit,
+        source=path.name,
+        skipped=end.skipped,
+        notes=end.notes,
+        **end.more,
+    )
+
+
+class _Gathered:
+    """Chunks one behind the other, in memory that is reserved once where their number is known."""
+
+    def __init__(self) -> None:
+        self._points = np.empty((0, 3))
+        self._columns: dict[str, AnyArray] = {}
+        self._chunks: list[PointChunk] | None = None
+        self._count = 0
+
+    def reserve(self, head: StreamHead) -> None:
+        """Reserve room for all points, if there is memory for so many.
+
+        Raises
+        ------
+        ReadError
+            If there is not.
+        """
+        count = head.most_points
+        if count is None:
+            self._chunks = []
+            return
+        memory = measure_free_memory()
+        if count > _MOST_POINTS or count * _BYTES_PER_POINT > memory:
+            most = min(_MOST_POINTS, memory // _BYTES_PER_POINT)
+            raise ReadError(
+                f"{FILE} is said to have {count:,} points, and {most:,} are the most that can be "
+                "read here: read a part of it (window), or tile after tile.",
+            )
+        self._points = np.empty((count, 3))  # the system gives memory to what is filled
+
+    def append(self, chunk: PointChunk) -> None:
+        """Add a chunk."""
+        if self._chunks is not None:
+            self._chunks.append(chunk)
+            return
+        end = self._count + len(chunk)
+        self._points[self._count : end] = chunk.points
+        for name, values in chunk.attributes.items():
+            self._fill_column(name, values)
+        self._count = end
+
+    def _fill_column(self, name: str, values: AnyArray) -> None:
+        start, column = self._count, self._columns.get(name)
+        if column is None or column.dtype != np.result_type(column, values):
+            dtype = values.dtype if column is None else np.result_type(column, values)
+            wider = np.zeros(len(self._points), dtype)
+            if column is not None:
+                wider[:start] = column[:start]
+            column = self._columns[name] = wider
+        column[start : start + len(values)] = values
+
+    @property
+    def points(self) -> Float64Array:
+        """Coordinates of all points."""
+        if self._chunks is not None:
+            joined = join_chunks(self._chunks)
+            self._points, self._columns, self._count = joined.points, joined.attributes, len(joined)
+            self._chunks = None
+        return self._shrink(self._points)
+
+    def _shrink(self, values: AnyArray) -> AnyArray:
+        part = values[: self._count]
+        return part.copy() if self._count < _SPARSE * len(values) else part
+
+    def finish_attributes(self) -> dict[str, AnyArray]:
+        """Return the attributes of all points."""
+        return {name: self._shrink(column) for name, column in self._columns.items()}
