@@ -31,6 +31,7 @@ from .isolated.spooling import (
     spool,
     translate_system_errors,
 )
+from .lidar.signatures import list_tiles as list_lidar_tiles
 from .raster.virtual import is_virtual
 from .registry import lookup, signatures
 from .registry.format import Format, require_options, takes_progress
@@ -50,6 +51,7 @@ __all__ = [
     "detect",
     "is_folder",
     "join_files",
+    "list_files",
     "list_tiles",
     "prepare_call",
     "read",
@@ -605,6 +607,28 @@ def _is_visible_file(file: Path) -> bool:
 def _drop_packing(file: Path) -> Path:
     """Return a name without the suffix of a compressed file."""
     return file.with_suffix("") if file.suffix.lower() in (".gz", ".zip") else file
+
+
+def list_files(path: Path, name: str | None = None) -> list[Path]:
+    """Return the files of points that a path stands for: itself, or those in a folder.
+
+    Parameters
+    ----------
+    path : Path
+    name : str, optional
+        Of a format.
+
+    Raises
+    ------
+    ReadError
+        If it is a folder without files of points, or with files of several formats.
+    """
+    if not is_folder(path):
+        return [path]
+    found = list_tiles(path, name) or list_lidar_tiles(path)
+    if not found:
+        raise ReadError(f"The folder '{path}' has no files of points.", path=path)
+    return found
 
 
 def is_folder(file: Path) -> bool:

@@ -18,14 +18,19 @@ from .sources import NumberedPoints
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array
 
-__all__ = ["find_outermost", "reduce_to_hull"]
+__all__ = ["find_outermost", "find_skeleton", "reduce_to_hull"]
 
 _DIRECTIONS = 16
+_MANY, _SAMPLE = 4_096, 1_024
+"""Points of which it pays to look at some first, and how many are looked at."""
+_SHARES = (0.98, 0.9, 0.7, 0.5)
+"""Of the bounds of these that a box may have."""
 
 
 def find_outermost(cell: NumberedPoints) -> NumberedPoints:
     """Return the points of a cell that lie furthest in each of 16 directions."""
-    return cell.choose(np.unique(_find_extremes(cell.points)))
+    rim = _drop_middle(cell)
+    return rim.choose(np.unique(_find_extremes(rim.points)))
 
 
 def reduce_to_hull(points: NumberedPoints) -> NumberedPoints:
@@ -33,7 +38,9 @@ def reduce_to_hull(points: NumberedPoints) -> NumberedPoints:
 
     The points of several cells may be joined and reduced again: the hull is that of all.
     """
-    left = points.choose(~_are_within_extremes(points.points))
+    rim = _drop_middle(points)
+    ring = _make_ring(rim.points)
+    left = rim if ring is None else rim.choose(~_are_within(ring, rim.points[:, :2]))
     if not len(left.numbers):
         return left
     try:
@@ -44,8 +51,34 @@ def reduce_to_hull(points: NumberedPoints) -> NumberedPoints:
     kept = np.arange(len(left.numbers))
     if growth.kept_row is not None:
         kept = kept[growth.kept_row == kept]
-    (ring,) = boundary_rings(growth.triangles, growth.neighbors)
-    return left.choose(np.sort(kept[ring]))
+    (rim_vertices,) = boundary_rings(growth.triangles, growth.neighbors)
+    return left.choose(np.sort(kept[rim_vertices]))
+
+
+def find_skeleton(points: NumberedPoints) -> NumberedPoints:
+    """Return the points of a part that every task must know: its hull, and its outermost ones."""
+    rim = _drop_middle(points)
+    return NumberedPoints.join([reduce_to_hull(rim), find_outermost(rim)])
+
+
+def _drop_middle(points: NumberedPoints) -> NumberedPoints:
+    """Return the points without those in a box that lies strictly inside the hull of some.
+
+    None of these is the furthest in any direction; two comparisons for each coordinate tell.
+    """
+    places = points.points[:, :2]
+    if len(places) < _MANY:
+        return points
+    ring = _make_ring(places[:: len(places) // _SAMPLE])
+    if ring is None:
+        return points
+    middle, half = (ring.min(axis=0) + ring.max(axis=0)) / 2, np.ptp(ring, axis=0) / 2
+    for share in _SHARES:
+        low, high = middle - share * half, middle + share * half
+        corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])])
+        if _are_within(ring, corners).all():
+            return points.choose(~((places >= low) & (places <= high)).all(axis=1))
+    return points
 
 
 def _find_extremes(points: Float64Array) -> Int64Array:
@@ -56,16 +89,23 @@ def _find_extremes(points: Float64Array) -> Int64Array:
     return np.array([np.argmax(xy @ (np.cos(a), np.sin(a))) for a in angles])
 
 
-def _are_within_extremes(points: Float64Array) -> BoolArray:
-    """Tell which points lie strictly inside the polygon of the outermost ones, exactly."""
-    is_inside = np.zeros(len(points), np.bool_)
-    ring = points[_find_extremes(points), :2]
+def _make_ring(places: Float64Array) -> Float64Array | None:
+    """Return the outermost places counter-clockwise; None where they are no polygon."""
+    ring = places[_find_extremes(places), :2]
     is_side = (ring != np.roll(ring, -1, axis=0)).any(axis=1)
-    if is_side.sum() < 3:
-        return is_inside
-    places = np.ascontiguousarray(points[:, :2])
-    is_inside[:] = True
-    for start, end in zip(ring[is_side], np.roll(ring, -1, axis=0)[is_side], strict=True):
-        a, b = (np.broadcast_to(one, places.shape).copy() for one in (start, end))
-        is_inside &= _kernel.orientation(a, b, places) > 0
-    return is_inside
+    return ring[is_side] if is_side.sum() >= 3 else None
+
+
+def _are_within(ring: Float64Array, places: Float64Array) -> BoolArray:
+    """Tell which places lie strictly left of all sides of a ring, exactly.
+
+    They lie strictly inside the hull of its corners, whether rounding made it convex or not.
+    """
+    inside = np.arange(len(places))
+    for start, end in zip(ring, np.roll(ring, -1, axis=0), strict=True):
+        left = np.ascontiguousarray(places[inside])
+        a, b = (np.broadcast_to(one, left.shape).copy() for one in (start, end))
+        inside = inside[_kernel.orientation(a, b, left) > 0]
+    is_within = np.zeros(len(places), np.bool_)
+    is_within[inside] = True
+    return is_within

@@ -15,6 +15,7 @@ _INCLUDED = ("numpy", "pyproj", "pyvista", "rasterio", "shapely")
 """What every ordinary installation has; one without dependencies may lack what it does not use."""
 
 _EXTRA_OF = {
+    "distributed": "dask",
     "ezdxf": "cad",
     "geopandas": "interop",
     "laspy": "lidar",

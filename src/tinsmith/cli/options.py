@@ -33,6 +33,7 @@ __all__ = [
     "Writing",
     "coding_options",
     "console_options",
+    "gather_options",
     "make_reading_options",
     "reading_options",
     "triangulating_options",
@@ -163,7 +164,7 @@ class Writing:
     """Options of the formats that were given."""
 
 
-def _gather(
+def gather_options(
     name: str, factory: type, *options: Decorator, way: str | None = None
 ) -> Callable[[Function], Function]:
     """Return a decorator that adds options and hands them over as one value called ``name``.
@@ -265,7 +266,7 @@ def make_reading_options(*, unit_flag: str = "--unit") -> Callable[[Function], F
         "DXF file also where it states one that differs from its CRS.",
     )
     options = (*_COORDINATES, *under("Coordinates and units", unit), *_INPUT)
-    return _gather("reading", Reading, *options, way="read")
+    return gather_options("reading", Reading, *options, way="read")
 
 
 reading_options = make_reading_options()
@@ -289,11 +290,11 @@ _TRIANGULATION = under(
     ),
 )
 
-triangulating_options = _gather("how", Triangulating, *_TRIANGULATION, *LINE_OPTIONS)
+triangulating_options = gather_options("how", Triangulating, *_TRIANGULATION, *LINE_OPTIONS)
 
-coding_options = _gather("how", Coding, *CODE_OPTIONS)
+coding_options = gather_options("how", Coding, *CODE_OPTIONS)
 
-writing_options = _gather(
+writing_options = gather_options(
     "writing",
     Writing,
     *under(
@@ -308,7 +309,7 @@ writing_options = _gather(
     way="write",
 )
 
-console_options = _gather(
+console_options = gather_options(
     "console",
     Console,
     click.option("--json", "as_json", is_flag=True, help="Write the result as JSON to stdout."),

@@ -13,11 +13,15 @@ from ..command import file_command
 from ..job import surface_options
 from ..parameters import choice_option, file_option, number_option, smooth_option
 from ..paths import Named
+from ..tiling import choose_tiles, compute_tiles, describe_plan, describe_points, tiling_options
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ...base.results import Raster
     from ..job import Job
+    from ..output.facts import Facts
+    from ..tiling import Tiling
 
 __all__ = ["raster"]
 
@@ -46,17 +50,20 @@ __all__ = ["raster"]
 @number_option("--azimuth", "DEGREES", "Of the light of hillshade.", default=315.0)
 @number_option("--altitude", "DEGREES", "Of the light of hillshade.", default=45.0)
 @smooth_option
+@tiling_options
 @surface_options()
 def raster(
     file: Path,
     spacing: float | None,
     like: Path | None,
     job: Job,
+    tiling: Tiling,
     **asked: Any,
 ) -> None:
     """Rasterize the TIN in FILE, or built from the points in it.
 
-    Cells outside the surface have no data. A raster may be larger than memory.
+    FILE may be a folder of tiles. Cells outside the surface have no data. Points and raster may be
+    larger than memory.
 
     \b
     Example:
@@ -67,20 +74,36 @@ def raster(
     from ...terrain import rasterize
     from ..output.facts import Facts
     from ..output.line_summaries import mesh_counts
-    from ..output.summaries import describe_raster_size
 
     if (spacing is None) == (like is None):
         raise click.UsageError("One of --spacing and --like is needed.")
     more = [] if like is None else [Named(like, "the raster of --like")]
     planned = job.plan(job.list_inputs(file, more=more), "Raster")
-    cells = None if like is None else read_cells(like)
-    tin = job.read_tin(file)
+    asked |= {"spacing": spacing, "like": None if like is None else read_cells(like)}
     asked["at"] = asked.pop("sample")
-    made = rasterize(tin, spacing=spacing, like=cells, lazy=True, threads=job.how.threads, **asked)
-    planned.write("Raster", made)
-    box = made.grid.bounds
+    cloud = choose_tiles(file, job, tiling)
     facts = Facts(file)
-    facts.add("Surface", mesh_counts(tin))
+    if cloud is not None and tiling.plan:
+        describe_plan(cloud, tiling, facts)
+        job.console.answer(facts.lines, facts.values)
+        return
+    if cloud is not None:
+        with compute_tiles(cloud, "raster", planned, job, tiling, **asked) as made:
+            planned.write("Raster", made)
+            facts.add("Points", describe_points(cloud))
+            _describe(made, facts)
+    else:
+        tin = job.read_tin(file)
+        made = rasterize(tin, lazy=True, threads=job.how.threads, **asked)
+        planned.write("Raster", made)
+        facts.add("Surface", mesh_counts(tin))
+        _describe(made, facts)
+    job.finish(planned, facts)
+
+
+def _describe(made: Raster, facts: Facts) -> None:
+    from ..output.summaries import describe_raster_size
+
     facts.add(
         "Raster",
         describe_raster_size(made),
@@ -90,7 +113,7 @@ def raster(
         bands=list(made.bands),
         crs=None if made.crs is None else str(made.crs),
     )
+    box = made.grid.bounds
     place = f"west {coordinate(box.xmin)}, north {coordinate(box.ymax)}"
     facts.add("", place, bounds=asdict(box))
     facts.note(made.notes)
-    job.finish(planned, facts)

@@ -1,0 +1,149 @@
+"""More points than memory holds: lidar tiles to a raster of the ground, beside decoding alone.
+
+``python -m benchmarks.many_files FOLDER --points 1e8 --tiles 10`` writes LAZ tiles into the folder
+once, then measures in turn, each in processes of its own: decoding the tiles with laspy, as many
+processes as cores; the same tiles to a raster of 1 m by ``tinsmith raster``, with its peak memory
+over all processes; where GDAL's programs are there, ``gdal_grid`` on a share of the points.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import Self
+
+from .datasets.lidar_tiles import make_lidar_tiles, make_text
+from .report.tables import TEXT, Table, add_option
+
+COLUMNS = {
+    "what": TEXT,
+    "points": "{:,}",
+    "seconds": "{:.1f}",
+    "M points/s": "{:.2f}",
+    "of decoding": "{:.2f}",
+    "peak MB": "{:,.0f}",
+}
+_INTERVAL = 0.05
+
+
+def decode(path: Path) -> int:
+    """Decode a file as fast as laspy can in one thread, and return its points."""
+    import laspy
+
+    count = 0
+    backend = laspy.LazBackend.Lazrs
+    with laspy.open(path, laz_backend=backend) as reader:
+        for points in reader.chunk_iterator(1_000_000):
+            count += len(points.array["X"])
+    return count
+
+
+def decode_all(tiles: list[Path], workers: int) -> int:
+    """Decode all tiles, a process for each core."""
+    with ProcessPoolExecutor(workers) as pool:
+        return sum(pool.map(decode, tiles))
+
+
+class PeakMemory:
+    """The most memory that a process and all its children hold at a time: a context."""
+
+    def __init__(self, process: int) -> None:
+        self._process = process
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._watch, daemon=True)
+        self.megabytes = 0.0
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *failure: object) -> None:
+        self._ended.set()
+        self._thread.join()
+
+    def _watch(self) -> None:
+        while not self._ended.wait(_INTERVAL):
+            found = sum(_measure_own(one) for one in _list_family(self._process))
+            self.megabytes = max(self.megabytes, found / 1e3)
+
+
+def _list_family(process: int) -> list[int]:
+    """Return a process and all its descendants."""
+    found, waiting = [], [process]
+    while waiting:
+        one = waiting.pop()
+        found.append(one)
+        try:
+            tasks = list(Path(f"/proc/{one}/task").iterdir())
+            for task in tasks:
+                waiting += map(int, (task / "children").read_text().split())
+        except OSError:
+            continue
+    return found
+
+
+def _measure_own(process: int) -> int:
+    """Return the memory of a process in kB, its share of what is shared with others."""
+    try:
+        lines = Path(f"/proc/{process}/smaps_rollup").read_text().splitlines()
+    except OSError:
+        return 0
+    sizes = {line.split(":")[0]: line.split()[1] for line in lines[1:]}
+    return int(sizes.get("Pss_Anon", 0)) + int(sizes.get("Pss_Shmem", 0))
+
+
+def rasterize(source: Path, output: Path, workers: int, *more: str) -> tuple[float, float]:
+    """Make a raster by the command; return seconds and the peak of memory."""
+    command = [sys.executable, "-m", "tinsmith", "raster", str(source), "--spacing", "1"]
+    command += ["-o", str(output), "--workers", str(workers), "--restart", "-q", *more]
+    begin = time.perf_counter()
+    process = subprocess.Popen(command)
+    with PeakMemory(process.pid) as peak:
+        code = process.wait()
+    if code:
+        raise SystemExit(f"{' '.join(command)} ended with {code}")
+    return time.perf_counter() - begin, peak.megabytes
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--points", type=lambda text: int(float(text)), default=10**8)
+    parser.add_argument("--tiles", type=int, default=10)
+    parser.add_argument("--workers", type=int, default=len(os.sched_getaffinity(0)))
+    parser.add_argument("--text", action="store_true", help="the same points as delimited text")
+    add_option(parser)
+    given = parser.parse_args()
+    lidar = given.folder / f"lidar-{given.points:.0e}-{given.tiles}"
+    tiles = make_lidar_tiles(lidar, given.points, given.tiles, workers=given.workers)
+    table = Table(COLUMNS)
+    begin = time.perf_counter()
+    count = decode_all(tiles, given.workers)
+    decoding = time.perf_counter() - begin
+    table.show("decoding alone, laspy", count, decoding, count / decoding / 1e6, 1.0, float("nan"))
+    output = given.folder / "dtm.tif"
+    seconds, peak = rasterize(
+        lidar, output, given.workers, "--output-format", "cog", "--classes", "2"
+    )
+    rate = count / seconds / 1e6
+    table.show("LAZ to COG, 1 m", count, seconds, rate, decoding / seconds, peak)
+    if given.text:
+        text = make_text(given.folder, tiles, given.folder / f"points-{given.points:.0e}.csv")
+        seconds, peak = rasterize(text, output, given.workers, "--crs", "EPSG:32616")
+        rate = count / seconds / 1e6
+        table.show("CSV to GeoTIFF, 1 m", count, seconds, rate, decoding / seconds, peak)
+    if shutil.which("gdal_grid") is None:
+        print("gdal_grid: skipped, GDAL's programs are not installed.")
+    table.write(given.json)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,12 @@
+"""Many files as one surface: read once, triangulated tile by tile, joined to the same product.
+
+:func:`tinsmith.tiles` takes files, :class:`TiledPoints` computes products of them in bounded
+memory. The steps: ``reading`` (inputs into ``chunks`` of a ``store``), ``division`` of the plane,
+``tasks`` (a tile), ``products``; ``runs`` keeps what is done, ``executors`` and ``workers`` do it.
+"""
+
+from .cloud import TiledPoints, tiles
+from .how import Way
+from .workers import Status
+
+__all__ = ["Status", "TiledPoints", "Way", "tiles"]

@@ -1,0 +1,195 @@
+"""Points on disk: chunks as they were read, each in the order of cells of its own.
+
+A chunk is written once, by the task that read it, and never changed. Its points lie in the order
+of the cells of a lattice over the chunk's own bounds, so that a box is read as few slices of a
+mapped file, whatever order the input had: one lidar tile gives compact chunks, a shuffled file
+chunks that each cover all of it with fewer points a cell. Nothing is merged or sorted afterwards.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..base.atomic import replacing
+from ..base.types import Bounds
+from ..tin.tiling.sources import NumberedPoints
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ..base.arrays import AnyArray, Float64Array, Int64Array
+
+__all__ = ["BYTES_ON_DISK", "Chunk", "load_chunks", "save_chunks", "write_chunk"]
+
+_POINT = np.dtype([("xyz", "<f8", 3), ("row", "<u4")])
+"""A point on disk: its coordinates, and its row behind the first one of the chunk."""
+
+BYTES_ON_DISK = _POINT.itemsize
+
+_ENTRY = np.dtype(
+    [
+        ("file", "<u4"),
+        ("part", "<u4"),
+        ("first", "<i8"),
+        ("count", "<i8"),
+        ("box", "<f8", 4),
+        ("shape", "<u2", 2),
+    ]
+)
+"""A chunk in the list of all."""
+
+_POINTS_OF_A_CELL = 1_000
+_MOST_CELLS = 2**16 - 1
+"""Cells are sorted as numbers of 16 bits, in linear time."""
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """A file of points, with what is known of it without reading them.
+
+    Attributes
+    ----------
+    folder : Path
+    file, part : int
+        Which input the points are from, and which part of it they are.
+    first : int
+        Number of the chunk's first row, among the rows of all inputs.
+    count : int
+        Points in it.
+    bounds : Bounds
+    shape : tuple of int
+        Rows (from the south) and columns of the cells that divide the bounds.
+    """
+
+    folder: Path
+    file: int
+    part: int
+    first: int
+    count: int
+    bounds: Bounds
+    shape: tuple[int, int]
+
+    @property
+    def path(self) -> Path:
+        """Records of its points."""
+        return self.folder / f"{self.file:06d}-{self.part:06d}.npy"
+
+    @cached_property
+    def offsets(self) -> Int64Array:
+        """Where the points of each cell begin, (rows * columns + 1,) array."""
+        found: Int64Array = np.load(self.path.with_suffix(".cells.npy"))
+        return found
+
+    def list_slices(self, box: Bounds) -> list[slice]:
+        """Return where the points of a closed box lie, with others of the same cells."""
+        own, (rows, columns) = self.bounds, self.shape
+        xs, ys = np.array([box.xmin, box.xmax]), np.array([box.ymin, box.ymax])
+        west, east = _find_cells(xs, own.xmin, own.xmax, columns).tolist()
+        south, north = _find_cells(ys, own.ymin, own.ymax, rows).tolist()
+        if (west, east) == (0, columns - 1):
+            return [self._slice(south * columns, (north + 1) * columns)]
+        return [
+            self._slice(row * columns + west, row * columns + east + 1)
+            for row in range(south, north + 1)
+        ]
+
+    def _slice(self, start: int, stop: int) -> slice:
+        return slice(int(self.offsets[start]), int(self.offsets[stop]))
+
+    def read(self, slices: list[slice]) -> NumberedPoints:
+        """Read parts of the file."""
+        records = np.load(self.path, mmap_mode="r")
+        count = sum(part.stop - part.start for part in slices)
+        points, numbers = np.empty((count, 3)), np.empty(count, np.int64)
+        start = 0
+        for part in slices:
+            end = start + part.stop - part.start
+            found = records[part]
+            points[start:end] = found["xyz"]
+            numbers[start:end] = found["row"]
+            start = end
+        numbers += self.first
+        return NumberedPoints(points, numbers)
+
+
+def save_chunks(path: Path, chunks: list[Chunk]) -> None:
+    """Write what is known of chunks, so that tasks need not be handed it."""
+    entries = np.zeros(len(chunks), _ENTRY)
+    for entry, chunk in zip(entries, chunks, strict=True):
+        box = chunk.bounds
+        entry["file"], entry["part"] = chunk.file, chunk.part
+        entry["first"], entry["count"] = chunk.first, chunk.count
+        entry["box"] = box.xmin, box.ymin, box.xmax, box.ymax
+        entry["shape"] = chunk.shape
+    _save(path, entries)
+
+
+def load_chunks(path: Path, folder: Path) -> list[Chunk]:
+    """Read what :func:`save_chunks` wrote, of chunks in a folder."""
+    return [
+        Chunk(folder, file, part, first, count, Bounds(*box), (shape[0], shape[1]))
+        for file, part, first, count, box, shape in np.load(path).tolist()
+    ]
+
+
+def write_chunk(
+    folder: Path, file: int, part: int, points: Float64Array, numbers: Int64Array
+) -> Chunk:
+    """Write points in the order of their cells.
+
+    Parameters
+    ----------
+    folder : Path
+    file, part : int
+    points : (n, 3) float64 array
+        n >= 1.
+    numbers : (n,) int64 array
+        Ascending; less than 2^32 from the first to the last.
+
+    Raises
+    ------
+    WriteError
+    """
+    bounds = Bounds.of(points)
+    rows, columns = _choose_shape(len(points), bounds)
+    cells = _find_cells(points[:, 1], bounds.ymin, bounds.ymax, rows) * np.uint16(columns)
+    cells += _find_cells(points[:, 0], bounds.xmin, bounds.xmax, columns)
+    offsets = np.zeros(rows * columns + 1, np.int64)
+    np.cumsum(np.bincount(cells, minlength=rows * columns), out=offsets[1:])
+    order = np.argsort(cells, kind="stable")
+    records = np.empty(len(points), _POINT)
+    records["xyz"] = points[order]
+    records["row"] = (numbers - numbers[0])[order]
+    chunk = Chunk(folder, file, part, int(numbers[0]), len(points), bounds, (rows, columns))
+    _save(chunk.path.with_suffix(".cells.npy"), offsets)
+    _save(chunk.path, records)
+    return chunk
+
+
+def _save(path: Path, values: AnyArray) -> None:
+    with replacing(path) as file:
+        np.save(file, values)
+
+
+def _choose_shape(count: int, bounds: Bounds) -> tuple[int, int]:
+    """Return rows and columns of cells that are about square."""
+    wanted = min(_MOST_CELLS, max(1, count // _POINTS_OF_A_CELL))
+    if bounds.width == 0.0 or bounds.height == 0.0:
+        return (1, wanted) if bounds.width else (wanted, 1)
+    columns = min(max(1, round(float(np.sqrt(wanted * bounds.width / bounds.height)))), wanted)
+    return max(1, wanted // columns), columns
+
+
+def _find_cells(values: Float64Array, low: float, high: float, count: int) -> AnyArray:
+    """Return the cell of each value along one side, the nearest one for values outside.
+
+    Rounding is monotonic: of two values the larger never has the lower cell.
+    """
+    if count == 1 or high <= low:
+        return np.zeros(len(values), np.uint16)
+    steps = (np.clip(values, low, high) - low) / (high - low) * count
+    return np.minimum(steps, count - 1).astype(np.uint16)

@@ -1,0 +1,1 @@
+"""Products of tiles: what a task computes, and how the whole is joined, a module each."""

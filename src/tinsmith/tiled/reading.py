@@ -1,0 +1,318 @@
+"""The first step of a run: every input is read once, into chunks of points on disk."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..base.atomic import replacing
+from ..base.crs import CRS, Unit
+from ..base.errors import CrsError, OptionError, ReadError, TinsmithError, WriteError
+from ..base.notes import join_notes
+from ..base.sentences import counted
+from ..base.types import Bounds
+from ..io.streaming import stream_points
+from ..tin.tiling.skeleton import find_skeleton
+from ..tin.tiling.sources import NumberedPoints
+from .chunks import Chunk, load_chunks, save_chunks, write_chunk
+from .runs import Fingerprint, Record, Run, hash_file
+from .store import PointStore, join_skeletons
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from ..base.arrays import AnyArray, BoolArray
+    from .workers import Phase
+
+__all__ = ["CHUNK_POINTS", "ReadJob", "StoredPoints", "open_store", "read_input", "read_inputs"]
+
+CHUNK_POINTS = 1_000_000
+"""Points that are held at a time while a file is read."""
+
+ROWS_OF_A_FILE = 2**40
+"""Numbers of rows are those in the file, and this times the number of the file."""
+
+_PHASE = "inputs"
+_QUOTED_OR_NUMBER = re.compile(r"'[^']*'|[-\d.,]+")
+_CHUNKS, _SKELETON = "chunks.npy", "skeleton.npz"
+
+
+@dataclass(frozen=True)
+class ReadJob:
+    """A file that is to be read into chunks.
+
+    Attributes
+    ----------
+    folder : Path
+        Of the run of the points.
+    number : int
+        Of the file among all.
+    source : Fingerprint
+    options : mapping
+        Of the reader, plain values.
+    where : mapping of str to sequence of float
+        Values of attributes that points must have.
+    """
+
+    folder: Path
+    number: int
+    source: Fingerprint
+    options: Mapping[str, Any] = field(default_factory=dict)
+    where: Mapping[str, Sequence[float]] = field(default_factory=dict)
+
+    @property
+    def key(self) -> str:
+        """Name of the task."""
+        return f"{self.number:06d}"
+
+
+def read_input(job: ReadJob) -> Record:
+    """Read a file into chunks; what is wrong with it becomes the record's sentence.
+
+    Raises
+    ------
+    WriteError
+        If the folder cannot be written, which is no fault of the file.
+    """
+    started = perf_counter()
+    run = Run(job.folder)
+    try:
+        record = _read(job, started)
+    except WriteError:
+        raise
+    except TinsmithError as error:
+        record = Record(job.key, "failed", str(error), perf_counter() - started)
+    except MemoryError:
+        record = Record(job.key, "failed", f"There is no memory left to read '{job.source.path}'.")
+    run.add(_PHASE, record)
+    return record
+
+
+def _read(job: ReadJob, started: float) -> Record:
+    path = Path(job.source.path)
+    job.source.require_same()
+    chunks: list[Chunk] = []
+    skeletons: list[NumberedPoints] = []
+    with stream_points(path, chunk_points=CHUNK_POINTS, **job.options) as stream:
+        left_out = 0
+        for found in stream:
+            wanted = _choose(found.attributes, job.where, len(found.points))
+            points, rows = found.points, found.rows
+            if wanted is not None:
+                points, rows = points[wanted], rows[wanted]
+                left_out += len(wanted) - len(points)
+            if not len(points):
+                continue
+            numbers = rows + np.int64(job.number) * ROWS_OF_A_FILE
+            chunk = write_chunk(job.folder, job.number, len(chunks), points, numbers)
+            chunks.append(chunk)
+            skeletons.append(find_skeleton(NumberedPoints(points, numbers)))
+        crs, unit = stream.crs, stream.elevation_unit
+        notes = list(stream.notes)
+    job.source.require_same()
+    if left_out:
+        notes.append(_describe_left_out(left_out, path, job.where))
+    index, outline = f"{job.key}.chunks.npy", f"{job.key}.skeleton.npz"
+    files: list[str] = []
+    if chunks:
+        save_chunks(job.folder / index, chunks)
+        _save_points(job.folder / outline, NumberedPoints.join(skeletons))
+        files = [index, outline, *(chunk.path.name for chunk in chunks)]
+    return Record(
+        job.key,
+        "done" if chunks else "empty",
+        seconds=perf_counter() - started,
+        points=sum(chunk.count for chunk in chunks),
+        values={
+            "crs": None if crs is None else str(crs),
+            "elevation_unit": None if unit is None else unit.text,
+            "notes": notes,
+        },
+        files={name: hash_file(job.folder / name) for name in files},
+    )
+
+
+def _describe_left_out(count: int, path: Path, where: Mapping[str, Sequence[float]]) -> str:
+    wanted = ", ".join(
+        f"{name} {' or '.join(f'{value:g}' for value in values)}" for name, values in where.items()
+    )
+    return f"{counted(count, 'point')} of '{path.name}' without {wanted} were left out."
+
+
+def _choose(
+    attributes: Mapping[str, AnyArray], where: Mapping[str, Sequence[float]], count: int
+) -> BoolArray | None:
+    """Tell which points have the wanted values; None if all are wanted."""
+    if not where:
+        return None
+    chosen = np.ones(count, np.bool_)
+    for name, values in where.items():
+        if name not in attributes:
+            there = ", ".join(attributes) or "none"
+            raise OptionError("where", name, f"an attribute of the points: {there}")
+        chosen &= np.isin(attributes[name], np.asarray(values))
+    return chosen
+
+
+def _save_points(path: Path, points: NumberedPoints) -> None:
+    with replacing(path) as file:
+        np.savez(file, points=points.points, numbers=points.numbers)
+
+
+def _load_points(path: Path) -> NumberedPoints:
+    with np.load(path) as found:
+        return NumberedPoints(found["points"], found["numbers"])
+
+
+# ---------------------------------------------------------------------- all inputs
+
+
+@dataclass(frozen=True)
+class StoredPoints:
+    """All points of a run, on disk.
+
+    Attributes
+    ----------
+    folder : Path
+    crs : CRS or None
+    elevation_unit : Unit or None
+    notes : tuple of str
+        What the readers tell.
+    count : int
+    bounds : Bounds
+    """
+
+    folder: Path
+    crs: CRS | None
+    elevation_unit: Unit | None
+    notes: tuple[str, ...]
+    count: int
+    bounds: Bounds
+
+    def open(self) -> PointStore:
+        """Return the source of points for tasks."""
+        return open_store(self.folder)
+
+
+@lru_cache(maxsize=2)
+def open_store(folder: Path) -> PointStore:
+    """Return the points in a folder; what is known of its chunks is kept for the next task."""
+    chunks = load_chunks(folder / _CHUNKS, folder)
+    return PointStore(chunks, _load_points(folder / _SKELETON))
+
+
+def read_inputs(
+    run: Run, sources: Sequence[Fingerprint], phase: Phase, **asked: Any
+) -> StoredPoints:
+    """Read every input that is not read yet, and join what is known of all.
+
+    Parameters
+    ----------
+    run : Run
+        Of the points.
+    sources : sequence of Fingerprint
+    phase : Phase
+    **asked
+        Options and values of attributes, as of :class:`ReadJob`.
+
+    Raises
+    ------
+    ReadError
+        If a file cannot be read, files do not fit together, or there are no points.
+    CrsError
+        If files are in several coordinate reference systems.
+    """
+    jobs = [ReadJob(run.folder, number, one, **asked) for number, one in enumerate(sources)]
+    records = phase.run(run, _PHASE, read_input, jobs)
+    names = {job.key: Path(job.source.path).name for job in jobs}
+    crs, unit = _require_one_crs(records, names), _require_one_unit(records, names)
+    filled = [record for record in records.values() if record.points]
+    if not filled:
+        raise ReadError("There are no points in the inputs.")
+    chunks = [
+        chunk
+        for record in filled
+        for chunk in load_chunks(run.folder / f"{record.key}.chunks.npy", run.folder)
+    ]
+    bounds = _join_bounds([chunk.bounds for chunk in chunks])
+    outlines = [_load_points(run.folder / f"{record.key}.skeleton.npz") for record in filled]
+    save_chunks(run.folder / _CHUNKS, chunks)
+    _save_points(run.folder / _SKELETON, join_skeletons(outlines, bounds))
+    open_store.cache_clear()
+    return StoredPoints(
+        run.folder,
+        crs,
+        unit,
+        _join_notes(records),
+        sum(chunk.count for chunk in chunks),
+        bounds,
+    )
+
+
+def _join_notes(records: Mapping[str, Record]) -> tuple[str, ...]:
+    """Return the notes of all files; of those that differ in numbers only the first.
+
+    How many files have a note like it is told.
+    """
+    kinds: dict[str, list[str]] = {}
+    for record in records.values():
+        for note in dict.fromkeys(record.values.get("notes", ())):
+            kinds.setdefault(_QUOTED_OR_NUMBER.sub("", note), []).append(note)
+    joined = []
+    for notes in kinds.values():
+        others = len(notes) - 1
+        is_same = len({*notes}) == 1
+        more = f" ({counted(others, 'further file')} likewise.)" if others and not is_same else ""
+        joined.append(f"{notes[0]}{more}")
+    return join_notes(joined)
+
+
+def _join_bounds(boxes: Sequence[Bounds]) -> Bounds:
+    return Bounds(
+        min(box.xmin for box in boxes),
+        min(box.ymin for box in boxes),
+        max(box.xmax for box in boxes),
+        max(box.ymax for box in boxes),
+    )
+
+
+def _require_one_crs(records: Mapping[str, Record], names: Mapping[str, str]) -> CRS | None:
+    """Refuse inputs in several CRSs, or some in none."""
+    found = {key: CRS.of(one.values["crs"]) for key, one in records.items() if one.points}
+    first_key = next(iter(found), "")
+    first = found.get(first_key)
+    for key, crs in found.items():
+        same = crs is first if crs is None or first is None else crs.is_same(first)
+        if not same:
+            labels = ["no CRS" if one is None else one.label for one in (first, crs)]
+            raise CrsError(
+                f"'{names[first_key]}' and '{names[key]}' are not in one CRS: {labels[0]} and "
+                f"{labels[1]}; say which is wanted (`crs`), or read them one by one.",
+                crs=crs,
+            )
+    return first
+
+
+def _require_one_unit(records: Mapping[str, Record], names: Mapping[str, str]) -> Unit | None:
+    """Refuse elevations in several units, or some in an unknown one."""
+    found = {
+        key: Unit.of(one.values["elevation_unit"] or None)
+        for key, one in records.items()
+        if one.points
+    }
+    first_key = next(iter(found), "")
+    first = found.get(first_key)
+    for key, unit in found.items():
+        if unit != first:
+            raise ReadError(
+                f"'{names[first_key]}' and '{names[key]}' have elevations in different units: "
+                f"{first or 'unknown'} and {unit or 'unknown'}; read them one by one, or declare "
+                "the unit (`elevation_unit`) if it is that of all."
+            )
+    return first

@@ -1,0 +1,302 @@
+"""The folder of a run: what is computed, from what, and what became of each task.
+
+A run that was killed goes on where it was: a task is done when its record is there, and records
+are written last. Other options, or inputs that have changed, are refused with the difference.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+import socket
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..base.atomic import replacing
+from ..base.errors import ReadError, WriteError
+from ..base.sentences import counted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+__all__ = ["Fingerprint", "Record", "Run", "hash_file"]
+
+_MANIFEST = "run.json"
+_LOCK = "lock"
+_SIZE_OF_ENDS = 1 << 16
+_SHOWN = 3
+
+
+@dataclass(frozen=True)
+class Fingerprint:
+    """What tells whether an input is the one that it was.
+
+    Attributes
+    ----------
+    path : str
+        Absolute.
+    size : int
+        Bytes.
+    changed : int
+        When it was last written, in nanoseconds.
+    ends : str
+        Hash of its first and last bytes.
+    """
+
+    path: str
+    size: int
+    changed: int
+    ends: str
+
+    @classmethod
+    def take(cls, path: Path) -> Fingerprint:
+        """Look at a file.
+
+        Raises
+        ------
+        ReadError
+            If it is not there, or cannot be read.
+        """
+        try:
+            found = path.stat()
+            with path.open("rb") as file:
+                first = file.read(_SIZE_OF_ENDS)
+                file.seek(max(0, found.st_size - _SIZE_OF_ENDS))
+                last = file.read(_SIZE_OF_ENDS)
+        except OSError as error:
+            reason = error.strerror or type(error).__name__
+            raise ReadError(f"Cannot read '{path}': {reason}.", path=path) from error
+        ends = hashlib.blake2b(first + last, digest_size=16).hexdigest()
+        return cls(str(path.absolute()), found.st_size, found.st_mtime_ns, ends)
+
+    def require_same(self) -> None:
+        """Refuse a file that was changed since.
+
+        Raises
+        ------
+        ReadError
+        """
+        path = Path(self.path)
+        if Fingerprint.take(path) != self:
+            raise ReadError(
+                f"'{path}' was changed while it was read: run it again with the option `restart`.",
+                path=path,
+            )
+
+
+@dataclass(frozen=True)
+class Record:
+    """What became of a task.
+
+    Attributes
+    ----------
+    key : str
+        Of the task.
+    state : {"done", "empty", "failed"}
+    sentence : str
+        Why it failed.
+    seconds : float
+    points : int
+        That it had to do with.
+    values : mapping
+        What it found, plain values.
+    files : mapping of str to str
+        What it wrote into the folder, with the hash of each file.
+    """
+
+    key: str
+    state: str
+    sentence: str = ""
+    seconds: float = 0.0
+    points: int = 0
+    values: Mapping[str, Any] = field(default_factory=dict)
+    files: Mapping[str, str] = field(default_factory=dict)
+
+
+class Run:
+    """The folder of a run.
+
+    Parameters
+    ----------
+    folder : Path
+        Beside the output.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    @property
+    def manifest(self) -> dict[str, Any] | None:
+        """What the run computes, and from what; None where it was not begun."""
+        try:
+            text = (self.folder / _MANIFEST).read_text(encoding="utf-8")
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            raise ReadError(
+                f"Cannot read the run in '{self.folder}': {error.strerror}.", path=self.folder
+            ) from error
+        try:
+            found: dict[str, Any] = json.loads(text)
+        except ValueError as error:
+            raise ReadError(
+                f"The run in '{self.folder}' is damaged: remove the folder.", path=self.folder
+            ) from error
+        return found
+
+    @contextmanager
+    def opened(self, manifest: dict[str, Any], *, restart: bool) -> Iterator[bool]:
+        """Begin a run, or go on with one; yield whether it goes on.
+
+        Raises
+        ------
+        WriteError
+            If the folder cannot be written, holds something else, or another process is at work
+            there.
+        ReadError
+            If it holds a run with other options or of other inputs, and may not be begun again.
+        """
+        found = self.manifest
+        if found is None and self.folder.exists() and any(self.folder.iterdir()):
+            raise WriteError(
+                f"Cannot write the run to '{self.folder}': it holds something else.",
+                path=self.folder,
+            )
+        with self._locked():
+            if found is not None and not restart:
+                _require_same(found, manifest, self.folder)
+            else:
+                self._clear()
+                self._write(_MANIFEST, manifest)
+            yield found is not None and not restart
+
+    def remove(self) -> None:
+        """Remove the folder, when what it was for is written."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _clear(self) -> None:
+        for one in self.folder.iterdir():
+            if one.name == _LOCK:
+                continue
+            if one.is_dir():
+                shutil.rmtree(one)
+            else:
+                one.unlink()
+
+    @contextmanager
+    def _locked(self) -> Iterator[None]:
+        """Hold the folder, so that two processes never work in it."""
+        lock = self.folder / _LOCK
+        own = f"{os.getpid()} {socket.gethostname()}"
+        try:
+            self.folder.mkdir(exist_ok=True)
+            if lock.exists() and not _is_held(lock):
+                lock.unlink()
+            descriptor = os.open(lock, os.O_CREAT | os.O_EXCL | os.O_WRONLY)
+        except FileExistsError as error:
+            raise WriteError(
+                f"Another process works on the run in '{self.folder}': wait until it has ended, "
+                f"or remove '{lock}' if there is none.",
+                path=self.folder,
+            ) from error
+        except OSError as error:
+            reason = error.strerror or type(error).__name__
+            raise WriteError(
+                f"Cannot write the run to '{self.folder}': {reason}.", path=self.folder
+            ) from error
+        try:
+            os.write(descriptor, own.encode())
+            os.close(descriptor)
+            yield
+        finally:
+            lock.unlink(missing_ok=True)
+
+    # ------------------------------------------------------------------- records
+
+    def add(self, phase: str, record: Record) -> None:
+        """Write what became of a task; called by the task, when all that it writes is there."""
+        folder = self.folder / phase
+        folder.mkdir(exist_ok=True)
+        self._write(f"{phase}/{record.key}.json", asdict(record))
+
+    def read(self, phase: str) -> dict[str, Record]:
+        """Return the records of a phase by their keys, without those whose files are not whole."""
+        found = {}
+        for path in sorted((self.folder / phase).glob("*.json")):
+            try:
+                record = Record(**json.loads(path.read_text(encoding="utf-8")))
+            except (OSError, ValueError, TypeError):
+                continue
+            if all(hash_file(self.folder / name) == value for name, value in record.files.items()):
+                found[record.key] = record
+        return found
+
+    def _write(self, name: str, values: Mapping[str, Any]) -> None:
+        with replacing(self.folder / name, binary=False) as file:
+            json.dump(values, file, indent=1)
+
+
+def hash_file(path: Path) -> str:
+    """Return a hash of what a file holds; empty if there is none."""
+    try:
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, lambda: hashlib.blake2b(digest_size=16)).hexdigest()
+    except OSError:
+        return ""
+
+
+def _is_held(lock: Path) -> bool:
+    """Whether the process that made a lock may be at work."""
+    try:
+        process, _, host = lock.read_text(encoding="utf-8").partition(" ")
+    except OSError:
+        return True
+    if host != socket.gethostname() or not process.isdecimal():
+        return host != ""
+    try:
+        os.kill(int(process), 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except OSError:
+        return True
+    return True
+
+
+def _require_same(found: Mapping[str, Any], wanted: Mapping[str, Any], folder: Path) -> None:
+    """Refuse to go on with a run that computes something else, or from something else."""
+    differences = list(_list_differences(found, json.loads(json.dumps(wanted))))
+    if not differences:
+        return
+    more = f" and {counted(len(differences) - _SHOWN, 'more')}" if len(differences) > _SHOWN else ""
+    raise ReadError(
+        f"The run in '{folder}' was begun otherwise: {'; '.join(differences[:_SHOWN])}{more}. The "
+        "option `restart` begins anew.",
+        path=folder,
+    )
+
+
+def _list_differences(found: Mapping[str, Any], wanted: Mapping[str, Any]) -> Iterator[str]:
+    if found.get("version") != wanted["version"]:
+        yield f"by version {found.get('version')}, and this is {wanted['version']}"
+    if found.get("product") != wanted["product"]:
+        yield f"it makes {found.get('product')}, and not {wanted['product']}"
+    old, new = found.get("options", {}), wanted["options"]
+    for name in sorted({*old, *new}):
+        if old.get(name) != new.get(name):
+            yield f"`{name}` was {old.get(name)!r}, and is {new.get(name)!r}"
+    yield from _list_changed(found.get("inputs", []), wanted["inputs"])
+
+
+def _list_changed(old: Sequence[Mapping[str, Any]], new: Sequence[Mapping[str, Any]]) -> list[str]:
+    before, now = ({one["path"]: one for one in many} for many in (old, new))
+    gone = [f"'{path}' is not read any more" for path in before if path not in now]
+    come = [f"'{path}' is new" for path in now if path not in before]
+    kept = [path for path in now if path in before]
+    changed = [f"'{path}' has changed" for path in kept if before[path] != now[path]]
+    if not (gone or come or changed) and list(before) != list(now):
+        changed = ["the inputs have another order"]
+    return gone + come + changed

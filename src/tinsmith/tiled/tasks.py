@@ -1,0 +1,161 @@
+"""The second step of a run: each tile is triangulated, and what was asked for is taken from it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from importlib import import_module
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, cast
+
+from ..base.errors import TinsmithError, WriteError
+from ..tin.tiling.boxes import widen
+from ..tin.tiling.local_triangulation import LocalTriangulation, triangulate_box
+from .division import Tile, quarter
+from .reading import open_store
+from .runs import Record, Run, hash_file
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from ..base.policies import DuplicatePolicy
+    from ..base.types import Bounds
+    from .reading import StoredPoints
+    from .store import PointStore
+
+__all__ = ["PHASE", "Part", "TileJob", "TileProduct", "compute_tile", "divide_job"]
+
+PHASE = "tiles"
+_HALO = 10.0
+"""Mean distances between points that are read around a box at once: more does not settle more
+triangles (their circles leave any margin where points are sparse), less leads to more questions."""
+
+
+@dataclass(frozen=True)
+class TileJob:
+    """A tile of which a product is to be computed.
+
+    Attributes
+    ----------
+    folder : Path
+        Of the run.
+    points : Path
+        Folder of the points.
+    tile : Tile
+    product : str
+        Module in ``tinsmith.tiled.products``.
+    options : mapping
+        Plain values.
+    duplicates : str
+        What becomes of points at one place.
+    """
+
+    folder: Path
+    points: Path
+    tile: Tile
+    product: str
+    options: Mapping[str, Any] = field(default_factory=dict)
+    duplicates: DuplicatePolicy = "mean"
+
+    @property
+    def key(self) -> str:
+        """Name of the task."""
+        return self.tile.key
+
+
+class Part(NamedTuple):
+    """A tile with the points of the run, of which triangles are asked."""
+
+    job: TileJob
+    store: PointStore
+
+    @property
+    def folder(self) -> Path:
+        """Where files of the tile are written."""
+        return self.job.folder / PHASE
+
+    def triangulate(self, box: Bounds) -> LocalTriangulation:
+        """Return all triangles of the whole surface that meet a closed box."""
+        return triangulate_box(
+            self.store,
+            box,
+            around=widen(box, self._halo),
+            duplicates=self.job.duplicates,
+        )
+
+    @property
+    def _halo(self) -> float:
+        tile, bounds = self.job.tile, self.store.bounds
+        width = min(tile.box.xmax, bounds.xmax) - max(tile.box.xmin, bounds.xmin)
+        height = min(tile.box.ymax, bounds.ymax) - max(tile.box.ymin, bounds.ymin)
+        area = max(width, 0.0) * max(height, 0.0)
+        return _HALO * math.sqrt(area / max(tile.count, 1))
+
+
+class TileProduct(Protocol):
+    """What a module of products has."""
+
+    def check_options(self, **asked: Any) -> Mapping[str, Any]:
+        """Return plain options, or refuse what is none."""
+
+    def settle_options(self, points: StoredPoints, options: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return options that depend on all points, too, such as the cells of a raster."""
+
+    def compute(self, part: Part) -> tuple[int, Mapping[str, Any], list[str]]:
+        """Return points, plain values, and the names of files that were written."""
+
+    def join(
+        self,
+        points: StoredPoints,
+        options: Mapping[str, Any],
+        records: Mapping[str, Record],
+        folder: Path,
+    ) -> Any:
+        """Return the product of all tiles."""
+
+
+def compute_tile(job: TileJob) -> Record:
+    """Compute what is asked of a tile; what is wrong becomes the record's sentence.
+
+    Raises
+    ------
+    WriteError
+        If the folder cannot be written, which is no fault of the tile.
+    """
+    started = perf_counter()
+    run = Run(job.folder)
+    (job.folder / PHASE).mkdir(exist_ok=True)
+    try:
+        product = cast("TileProduct", import_module(f"{__package__}.products.{job.product}"))
+        points, values, names = product.compute(Part(job, open_store(job.points)))
+        record = Record(
+            job.key,
+            "done" if points else "empty",
+            seconds=perf_counter() - started,
+            points=points,
+            values=values,
+            files={f"{PHASE}/{name}": hash_file(job.folder / PHASE / name) for name in names},
+        )
+    except WriteError:
+        raise
+    except MemoryError:
+        return Record(job.key, "no memory", f"Tile {job.key} needs more memory than there is.")
+    except TinsmithError as error:
+        record = Record(job.key, "failed", f"Tile {job.key}: {error}", perf_counter() - started)
+    run.add(PHASE, record)
+    return record
+
+
+def divide_job(job: TileJob) -> list[TileJob]:
+    """Return the quarters of a tile that was too large, none if it has few points."""
+    if job.tile.count < _FEWEST_TO_DIVIDE:
+        return []
+    bounds = open_store(job.points).bounds
+    return [
+        TileJob(job.folder, job.points, tile, job.product, job.options, job.duplicates)
+        for tile in quarter(job.tile, bounds)
+    ]
+
+
+_FEWEST_TO_DIVIDE = 1_000

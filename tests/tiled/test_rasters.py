@@ -1,0 +1,223 @@
+"""Rasters of many files: the same bytes as in memory, for any tiles, workers and interruptions."""
+
+from __future__ import annotations
+
+import filecmp
+import itertools
+import random
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+
+import numpy as np
+import pytest
+import rasterio
+
+import tinsmith as ts
+from tinsmith.tiled import tasks
+
+
+class Shuffled(Executor):
+    """Runs tasks here, in an order at random: each when the next but some is asked for."""
+
+    def __init__(self, seed=0, most=10**9):
+        self._random = random.Random(seed)
+        self._waiting = []
+        self.most = most
+
+    def submit(self, function, /, *given, **named):
+        """Run one of the tasks that wait, if it is not the last that may be run."""
+        future = Future()
+        self._waiting.append((future, function, given, named))
+        self._random.shuffle(self._waiting)
+        self._run(self._waiting.pop())
+        return future
+
+    def _run(self, task):
+        future, function, given, named = task
+        self.most -= 1
+        if self.most < 0:
+            raise KeyboardInterrupt
+        try:
+            future.set_result(function(*given, **named))
+        except BaseException as error:
+            future.set_exception(error)
+
+
+@pytest.fixture(scope="module")
+def lidar(tmp_path_factory):
+    """Return a folder of tiles that overlap, with points at one place and of two classes."""
+    rng = np.random.default_rng(3)
+    folder = tmp_path_factory.mktemp("lidar")
+    count = 6_000
+    xy = rng.random((count, 2)) * [300, 200] + [500_000, 4_000_000]
+    z = 300 + 20 * np.sin(xy[:, 0] / 50) + rng.normal(0, 0.1, count)
+    points = np.round(np.column_stack([xy, z]), 1)
+    classes = np.where(rng.random(count) < 0.7, 2, 5)
+    strip = np.minimum((points[:, 0] - 500_000) // 90, 2)
+    strip[rng.random(count) < 0.05] = 0
+    for number in range(3):
+        chosen = strip == number
+        survey = ts.Survey(
+            points=points[chosen],
+            attributes={"classification": classes[chosen].astype(np.uint8)},
+            crs="EPSG:32616",
+        )
+        ts.write(survey, folder / f"tile{number}.laz")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wanted(lidar, tmp_path_factory):
+    """Return the raster of the same points in memory."""
+    tin = ts.triangulate(ts.read(lidar, classes=2))
+    return ts.rasterize(tin, spacing=1.0).bands["elevation"]
+
+
+def read(path):
+    """Return the cells of a file."""
+    with rasterio.open(path) as dataset:
+        assert dataset.crs.to_epsg() == 32616
+        return dataset.read(1)
+
+
+@pytest.mark.parametrize("tiles", [1, 4, 16, 64])
+def test_cells_are_those_in_memory_and_files_the_same(lidar, wanted, tmp_path, tiles):
+    paths = [tmp_path / "a.tif", tmp_path / "b.tif"]
+    cloud = ts.tiles(lidar, classes=2)
+    with ThreadPoolExecutor(2) as threads:
+        cloud.rasterize(paths[0], spacing=1.0, tiles=tiles, executor=threads)
+    cloud.rasterize(paths[1], spacing=1.0, tiles=1, executor=Shuffled())
+    np.testing.assert_array_equal(read(paths[0]), wanted)
+    assert filecmp.cmp(*paths, shallow=False)
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["a.tif", "b.tif"]
+
+
+def test_processes_and_a_choice_by_attribute(lidar, wanted, tmp_path):
+    told = []
+    cloud = ts.tiles([*sorted(lidar.iterdir())], where={"classification": 2})
+    path = cloud.rasterize(
+        tmp_path / "a.tif", spacing=1.0, tiles=5, workers=2, progress=told.append
+    )
+    np.testing.assert_array_equal(read(path), wanted)
+    assert [one.step for one in told][:: len(told) - 1] == ["Reading", "Triangulating"]
+    assert (told[-1].done, told[-1].total) == (5, 5)
+
+
+@pytest.mark.parametrize("most", range(8))
+def test_a_run_that_was_interrupted_goes_on(lidar, wanted, tmp_path, most, monkeypatch):
+    path = tmp_path / "a.tif"
+    cloud = ts.tiles(lidar, classes=2)
+    with pytest.raises(KeyboardInterrupt):
+        cloud.rasterize(path, spacing=1.0, tiles=5, executor=Shuffled(most, most), workers=1)
+    assert not path.exists()
+    again = Shuffled(most + 1)
+    calls = itertools.count()
+    submit = again.submit
+    monkeypatch.setattr(
+        again, "submit", lambda *given: (next(calls), submit(*given))[1], raising=True
+    )
+    cloud.rasterize(path, spacing=1.0, tiles=5, executor=again)
+    assert next(calls) == 8 - most
+    np.testing.assert_array_equal(read(path), wanted)
+
+
+def test_other_options_of_a_run_are_refused(lidar, tmp_path):
+    path = tmp_path / "a.tif"
+    with pytest.raises(KeyboardInterrupt):
+        ts.tiles(lidar).rasterize(path, spacing=1.0, executor=Shuffled(0, 2), workers=1)
+    with pytest.raises(ts.ReadError, match=r"`spacing` was 1\.0, and is 2\.0"):
+        ts.tiles(lidar).rasterize(path, spacing=2.0, executor=Shuffled())
+    with pytest.raises(ts.ReadError, match="`classes` was None, and is 2"):
+        ts.tiles(lidar, classes=2).rasterize(path, spacing=1.0, executor=Shuffled())
+    ts.tiles(lidar, classes=2).rasterize(path, spacing=1.0, executor=Shuffled(), restart=True)
+
+
+def test_a_damaged_file_is_named_and_the_run_goes_on_when_it_is_whole(lidar, wanted, tmp_path):
+    folder = tmp_path / "lidar"
+    folder.mkdir()
+    for one in lidar.iterdir():
+        (folder / one.name).write_bytes(one.read_bytes())
+    bad = folder / "tile1.laz"
+    whole = bad.read_bytes()
+    bad.write_bytes(whole[:2_000] + bytes(len(whole) - 2_100) + whole[-100:])
+    cloud = ts.tiles(folder, classes=2)
+    with pytest.raises(ts.ReadError, match=r"Reading: 1 task of 3 failed\. .*tile1\.laz"):
+        cloud.rasterize(tmp_path / "a.tif", spacing=1.0, executor=Shuffled())
+    assert not (tmp_path / "a.tif").exists()
+    bad.write_bytes(whole)
+    with pytest.raises(ts.ReadError, match=r"tile1\.laz' has changed"):
+        cloud.rasterize(tmp_path / "a.tif", spacing=1.0, executor=Shuffled())
+    path = cloud.rasterize(tmp_path / "a.tif", spacing=1.0, executor=Shuffled(), restart=True)
+    np.testing.assert_array_equal(read(path), wanted)
+
+
+def test_tiles_that_need_too_much_memory_are_divided(lidar, wanted, tmp_path, monkeypatch):
+    triangulate = tasks.triangulate_box
+
+    def limited(source, box, **options):
+        if len(source.read_box(box).numbers) > 700:
+            raise MemoryError
+        return triangulate(source, box, **options)
+
+    monkeypatch.setattr(tasks, "triangulate_box", limited)
+    cloud = ts.tiles(lidar, classes=2)
+    path = cloud.rasterize(tmp_path / "a.tif", spacing=1.0, executor=Shuffled())
+    np.testing.assert_array_equal(read(path), wanted)
+
+
+def test_points_are_kept_for_further_products(lidar, wanted, tmp_path):
+    cloud = ts.tiles(lidar, classes=2, store=tmp_path / "points")
+    cloud.rasterize(tmp_path / "a.tif", spacing=1.0, executor=Shuffled())
+    only_tiles = Shuffled(1, 4)
+    path = cloud.rasterize(tmp_path / "b.tif", spacing=1.0, tiles=4, executor=only_tiles)
+    np.testing.assert_array_equal(read(path), wanted)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"workers": 0},
+        {"tiles": 0},
+        {"memory": 10},
+        {"executor": "all"},
+        {"dask": 5},
+        {"progress": 5},
+        {"restart": "yes"},
+        {"spacing": -1.0},
+        {"spacing": None},
+        {"method": "natural"},
+    ],
+)
+def test_options_that_are_none_are_refused_before_the_work(lidar, tmp_path, options):
+    with pytest.raises((ts.OptionError, TypeError)):
+        ts.tiles(lidar).rasterize(tmp_path / "a.tif", **{"spacing": 1.0, **options})
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_inputs_that_are_none_are_refused(lidar, tmp_path):
+    with pytest.raises(ts.ReadError, match="has no files of points"):
+        ts.tiles(tmp_path)
+    with pytest.raises(ts.OptionError, match="paths"):
+        ts.tiles([])
+    with pytest.raises(ts.ReadError, match="nothing"):
+        ts.tiles(tmp_path / "nothing.laz")
+    with pytest.raises(ts.OptionError, match="where"):
+        ts.tiles(lidar, where={"classification": "ground"})
+    with pytest.raises(ts.WriteError, match="there is no folder"):
+        ts.tiles(lidar).rasterize(tmp_path / "no" / "a.tif", spacing=1.0, executor=Shuffled())
+
+
+def test_text_tiles_and_a_plan(tmp_path):
+    rng = np.random.default_rng(5)
+    points = np.round(rng.random((3_000, 3)) * [100, 100, 5], 2)
+    for number in range(2):
+        survey = ts.Survey(points=points[number::2], crs="EPSG:32616")
+        ts.write(survey, tmp_path / f"part{number}.csv")
+    cloud = ts.tiles(
+        [tmp_path / "part0.csv", tmp_path / "part1.csv"], crs="EPSG:32616", check_crs=False
+    )
+    path = cloud.rasterize(tmp_path / "a.tif", spacing=0.5, tiles=9, executor=Shuffled())
+    tin = ts.triangulate(np.concatenate([points[::2], points[1::2]]), crs="EPSG:32616")
+    np.testing.assert_array_equal(read(path), ts.rasterize(tin, spacing=0.5).bands["elevation"])
+    plan = cloud.plan(workers=3, tiles=4)
+    assert (plan.tiles, plan.workers) == (4, 3)
+    assert 1_000 < plan.count < 6_000
