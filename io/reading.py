@@ -35,7 +35,7 @@ from .lidar.signatures import list_tiles as list_lidar_tiles
 from .raster.virtual import is_virtual
 from .registry import lookup, signatures
 from .registry.format import Format, require_options, takes_progress
-from .reprojection.contradictions import checking_crs
+from .reprojection import checking_crs
 
 if TYPE_CHECKING:
     import os

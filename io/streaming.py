@@ -28,7 +28,7 @@ from .reading import (
     require_paths,
     require_unit,
 )
-from .registry.chunks import (
+from .registry import (
     PointChunk,
     SourceHeader,
     StreamEnd,
@@ -36,7 +36,7 @@ from .registry.chunks import (
     join_chunks,
     make_source_header,
 )
-from .reprojection.contradictions import checking_crs
+from .reprojection import checking_crs
 
 if TYPE_CHECKING:
     import os
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from ..base.crs import CRS, CrsLike, Unit, UnitLike
     from ..tin import Survey
     from .reading import Call
-    from .registry.chunks import Blocks
+    from .registry import Blocks
 
 __all__ = [
     "PointChunk",

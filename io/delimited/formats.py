@@ -1,6 +1,6 @@
 """The formats of survey text."""
 
-from ..registry.format import Format
+from ..registry import Format
 
 __all__ = ["FORMATS"]
 

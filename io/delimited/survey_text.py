@@ -18,8 +18,7 @@ from ...tin import TIN, Survey
 from ...tin.screening.area_of_use import AreaOfUse
 from ...tin.screening.nodata import parse_nodata
 from ..registry.losses import keep_on_one_line
-from ..reprojection.placement import place, settle_unit
-from ..reprojection.transformation import is_geographic
+from ..reprojection import is_geographic, place, settle_unit
 from .axes import require_no_geocentric, require_one_hemisphere, settle_axes
 from .columns import find_unit_word
 from .content import find_columns_by_content

@@ -11,10 +11,8 @@ from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError
 from ...tin import Bounds
 from ..isolated import choose_limits, start_early, stream_isolated
-from ..registry.chunks import PointChunk, SourceHeader, join_chunks, make_source_header
-from ..reprojection.contradictions import are_small_degrees
-from ..reprojection.placement import Placing
-from ..reprojection.transformation import find_bounds
+from ..registry import PointChunk, SourceHeader, join_chunks, make_source_header
+from ..reprojection import Placing, are_small_degrees, find_bounds
 from .reading import CHILD, Tile, describe_surplus, locate_tiles, name_attributes, scale
 from .selection import Selection, parse_selection
 

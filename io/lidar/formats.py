@@ -1,6 +1,6 @@
 """The formats of lidar."""
 
-from ..registry.format import SURFACES, Format
+from ..registry import SURFACES, Format
 from .signatures import is_lidar, is_lidar_folder
 
 __all__ = ["FORMATS"]

@@ -13,9 +13,8 @@ from ...base.errors import CrsError, OptionError, ReadError
 from ...base.progress import Progress
 from ...base.sentences import coordinate, counted, inflect
 from ..isolated import choose_limits, start_early, stream_isolated
-from ..registry.chunks import PointChunk, StreamEnd, StreamHead, gathering
-from ..reprojection.placement import Placing, place, settle_unit
-from ..reprojection.transformation import find_conversion_factor
+from ..registry import PointChunk, StreamEnd, StreamHead, gathering
+from ..reprojection import Placing, find_conversion_factor, place, settle_unit
 from .crs import Reference, find_reference
 from .header import Header, parse_header
 from .selection import (
@@ -37,7 +36,7 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...tin import Bounds
     from ..isolated import Answer
-    from ..registry.chunks import Blocks
+    from ..registry import Blocks
 
 __all__ = [
     "CHILD",

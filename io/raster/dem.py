@@ -25,7 +25,7 @@ from ...tin.screening.nodata import describe_elevations, parse_nodata
 from ..door import names_its_file
 from ..isolated import Limits, choose_limits, run_isolated, stream_isolated
 from ..isolated.limits import measure_free_memory
-from ..reprojection.placement import place, settle_unit
+from ..reprojection import place, settle_unit
 from .meaning import Meaning, find_meaning, settle_axes
 from .virtual import is_virtual, require_plain_sources
 

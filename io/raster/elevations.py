@@ -16,7 +16,7 @@ from ...terrain.gridding.grids import as_parts, to_grid
 from ...tin.screening.nodata import parse_nodata
 from ..door import names_its_file
 from ..isolated.spooling import is_pipe, require_local, require_readable
-from ..reprojection.placement import place
+from ..reprojection import place
 from .dem import (
     Header,
     choose_elevations,

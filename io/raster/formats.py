@@ -3,8 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from ..registry import signatures
-from ..registry.format import Format
+from ..registry import Format, signatures
 
 __all__ = ["FORMATS"]
 

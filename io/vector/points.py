@@ -19,7 +19,7 @@ from ...tin import TIN, Breakline, Survey
 from ...tin.screening.nodata import describe_elevations, parse_nodata
 from ...tin.topology import find_offsets
 from ..mesh.common import Reference, join_places, make_tin
-from ..reprojection.placement import place, settle_unit
+from ..reprojection import place, settle_unit
 from .elevations import find_elevation_unit, find_elevations
 from .features import read_features
 from .layers import Layer

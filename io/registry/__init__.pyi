@@ -1,0 +1,11 @@
+# Names that other packages of `io` use, each with the module that has it.
+from .chunks import Blocks as Blocks
+from .chunks import PointChunk as PointChunk
+from .chunks import SourceHeader as SourceHeader
+from .chunks import StreamEnd as StreamEnd
+from .chunks import StreamHead as StreamHead
+from .chunks import gathering as gathering
+from .chunks import join_chunks as join_chunks
+from .chunks import make_source_header as make_source_header
+from .format import SURFACES as SURFACES
+from .format import Format as Format
