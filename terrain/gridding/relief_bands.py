@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base.checks import as_flag
 from ...base.errors import OptionError
-from ...base.results.gridded import locate_centers
+from ...base.results import locate_centers
 from ...tin.validation.threads import thread_count
 from ..relief.gradients import compute_normals, sum_at_vertices
 from ..relief.light import normalise
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array, Int64Array
     from ...base.progress import Tell
     from ...tin import TIN, Grid
-    from ..relief.measures import PlaneMeasure
+    from ..relief import PlaneMeasure
 
 __all__ = ["ReliefBand", "choose_smooth"]
 

@@ -64,6 +64,7 @@ def triangulate_box(
     *,
     around: Bounds | None = None,
     duplicates: DuplicatePolicy = "mean",
+    rings: int = 0,
     threads: int = 1,
 ) -> LocalTriangulation:
     """Return the triangles of the whole surface that meet a closed box.
@@ -77,6 +78,8 @@ def triangulate_box(
         most questions. Default the box itself.
     duplicates : DuplicatePolicy
         As of :func:`tinsmith.triangulate`.
+    rings : int
+        How often to go on to all triangles around the vertices of these.
     threads : int
 
     Raises
@@ -93,6 +96,8 @@ def triangulate_box(
         first = known.numbers if growth.kept_row is None else _choose_first(known, growth.kept_row)
         xy = known.points if growth.kept_row is None else known.points[_is_first(growth.kept_row)]
         meets = find_triangles_at(xy, growth.triangles, box)
+        for _ in range(rings):
+            meets = _find_around(growth.triangles, meets, len(xy))
         asked = growth.triangles[meets]
         discs = bound_discs(xy, asked)
         names = np.sort(first[asked], axis=1)
@@ -139,6 +144,13 @@ def find_triangles_at(xy: Float64Array, triangles: Int32Array, box: Bounds) -> I
             is_right &= _kernel.orientation(*map(np.ascontiguousarray, (start, end, places))) < 0
         is_beyond |= is_right
     return np.delete(rows, doubtful[is_beyond])
+
+
+def _find_around(triangles: Int32Array, chosen: Int64Array, n_vertices: int) -> Int64Array:
+    """Return all triangles that have a vertex of chosen ones."""
+    is_corner = np.zeros(n_vertices, np.bool_)
+    is_corner[triangles[chosen]] = True
+    return np.flatnonzero(is_corner[triangles].any(axis=1))
 
 
 class Question(NamedTuple):
