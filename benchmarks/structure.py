@@ -18,7 +18,7 @@ from pathlib import Path
 from .report.tables import TEXT, Table
 
 ROOT = Path(__file__).parents[1]
-AREAS = ("tin", "terrain", "io", "cli", "base")
+AREAS = ("tin", "terrain", "io", "tiled", "cli", "base")
 FOLDERS = {"tin": "tin", "terrain": "terrain", "io": "io", "": "src/tinsmith"}
 PARAMETERS = ("crs", "elevation_unit", "elevation_unit", "interval", "path")
 MOST_POSITIONAL = 4

@@ -1,8 +1,19 @@
 """Gridding: a surface as a raster of cells, and cells' grids."""
 
 from .bands import SurfaceBand
+from .grids import as_cells, cover, describe_extent
 from .ground_heights import height_above
-from .rasters import rasterize
-from .relief_bands import ReliefBand
+from .rasters import list_units, rasterize
+from .relief_bands import ReliefBand, describe_smooth
 
-__all__ = ["ReliefBand", "SurfaceBand", "height_above", "rasterize"]
+__all__ = [
+    "ReliefBand",
+    "SurfaceBand",
+    "as_cells",
+    "cover",
+    "describe_extent",
+    "describe_smooth",
+    "height_above",
+    "list_units",
+    "rasterize",
+]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ...base.crs import Unit
     from ...tin import TIN, Grid
 
-__all__ = ["rasterize"]
+__all__ = ["list_units", "rasterize"]
 
 _UNITS = {"slope": "°", "aspect": "°"}
 
@@ -149,7 +149,7 @@ def rasterize(
         {value: held},
         cells,
         crs=tin.crs if tin.crs is None or value == "elevation" else tin.crs.horizontal,
-        units=_list_units(tin, value),
+        units=list_units(value, tin.elevation_unit),
         name=value,
         notes=[*describe_unknown(tin.crs, tin.elevation_unit), *notes, *noted],
     )
@@ -170,7 +170,8 @@ def _require_options(method: str, value: str, at: str, smooth: Any) -> None:
         raise OptionError("at", at, f"center for {what}")
 
 
-def _list_units(tin: TIN, value: str) -> dict[str, Unit | str | None]:
+def list_units(value: str, elevation_unit: Unit | None) -> dict[str, Unit | str | None]:
+    """Return the unit of the band of a value."""
     if value == "elevation":
-        return {value: tin.elevation_unit}
+        return {value: elevation_unit}
     return {value: _UNITS[value]} if value in _UNITS else {}

@@ -43,10 +43,15 @@ def choose_smooth(tin: TIN, smooth: Any, *, is_mean: bool = False) -> tuple[bool
     chosen = is_terrain and not is_mean if smooth is None else as_flag("smooth", smooth)
     if is_mean:
         return False, "Slopes are those of the triangles, averaged over the part of a cell."
-    if chosen:
-        why = ", as the points are the cells of a raster" if smooth is None else ""
-        return True, f"Slopes change evenly between those of the vertices (smooth{why})."
-    return False, (
+    return chosen, describe_smooth(is_smooth=chosen, is_default=smooth is None)
+
+
+def describe_smooth(*, is_smooth: bool, is_default: bool = False) -> str:
+    """Return a sentence that tells whether normals change evenly between vertices."""
+    if is_smooth:
+        why = ", as the points are the cells of a raster" if is_default else ""
+        return f"Slopes change evenly between those of the vertices (smooth{why})."
+    return (
         "Slopes are those of the triangles; a cell whose centre is on an edge has the mean "
         "gradient of both sides, one on a vertex that of the vertex."
     )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -83,3 +85,17 @@ def test_an_error_ends_the_run():
     processes = Processes(1)
     with pytest.raises(ZeroDivisionError):
         run(processes, fail, range(3))
+
+
+def test_a_script_without_a_guard_is_not_run_again(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "from tinsmith.tiled.executors import Processes, run_tasks\n"
+        "print('once')\n"
+        "processes = Processes(2)\n"
+        "run_tasks(processes, abs, [-1, -2], workers=2, take=print, give_up=print)\n"
+        "processes.close()\n"
+    )
+    found = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
+    assert sorted(found.stdout.split()) == ["-1", "-2", "1", "2", "once"]
+    assert found.stderr == ""

@@ -1,5 +1,20 @@
 """Parts of a triangulation that is never in memory as a whole, each of them exact."""
 
+from .boxes import are_in_box, widen
+from .circles import Discs
 from .local_triangulation import LocalTriangulation, triangulate_box
+from .skeleton import find_outermost, find_skeleton, reduce_to_hull
+from .sources import NumberedPoints, PointSource
 
-__all__ = ["LocalTriangulation", "triangulate_box"]
+__all__ = [
+    "Discs",
+    "LocalTriangulation",
+    "NumberedPoints",
+    "PointSource",
+    "are_in_box",
+    "find_outermost",
+    "find_skeleton",
+    "reduce_to_hull",
+    "triangulate_box",
+    "widen",
+]

@@ -176,6 +176,7 @@ def compute_tiles(
     Failure
         If there is no output beside which the run can be kept.
     """
+    from ..tiled.computing import computing
     from ..tiled.how import How
 
     output = next((path for path in planned.paths if path != STANDARD), None)
@@ -183,7 +184,7 @@ def compute_tiles(
         raise Failure("Tiles need an output file, beside which the run is kept: name it by -o.")
     shown = _Shown(job)
     how = How.of(**tiling.way, progress=shown.take)
-    with shown.stack, cloud.computing(product, output, how, **asked) as made:
+    with shown.stack, computing(cloud, product, output, how, **asked) as made:
         shown.stack.close()
         yield made
 

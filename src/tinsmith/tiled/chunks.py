@@ -16,7 +16,7 @@ import numpy as np
 
 from ..base.atomic import replacing
 from ..base.types import Bounds
-from ..tin.tiling.sources import NumberedPoints
+from ..tin.tiling import NumberedPoints
 
 if TYPE_CHECKING:
     from pathlib import Path

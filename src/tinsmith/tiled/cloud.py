@@ -2,52 +2,37 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
-from importlib import import_module
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
-from .. import __version__
-from ..base.atomic import as_path, replacing, require_writable
+from ..base.atomic import as_path
 from ..base.checks import is_finite_number
 from ..base.crs import CRS, Unit, shorten_crs
 from ..base.errors import OptionError, choice
-from ..base.policies import DuplicatePolicy
+from ..base.policies import DuplicatePolicy, RasterValue
 from ..base.sentences import counted
-from ..base.types import Bounds
 from ..io.reading import list_files
 from ..io.registry.lookup import find_format
 from ..io.streaming import SourceHeader, describe_source
 from ..io.writing import write as write_file
 from .chunks import BYTES_ON_DISK
-from .division import Tile, divide
+from .computing import computing
 from .how import How, Way, estimate_memory
-from .reading import StoredPoints, read_inputs
-from .runs import Fingerprint, Run
-from .store import count_by_cells
-from .tasks import PHASE, TileJob, compute_tile, divide_job
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Iterator
 
     from ..base.crs import CrsLike, UnitLike
 
 __all__ = ["Plan", "TiledPoints", "tiles"]
 
-_LATTICE = 1024
-"""Rows and columns of the cells in which points are counted before tiles are cut."""
-_SUFFIX = ".run"
 _BYTES_OF_A_POINT = 30
 """Of text."""
 _POINTS_PER_SECOND = 500_000.0
 """That a worker reads, triangulates and writes, about."""
-_POINTS = "points"
 _CLASSES = "classification"
-_TILES = "tiles.json"
 
 
 @dataclass(frozen=True)
@@ -180,6 +165,16 @@ class TiledPoints:
         Folder in which points are kept.
     options : mapping
         Of the reader.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+    >>> with TemporaryDirectory() as folder:
+    ...     ts.tiles(ts.write(survey, Path(folder, "points.csv")))
+    <TiledPoints: an unknown number of points in 1 file, crs unknown>
     """
 
     headers: tuple[SourceHeader, ...]
@@ -200,6 +195,12 @@ class TiledPoints:
         return None if None in counts else sum(count for count in counts if count is not None)
 
     @property
+    def is_raster(self) -> bool:
+        """Whether the points are the cells of one raster."""
+        formats = [find_format(header.format) for header in self.headers]
+        return len(formats) == 1 and formats[0].read_cells is not None
+
+    @property
     def count_about(self) -> int:
         """Points, as the headers name them, or by the size of files that do not tell."""
         return sum(
@@ -218,7 +219,12 @@ class TiledPoints:
         Examples
         --------
         >>> import tinsmith as ts
-        >>> ts.tiles("sample_data/site_survey.csv").plan(workers=1).tiles
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+        >>> with TemporaryDirectory() as folder:
+        ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")))
+        ...     cloud.plan(workers=1).tiles
         1
         """
         how = How.of(**way)
@@ -242,11 +248,14 @@ class TiledPoints:
         self,
         path: str | os.PathLike[str],
         *,
-        spacing: float | None = None,
-        like: Any = None,
         format: str | None = None,  # noqa: A002 - as in write
         write: Mapping[str, Any] | None = None,
-        value: str = "elevation",
+        spacing: float | None = None,
+        like: Any = None,
+        value: RasterValue = "elevation",
+        azimuth: float = 315.0,
+        altitude: float = 45.0,
+        smooth: bool | None = None,
         **way: Unpack[Way],
     ) -> Path:
         """Write a raster, as :func:`tinsmith.rasterize` makes it of the whole surface.
@@ -254,12 +263,12 @@ class TiledPoints:
         Parameters
         ----------
         path : path-like
-        spacing, like, value
-            As of :func:`tinsmith.rasterize`.
         format : str, optional
             Name of a format of rasters, to choose it whatever the suffix.
         write : mapping, optional
             Options of the writer.
+        spacing, like, value, azimuth, altitude, smooth
+            As of :func:`tinsmith.rasterize`.
         **way
             How the run is carried out, see :class:`Way`.
 
@@ -274,81 +283,29 @@ class TiledPoints:
             If a file cannot be read, or a tile not be computed; what is done is kept.
         WriteError
             If the output or the folder of the run cannot be written.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+        >>> with TemporaryDirectory() as folder:
+        ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")))
+        ...     cloud.rasterize(Path(folder, "dtm.tif"), spacing=1.0, workers=1).name
+        'dtm.tif'
         """
         output = as_path(path)
-        asked = {"spacing": spacing, "like": like, "value": value}
-        with self.computing("raster", output, How.of(**way), **asked) as made:
-            return write_file(made, output, format=format, **(write or {}))
-
-    # ----------------------------------------------------------------- the steps of a run
-
-    @contextmanager
-    def computing(self, product: str, output: Path, how: How, **asked: Any) -> Iterator[Any]:
-        """Read what is not read yet, compute what no record says is done, and yield the product.
-
-        Parameters
-        ----------
-        product : str
-            Module of :mod:`tinsmith.tiled.products`.
-        output : Path
-            Where the product is to be written; the folder of the run lies beside it.
-        how : How
-        **asked
-            Options of the product.
-
-        Yields
-        ------
-        Features, Raster or Table
-            Whose blocks may lie in the folder of the run, which is removed at the end.
-        """
-        require_writable(output)
-        module = import_module(f"{__package__}.products.{product}")
-        options = module.check_options(**asked)
-        sources = [Fingerprint.take(file) for file in self.files]
-        run = Run(how.run or output.with_name(output.name + _SUFFIX))
-        points_run = Run(self.store or run.folder / _POINTS)
-        with (
-            run.opened(self._describe(product, options, sources), restart=how.restart),
-            points_run.opened(self._describe(_POINTS, {}, sources), restart=how.restart),
-        ):
-            with how.started() as start:
-                points = read_inputs(
-                    points_run, sources, start("Reading"), options=self.options, where=self.where
-                )
-                settled = module.settle_options(points, options)
-                jobs = [
-                    TileJob(run.folder, points_run.folder, tile, product, settled, self.duplicates)
-                    for tile in _find_tiles(run, points, how)
-                ]
-                step = start("Triangulating")
-                records = step.run(run, PHASE, compute_tile, jobs, divide=divide_job)
-            yield module.join(points, settled, records, run.folder)
-        if not how.keep:
-            run.remove()
-
-    def _describe(
-        self, product: str, options: Mapping[str, Any], sources: Sequence[Fingerprint]
-    ) -> dict[str, Any]:
-        """Return what a run computes, and from what."""
-        reading = {"duplicates": self.duplicates, "where": dict(self.where), **self.options}
-        return {
-            "version": __version__,
-            "product": product,
-            "options": {**reading, **options},
-            "inputs": [asdict(one) for one in sources],
+        asked = {
+            "spacing": spacing,
+            "like": like,
+            "value": value,
+            "azimuth": azimuth,
+            "altitude": altitude,
+            "smooth": smooth,
         }
-
-
-def _find_tiles(run: Run, points: StoredPoints, how: How) -> list[Tile]:
-    """Return the tiles of a run: those with which it was begun, else new ones."""
-    path = run.folder / _TILES
-    if not path.exists():
-        counts = count_by_cells(points.open().chunks, points.bounds, _LATTICE)
-        found = divide(counts, points.bounds, most=how.tile_points, fewest_tiles=how.tiles)
-        with replacing(path, binary=False) as file:
-            json.dump([[one.key, list(asdict(one.box).values()), one.count] for one in found], file)
-    entries = json.loads(path.read_text(encoding="utf-8"))
-    return [Tile(key, Bounds(*box), count) for key, box, count in entries]
+        with computing(self, "raster", output, How.of(**way), **asked) as made:
+            return write_file(made, output, format=format, **(write or {}))
 
 
 def _list_files(paths: Any, name: str | None) -> list[Path]:

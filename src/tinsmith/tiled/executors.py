@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import multiprocessing
 import signal
+import sys
 from collections import Counter, deque
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..base import optional
@@ -169,8 +171,23 @@ def _take_results(running: dict[Future[Any], Job], take: Callable[[Job, Any], No
 def _submit(executor: Executor | Processes, function: Callable[..., Any], job: Any) -> Future[Any]:
     if not isinstance(executor, Processes):
         return executor.submit(function, job)
+    with _hiding_main():
+        try:
+            return executor.start().submit(function, job)
+        except BrokenProcessPool:
+            executor.stop()
+            return executor.start().submit(function, job)
+
+
+@contextmanager
+def _hiding_main() -> Iterator[None]:
+    """Let processes start without running the caller's script again, which need not expect it.
+
+    They are handed functions of this package alone.
+    """
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
     try:
-        return executor.start().submit(function, job)
-    except BrokenProcessPool:
-        executor.stop()
-        return executor.start().submit(function, job)
+        yield
+    finally:
+        sys.modules["__main__"] = main

@@ -18,8 +18,7 @@ from ..base.notes import join_notes
 from ..base.sentences import counted
 from ..base.types import Bounds
 from ..io.streaming import stream_points
-from ..tin.tiling.skeleton import find_skeleton
-from ..tin.tiling.sources import NumberedPoints
+from ..tin.tiling import NumberedPoints, find_skeleton
 from .chunks import Chunk, load_chunks, save_chunks, write_chunk
 from .runs import Fingerprint, Record, Run, hash_file
 from .store import PointStore, join_skeletons
@@ -186,6 +185,8 @@ class StoredPoints:
         What the readers tell.
     count : int
     bounds : Bounds
+    is_raster : bool
+        Whether they are the cells of one raster.
     """
 
     folder: Path
@@ -194,6 +195,7 @@ class StoredPoints:
     notes: tuple[str, ...]
     count: int
     bounds: Bounds
+    is_raster: bool = False
 
     def open(self) -> PointStore:
         """Return the source of points for tasks."""

@@ -8,15 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.types import Bounds
-from ..tin.tiling.boxes import are_in_box
-from ..tin.tiling.skeleton import find_outermost, reduce_to_hull
-from ..tin.tiling.sources import NumberedPoints
+from ..tin.tiling import NumberedPoints, are_in_box, find_outermost, reduce_to_hull
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ..base.arrays import Float64Array, Int64Array
-    from ..tin.tiling.circles import Discs
+    from ..tin.tiling import Discs
     from .chunks import Chunk
 
 __all__ = ["PointStore", "count_by_cells", "join_skeletons"]

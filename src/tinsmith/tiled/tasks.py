@@ -9,8 +9,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, cast
 
 from ..base.errors import TinsmithError, WriteError
-from ..tin.tiling.boxes import widen
-from ..tin.tiling.local_triangulation import LocalTriangulation, triangulate_box
+from ..tin.tiling import LocalTriangulation, triangulate_box, widen
 from .division import Tile, quarter
 from .reading import open_store
 from .runs import Record, Run, hash_file
@@ -75,13 +74,14 @@ class Part(NamedTuple):
         """Where files of the tile are written."""
         return self.job.folder / PHASE
 
-    def triangulate(self, box: Bounds) -> LocalTriangulation:
-        """Return all triangles of the whole surface that meet a closed box."""
+    def triangulate(self, box: Bounds, *, rings: int = 0) -> LocalTriangulation:
+        """Return all triangles of the whole surface that meet a closed box, and rings of others."""
         return triangulate_box(
             self.store,
             box,
             around=widen(box, self._halo),
             duplicates=self.job.duplicates,
+            rings=rings,
         )
 
     @property

@@ -8,21 +8,28 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.atomic import replacing
-from ...base.checks import as_length
-from ...base.errors import OptionError, PointsError
+from ...base.checks import as_flag, as_length
+from ...base.crs import CRS, Unit
+from ...base.errors import OptionError, PointsError, choice
 from ...base.georeference import describe_unknown
+from ...base.policies import RasterValue
 from ...base.results import Raster
-from ...base.results.gridded import locate_centers
 from ...base.types import Bounds, Grid
-from ...terrain._kernel import GriddedSurface
-from ...terrain.gridding.grids import as_cells, cover, describe_extent
+from ...terrain.gridding import as_cells, cover, describe_extent, describe_smooth, list_units
+from ...terrain.parts.rasters import (
+    RasterOptions,
+    compute_block,
+    count_rings,
+    find_cells,
+    find_reach,
+)
+from ...terrain.relief import as_light
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
     from ...base.arrays import Float64Array
-    from ...base.policies import InterpolationMethod, RasterSample, RasterValue
     from ..reading import StoredPoints
     from ..runs import Record
     from ..tasks import Part
@@ -35,61 +42,82 @@ def check_options(
     spacing: float | None = None,
     like: Any = None,
     value: RasterValue = "elevation",
-    method: InterpolationMethod = "linear",
-    at: RasterSample = "center",
-    **light: Any,
+    method: str = "linear",
+    at: str = "center",
+    azimuth: float = 315.0,
+    altitude: float = 45.0,
+    smooth: bool | None = None,
 ) -> dict[str, Any]:
     """Return plain options, or refuse what is none, or needs all points at a time."""
-    del light
     if (spacing is None) == (like is None):
         raise OptionError("grid", [spacing, like], "one of spacing and like")
     if spacing is not None:
         as_length("spacing", spacing)
-    for name, wanted, local in (
-        ("method", method, "linear"),
-        ("at", at, "center"),
-        ("value", value, "elevation"),
-    ):
-        if wanted != local:
-            raise OptionError(name, wanted, f"{local} where a raster is computed in tiles")
-    cells = None if like is None else asdict(as_cells(like).grid)
-    return {"spacing": spacing, "value": value, "like": cells}
+    choice("value", value, RasterValue)
+    if method != "linear":
+        raise OptionError("method", method, "linear where a raster is computed in tiles")
+    if at != "center":
+        raise OptionError("at", at, "center where a raster is computed in tiles")
+    if smooth is not None:
+        as_flag("smooth", smooth)
+        if value == "elevation":
+            raise OptionError("smooth", smooth, "None for elevations, which have a method")
+    as_light(azimuth, altitude)
+    return {
+        "spacing": spacing,
+        "like": None if like is None else asdict(as_cells(like).grid),
+        "value": value,
+        "azimuth": azimuth,
+        "altitude": altitude,
+        "smooth": smooth,
+    }
 
 
 def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
     """Settle the cells, when the bounds of all points are known."""
-    if options["like"] is not None:
-        return {**options, "grid": options["like"]}
-    return {**options, "grid": asdict(cover(points.bounds, options["spacing"]))}
+    grid = options["like"] or asdict(cover(points.bounds, options["spacing"]))
+    smooth = points.is_raster if options["smooth"] is None else options["smooth"]
+    crs, unit = points.crs, points.elevation_unit
+    return {
+        **options,
+        "grid": grid,
+        "smooth": smooth and options["value"] != "elevation",
+        "crs": None if crs is None else str(crs),
+        "elevation_unit": None if unit is None else unit.text,
+    }
 
 
-def _as_grid(values: Mapping[str, Any]) -> Grid:
-    return Grid(Bounds(**values["bounds"]), tuple(values["shape"]), values["spacing"])
+def _make_options(options: Mapping[str, Any]) -> RasterOptions:
+    grid = options["grid"]
+    return RasterOptions(
+        grid=Grid(Bounds(**grid["bounds"]), tuple(grid["shape"]), grid["spacing"]),
+        value=options["value"],
+        is_smooth=options["smooth"],
+        light=as_light(options["azimuth"], options["altitude"]),
+        crs=CRS.of(options["crs"]),
+        elevation_unit=Unit.of(options["elevation_unit"]),
+    )
 
 
 def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     """Compute the cells of a tile."""
-    tile, options = part.job.tile, part.job.options
-    grid = _as_grid(options["grid"])
-    x, y = locate_centers(grid)
-    west, east = np.searchsorted(x, [tile.box.xmin, tile.box.xmax], "left").tolist()
-    up = y[::-1]
-    south, north = np.searchsorted(up, [tile.box.ymin, tile.box.ymax], "left").tolist()
-    top, bottom = len(y) - north, len(y) - south
-    if west >= east or top >= bottom:
+    tile, options = part.job.tile, _make_options(part.job.options)
+    rows, columns = find_cells(options.grid, tile.box)
+    if rows.start == rows.stop:
         return 0, {}, []
-    box = Bounds(x[west], y[bottom - 1], x[east - 1], y[top])
-    local = part.triangulate(box)
+    local = part.triangulate(find_reach(options.grid, rows, columns), rings=count_rings(options))
     if not len(local.triangles):
         return 0, {}, []
-    drawn = GriddedSurface(local.points, local.triangles)
-    block = drawn.values_at_centers(x[west:east], y[top:bottom], grid.spacing, None, 1, None)
+    values = compute_block(local, rows, columns, options).values
     name = f"{tile.key}.npy"
     with replacing(part.folder / name) as file:
-        np.save(file, block)
-    covered = int(np.isfinite(block).sum())
-    values = {"rows": [top, bottom], "columns": [west, east], "covered": covered}
-    return len(local.points), values, [name]
+        np.save(file, values)
+    found = {
+        "rows": [rows.start, rows.stop],
+        "columns": [columns.start, columns.stop],
+        "covered": int(np.isfinite(values).sum()),
+    }
+    return len(local.points), found, [name]
 
 
 class _Blocks:
@@ -100,42 +128,56 @@ class _Blocks:
     def __init__(self, folder: Path, records: Mapping[str, Record], grid: Grid) -> None:
         self.shape = grid.shape
         self._blocks = [
-            (record.values["rows"], record.values["columns"], folder / name)
+            (slice(*record.values["rows"]), slice(*record.values["columns"]), folder / name)
             for record in records.values()
             for name in record.files
         ]
 
     def __getitem__(self, key: tuple[slice, slice]) -> Float64Array:
+        """Return a block; slices have no step."""
         rows, columns = key
         found = np.full((rows.stop - rows.start, columns.stop - columns.start), np.nan)
-        for (top, bottom), (west, east), path in self._blocks:
-            r0, r1 = max(top, rows.start), min(bottom, rows.stop)
-            c0, c1 = max(west, columns.start), min(east, columns.stop)
-            if r0 < r1 and c0 < c1:
-                block = np.load(path, mmap_mode="r")
-                found[
-                    r0 - rows.start : r1 - rows.start, c0 - columns.start : c1 - columns.start
-                ] = block[r0 - top : r1 - top, c0 - west : c1 - west]
+        for own_rows, own_columns, path in self._blocks:
+            target = _find_common(rows, own_rows), _find_common(columns, own_columns)
+            source = _find_common(own_rows, rows), _find_common(own_columns, columns)
+            if target[0].start < target[0].stop and target[1].start < target[1].stop:
+                found[target] = np.load(path, mmap_mode="r")[source]
         return found
+
+
+def _find_common(part: slice, other: slice) -> slice:
+    """Return what two ranges have in common, counted from the start of the first."""
+    start, stop = max(part.start, other.start), min(part.stop, other.stop)
+    return slice(start - part.start, max(start, stop) - part.start)
 
 
 def join(
     points: StoredPoints, options: Mapping[str, Any], records: Mapping[str, Record], folder: Path
 ) -> Raster:
-    """Return the raster, whose cells are read from the files of tiles as they are asked for."""
-    grid = _as_grid(options["grid"])
-    blocks: Any = _Blocks(folder, records, grid)
-    value = options["value"]
+    """Return the raster, whose cells are read from the files of tiles as they are asked for.
+
+    Raises
+    ------
+    PointsError
+        If no cell has a value.
+    """
+    grid, value = _make_options(options).grid, options["value"]
     if not any(record.values.get("covered") for record in records.values()):
         raise PointsError(
             f"No centre of a cell lies on the surface: the cells are {grid.spacing:g} wide and "
             f"cover {describe_extent(grid.bounds)}, the points {describe_extent(points.bounds)}."
         )
+    blocks: Any = _Blocks(folder, records, grid)
+    crs, is_elevation = points.crs, value == "elevation"
     return Raster(
         {value: blocks},
         grid,
-        crs=points.crs,
-        units={value: points.elevation_unit},
+        crs=crs if crs is None or is_elevation else crs.horizontal,
+        units=list_units(value, points.elevation_unit),
         name=value,
-        notes=[*points.notes, *describe_unknown(points.crs, points.elevation_unit)],
+        notes=[
+            *points.notes,
+            *describe_unknown(crs, points.elevation_unit),
+            *(() if is_elevation else (describe_smooth(is_smooth=options["smooth"]),)),
+        ],
     )

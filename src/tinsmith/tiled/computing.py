@@ -1,0 +1,107 @@
+"""A product of many files: what is not done yet is done, and what was done is joined."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, replace
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from .. import __version__
+from ..base.atomic import replacing, require_writable
+from ..base.types import Bounds
+from .division import Tile, divide
+from .reading import StoredPoints, read_inputs
+from .runs import Fingerprint, Run
+from .store import count_by_cells
+from .tasks import PHASE, TileJob, compute_tile, divide_job
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from .cloud import TiledPoints
+    from .how import How
+
+__all__ = ["computing"]
+
+_LATTICE = 1024
+"""Rows and columns of the cells in which points are counted before tiles are cut."""
+_SUFFIX = ".run"
+_POINTS = "points"
+_TILES = "tiles.json"
+
+
+@contextmanager
+def computing(
+    cloud: TiledPoints, product: str, output: Path, how: How, **asked: Any
+) -> Iterator[Any]:
+    """Read what is not read yet, compute what no record says is done, and yield the product.
+
+    Parameters
+    ----------
+    cloud : TiledPoints
+    product : str
+        Module of :mod:`tinsmith.tiled.products`.
+    output : Path
+        Where the product is to be written; the folder of the run lies beside it.
+    how : How
+    **asked
+        Options of the product.
+
+    Yields
+    ------
+    Features, Raster or Table
+        Whose blocks may lie in the folder of the run, which is removed at the end.
+    """
+    require_writable(output)
+    module = import_module(f"{__package__}.products.{product}")
+    options = module.check_options(**asked)
+    sources = [Fingerprint.take(file) for file in cloud.files]
+    run = Run(how.run or output.with_name(output.name + _SUFFIX))
+    points_run = Run(cloud.store or run.folder / _POINTS)
+    with (
+        run.opened(_describe(cloud, product, options, sources), restart=how.restart),
+        points_run.opened(_describe(cloud, _POINTS, {}, sources), restart=how.restart),
+    ):
+        with how.started() as start:
+            points = read_inputs(
+                points_run, sources, start("Reading"), options=cloud.options, where=cloud.where
+            )
+            points = replace(points, is_raster=cloud.is_raster)
+            settled = module.settle_options(points, options)
+            jobs = [
+                TileJob(run.folder, points_run.folder, tile, product, settled, cloud.duplicates)
+                for tile in _find_tiles(run, points, how)
+            ]
+            step = start("Triangulating")
+            records = step.run(run, PHASE, compute_tile, jobs, divide=divide_job)
+        yield module.join(points, settled, records, run.folder)
+    if not how.keep:
+        run.remove()
+
+
+def _describe(
+    cloud: TiledPoints, product: str, options: Mapping[str, Any], sources: Sequence[Fingerprint]
+) -> dict[str, Any]:
+    """Return what a run computes, and from what."""
+    reading = {"duplicates": cloud.duplicates, "where": dict(cloud.where), **cloud.options}
+    return {
+        "version": __version__,
+        "product": product,
+        "options": {**reading, **options},
+        "inputs": [asdict(one) for one in sources],
+    }
+
+
+def _find_tiles(run: Run, points: StoredPoints, how: How) -> list[Tile]:
+    """Return the tiles of a run: those with which it was begun, else new ones."""
+    path = run.folder / _TILES
+    if not path.exists():
+        counts = count_by_cells(points.open().chunks, points.bounds, _LATTICE)
+        found = divide(counts, points.bounds, most=how.tile_points, fewest_tiles=how.tiles)
+        with replacing(path, binary=False) as file:
+            json.dump([[one.key, list(asdict(one.box).values()), one.count] for one in found], file)
+    entries = json.loads(path.read_text(encoding="utf-8"))
+    return [Tile(key, Bounds(*box), count) for key, box, count in entries]
