@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 __all__ = [
     "describe_faults",
     "describe_left_out",
+    "describe_outside",
+    "describe_sum_row",
     "find_commented_points",
     "find_odd_elevations",
     "find_repeated_numbers",
@@ -110,16 +112,28 @@ def require_in_area(
         return []
     if 2 * len(outside) > len(points):
         _require_no_exchange(points, columns, area, is_headed=is_headed)
-        return [
-            f"{_count(len(outside), len(points))} outside the area of use of {area.label}: check "
-            "that the CRS of the points is the right one."
-        ]
     fits = area.covers(points[outside][:, [1, 0]])
-    exchanged = f"; {_count(int(fits.sum()))} inside if exchanged" if fits.any() else ""
-    return [
-        f"{_count(len(outside), len(points))} outside the area of use of {area.label} "
-        f"({_name_lines(rows[outside])}){exchanged}."
-    ]
+    counts = len(points), len(outside), int(fits.sum())
+    return [describe_outside(area, counts, rows[outside])]
+
+
+def describe_outside(area: AreaOfUse, counts: tuple[int, int, int], rows: Int64Array) -> str:
+    """Say that points lie outside an area of use.
+
+    Parameters
+    ----------
+    area : AreaOfUse
+    counts : tuple of int
+        Points, those outside, and those of them that lie inside with coordinates exchanged.
+    rows : (n,) int64 array
+        Lines of the first points outside, from 0.
+    """
+    n_points, n_outside, n_fits = counts
+    said = f"{_count(n_outside, n_points)} outside the area of use of {area.label}"
+    if 2 * n_outside > n_points:
+        return f"{said}: check that the CRS of the points is the right one."
+    exchanged = f"; {_count(n_fits)} inside if exchanged" if n_fits else ""
+    return f"{said} ({_name_lines(rows)}){exchanged}."
 
 
 def require_one_header(
@@ -180,9 +194,9 @@ def find_commented_points(
 ) -> list[str]:
     """Say which lines that begin as comments do hold a point, as where its number is #12."""
     is_other = ~lines.is_blank
-    is_other[rows] = False
+    is_other[rows - lines.first] = False
     found = []
-    for line in np.flatnonzero(is_other)[:_SOME].tolist():
+    for line in lines.number(is_other)[:_SOME].tolist():
         text = lines.decode_line(line).strip()
         cells = split_line(text, layout.delimiter)
         is_row = len(cells) == layout.count and text.startswith(COMMENT_PREFIXES)
@@ -213,12 +227,17 @@ def find_summary_rows(
                 f"and may be statistics of the others ({words}, {_name_lines(rows[found])})."
             )
     with np.errstate(over="ignore", invalid="ignore"):  # a sum may be beyond all doubles
-        is_sum = np.allclose(points[:-1].sum(axis=0), points[-1:], rtol=1e-9)
-    if len(points) > _FEW_POINTS and is_sum:
-        notes.append(
-            f"The last row (line {rows[-1] + 1}) is the sum of all others, and read as a point."
-        )
+        notes += describe_sum_row(points[:-1].sum(axis=0), points[-1:], rows[-1:], len(points))
     return notes
+
+
+def describe_sum_row(
+    total: Float64Array, last: Float64Array, row: Int64Array, count: int
+) -> list[str]:
+    """Say that the last of so many points, (1, 3), is the sum of all others, (3,)."""
+    if count <= _FEW_POINTS or not np.allclose(total, last, rtol=1e-9):
+        return []
+    return [f"The last row (line {row[0] + 1}) is the sum of all others, and read as a point."]
 
 
 def _is_statistic(name: str) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from .headings import Heading
     from .lines import TextLines
 
-__all__ = ["Layout", "find_layout"]
+__all__ = ["Layout", "continue_layout", "find_layout", "require_announced"]
 
 _TOP_LINES = 100
 _SPREAD_LINES = 200
@@ -94,8 +94,8 @@ class Layout:
     """Columns with a decimal mark or an exponent."""
     is_scan: bool
     """Whether the suffix says that rows begin with x, y, z."""
-    is_announced: bool
-    """Whether a point count above the table says it, too."""
+    announced: int | None
+    """Points that a line above the table tells of."""
     skipped: Mapping[str, int]
     """Lines that are no rows."""
     notes: tuple[str, ...] = ()
@@ -104,6 +104,15 @@ class Layout:
     """A line that speaks of coordinates and does not give the order of the columns."""
     left_out: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     """Lines (from 1) among the rows that are no rows: the header again, "END"."""
+    has_semicolons: bool = False
+    """Whether rows begin with a semicolon that is neither delimiter nor comment."""
+    headers: tuple[str, ...] = ()
+    """The header and the line of units as they stand above the table."""
+
+    @property
+    def is_announced(self) -> bool:
+        """Whether a point count above the table says that rows begin with x, y, z."""
+        return self.announced is not None
 
     @property
     def elevation_unit(self) -> str | None:
@@ -263,7 +272,9 @@ def _lay_out_table(
         padded=kinds.padded,
         divided=kinds.divided,
         is_scan=path.suffix.lower() in _SCAN_SUFFIXES,
-        is_announced=top.announced is not None,
+        announced=top.announced,
+        has_semicolons=delimiter != ";" and bool(lines.starts_with(";")[rows - lines.first].any()),
+        headers=tuple(_take_headers(lines, data, top)),
         skipped={what: many for what, many in (skipped + top.counts).items() if many},
         notes=((note,) if note else ()) + (() if columns is None else columns.notes) + breaks.notes,
         heading=heading,
@@ -276,18 +287,61 @@ def _select_rows(
 ) -> tuple[Int64Array, PageBreaks]:
     """Return the rows of the table, and the lines among them that are none."""
     rows = data[top.n_lines :]
-    breaks = find_page_breaks(lines, rows, data[top.headers].tolist(), delimiter, decimal)
+    breaks = find_page_breaks(lines, rows, _take_headers(lines, data, top), delimiter, decimal)
     out = [line - 1 for found in breaks.lines.values() for line in found]
     rows = rows[~np.isin(rows, out)]
     if len(rows) == 0:
         raise ReadError("there is no row of numbers below the header.")
-    if top.announced not in (None, len(rows)):
+    if lines.is_last:
+        require_announced(top.announced, len(rows))
+    return rows, breaks
+
+
+def _take_headers(lines: TextLines, data: Int64Array, top: _Top) -> list[str]:
+    return [text.strip() for text in lines.decode_lines(data[top.headers].tolist())]
+
+
+def require_announced(announced: int | None, n_rows: int) -> None:
+    """Refuse a number of rows that is not the one which stands above the table.
+
+    Raises
+    ------
+    ReadError
+    """
+    if announced not in (None, n_rows):
         raise ReadError(
-            f"the first line announces {counted(top.announced or 0, 'point')}, but "
-            f"{counted(len(rows), 'row')} {'follows' if len(rows) == 1 else 'follow'}: "
+            f"the first line announces {counted(announced or 0, 'point')}, but "
+            f"{counted(n_rows, 'row')} {'follows' if n_rows == 1 else 'follow'}: "
             "the file may be truncated."
         )
-    return rows, breaks
+
+
+def continue_layout(lines: TextLines, head: Layout, *, comment: str | None) -> Layout:
+    """Return how to read further lines of a table, whose head tells the layout.
+
+    Parameters
+    ----------
+    lines : TextLines
+    head : Layout
+        Of the first lines of the file.
+    comment : str, optional
+        As of :func:`find_layout`.
+    """
+    options = _Options(delimiter=head.delimiter, decimal=head.decimal, comment=comment)
+    data, skipped = _select_data_lines(lines, options)
+    if not head.has_semicolons:
+        data, skipped = _drop_fillers(
+            lines, data, skipped, head.delimiter, options, may_be_data=False
+        )
+    breaks = find_page_breaks(lines, data, head.headers, head.delimiter, head.decimal)
+    out = [line - 1 for found in breaks.lines.values() for line in found]
+    return replace(
+        head,
+        rows=data[~np.isin(data, out)],
+        skipped={what: many for what, many in skipped.items() if many},
+        notes=breaks.notes,
+        left_out=breaks.lines,
+    )
 
 
 def _select_even_rows(
@@ -312,10 +366,10 @@ def _select_data_lines(lines: TextLines, options: _Options) -> tuple[Int64Array,
     for prefix in prefixes:
         if prefix and not (options.comment is None and prefix == ";"):
             is_comment |= lines.starts_with(prefix)
-    data = np.flatnonzero(~is_blank & ~is_comment)
-    if len(data) == 0 and options.comment is None:
+    data = lines.number(~is_blank & ~is_comment)
+    if len(data) == 0 and options.comment is None and lines.first == 0:
         is_comment[:] = False
-        data = np.flatnonzero(~is_blank)
+        data = lines.number(~is_blank)
     counts = {"blank lines": int(is_blank.sum()), "comment lines": int(is_comment.sum())}
     return data, Counter(counts)
 
@@ -326,16 +380,18 @@ def _drop_fillers(
     skipped: Counter[str],
     delimiter: str,
     options: _Options,
+    *,
+    may_be_data: bool = True,
 ) -> tuple[Int64Array, Counter[str]]:
     """Set aside rows of nothing but delimiters, and comments that start with a semicolon."""
     if delimiter != BLANKS:
-        starters = data[lines.starts_with(delimiter)[data]]
+        starters = data[lines.starts_with(delimiter)[data - lines.first]]
         fillers = [i for i in starters if not lines.decode_line(i).strip(f"{delimiter} \t")]
         data = np.delete(data, np.searchsorted(data, np.array(fillers, np.int64)))
         skipped = skipped + Counter({"blank lines": len(fillers)})
     if options.comment is None and delimiter != ";":
-        is_comment = lines.starts_with(";")[data]
-        if not is_comment.all():
+        is_comment = lines.starts_with(";")[data - lines.first]
+        if not (may_be_data and is_comment.all()):
             data = data[~is_comment]
             skipped = skipped + Counter({"comment lines": int(is_comment.sum())})
     return data, skipped

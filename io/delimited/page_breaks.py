@@ -41,7 +41,7 @@ class PageBreaks(NamedTuple):
 def find_page_breaks(
     lines: TextLines,
     rows: Int64Array,
-    top: Sequence[int],
+    top: Sequence[str],
     delimiter: str,
     decimal: str,
 ) -> PageBreaks:
@@ -52,8 +52,8 @@ def find_page_breaks(
     lines : TextLines
     rows : (n,) int64 array
         Lines (from 0) below the header.
-    top : sequence of int
-        Lines (from 0) of the header, and of the units below it; empty if there are none.
+    top : sequence of str
+        The header, and the units below it; empty if there are none.
     delimiter, decimal : str
     """
     found: dict[str, tuple[int, ...]] = {}
@@ -63,18 +63,17 @@ def find_page_breaks(
         found["repeated header lines"] = tuple(line + 1 for line in repeated)
         if titles:
             found["page titles"] = tuple(line + 1 for line in titles)
-    if len(rows) > 1:
+    if len(rows) > 1 and lines.is_last:
         last = lines.decode_line(int(rows[-1])).strip()
         if len(last) <= _LONGEST_END and _END.fullmatch(last):
             found["end lines"] = (int(rows[-1]) + 1,)
     return PageBreaks(found, tuple(_describe(what, at) for what, at in found.items()))
 
 
-def _find_repeated(lines: TextLines, rows: Int64Array, top: Sequence[int]) -> list[int]:
+def _find_repeated(lines: TextLines, rows: Int64Array, top: Sequence[str]) -> list[int]:
     found: list[int] = []
-    for line in top:
-        text = lines.decode_line(line).strip()
-        alike = rows[lines.starts_with(text)[rows]] if text else rows[:0]
+    for text in top:
+        alike = rows[lines.starts_with(text)[rows - lines.first]] if text else rows[:0]
         found += [one for one in alike.tolist() if lines.decode_line(one).strip() == text]
     return sorted(found)
 

@@ -48,6 +48,7 @@ __all__ = [
     "Table",
     "describe_columns",
     "describe_faults_of_rows",
+    "leave_out_cut_row",
     "read_cells",
     "read_table",
     "require_one_mark",
@@ -57,6 +58,11 @@ _SHOWN = 5
 _QUOTED_ROWS = 2_000
 _REWRITTEN_DELIMITER = "\t"
 _GROUP_DIGITS = 3
+_LOOKED_AT = 200
+"""Rows above the last one whose decimals are counted."""
+
+_FEWEST = 3
+"""Rows that show how many decimals a file has."""
 _REWRITTEN = 0.7
 """Of the work as it is told, what is done once all rows are written anew."""
 
@@ -161,7 +167,7 @@ def describe_faults_of_rows(
         "columns": f"[does|do] not have {layout.count} columns",
         "number": f"[has|have] a coordinate that is not a finite number with decimal {mark}",
     }[kind]
-    is_cut = kind == "columns" and wrong[-1].line == len(lines) - 1 and not lines.is_whole
+    is_cut = kind == "columns" and wrong[-1].line == lines.last and not lines.is_whole
     hint = "; the last line has no end, so the file may be truncated" if is_cut else ""
     return ReadError(
         f"{len(wrong)} of {counted(n_rows, 'row')} {inflect(fails, len(wrong))} "
@@ -182,7 +188,7 @@ def _rewrite_rows(
     writer = csv.writer(text, delimiter=_REWRITTEN_DELIMITER, lineterminator="\n")
     kept: list[int] = []
     faults: list[Fault] = []
-    last = -1 if lines.is_whole else len(lines) - 1
+    last = -1 if lines.is_whole else lines.last
     for line, raw, cells in _iterate_cells(lines, layout, Progress(progress)):
         if isinstance(cells, str):
             faults.append(Fault(line, "quote", cells))
@@ -302,7 +308,7 @@ def _has_groups(cells: Cells, columns: Iterable[int], layout: Layout) -> bool:
     1,234 alone may be 1.234; beside 12.5 or 4,024,240 it is a thousand and more.
     """
     if layout.is_decimal_stated or layout.divided.intersection(columns):
-        return True
+        return True  # as the head of a file tells of all that follows
     mark = layout.decimal
     return any(
         proves_groups(cell, mark) or (mark in cell and is_number(cell, mark))
@@ -356,8 +362,13 @@ def _measure_distinct_share(values: Float64Array) -> float:
 # ------------------------------------------------------------------ the table
 
 
-def require_one_mark(cells: Cells, columns: Columns, layout: Layout) -> None:
+def require_one_mark(
+    cells: Cells, columns: Columns, layout: Layout, *, is_continued: bool = False
+) -> None:
     """Refuse 512,350 beside 512.700: a decimal mark or a group, as no other coordinate tells.
+
+    ``is_continued`` tells that the head of the file has numbers with the decimal mark, too, where
+    the layout says so.
 
     Raises
     ------
@@ -374,6 +385,8 @@ def require_one_mark(cells: Cells, columns: Columns, layout: Layout) -> None:
         return
     for i, column in texts.items():
         divided = next((c for c in column if mark in c and is_number(c, mark)), None)
+        if divided is None and is_continued and i in layout.divided:
+            divided = f"0{mark}0"
         if grouped[i] and divided is not None:
             line = int(cells.rows[column.index(grouped[i][0])]) + 1
             raise ReadError(
@@ -385,8 +398,18 @@ def require_one_mark(cells: Cells, columns: Columns, layout: Layout) -> None:
             )
 
 
-def read_table(cells: Cells, layout: Layout, columns: Columns, lines: TextLines) -> Table:
-    """Take the coordinates and the attributes of rows; rows with bad numbers become faults."""
+def read_table(
+    cells: Cells,
+    layout: Layout,
+    columns: Columns,
+    lines: TextLines,
+    *,
+    keeps_empty: bool = False,
+) -> Table:
+    """Take the coordinates and the attributes of rows; rows with bad numbers become faults.
+
+    ``keeps_empty`` keeps columns without a name that are empty here, and may not be elsewhere.
+    """
     has_groups = _has_groups(cells, columns.coordinates, layout)
     numbers = [
         _parse_numbers(cells.columns[column], layout, has_groups=has_groups)
@@ -403,7 +426,7 @@ def read_table(cells: Cells, layout: Layout, columns: Columns, lines: TextLines)
         )
     ]
     good = np.delete(np.arange(len(points)), bad) if len(bad) else slice(None)
-    attributes = _collect_attributes(cells, columns)
+    attributes = _collect_attributes(cells, columns, keeps_empty=keeps_empty)
     return Table(
         points[good],
         {name: values[good] for name, values in attributes.items()},
@@ -425,7 +448,9 @@ def _describe_fault(lines: TextLines, layout: Layout, columns: Columns, line: in
 # ------------------------------------------------------------------ attributes
 
 
-def _collect_attributes(cells: Cells, columns: Columns) -> dict[str, AnyArray]:
+def _collect_attributes(
+    cells: Cells, columns: Columns, *, keeps_empty: bool
+) -> dict[str, AnyArray]:
     """Return the columns that are no coordinates, by role or name; empty unnamed ones are left."""
     roles = {column: role for role, column in columns.roles.items()}
     attributes: dict[str, AnyArray] = {}
@@ -433,7 +458,7 @@ def _collect_attributes(cells: Cells, columns: Columns) -> dict[str, AnyArray]:
         if roles.get(column) in COORDINATES:
             continue
         values = cells.columns[column]
-        if name == f"column {column + 1}" and _is_empty(values):
+        if not keeps_empty and name == f"column {column + 1}" and _is_empty(values):
             continue
         attributes[roles.get(column, name)] = values
     return attributes
@@ -441,3 +466,77 @@ def _collect_attributes(cells: Cells, columns: Columns) -> dict[str, AnyArray]:
 
 def _is_empty(values: AnyArray) -> bool:
     return bool((values == "").all() if values.dtype == object else np.isnan(values).all())
+
+
+# ------------------------------------------------------------------ a last line without an end
+
+
+def leave_out_cut_row(
+    table: Table, lines: TextLines, layout: Layout, columns: Columns, *, skip_bad: bool
+) -> tuple[Table, list[str]]:
+    """Leave out a last row whose last number lacks decimals that all others have.
+
+    Parameters
+    ----------
+    table : Table
+    lines : TextLines
+    layout : Layout
+    columns : Columns
+    skip_bad : bool
+        Whether bad rows are left out.
+
+    Returns
+    -------
+    table : Table
+    notes : list of str
+        Tell where others have several numbers of decimals, so that nothing is certain.
+
+    Raises
+    ------
+    ReadError
+        If there is such a row, and bad rows are not to be left out.
+    """
+    last = lines.last
+    if lines.is_whole or len(table.rows) <= _FEWEST or table.rows[-1] != last:
+        return table, []
+    cells = split_line(lines.decode_line(last), layout.delimiter)
+    column = len(cells) - 1
+    own = _count_decimals(cells, column, layout.decimal)
+    if column not in columns.coordinates or own is None:
+        return table, []
+    above = table.rows[-1 - _LOOKED_AT : -1].tolist()
+    texts = (split_line(text, layout.delimiter) for text in lines.decode_lines(above))
+    counts = {_count_decimals(row, column, layout.decimal) for row in texts} - {None}
+    fewest = min((count for count in counts if count is not None), default=0)
+    if own >= fewest:
+        return table, []
+    what = f"its last number '{cells[column][:40]}' has {counted(own, 'decimal')}"
+    if len(counts) > 1:
+        return table, [
+            f"Line {last + 1}, the last, has no end, and {what}, fewer than all above: if the file "
+            "was cut off, the number is not whole."
+        ]
+    if not skip_bad:
+        raise ReadError(
+            f"{FILE}, line {last + 1}: {what}, those above have {fewest}, and the line has no "
+            "end: the file may be truncated; the option `skip_bad` leaves the row out.",
+            lines=[last + 1],
+        )
+    return _drop_last(table, Fault(last, "number", f"{what} and may be cut off")), []
+
+
+def _count_decimals(cells: list[str], column: int, decimal: str) -> int | None:
+    """Return how many decimals a cell has; None if it is no plain number."""
+    cell = cells[column] if column < len(cells) else ""
+    if not is_number(cell, decimal) or "e" in cell.lower():
+        return None
+    return len(cell.partition(decimal)[2])
+
+
+def _drop_last(table: Table, fault: Fault) -> Table:
+    return table._replace(
+        points=table.points[:-1],
+        attributes={name: values[:-1] for name, values in table.attributes.items()},
+        rows=table.rows[:-1],
+        faults=tuple(sorted((*table.faults, fault))),
+    )

@@ -4,6 +4,7 @@ from .chunks import PointChunk as PointChunk
 from .chunks import SourceHeader as SourceHeader
 from .chunks import StreamEnd as StreamEnd
 from .chunks import StreamHead as StreamHead
+from .chunks import gather as gather
 from .chunks import gathering as gathering
 from .chunks import join_chunks as join_chunks
 from .chunks import make_source_header as make_source_header

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...base.errors import ReadError
 from ...base.sentences import FILE
+from ...base.types import RowSources
 from ...tin import Survey
 from ..isolated.limits import measure_free_memory
 
@@ -28,6 +29,7 @@ __all__ = [
     "SourceHeader",
     "StreamEnd",
     "StreamHead",
+    "gather",
     "gathering",
     "join_chunks",
     "make_source_header",
@@ -85,6 +87,8 @@ class StreamEnd:
     skipped: Mapping[str, int] = field(default_factory=dict)
     more: Mapping[str, Any] = field(default_factory=dict)
     """Further attributes of the survey."""
+    has_lines: bool = False
+    """Whether rows are lines of a text, which the survey keeps as those of its points."""
 
 
 Blocks: TypeAlias = Generator["StreamHead | PointChunk", None, StreamEnd]
@@ -169,13 +173,14 @@ def gathering(stream: Callable[..., Blocks]) -> Callable[..., Survey]:
 
     @wraps(stream)
     def read(path: Path, **options: Any) -> Survey:
-        return _gather(stream(path, **options), path)
+        return gather(stream(path, **options), path)
 
     read.__name__ = "read"
     return read
 
 
-def _gather(blocks: Blocks, path: Path) -> Survey:
+def gather(blocks: Blocks, path: Path) -> Survey:
+    """Return all that a reader gives as one survey."""
     gathered = _Gathered()
     head = StreamHead(None, None)
     while True:
@@ -189,9 +194,11 @@ def _gather(blocks: Blocks, path: Path) -> Survey:
             gathered.reserve(head)
         else:
             gathered.append(item)
+    points = gathered.points
     return Survey(
-        points=gathered.points,
+        points=points,
         attributes=gathered.finish_attributes(),
+        row_sources=RowSources.of_file(path.name, gathered.rows) if end.has_lines else None,
         crs=head.crs,
         elevation_unit=head.elevation_unit,
         source=path.name,
@@ -207,6 +214,8 @@ class _Gathered:
     def __init__(self) -> None:
         self._points = np.empty((0, 3))
         self._columns: dict[str, AnyArray] = {}
+        self.rows = np.empty(0, np.int64)
+        """Of chunks whose number was not known before."""
         self._chunks: list[PointChunk] | None = None
         self._count = 0
 
@@ -258,7 +267,7 @@ class _Gathered:
         if self._chunks is not None:
             joined = join_chunks(self._chunks)
             self._points, self._columns, self._count = joined.points, joined.attributes, len(joined)
-            self._chunks = None
+            self.rows, self._chunks = joined.rows, None
         return self._shrink(self._points)
 
     def _shrink(self, values: AnyArray) -> AnyArray:
