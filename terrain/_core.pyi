@@ -54,6 +54,41 @@ class ContourLines:
     is_closed: Final[BoolArray]
     length: Final[Float64Array]
 
+class LinePieces:
+    points: Final[Float64Array]
+    offsets: Final[Int64Array]
+    level: Final[Int32Array]
+    first: Final[Int64Array]
+    next: Final[Int64Array]
+
+class BandBoundaries:
+    segments: Final[Float64Array]
+    offsets: Final[Int64Array]
+
+def trace_pieces(
+    points: Float64Array,
+    triangles: Int32Array,
+    neighbors: Int32Array,
+    levels: Float64Array,
+    is_owned: BoolArray,
+    names: Int64Array,
+) -> LinePieces: ...
+def settle_contours(
+    coordinates: Float64Array,
+    offsets: Int64Array,
+    line_levels: Int32Array,
+    are_closed: BoolArray,
+    levels: Float64Array,
+) -> ContourLines: ...
+def list_band_boundaries(
+    points: Float64Array,
+    triangles: Int32Array,
+    neighbors: Int32Array,
+    levels: Float64Array,
+    is_owned: BoolArray,
+) -> BandBoundaries: ...
+def fill_band(segments: Float64Array, band: int) -> BandPolygons: ...
+
 class BandPolygons:
     points: Final[Float64Array]
     ring_offsets: Final[Int64Array]
@@ -109,6 +144,38 @@ def sum_areas(
     groups: Int32Array,
     group_count: int,
 ) -> Float64Array: ...
+def terms_between(
+    points: Float64Array,
+    triangles: Int32Array,
+    groups: Int32Array,
+    group_count: int,
+    other_points: Float64Array,
+    other_triangles: Int32Array,
+    up: float,
+    is_other_apart: bool = ...,
+    threads: int = ...,
+) -> SumTerms: ...
+def terms_of_heights(
+    points: Float64Array,
+    triangles: Int32Array,
+    heights: Float64Array,
+    groups: Int32Array,
+    group_count: int,
+    up: float,
+) -> SumTerms: ...
+def terms_of_areas(
+    points: Float64Array,
+    triangles: Int32Array,
+    groups: Int32Array,
+    group_count: int,
+) -> Float64Array: ...
+def sum_rows(rows: Float64Array) -> Float64Array: ...
+def merge_terms(rows: Float64Array) -> Float64Array: ...
+
+class SumTerms:
+    terms: Final[Float64Array]
+    extremes: Final[Float64Array]
+
 def overlay(
     points: Float64Array,
     triangles: Int32Array,

@@ -10,22 +10,29 @@ with hold_interrupts():
 __all__ = [
     "SUMS",
     "TILE_SIDE",
+    "BandBoundaries",
     "Bases",
     "ContourLines",
     "FallingSurface",
     "Filling",
     "GriddedSurface",
+    "LinePieces",
     "OverlayMesh",
+    "SumTerms",
     "accumulate",
     "cut_cells",
     "densify",
+    "fill_band",
     "fill_bands",
     "find_ends",
     "find_seen_parts",
     "find_seen_vertices",
     "fit_quadratics",
+    "list_band_boundaries",
     "measure_cells",
+    "merge_terms",
     "overlay",
+    "settle_contours",
     "shade_planes",
     "simplify_cells",
     "smooth_contours",
@@ -34,7 +41,12 @@ __all__ = [
     "sum_between",
     "sum_channels",
     "sum_heights",
+    "sum_rows",
+    "terms_between",
+    "terms_of_areas",
+    "terms_of_heights",
     "trace_contours",
+    "trace_pieces",
     "triangle_normals",
     "vertex_normals",
 ]
@@ -67,6 +79,13 @@ trace_contours = _core.trace_contours
 smooth_contours = _core.smooth_contours
 fill_bands = _core.fill_bands
 
+LinePieces = _core.LinePieces
+BandBoundaries = _core.BandBoundaries
+trace_pieces = _core.trace_pieces
+settle_contours = _core.settle_contours
+list_band_boundaries = _core.list_band_boundaries
+fill_band = _core.fill_band
+
 SUMS = (
     "area",
     "cut_area",
@@ -84,6 +103,12 @@ SUMS = (
 sum_areas = _core.sum_areas
 sum_between = _core.sum_between
 sum_heights = _core.sum_heights
+SumTerms = _core.SumTerms
+terms_between = _core.terms_between
+terms_of_heights = _core.terms_of_heights
+terms_of_areas = _core.terms_of_areas
+sum_rows = _core.sum_rows
+merge_terms = _core.merge_terms
 stage_sums = _core.stage_sums
 overlay = _core.overlay
 OverlayMesh = _core.OverlayMesh

@@ -12,7 +12,14 @@ from ...tin.topology import NO_NEIGHBOR
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
-__all__ = ["find_slivers", "leave_out_slivers", "measure_rounding", "take_without_slivers"]
+__all__ = [
+    "find_slivers",
+    "find_thin",
+    "keep_triangles",
+    "leave_out_slivers",
+    "measure_rounding",
+    "take_without_slivers",
+]
 
 _ROUNDINGS = 8.0
 """Points on a line, turned and rounded, lie off it by some three roundings of a coordinate."""
@@ -31,6 +38,13 @@ def leave_out_slivers(
 ) -> tuple[Int32Array, Int32Array]:
     """Return triangles and neighbours without those that :func:`find_slivers` finds."""
     is_kept = ~find_slivers(points, triangles, neighbors, rounding)
+    return keep_triangles(triangles, neighbors, is_kept)
+
+
+def keep_triangles(
+    triangles: Int32Array, neighbors: Int32Array, is_kept: BoolArray
+) -> tuple[Int32Array, Int32Array]:
+    """Return some triangles, and their neighbours numbered anew."""
     if is_kept.all():
         return triangles, neighbors
     number = np.append(np.cumsum(is_kept) - 1, NO_NEIGHBOR)  # the last for no neighbour
@@ -50,17 +64,22 @@ def find_slivers(
     triangles: Int32Array,
     neighbors: Int32Array,
     rounding: float | None = None,
+    *,
+    is_inner: BoolArray | None = None,
 ) -> BoolArray:
     """Tell which triangles lie along the boundary by rounding only: (m,).
 
     The boundary points of a turned grid, or of a slanted line, are collinear as surveyed and not in
     doubles: the hull has triangles there with a height of a few roundings and any slope, whose
     longest edge lies in the boundary, or two of their edges. Without them others do, and follow.
-    The boundary moves by no more than their heights. None is one if all would be.
+    The boundary moves by no more than their heights. None is one if all would be. Of a part of a
+    surface ``is_inner`` tells which triangles have all their neighbours: others are none.
     """
     if rounding is None:
         rounding = measure_rounding(points)
-    is_thin, longest = _find_thin(points, triangles, _ROUNDINGS * rounding)
+    is_thin, longest = _measure_thin(points, triangles, rounding)
+    if is_inner is not None:
+        is_thin &= is_inner
     is_sliver = np.zeros(len(triangles), bool)
     pending = np.flatnonzero(is_thin).tolist()
     while pending:
@@ -75,10 +94,16 @@ def find_slivers(
     return is_sliver & ~is_sliver.all()
 
 
-def _find_thin(
-    points: Float64Array, triangles: Int32Array, height: float
+def find_thin(points: Float64Array, triangles: Int32Array, rounding: float) -> BoolArray:
+    """Tell which triangles are so thin that :func:`find_slivers` may find them."""
+    return _measure_thin(points, triangles, rounding)[0]
+
+
+def _measure_thin(
+    points: Float64Array, triangles: Int32Array, rounding: float
 ) -> tuple[BoolArray, Int64Array]:
-    """Tell which triangles are no higher above their longest edge, which is returned too."""
+    """Tell which triangles are thinner above their longest edge, which is returned too."""
+    height = _ROUNDINGS * rounding
     xy = points[triangles, :2]
     edges = xy[:, [2, 0, 1]] - xy[:, [1, 2, 0]]
     (ux, uy), (vx, vy) = edges[:, 1].T, edges[:, 2].T

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .reference import Reference
 
-__all__ = ["Measured", "measure", "volume"]
+__all__ = ["Measured", "as_table", "describe_overlaps", "measure", "subtract", "volume"]
 
 _ROUNDING = 1e-12
 """An area alone that is a smaller share of the whole is what the sums' rounding leaves."""
@@ -167,11 +167,11 @@ def _measure_between(
     else:
         others = _sum_between(parts, len(names), second, reference.up, workers)[:, 0]
     alone = {
-        "area_alone": _subtract(own, sums[:, 0]),
-        "base_area_alone": _subtract(others, sums[:, 0]),
+        "area_alone": subtract(own, sums[:, 0]),
+        "base_area_alone": subtract(others, sums[:, 0]),
     }
-    notes = (*notes, *_describe_overlaps(parts, names))
-    table = _as_table(names, sums, alone, reference, notes)
+    notes = (*notes, *describe_overlaps(parts, names))
+    table = as_table(names, sums, alone, reference, notes)
     return Measured(table, reference, names, sums, surface, pieces, parts, second)
 
 
@@ -191,9 +191,9 @@ def _measure_to_plane(tin: TIN, base: Any, regions: Any, purpose: str) -> Measur
     sums[:, 7] *= plane.steepness(reference.up)
     alone: dict[str, Float64Array] = {}
     if parts is not None:
-        alone["base_area_alone"] = _subtract(_measure_areas(parts, len(names)), sums[:, 0])
-    notes = (*notes, *_describe_overlaps(parts, names))
-    table = _as_table(names, sums, alone, reference, notes)
+        alone["base_area_alone"] = subtract(_measure_areas(parts, len(names)), sums[:, 0])
+    notes = (*notes, *describe_overlaps(parts, names))
+    table = as_table(names, sums, alone, reference, notes)
     return Measured(table, reference, names, sums, surface, pieces, parts, None)
 
 
@@ -239,17 +239,18 @@ def _measure_areas(pieces: Pieces, count: int) -> Float64Array:
     return _kernel.sum_areas(pieces.surface.points, pieces.surface.triangles, pieces.groups, count)
 
 
-def _subtract(whole: Float64Array, part: Float64Array) -> Float64Array:
+def subtract(whole: Float64Array, part: Float64Array) -> Float64Array:
+    """Return what is left of areas; nothing where it is what rounding leaves."""
     rest = whole - part
     return np.where(rest <= _ROUNDING * whole, 0.0, rest)
 
 
-def _describe_overlaps(parts: Pieces | None, names: list[str]) -> list[str]:
+def describe_overlaps(parts: Pieces | None, names: list[str]) -> list[str]:
     """Tell how much regions overlap: what lies in several counts in each of them."""
     if parts is None or len(names) < 2:
         return []
     sums = _sum_between(parts, len(names), parts.surface, 1.0, 1, is_other_apart=False)
-    doubled = _subtract(sums[:, 0], _measure_areas(parts, len(names)))
+    doubled = subtract(sums[:, 0], _measure_areas(parts, len(names)))
     if not doubled.any():
         return []
     count = int(np.count_nonzero(doubled))
@@ -260,13 +261,14 @@ def _describe_overlaps(parts: Pieces | None, names: list[str]) -> list[str]:
     ]
 
 
-def _as_table(
+def as_table(
     names: list[str],
     sums: Float64Array,
     alone: dict[str, Float64Array],
     reference: Reference,
     notes: Sequence[str],
 ) -> Table:
+    """Return volumes of the sums of groups, in the order of ``_kernel.SUMS``."""
     require_finite(sums)
     by_name = dict(zip(_kernel.SUMS, sums.T, strict=True))
     area, cut, fill = (by_name[name] for name in ("area", "cut", "fill"))
@@ -274,7 +276,7 @@ def _as_table(
         mean = (fill - cut) / area
     is_met = area > 0.0
     cut, fill = cut * reference.up, fill * reference.up
-    unchanged = _subtract(area, by_name["cut_area"] + by_name["fill_area"])
+    unchanged = subtract(area, by_name["cut_area"] + by_name["fill_area"])
     columns: dict[str, Any] = {"region": np.array(names, object)}
     columns |= {"cut": cut, "fill": fill, "net": fill - cut, "area": area}
     columns |= {name: by_name[name] for name in ("cut_area", "fill_area")}

@@ -1,7 +1,7 @@
 """Gridding: a surface as a raster of cells, and cells' grids."""
 
 from .bands import SurfaceBand
-from .grids import as_cells, cover, describe_extent
+from .grids import as_cells, cover, describe_extent, locate_edges
 from .ground_heights import height_above
 from .rasters import list_units, rasterize
 from .relief_bands import ReliefBand, describe_smooth
@@ -15,5 +15,6 @@ __all__ = [
     "describe_smooth",
     "height_above",
     "list_units",
+    "locate_edges",
     "rasterize",
 ]

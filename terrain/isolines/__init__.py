@@ -3,6 +3,16 @@
 from .bands import contour_bands
 from .checking import ContourCheck, check_contours
 from .labels import contour_labels
-from .lines import contours
+from .levels import LevelOptions, Levels
+from .lines import as_features, contours
 
-__all__ = ["ContourCheck", "check_contours", "contour_bands", "contour_labels", "contours"]
+__all__ = [
+    "ContourCheck",
+    "LevelOptions",
+    "Levels",
+    "as_features",
+    "check_contours",
+    "contour_bands",
+    "contour_labels",
+    "contours",
+]

@@ -19,12 +19,16 @@ from .rebuilding import rebuild_wrong_bands
 from .repair import PolygonParts, is_whole, repair_polygons, require_whole
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike
 
     from ...base.arrays import Float64Array
+    from ...base.crs import CRS, Unit
     from ...tin import TIN
+    from .levels import Levels
 
-__all__ = ["contour_bands"]
+__all__ = ["as_features", "contour_bands"]
 
 
 @product
@@ -88,8 +92,19 @@ def contour_bands(
     if notes or not is_whole(tin, parts):
         parts, said = rebuild_wrong_bands(tin, chosen.values, parts)
         require_whole(tin, parts)
+    return as_features(parts, chosen, tin.crs, tin.elevation_unit, (*notes, *said))
+
+
+def as_features(
+    parts: PolygonParts,
+    chosen: Levels,
+    crs: CRS | None,
+    elevation_unit: Unit | None,
+    notes: Sequence[str] = (),
+) -> Features:
+    """Return the polygons of bands as features, one a band."""
     numbers, first = np.unique(parts.band, return_index=True)
-    areas = measure_ring_areas(tin.crs, parts.points, parts.ring_offsets)
+    areas = measure_ring_areas(crs, parts.points, parts.ring_offsets)
     rings = sum_parts(areas, parts.polygon_offsets[:-1])
     bounds = _list_bounds(chosen.values)
     columns = {
@@ -97,18 +112,18 @@ def contour_bands(
         "to": bounds[numbers + 1],
         "area": sum_parts(rings, first),
     }
-    units = {"from": tin.elevation_unit, "to": tin.elevation_unit}
+    units = {"from": elevation_unit, "to": elevation_unit}
     return Features.of_polygons(
         seal(parts.points),
         seal(parts.ring_offsets),
         seal(parts.polygon_offsets),
         seal(np.append(first, len(parts.band)).astype(np.int64)),
         columns={name: seal(values) for name, values in columns.items()},
-        units={**units, "area": find_plane_units(tin.crs).area},
-        crs=tin.crs,
-        elevation_unit=tin.elevation_unit,
+        units={**units, "area": find_plane_units(crs).area},
+        crs=crs,
+        elevation_unit=elevation_unit,
         name="contour bands",
-        notes=[*describe_unknown(tin.crs, tin.elevation_unit), *notes, *said],
+        notes=[*describe_unknown(crs, elevation_unit), *notes],
     )
 
 

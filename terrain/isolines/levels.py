@@ -62,7 +62,10 @@ class LevelOptions:
 
     def for_lines(self, tin: TIN) -> Levels:
         """Return the levels above the lowest and up to the highest elevation of a TIN."""
-        lowest, highest = elevation_range(tin)
+        return self.for_lines_between(*elevation_range(tin))
+
+    def for_lines_between(self, lowest: float, highest: float) -> Levels:
+        """Return the levels above an elevation and up to another."""
         if self.interval is None:
             return self._take_explicit(lowest, highest)
         numbers, values = self._at_interval(lowest, highest)
@@ -72,7 +75,10 @@ class LevelOptions:
 
     def for_bands(self, tin: TIN) -> Levels:
         """Return the levels that bound the bands of a TIN, the explicit ones as they are."""
-        lowest, highest = elevation_range(tin)
+        return self.for_bands_between(*elevation_range(tin))
+
+    def for_bands_between(self, lowest: float, highest: float) -> Levels:
+        """Return the levels that bound the bands between two elevations."""
         if self.interval is None:
             return self._take_explicit(lowest, highest)
         _, values = self._at_interval(lowest, highest)

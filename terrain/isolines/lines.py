@@ -21,9 +21,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
+    from ...base.crs import CRS, Unit
     from ...tin import TIN
 
-__all__ = ["contours"]
+__all__ = ["as_features", "contours"]
 
 
 @product
@@ -115,7 +116,7 @@ def contours(
             surface, lines, chosen.values, smooth=tolerances[0], simplify=tolerances[1]
         )
     done(0.9)
-    found = _as_features(tin, lines, chosen)
+    found = as_features(lines, chosen, tin.crs, tin.elevation_unit)
     done.end()
     return found
 
@@ -127,10 +128,13 @@ def _trace(tin: TIN, chosen: Levels, options: LevelOptions) -> _kernel.ContourLi
         raise options.refuse_count(int(str(error)), "crossings of triangles") from None
 
 
-def _as_features(tin: TIN, lines: _kernel.ContourLines, chosen: Levels) -> Features:
+def as_features(
+    lines: _kernel.ContourLines, chosen: Levels, crs: CRS | None, elevation_unit: Unit | None
+) -> Features:
+    """Return contours of some levels as features."""
     length = lines.length
-    if tin.crs is not None and tin.crs.is_geographic:
-        length = measure_lengths(tin.crs, lines.coordinates, lines.offsets)
+    if crs is not None and crs.is_geographic:
+        length = measure_lengths(crs, lines.coordinates, lines.offsets)
     columns: dict[str, Any] = {
         "elevation": chosen.values[lines.level],
         "is_index": chosen.is_index[lines.level],
@@ -141,9 +145,9 @@ def _as_features(tin: TIN, lines: _kernel.ContourLines, chosen: Levels) -> Featu
         seal(lines.coordinates),
         seal(lines.offsets),
         columns={name: seal(values) for name, values in columns.items()},
-        units={"elevation": tin.elevation_unit, "length": find_plane_units(tin.crs).length},
-        crs=tin.crs,
-        elevation_unit=tin.elevation_unit,
+        units={"elevation": elevation_unit, "length": find_plane_units(crs).length},
+        crs=crs,
+        elevation_unit=elevation_unit,
         name="contours",
-        notes=[*describe_unknown(tin.crs, tin.elevation_unit), *chosen.notes],
+        notes=[*describe_unknown(crs, elevation_unit), *chosen.notes],
     )

@@ -15,7 +15,15 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array, Int64Array, ObjectArray
     from ...tin import TIN
 
-__all__ = ["PolygonParts", "as_parts", "is_whole", "repair_polygons", "require_whole", "turn"]
+__all__ = [
+    "PolygonParts",
+    "as_parts",
+    "has_area",
+    "is_whole",
+    "repair_polygons",
+    "require_whole",
+    "turn",
+]
 
 _ROUNDINGS = 32.0
 """So many roundings the boundary of a polygon may be off."""
@@ -96,10 +104,14 @@ def as_parts(shapes: ObjectArray, band: Int32Array) -> PolygonParts:
 
 def is_whole(tin: TIN, parts: PolygonParts) -> bool:
     """Whether areas add up to that of the surface, but for rounding along all rings."""
+    return has_area(parts, tin.triangulation.area)
+
+
+def has_area(parts: PolygonParts, area: float) -> bool:
+    """Whether areas add up to another, but for rounding along all rings."""
     found = float(measure_ring_areas(None, parts.points, parts.ring_offsets).sum())
     length = float(measure_lengths(None, parts.points, parts.ring_offsets).sum())
     rounding = float(np.spacing(np.abs(parts.points).max(initial=0.0)))
-    area = tin.triangulation.area
     return bool(abs(found - area) <= _SHARE * area + _ROUNDINGS * rounding * length)
 
 

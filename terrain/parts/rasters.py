@@ -1,8 +1,9 @@
 """Rasters of a surface, block by block.
 
 The centre of a cell lies in triangles that meet every closed box around it: so the value there
-needs no others, also where it lies on an edge or a vertex. Only slopes that change evenly between
-vertices need all triangles around the vertices of these (``rings`` of `triangulate_box`).
+needs no others, also where it lies on an edge or a vertex. Means need those that meet the cells.
+Slopes that change evenly between vertices need all triangles around the vertices of these, as
+``rings`` of `triangulate_box`: how far these reach, only the triangles can tell.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 from ...base.errors import OptionError
 from ...base.results import locate_centers
 from ...base.types import Bounds
-from ..gridding import ReliefBand, SurfaceBand
+from ..gridding import ReliefBand, SurfaceBand, locate_edges
 from ..relief import Light, PlaneMeasure
 from .surfaces import as_surface
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Float64Array
     from ...base.crs import CRS, Unit
-    from ...base.policies import RasterValue
+    from ...base.policies import RasterSample, RasterValue
     from ...base.types import Grid
     from ...tin.tiling import LocalTriangulation
 
@@ -48,6 +49,7 @@ class RasterOptions(NamedTuple):
     grid: Grid
     value: RasterValue = "elevation"
     is_smooth: bool = False
+    at: RasterSample = "center"
     light: Light = Light(315.0, 45.0)
     exaggeration: float = 1.0
     crs: CRS | None = None
@@ -65,7 +67,7 @@ class RasterBlock(NamedTuple):
 
 def count_rings(options: RasterOptions) -> int:
     """Return how many rings of triangles are needed around those that meet the cells' centres."""
-    return int(options.is_smooth and options.value != "elevation")
+    return int(options.is_smooth and options.value != "elevation" and options.at == "center")
 
 
 def find_cells(grid: Grid, box: Bounds) -> tuple[slice, slice]:
@@ -100,9 +102,13 @@ def _count_before(grid: Grid, limit: float, count: int, axis: int) -> int:
     return near.start + int(np.count_nonzero(is_before))
 
 
-def find_reach(grid: Grid, rows: slice, columns: slice) -> Bounds:
-    """Return the box of which a part is needed for cells: that of their centres."""
-    x, y = locate_centers(grid, rows, columns)
+def find_reach(options: RasterOptions, rows: slice, columns: slice) -> Bounds:
+    """Return the box of which a part is needed for cells, one at least: that of their centres.
+
+    For means it is that of the cells.
+    """
+    locate = locate_centers if options.at == "center" else locate_edges
+    x, y = locate(options.grid, rows, columns)
     return Bounds(float(x[0]), float(y[-1]), float(x[-1]), float(y[0]))
 
 
@@ -112,7 +118,8 @@ def compute_part(part: LocalTriangulation, box: Bounds, options: RasterOptions) 
     Parameters
     ----------
     part : LocalTriangulation
-        All triangles that meet the box, with :func:`count_rings` rings of triangles around them.
+        All triangles that meet :func:`find_reach` of these cells, with :func:`count_rings` rings
+        of triangles around them. For values at centres this is no larger than the box.
     box : Bounds
     options : RasterOptions
     """
@@ -131,11 +138,11 @@ def compute_block(
 
 def _make_band(part: LocalTriangulation, options: RasterOptions) -> Any:
     tin = as_surface(part, options.crs, options.elevation_unit)
-    grid, threads = options.grid, options.threads
+    how: dict[str, Any] = {"is_mean": options.at == "mean", "threads": options.threads}
     if options.value == "elevation":
-        return SurfaceBand(tin, grid, None, method="linear", is_mean=False, threads=threads)
+        return SurfaceBand(tin, options.grid, None, method="linear", **how)
     measure = PlaneMeasure(options.value, options.light, options.exaggeration)
-    return ReliefBand(tin, grid, measure, is_smooth=options.is_smooth, threads=threads)
+    return ReliefBand(tin, options.grid, measure, is_smooth=options.is_smooth, **how)
 
 
 def join(blocks: Iterable[RasterBlock], options: RasterOptions) -> Float64Array:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...tin import TIN, Report
+from ...tin.tiling import find_around, find_triangles_at
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from ...base.types import Bounds
     from ...tin.tiling import LocalTriangulation
 
-__all__ = ["are_owned", "are_owned_triangles", "as_surface"]
+__all__ = ["are_inner", "are_owned", "are_owned_triangles", "as_surface"]
 
 
 def as_surface(
@@ -51,3 +52,16 @@ def are_owned_triangles(part: LocalTriangulation, box: Bounds) -> BoolArray:
     Of several it is that of least northing. A triangle meets the box of its owner.
     """
     return are_owned(part.points[part.triangles[:, 0]], box)
+
+
+def are_inner(part: LocalTriangulation, box: Bounds, rings: int) -> BoolArray:
+    """Tell which triangles are not in the last of some rings around those that meet a box.
+
+    A side of theirs without a neighbour is on the boundary of the whole surface.
+    """
+    chosen = find_triangles_at(part.points, part.triangles, box)
+    for _ in range(rings - 1):
+        chosen = find_around(part.triangles, chosen, len(part.points))
+    is_inner = np.zeros(len(part.triangles), np.bool_)
+    is_inner[chosen] = True
+    return is_inner

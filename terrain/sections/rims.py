@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...tin import TIN
 
-__all__ = ["trace_to_rim"]
+__all__ = ["move_aside", "trace_to_rim"]
 
 _ASIDE = 2.0
 """Roundings: that of the boundary and that of the segment."""
@@ -41,13 +41,38 @@ def trace_to_rim(tin: TIN, segments: Segments, *, is_computed: bool = False) -> 
         return breaks
     rim = tin.points[np.concatenate(tin.rings), :2]
     rounding = find_rounding(rim) if is_computed else find_written_rounding(rim)
-    if not 0.0 < rounding <= _FINEST * float(np.ptp(rim, axis=0).max()):
+    if not _is_fine(rounding, rim):
         return breaks
     chosen = np.unique(breaks.segments[is_gap])
     lengths = np.hypot(*(segments.ends - segments.starts)[chosen].T)
     chosen = chosen[lengths > _GAINED * rounding]
     breaks = _take_better(tin, segments, breaks, chosen, rounding)
     return _close_short_gaps(breaks, 2.0 * _ASIDE * rounding)
+
+
+def _is_fine(rounding: float, rim: Float64Array) -> bool:
+    return 0.0 < rounding <= _FINEST * float(np.ptp(rim, axis=0).max())
+
+
+def move_aside(segments: Segments, rim: Float64Array) -> list[Segments]:
+    """Return segments where :func:`trace_to_rim` may follow them beside a boundary, (k, 2)."""
+    moved = []
+    for rounding in {find_rounding(rim), find_written_rounding(rim)}:
+        if _is_fine(rounding, rim):
+            side = _find_side(segments, rounding)
+            moved += [
+                segments._replace(starts=segments.starts + shift, ends=segments.ends + shift)
+                for shift in (side, -side)
+            ]
+    return moved
+
+
+def _find_side(segments: Segments, rounding: float) -> Float64Array:
+    """Return how far segments are moved to be followed beside themselves, the one way."""
+    side: Float64Array = segments.directions[:, ::-1] * (-1.0, 1.0) * (_ASIDE * rounding)
+    is_back = (side[:, 0] < 0.0) | ((side[:, 0] == 0.0) & (side[:, 1] < 0.0))
+    side[is_back] *= -1.0  # the same for the segment in reverse
+    return side
 
 
 def _find_gaps(breaks: Breaks) -> BoolArray:
@@ -62,9 +87,7 @@ def _take_better(
 ) -> Breaks:
     """Replace breaks of chosen segments where there is much more surface beside them."""
     own = Segments._make(array[chosen] for array in segments)
-    side = own.directions[:, ::-1] * (-1.0, 1.0) * (_ASIDE * rounding)
-    is_back = (side[:, 0] < 0.0) | ((side[:, 0] == 0.0) & (side[:, 1] < 0.0))
-    side[is_back] *= -1.0  # the same for the segment in reverse
+    side = _find_side(own, rounding)
     most = _measure_covered(breaks, segments)[chosen] + _GAINED * rounding
     for shift in (side, -side):
         moved = own._replace(starts=own.starts + shift, ends=own.ends + shift)

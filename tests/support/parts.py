@@ -71,9 +71,9 @@ def divide_at_points(points, side, seed=0):
 
 
 class Tiling:
-    """The parts of a surface in tiles, with one ring of triangles around those of each."""
+    """The parts of a surface in tiles, with three rings of triangles around those of each."""
 
-    def __init__(self, source, *, rings=1, **options):
+    def __init__(self, source, *, rings=3, **options):
         self.source = source
         self.keys = source.list_cells()
         self.boxes = [source.box_of(key) for key in self.keys]

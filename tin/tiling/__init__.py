@@ -2,7 +2,7 @@
 
 from .boxes import are_in_box, widen
 from .circles import Discs
-from .local_triangulation import LocalTriangulation, triangulate_box
+from .local_triangulation import LocalTriangulation, find_around, find_triangles_at, triangulate_box
 from .skeleton import find_outermost, find_skeleton, reduce_to_hull
 from .sources import NumberedPoints, PointSource
 
@@ -12,8 +12,10 @@ __all__ = [
     "NumberedPoints",
     "PointSource",
     "are_in_box",
+    "find_around",
     "find_outermost",
     "find_skeleton",
+    "find_triangles_at",
     "reduce_to_hull",
     "triangulate_box",
     "widen",

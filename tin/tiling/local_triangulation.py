@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ...base.policies import DuplicatePolicy
     from ...base.types import Bounds
 
-__all__ = ["LocalTriangulation", "find_triangles_at", "triangulate_box"]
+__all__ = ["LocalTriangulation", "find_around", "find_triangles_at", "triangulate_box"]
 
 _MOST_OF_A_DISC = 64
 """Points that are taken from one disc in a round: the deepest, which change the triangle most."""
@@ -97,7 +97,7 @@ def triangulate_box(
         xy = known.points if growth.kept_row is None else known.points[_is_first(growth.kept_row)]
         meets = find_triangles_at(xy, growth.triangles, box)
         for _ in range(rings):
-            meets = _find_around(growth.triangles, meets, len(xy))
+            meets = find_around(growth.triangles, meets, len(xy))
         asked = growth.triangles[meets]
         discs = bound_discs(xy, asked)
         names = np.sort(first[asked], axis=1)
@@ -146,8 +146,8 @@ def find_triangles_at(xy: Float64Array, triangles: Int32Array, box: Bounds) -> I
     return np.delete(rows, doubtful[is_beyond])
 
 
-def _find_around(triangles: Int32Array, chosen: Int64Array, n_vertices: int) -> Int64Array:
-    """Return all triangles that have a vertex of chosen ones."""
+def find_around(triangles: Int32Array, chosen: Int64Array, n_vertices: int) -> Int64Array:
+    """Return all triangles that have a vertex of chosen ones: these, and a ring around them."""
     is_corner = np.zeros(n_vertices, np.bool_)
     is_corner[triangles[chosen]] = True
     return np.flatnonzero(is_corner[triangles].any(axis=1))

@@ -39,9 +39,16 @@ class ExactSum {
     carry();
   }
 
-  // NaN if a summand was not finite.
-  double value() const {
-    if (!is_finite_) return std::nan("");
+  static constexpr std::size_t kTerms = 68;
+
+  // Doubles whose sum it is, exactly, the smallest first: what a sum is kept as and sent as. NaN if
+  // a summand was not finite.
+  std::array<double, kTerms> terms() const {
+    std::array<double, kTerms> terms{};
+    if (!is_finite_) {
+      terms[0] = std::nan("");
+      return terms;
+    }
     ExactSum carried = *this;
     carried.carry();
     const bool is_negative = carried.digit_[kDigits - 1] < 0;
@@ -49,16 +56,23 @@ class ExactSum {
       for (auto& digit : carried.digit_) digit = -digit;
       carried.carry();
     }
-    double sum = 0.0;
     for (std::size_t i = 0; i < kDigits; ++i) {
       if (carried.digit_[i] == 0) continue;
-      sum += std::ldexp(static_cast<double>(carried.digit_[i]), 32 * static_cast<int>(i) - 1074);
+      const auto digit = static_cast<double>(is_negative ? -carried.digit_[i] : carried.digit_[i]);
+      terms[i] = std::ldexp(digit, 32 * static_cast<int>(i) - 1074);
     }
-    return is_negative ? -sum : sum;
+    return terms;
+  }
+
+  // NaN if a summand was not finite.
+  double value() const {
+    double sum = 0.0;
+    for (const double term : terms()) sum += term;
+    return sum;
   }
 
  private:
-  static constexpr std::size_t kDigits = 68;  // 2098 bits of doubles, and room above
+  static constexpr std::size_t kDigits = kTerms;  // 2098 bits of doubles, and room above
   static constexpr std::uint32_t kAddsBetweenCarries = 1u << 29;
   static constexpr std::uint64_t kMask = 0xffffffff;
 

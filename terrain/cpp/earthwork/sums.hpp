@@ -85,6 +85,17 @@ class Sums {
     lowest_ = std::min(lowest_, other.lowest_);
   }
 
+  static constexpr std::size_t kSummed = 8;
+
+  // Of each column but the last two, the terms of its sum.
+  using Terms = std::array<std::array<double, ExactSum::kTerms>, kSummed>;
+  Terms terms() const {
+    Terms terms;
+    for (std::size_t i = 0; i < kSummed; ++i) terms[i] = sums_[i].terms();
+    return terms;
+  }
+  std::array<double, 2> extremes() const { return {lowest_, highest_}; }
+
   // In the order in which terrain/_kernel.py names them.
   std::array<double, kColumns> values() const {
     std::array<double, kColumns> values;
@@ -95,8 +106,6 @@ class Sums {
   }
 
  private:
-  static constexpr std::size_t kSummed = 8;
-
   std::array<ExactSum, kSummed> sums_;
   double lowest_ = std::numeric_limits<double>::infinity();
   double highest_ = -std::numeric_limits<double>::infinity();

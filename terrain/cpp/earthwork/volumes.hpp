@@ -98,17 +98,15 @@ inline std::vector<Sums> sum_heights(const Surface& surface, const double* heigh
 }
 
 // Areas in the plane.
-inline std::vector<double> sum_areas(const Surface& surface, const std::int32_t* groups,
-                                     std::int32_t group_count) {
+inline std::vector<ExactSum> sum_areas(const Surface& surface, const std::int32_t* groups,
+                                       std::int32_t group_count) {
   std::vector<ExactSum> sums(group_count);
   for (const Triangle t : Ids<Triangle>(surface.triangle_count)) {
     const Facet facet = Facet::of(surface, t);
     sums[groups[number(t)]].add(0.5 *
                                 twice_area(facet.corner[0], facet.corner[1], facet.corner[2]));
   }
-  std::vector<double> areas;
-  for (const ExactSum& sum : sums) areas.push_back(sum.value());
-  return areas;
+  return sums;
 }
 
 }  // namespace tinsmith::earthwork

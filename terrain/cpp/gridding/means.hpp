@@ -24,7 +24,8 @@ class MeanScan {
     const Tiles tiles(surface.surface(), grid);
     tiles.share(team, [&](std::int32_t tile) {
       MeanScan scan(surface, grid, x_edges, y_edges, values, tiles[tile]);
-      tiles.for_each_triangle(tile, [&](Triangle t) { scan.draw(t); });
+      tiles.for_each_triangle(tile, [&](Triangle t) { scan.list(t); });
+      scan.draw_listed();
       scan.write(cells);
     });
   }
@@ -43,10 +44,18 @@ class MeanScan {
     void add(const Turn& turn) { turns[size++] = turn; }
   };
 
-  // Of the parts of a cell; the value's is relative to the first one seen in the tile.
+  // Of the parts of a cell; the value's is relative to that of the first one.
   struct Sum {
     double area = 0.0;
     double integral = 0.0;
+    double datum = 0.0;
+  };
+
+  // A triangle, and its first corner by easting, then northing.
+  struct Listed {
+    Point first;
+    Triangle triangle;
+    std::uint32_t corner;
   };
 
   MeanScan(const OrderedSurface& ordered, const CellGrid& grid, const double* x_edges,
@@ -61,18 +70,41 @@ class MeanScan {
         origin_{x_edges[tile.columns.begin], y_edges[tile.rows.begin]},
         sums_(static_cast<std::size_t>(tile.columns.size()) * tile.rows.size()) {}
 
-  void draw(Triangle t) {
+  void list(Triangle t) {
+    std::uint32_t first = 0;
+    for (std::uint32_t k = 1; k < 3; ++k) {
+      if (lexicographically_before(surface_.corner(t, k), surface_.corner(t, first))) first = k;
+    }
+    listed_.push_back({surface_.corner(t, first), t, first});
+  }
+
+  // In the order of their corners, so that sums are the same whatever other triangles the surface
+  // has, and however they are numbered.
+  void draw_listed() {
+    std::sort(listed_.begin(), listed_.end(), [&](const Listed& a, const Listed& b) {
+      if (!(a.first == b.first)) return lexicographically_before(a.first, b.first);
+      for (std::uint32_t k = 1; k < 3; ++k) {
+        const Point p = surface_.corner(a.triangle, (a.corner + k) % 3);
+        const Point q = surface_.corner(b.triangle, (b.corner + k) % 3);
+        if (!(p == q)) return lexicographically_before(p, q);
+      }
+      return false;
+    });
+    for (const Listed& one : listed_) draw(one.triangle, one.corner);
+  }
+
+  double value_at(Triangle t, std::uint32_t corner) const {
+    return values_ == nullptr ? surface_.elevation(t, corner)
+                              : values_[number(ordered_.given_number(t))];
+  }
+
+  void draw(Triangle t, std::uint32_t first) {
     Polygon whole;
     double reach = 0.0;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const Point p = surface_.corner(t, k);
-      const double value =
-          values_ == nullptr ? surface_.elevation(t, k) : values_[number(ordered_.given_number(t))];
-      if (!is_shifted_) {
-        shift_ = value;
-        is_shifted_ = true;
-      }
-      whole.add({p.x - origin_.x, p.y - origin_.y, value - shift_});
+    datum_ = value_at(t, first);
+    for (std::uint32_t k = 0, corner = first; k < 3; ++k, corner = corner_after(corner)) {
+      const Point p = surface_.corner(t, corner);
+      whole.add({p.x - origin_.x, p.y - origin_.y, value_at(t, corner) - datum_});
       reach = std::max({reach, std::fabs(p.x - origin_.x), std::fabs(p.y - origin_.y)});
     }
     doubtful_ = kRounding * (reach + grid_.spacing * Tiles::kSide) * grid_.spacing;
@@ -146,8 +178,9 @@ class MeanScan {
       integral = whole * mean_of_turns(part);
     }
     Sum& sum = sums_[place(row, column)];
+    if (sum.area == 0.0) sum.datum = datum_;
     sum.area += whole;
-    sum.integral += integral;
+    sum.integral += integral + whole * (datum_ - sum.datum);
   }
 
   static double mean_of_turns(const Polygon& part) {
@@ -184,7 +217,7 @@ class MeanScan {
       double* const first = grid_.row_of(cells, row);
       for (std::int32_t column = tile_.columns.begin; column < tile_.columns.end; ++column) {
         const Sum& sum = sums_[place(row, column)];
-        first[column] = sum.area > 0.0 ? shift_ + sum.integral / sum.area
+        first[column] = sum.area > 0.0 ? sum.datum + sum.integral / sum.area
                                        : std::numeric_limits<double>::quiet_NaN();
       }
     }
@@ -201,8 +234,8 @@ class MeanScan {
   static constexpr double kRounding = 0x1p-44;  // of coordinates in the tile, and of cuts
 
   double doubtful_ = 0.0;  // twice the area that rounding may make of a touch of the triangle
-  double shift_ = 0.0;
-  bool is_shifted_ = false;
+  double datum_ = 0.0;     // of the triangle
+  std::vector<Listed> listed_;
   std::vector<Sum> sums_;
 };
 

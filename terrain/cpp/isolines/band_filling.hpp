@@ -29,19 +29,79 @@ struct Bands {
   std::vector<std::int32_t> band;  // of each polygon
 };
 
+// The segments of the boundaries of bands, from the lowest band.
+struct BandBoundaries {
+  std::vector<BoundarySegment> segments;
+  std::vector<std::int64_t> offsets{0};
+};
+
+// Polygons of the boundaries of bands, of which each may come in any order.
+class PolygonMaker {
+ public:
+  // An exterior and its holes are a polygon.
+  void add(std::vector<BoundarySegment> boundary, std::int32_t band) {
+    std::vector<Ring> rings = RingTracer(std::move(boundary)).trace();
+    const auto by_first = [](const Ring& a, const Ring& b) {
+      return std::lexicographical_compare(a.points.begin(), a.points.end(), b.points.begin(),
+                                          b.points.end(), lexicographically_before);
+    };
+    std::sort(rings.begin(), rings.end(), by_first);
+    const RingNesting nesting(rings);
+    std::vector<std::vector<std::size_t>> holes(rings.size());
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+      const std::int32_t around =
+          rings[i].is_exterior ? RingNesting::kNone : nesting.exterior_of(rings[i]);
+      if (around != RingNesting::kNone) holes[around].push_back(i);
+    }
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+      if (!rings[i].is_exterior) continue;
+      add_ring(rings[i]);
+      for (const std::size_t hole : holes[i]) add_ring(rings[hole]);
+      found_.polygon_offsets.push_back(static_cast<std::int64_t>(found_.ring_offsets.size()) - 1);
+      found_.band.push_back(band);
+    }
+  }
+
+  Bands take() { return std::move(found_); }
+
+ private:
+  void add_ring(const Ring& ring) {
+    found_.points.insert(found_.points.end(), ring.points.begin(), ring.points.end());
+    found_.points.push_back(ring.points.front());
+    found_.ring_offsets.push_back(static_cast<std::int64_t>(found_.points.size()));
+  }
+
+  Bands found_;
+};
+
 class BandFiller {
  public:
-  // Throws overflow_error, with the number of parts of triangles, if there are too many.
-  BandFiller(const LevelSurface& surface, Team& team) : surface_(surface), team_(team) {
+  // Of all triangles, or of those that are owned, by their flags. Throws overflow_error, with the
+  // number of parts of triangles, if there are too many.
+  BandFiller(const LevelSurface& surface, Team& team, const bool* is_owned = nullptr)
+      : surface_(surface), team_(team), is_owned_(is_owned) {
     list_triangles();
   }
 
   Bands fill() {
+    PolygonMaker maker;
     for (std::int32_t band = 0; band <= surface_.level_count(); ++band) {
       if (!team_.keeps_going(0)) break;
-      add_polygons(RingTracer(boundary_of(band)).trace(), band);
+      maker.add(boundary_of(band), band);
     }
-    return std::move(found_);
+    return maker.take();
+  }
+
+  // The boundary of each band.
+  BandBoundaries list_boundaries() const {
+    BandBoundaries found;
+    for (std::int32_t band = 0; band <= surface_.level_count(); ++band) {
+      if (!team_.keeps_going(0)) break;
+      const std::vector<BoundarySegment> some = boundary_of(band);
+      found.segments.insert(found.segments.end(), some.begin(), some.end());
+      found.offsets.push_back(static_cast<std::int64_t>(found.segments.size()));
+    }
+    return found;
   }
 
  private:
@@ -50,6 +110,7 @@ class BandFiller {
     first_.assign(std::size_t(surface_.level_count()) + 2, 0);
     const auto each = [&](const auto& use) {
       for (const Triangle t : surface_.triangles()) {
+        if (is_owned_ != nullptr && !is_owned_[number(t)]) continue;
         const auto [low, high] = surface_.ranks(t);
         if (low == high && !is_at_boundary(t)) continue;
         for (std::int32_t band = low; band <= high; ++band) use(t, band);
@@ -108,40 +169,11 @@ class BandFiller {
     segments.push_back(is_rising ? BoundarySegment{low, high} : BoundarySegment{high, low});
   }
 
-  // An exterior and its holes are a polygon.
-  void add_polygons(std::vector<Ring> rings, std::int32_t band) {
-    const auto by_first = [](const Ring& a, const Ring& b) {
-      return std::lexicographical_compare(a.points.begin(), a.points.end(), b.points.begin(),
-                                          b.points.end(), lexicographically_before);
-    };
-    std::sort(rings.begin(), rings.end(), by_first);
-    const RingNesting nesting(rings);
-    std::vector<std::vector<std::size_t>> holes(rings.size());
-    for (std::size_t i = 0; i < rings.size(); ++i) {
-      const std::int32_t around =
-          rings[i].is_exterior ? RingNesting::kNone : nesting.exterior_of(rings[i]);
-      if (around != RingNesting::kNone) holes[around].push_back(i);
-    }
-    for (std::size_t i = 0; i < rings.size(); ++i) {
-      if (!rings[i].is_exterior) continue;
-      add_ring(rings[i]);
-      for (const std::size_t hole : holes[i]) add_ring(rings[hole]);
-      found_.polygon_offsets.push_back(static_cast<std::int64_t>(found_.ring_offsets.size()) - 1);
-      found_.band.push_back(band);
-    }
-  }
-
-  void add_ring(const Ring& ring) {
-    found_.points.insert(found_.points.end(), ring.points.begin(), ring.points.end());
-    found_.points.push_back(ring.points.front());
-    found_.ring_offsets.push_back(static_cast<std::int64_t>(found_.points.size()));
-  }
-
   const LevelSurface& surface_;
   Team& team_;
+  const bool* is_owned_;  // null for all
   std::vector<std::size_t> first_;  // of each band
   std::vector<Triangle> listed_;
-  Bands found_;
 };
 
 inline Bands fill_bands(const Surface& given, const Levels& levels, Team& team) {

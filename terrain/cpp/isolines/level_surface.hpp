@@ -68,12 +68,7 @@ class LevelSurface {
         levels_(levels),
         vertices_(surface.point_count),
         rank_(surface.point_count) {
-    double lowest = HUGE_VAL, highest = -HUGE_VAL;
-    for (const Vertex v : Ids<Vertex>(surface.point_count)) {
-      lowest = std::min(lowest, surface.elevation(v));
-      highest = std::max(highest, surface.elevation(v));
-    }
-    const std::vector<Vertex> near_levels = rank_vertices(kNear * highest - kNear * lowest);
+    const std::vector<Vertex> near_levels = rank_vertices();
     if (!near_levels.empty()) move_to_levels(near_levels);
   }
 
@@ -148,10 +143,11 @@ class LevelSurface {
   }
 
  private:
-  // Of the range of elevations: vertices nearer to a level are looked at.
-  static constexpr double kNear = 1e-6;
-  // A line nearer to a vertex than so many roundings of its coordinates runs through it.
+  // A line nearer to a vertex than so many roundings of its coordinates runs through it,
   static constexpr double kRoundings = 16.0;
+  // if the surface is no steeper: walls of a kilometre within a millimetre are. So it is known of
+  // each vertex alone whether its triangles need to be looked at.
+  static constexpr double kSteepest = 0x1p20;
 
   template <typename Row>
   [[gnu::always_inline]] void prefetch_corners(Triangle t, const Row* rows) const {
@@ -164,7 +160,7 @@ class LevelSurface {
   }
 
   // Returns the vertices near to a level, but not at it.
-  std::vector<Vertex> rank_vertices(double near) {
+  std::vector<Vertex> rank_vertices() {
     const double first = levels_.count > 0 ? levels_.values[0] : 0.0;
     const double range = levels_.count > 1 ? levels_.values[levels_.count - 1] - first : 0.0;
     const double per_unit = range > 0.0 ? (levels_.count - 1) / range : 0.0;
@@ -174,9 +170,15 @@ class LevelSurface {
       vertices_[number(v)] = {surface_.point(v), elevation};
       rank_[number(v)] = rank_of(elevation, first, per_unit);
       const double off = elevation - nearest_level(v);
-      if (off != 0.0 && std::fabs(off) < near) near_levels.push_back(v);
+      if (off != 0.0 && std::fabs(off) <= reach_of(v, kSteepest)) near_levels.push_back(v);
     }
     return near_levels;
+  }
+
+  // How far from a level a vertex may be whose surroundings are so steep, to be taken to be there.
+  double reach_of(Vertex v, double steepness) const {
+    const double largest = std::max(std::fabs(point(v).x), std::fabs(point(v).y));
+    return kRoundings * 0x1p-52 * largest * steepness;
   }
 
   double nearest_level(Vertex v) const {
@@ -191,10 +193,10 @@ class LevelSurface {
     const std::vector<double> steepest = find_steepest(near_levels);
     for (std::size_t i = 0; i < near_levels.size(); ++i) {
       const Vertex v = near_levels[i];
-      const double largest = std::max(std::fabs(point(v).x), std::fabs(point(v).y));
       const double level = nearest_level(v);
       double& elevation = vertices_[number(v)].elevation;
-      if (!(std::fabs(elevation - level) <= kRoundings * 0x1p-52 * largest * steepest[i])) continue;
+      const double steepness = std::min(steepest[i], kSteepest);
+      if (!(std::fabs(elevation - level) <= reach_of(v, steepness))) continue;
       elevation = level;
       const double* const end = levels_.values + levels_.count;
       rank_[number(v)] =
@@ -202,16 +204,19 @@ class LevelSurface {
     }
   }
 
-  // How steeply the edges of some vertices, given in ascending order, rise or fall at most.
+  // How steeply the edges of some vertices rise or fall at most.
   std::vector<double> find_steepest(const std::vector<Vertex>& from) const {
     std::vector<double> steepest(from.size(), 0.0);
-    std::vector<bool> is_wanted(std::size_t(surface_.point_count), false);
-    for (const Vertex v : from) is_wanted[number(v)] = true;
+    constexpr std::int32_t kNone = -1;
+    std::vector<std::int32_t> place(std::size_t(surface_.point_count), kNone);
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      place[number(from[i])] = static_cast<std::int32_t>(i);
+    }
     for (const Triangle t : triangles()) {
       for (std::uint32_t k = 0; k < 3; ++k) {
         const Vertex v = corner(t, k);
-        if (!is_wanted[number(v)]) continue;
-        double& most = steepest[std::lower_bound(from.begin(), from.end(), v) - from.begin()];
+        if (place[number(v)] == kNone) continue;
+        double& most = steepest[place[number(v)]];
         most = std::max({most, steepness(v, corner(t, corner_after(k))),
                          steepness(v, corner(t, corner_before(k)))});
       }

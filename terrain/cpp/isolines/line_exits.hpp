@@ -32,9 +32,10 @@ struct Start {
 
 class LineExits {
  public:
-  // Throws overflow_error, with the number of exits, if there are too many for memory that is yet
-  // to be allocated.
-  LineExits(const LevelSurface& surface, Pulse& pulse) : surface_(surface) {
+  // Of all triangles, or of those that are owned, by their flags. Throws overflow_error, with the
+  // number of exits, if there are too many for memory that is yet to be allocated.
+  LineExits(const LevelSurface& surface, Pulse& pulse, const bool* is_owned = nullptr)
+      : surface_(surface), is_owned_(is_owned) {
     const std::uint64_t total = number_exits();
     if (total > kMostCrossings) throw std::overflow_error(std::to_string(total));
     rows_.resize(std::size_t(total));
@@ -42,7 +43,7 @@ class LineExits {
       if (!pulse.goes_on()) return;
       surface_.prefetch_ranks(ahead(t, kRanksAhead));
       surface_.prefetch_vertices(ahead(t, kVerticesAhead));
-      fill_rows(t);
+      if (is_filled(t)) fill_rows(t);
     }
     for (const auto& [one, other] : ridges_) swap_ways(one, other);
   }
@@ -50,6 +51,14 @@ class LineExits {
   std::uint32_t size() const { return static_cast<std::uint32_t>(rows_.size()); }
   const std::vector<Start>& starts() const { return starts_; }
 
+  // Those of an owned triangle and of a level: visit(exit, level).
+  template <typename Visit>
+  void for_each_of(Triangle t, Visit&& visit) const {
+    const auto [low, high] = surface_.ranks(t);
+    for (std::int32_t level = low; level < high; ++level) visit(exit_at(t, level), level);
+  }
+
+  ExitId next(ExitId e) const { return rows_[number(e)].next; }
   Point point(ExitId e) const { return rows_[number(e)].point; }
   std::int32_t level(ExitId e) const { return rows_[number(e)].level; }
   bool is_left(ExitId e) const { return rows_[number(e)].next == kLeft; }
@@ -67,6 +76,18 @@ class LineExits {
   // So many triangles take as long as memory does to answer.
   static constexpr std::uint32_t kRanksAhead = 64;
   static constexpr std::uint32_t kVerticesAhead = 32;
+
+  bool owns(Triangle t) const { return is_owned_ == nullptr || is_owned_[number(t)]; }
+
+  // Ways are swapped with a triangle beyond an edge.
+  bool is_filled(Triangle t) const {
+    if (owns(t)) return true;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const Triangle beyond = surface_.neighbor(t, k);
+      if (beyond != kNoTriangle && owns(beyond)) return true;
+    }
+    return false;
+  }
 
   static Triangle ahead(Triangle t, std::uint32_t by) { return Triangle{number(t) + by}; }
 
@@ -93,7 +114,7 @@ class LineExits {
   void fill_rows(Triangle t) {
     const auto [low, high] = surface_.ranks(t);
     for (std::int32_t level = low; level < high; ++level) fill_row(t, level);
-    if (low < high) list_starts(t);
+    if (low < high && owns(t)) list_starts(t);
   }
 
   void fill_row(Triangle t, std::int32_t level) {
@@ -105,7 +126,7 @@ class LineExits {
                         next == kNoTriangle ? kNoExit : exit_at(next, level), level};
     if (!surface_.is_at(exit.high, level)) return;
     const Triangle beyond = surface_.beyond_ridge(t, above, level);
-    if (beyond != kNoTriangle && number(t) < number(beyond)) {
+    if (beyond != kNoTriangle && number(t) < number(beyond) && is_filled(beyond)) {
       ridges_.emplace_back(e, exit_at(beyond, level));
     }
   }
@@ -126,6 +147,7 @@ class LineExits {
   void swap_ways(ExitId one, ExitId other) { std::swap(rows_[number(one)], rows_[number(other)]); }
 
   const LevelSurface& surface_;
+  const bool* is_owned_;  // null for all
   ScratchVector<std::uint32_t> base_;  // of each triangle, its first exit less its lowest level
   ScratchVector<Row> rows_;
   std::vector<Start> starts_;

@@ -48,6 +48,20 @@ inline void turn_to_first(ScratchVector<Point>& points, std::size_t begin) {
   std::rotate(start, start + std::ptrdiff_t(first), points.end());
 }
 
+// End a line, the last of all; it is none if it has shrunk to a point, or to a way forth and back.
+inline void settle_line(TracedLines& found, std::size_t begin, std::int32_t level, bool is_closed) {
+  auto& points = found.points;
+  if (is_closed) {
+    while (points.size() > begin + 1 && points.back() == points[begin]) points.pop_back();
+    turn_to_first(points, begin);
+  }
+  if (points.size() - begin < (is_closed ? 3 : 2)) {
+    points.resize(begin);
+    return;
+  }
+  found.lines.push_back({begin, points.size(), level, is_closed});
+}
+
 // Every crossed triangle has one exit for each level, and what follows an exit is given by the
 // triangle beyond: lines are the cycles of that map and its ways from boundary to boundary.
 class LineTracer {
@@ -69,17 +83,14 @@ class LineTracer {
     found_.points.push_back(start.point);
     const std::int32_t level = exits_.level(start.first);
     require(follow(start.first, begin) == kNoExit);
-    keep(begin, level, false);
+    settle_line(found_, begin, level, false);
   }
 
   void trace_closed(ExitId first) {
     const std::size_t begin = found_.points.size();
     const std::int32_t level = exits_.level(first);
     require(follow(first, begin) == first);
-    auto& points = found_.points;
-    while (points.size() > begin + 1 && points.back() == points[begin]) points.pop_back();
-    turn_to_first(points, begin);
-    keep(begin, level, true);
+    settle_line(found_, begin, level, true);
   }
 
   // From exit to exit, until the boundary or an exit that was left before: returns that.
@@ -97,16 +108,6 @@ class LineTracer {
     if (!comes_to_its_end && pulse_.goes_on()) {
       throw std::invalid_argument("the neighbours are not those of the triangles");
     }
-  }
-
-  // A line that has shrunk to a point, or to a way forth and back, is none.
-  void keep(std::size_t begin, std::int32_t level, bool is_closed) {
-    auto& points = found_.points;
-    if (points.size() - begin < (is_closed ? 3 : 2)) {
-      points.resize(begin);
-      return;
-    }
-    found_.lines.push_back({begin, points.size(), level, is_closed});
   }
 
   Pulse pulse_;

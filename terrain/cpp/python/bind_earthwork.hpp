@@ -4,6 +4,8 @@
 #include <nanobind/nanobind.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <vector>
@@ -31,16 +33,62 @@ inline void require_groups(const GivenNumbers& groups, std::size_t count, std::i
   }
 }
 
+// Sums that are not rounded yet: doubles whose sums they are, and the extremes.
+struct SumTerms {
+  Made<double, -1, earthwork::Sums::kSummed, ExactSum::kTerms> terms;
+  Made<double, -1, 2> extremes;
+};
+using AreaTerms = Made<double, -1, ExactSum::kTerms>;
+
+inline SumTerms hand_over_terms(const std::vector<earthwork::Sums>& sums) {
+  std::vector<earthwork::Sums::Terms> terms;
+  std::vector<std::array<double, 2>> extremes;
+  for (const earthwork::Sums& one : sums) {
+    terms.push_back(one.terms());
+    extremes.push_back(one.extremes());
+  }
+  return {copy_over<decltype(SumTerms::terms), double>(
+              terms, {sums.size(), earthwork::Sums::kSummed, ExactSum::kTerms}),
+          copy_over<decltype(SumTerms::extremes), double>(extremes, {sums.size(), 2})};
+}
+
+inline AreaTerms hand_over_terms(const std::vector<ExactSum>& sums) {
+  std::vector<std::array<double, ExactSum::kTerms>> terms;
+  for (const ExactSum& one : sums) terms.push_back(one.terms());
+  return copy_over<AreaTerms, double>(terms, {sums.size(), ExactSum::kTerms});
+}
+
+// The sum of each row.
+inline std::vector<ExactSum> sums_of_rows(const GivenRows& rows) {
+  std::vector<ExactSum> sums(rows.shape(0));
+  for (std::size_t i = 0; i < rows.shape(0); ++i) {
+    for (std::size_t k = 0; k < rows.shape(1); ++k) {
+      sums[i].add(rows.data()[i * rows.shape(1) + k]);
+    }
+  }
+  return sums;
+}
+
+inline Elevations sum_rows(const GivenRows& rows) {
+  std::vector<double> values;
+  for (const ExactSum& sum : sums_of_rows(rows)) values.push_back(sum.value());
+  return copy_over<Elevations, double>(values, {values.size()});
+}
+
+inline AreaTerms merge_terms(const GivenRows& rows) { return hand_over_terms(sums_of_rows(rows)); }
+
 inline SumTable hand_over(const std::vector<earthwork::Sums>& sums) {
   const auto rows = earthwork::rows_of(sums);
   return copy_over<SumTable, double>(rows, {rows.size(), earthwork::Sums::kColumns});
 }
 
-inline SumTable sum_between(const GivenXyz& points, const GivenTriples& triangles,
-                            const GivenNumbers& groups, std::int32_t group_count,
-                            const GivenXyz& other_points, const GivenTriples& other_triangles,
-                            double up, bool is_other_apart, int threads,
-                            const Listener::Tell& tell) {
+inline std::vector<earthwork::Sums> sum_cells(const GivenXyz& points,
+                                              const GivenTriples& triangles,
+                                              const GivenNumbers& groups, std::int32_t group_count,
+                                              const GivenXyz& other_points,
+                                              const GivenTriples& other_triangles, double up,
+                                              bool is_other_apart, int threads,
+                                              const Listener::Tell& tell) {
   const Surface first = exact_surface_of(points, triangles);
   const Surface second = exact_surface_of(other_points, other_triangles);
   require_groups(groups, triangles.shape(0), group_count);
@@ -48,29 +96,73 @@ inline SumTable sum_between(const GivenXyz& points, const GivenTriples& triangle
     return earthwork::sum_between(first, groups.data(), group_count, second, is_other_apart, up,
                                   team);
   };
-  return hand_over(unlocked(threads, sum, tell));
+  return unlocked(threads, sum, tell);
 }
 
-inline SumTable sum_heights(const GivenXyz& points, const GivenTriples& triangles,
-                            const GivenValues& heights, const GivenNumbers& groups,
-                            std::int32_t group_count, double up) {
+inline SumTable sum_between(const GivenXyz& points, const GivenTriples& triangles,
+                            const GivenNumbers& groups, std::int32_t group_count,
+                            const GivenXyz& other_points, const GivenTriples& other_triangles,
+                            double up, bool is_other_apart, int threads,
+                            const Listener::Tell& tell) {
+  return hand_over(sum_cells(points, triangles, groups, group_count, other_points, other_triangles,
+                             up, is_other_apart, threads, tell));
+}
+
+inline SumTerms terms_between(const GivenXyz& points, const GivenTriples& triangles,
+                              const GivenNumbers& groups, std::int32_t group_count,
+                              const GivenXyz& other_points, const GivenTriples& other_triangles,
+                              double up, bool is_other_apart, int threads) {
+  return hand_over_terms(sum_cells(points, triangles, groups, group_count, other_points,
+                                   other_triangles, up, is_other_apart, threads, {}));
+}
+
+inline std::vector<earthwork::Sums> sum_triangles(const GivenXyz& points,
+                                                  const GivenTriples& triangles,
+                                                  const GivenValues& heights,
+                                                  const GivenNumbers& groups,
+                                                  std::int32_t group_count, double up) {
   const Surface given = exact_surface_of(points, triangles);
   require_groups(groups, triangles.shape(0), group_count);
   if (heights.shape(0) != points.shape(0)) {
     throw std::invalid_argument("a height for each point is needed");
   }
-  return hand_over(unlocked(1, [&](Team& team) {
+  return unlocked(1, [&](Team& team) {
     return earthwork::sum_heights(given, heights.data(), groups.data(), group_count, up, team);
-  }));
+  });
+}
+
+inline SumTable sum_heights(const GivenXyz& points, const GivenTriples& triangles,
+                            const GivenValues& heights, const GivenNumbers& groups,
+                            std::int32_t group_count, double up) {
+  return hand_over(sum_triangles(points, triangles, heights, groups, group_count, up));
+}
+
+inline SumTerms terms_of_heights(const GivenXyz& points, const GivenTriples& triangles,
+                                 const GivenValues& heights, const GivenNumbers& groups,
+                                 std::int32_t group_count, double up) {
+  return hand_over_terms(sum_triangles(points, triangles, heights, groups, group_count, up));
+}
+
+inline std::vector<ExactSum> add_areas(const GivenXyz& points, const GivenTriples& triangles,
+                                       const GivenNumbers& groups, std::int32_t group_count) {
+  const Surface given = exact_surface_of(points, triangles);
+  require_groups(groups, triangles.shape(0), group_count);
+  return unlocked(
+      1, [&](Team&) { return earthwork::sum_areas(given, groups.data(), group_count); });
 }
 
 inline Elevations sum_areas(const GivenXyz& points, const GivenTriples& triangles,
                             const GivenNumbers& groups, std::int32_t group_count) {
-  const Surface given = exact_surface_of(points, triangles);
-  require_groups(groups, triangles.shape(0), group_count);
-  const std::vector<double> areas =
-      unlocked(1, [&](Team&) { return earthwork::sum_areas(given, groups.data(), group_count); });
+  std::vector<double> areas;
+  for (const ExactSum& sum : add_areas(points, triangles, groups, group_count)) {
+    areas.push_back(sum.value());
+  }
   return copy_over<Elevations, double>(areas, {areas.size()});
+}
+
+inline AreaTerms terms_of_areas(const GivenXyz& points, const GivenTriples& triangles,
+                                const GivenNumbers& groups, std::int32_t group_count) {
+  return hand_over_terms(add_areas(points, triangles, groups, group_count));
 }
 
 struct OverlayMesh {
@@ -119,6 +211,23 @@ inline void bind_earthwork(nb::module_& m) {
         "Cut and fill of heights at the vertices, a row for each group of triangles.");
   m.def("sum_areas", &sum_areas, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "groups"_a.noconvert(), "group_count"_a, "The area in the plane of each group.");
+  m.def("terms_between", &terms_between, "points"_a.noconvert(), "triangles"_a.noconvert(),
+        "groups"_a.noconvert(), "group_count"_a, "other_points"_a.noconvert(),
+        "other_triangles"_a.noconvert(), "up"_a, "is_other_apart"_a = false, "threads"_a = 1,
+        "Doubles whose sums are those of sum_between, exactly.");
+  m.def("terms_of_heights", &terms_of_heights, "points"_a.noconvert(), "triangles"_a.noconvert(),
+        "heights"_a.noconvert(), "groups"_a.noconvert(), "group_count"_a, "up"_a,
+        "Doubles whose sums are those of sum_heights, exactly.");
+  m.def("terms_of_areas", &terms_of_areas, "points"_a.noconvert(), "triangles"_a.noconvert(),
+        "groups"_a.noconvert(), "group_count"_a,
+        "Doubles whose sums are those of sum_areas, exactly.");
+  m.def("sum_rows", &sum_rows, "rows"_a.noconvert(),
+        "The sum of each row, exact before it is rounded.");
+  m.def("merge_terms", &merge_terms, "rows"_a.noconvert(),
+        "Doubles whose sum is that of each row, exactly: as few for any number of columns.");
+  Result<SumTerms>(m, "SumTerms", "Sums of groups that are not rounded yet.")
+      .def_array("terms", &SumTerms::terms, "(g, 8, t), of all columns but the last two.")
+      .def_array("extremes", &SumTerms::extremes, "(g, 2), the last two: lowest and highest.");
   m.def("overlay", &overlay, "points"_a.noconvert(), "triangles"_a.noconvert(),
         "other_points"_a.noconvert(), "other_triangles"_a.noconvert(), nb::kw_only(),
         "is_other_apart"_a = false,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from support.parts import CLOUDS, Tiling, divide_at_points, find_tilings
+from support.product_parts import join_raster, make_grid, require_same_bits
 from support.tiled import divide
 
 import tinsmith as ts
@@ -16,16 +17,6 @@ from tinsmith.tin.tiling.local_triangulation import triangulate_box
 VALUES = ["elevation", "slope", "aspect", "hillshade"]
 
 
-def make_grid(points, cells):
-    """Return a grid some of whose cells lie off the surface."""
-    bounds = ts.Bounds.of(points)
-    spacing = max(bounds.width, bounds.height) / cells
-    rows, columns = (int(side / spacing) + 4 for side in (bounds.height, bounds.width))
-    west, north = bounds.xmin - 1.5 * spacing, bounds.ymax + 1.5 * spacing
-    around = ts.Bounds(west, north - rows * spacing, west + columns * spacing, north)
-    return ts.Grid(around, (rows, columns), spacing)
-
-
 def make_grid_of_points(points):
     """Return a grid with centres at the points of a lattice, and half way between."""
     side = float(np.diff(np.unique(points[:, 0])[:2])[0]) / 2
@@ -34,20 +25,6 @@ def make_grid_of_points(points):
     west, north = bounds.xmin - 1.5 * side, bounds.ymax + 1.5 * side
     around = ts.Bounds(west, north - rows * side, west + columns * side, north)
     return ts.Grid(around, (rows, columns), side)
-
-
-def compute(tiling, options, seed=0):
-    blocks = tiling.compute(lambda part, box: rasters.compute_part(part, box, options), seed)
-    return rasters.join(blocks, options)
-
-
-def require_same_bits(found, wanted):
-    assert found.dtype == wanted.dtype
-    assert found.shape == wanted.shape
-    kind = np.dtype(f"u{found.dtype.itemsize}")
-    differ = np.ascontiguousarray(found).view(kind) != np.ascontiguousarray(wanted).view(kind)
-    differ &= ~(np.isnan(found) & np.isnan(wanted))
-    assert not differ.any(), f"{differ.sum()} differ, first at {np.argwhere(differ)[0]}"
 
 
 @pytest.mark.parametrize("name", CLOUDS)
@@ -67,7 +44,46 @@ def test_blocks_are_those_of_the_whole(name):
                     options = rasters.RasterOptions(
                         grid, value, bool(is_smooth), light=Light(200.0, 30.0)
                     )
-                    require_same_bits(compute(tiling, options), whole.bands[value])
+                    require_same_bits(join_raster(tiling, options), whole.bands[value])
+
+
+class Reaches:
+    """Parts of the box that each tile's cells need."""
+
+    def __init__(self, source, options):
+        self.blocks = []
+        for key in source.list_cells():
+            rows, columns = rasters.find_cells(options.grid, source.box_of(key))
+            if rows.stop > rows.start:
+                reach = rasters.find_reach(options, rows, columns)
+                part = triangulate_box(source, reach, around=widen(reach, 5.0))
+                self.blocks.append(rasters.compute_block(part, rows, columns, options))
+
+
+@pytest.mark.parametrize("name", CLOUDS)
+@pytest.mark.parametrize("value", ["elevation", "slope"])
+def test_means_of_cells_are_those_of_the_whole(name, value):
+    """With several squares of cells that are computed together, whose sides no tile keeps to."""
+    points = CLOUDS[name]
+    tin = ts.triangulate(points)
+    for cells, sides in ((300, (1, 4)), (40, (2, 8))):
+        grid = make_grid(points, cells)
+        whole = ts.rasterize(tin, grid=grid, value=value, at="mean").bands[value]
+        options = rasters.RasterOptions(grid, value, at="mean")
+        for side in sides:
+            found = rasters.join(Reaches(divide(points, side), options).blocks, options)
+            require_same_bits(found, whole)
+
+
+def test_means_do_not_depend_on_how_points_are_numbered():
+    points = CLOUDS["levels at vertices"]
+    grid = make_grid(points, 70)
+    order = np.random.default_rng(3).permutation(len(points))
+    one, other = (
+        ts.rasterize(ts.triangulate(some), grid=grid, at="mean").bands["elevation"]
+        for some in (points, points[order])
+    )
+    require_same_bits(one, other)
 
 
 def test_slopes_above_longitude_and_latitude_are_those_of_the_whole():
@@ -78,7 +94,7 @@ def test_slopes_above_longitude_and_latitude_are_those_of_the_whole():
     options = rasters.RasterOptions(
         grid, "slope", is_smooth=True, crs=tin.crs, elevation_unit=tin.elevation_unit
     )
-    require_same_bits(compute(Tiling(divide(points, 4)), options), whole)
+    require_same_bits(join_raster(Tiling(divide(points, 4)), options), whole)
 
 
 def test_any_block_of_cells_can_be_asked_for():
@@ -88,7 +104,7 @@ def test_any_block_of_cells_can_be_asked_for():
     source = divide_at_points(points, 4)
     options = rasters.RasterOptions(grid)
     for rows, columns in ((slice(3, 17), slice(20, 41)), (slice(30, 31), slice(5, 6))):
-        reach = rasters.find_reach(grid, rows, columns)
+        reach = rasters.find_reach(options, rows, columns)
         part = triangulate_box(source, reach, around=widen(reach, 10.0))
         block = rasters.compute_block(part, rows, columns, options)
         require_same_bits(block.values, whole[rows, columns])
@@ -103,7 +119,7 @@ def test_elevations_need_no_triangles_around_those_of_the_cells():
     for value in VALUES:
         whole = ts.rasterize(ts.triangulate(points), grid=options.grid, value=value)
         tiling = Tiling(divide(points, 4), rings=0)
-        require_same_bits(compute(tiling, options._replace(value=value)), whole.bands[value])
+        require_same_bits(join_raster(tiling, options._replace(value=value)), whole.bands[value])
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -1,0 +1,33 @@
+"""Bands filled from the segments of tiles: those of the whole surface."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from support.parts import CLOUDS, Tiling, find_tilings
+from support.product_parts import join_bands, require_same_features
+from support.tiled import divide
+
+import tinsmith as ts
+from tinsmith.terrain.parts import bands
+
+
+@pytest.mark.parametrize("name", CLOUDS)
+def test_polygons_are_those_of_the_whole(name):
+    points = CLOUDS[name]
+    given = {"levels": [60.0, 62.5, 70.0, 75.0]} if name == "contours" else {"interval": 2.0}
+    whole = ts.contour_bands(ts.triangulate(points), **given)
+    for tiling in find_tilings(name):
+        require_same_features(join_bands(tiling, points, given), whole)
+
+
+def test_slivers_along_the_boundary_are_left_out_as_in_memory():
+    x, y = np.meshgrid(np.arange(14.0), np.arange(14.0))
+    turn = np.radians(17.0)
+    east = 5e5 + x.ravel() * np.cos(turn) - y.ravel() * np.sin(turn)
+    north = 5e6 + x.ravel() * np.sin(turn) + y.ravel() * np.cos(turn)
+    points = np.column_stack([east, north, np.random.default_rng(3).random(x.size) * 9])
+    whole = ts.contour_bands(ts.triangulate(points), 2.0)
+    for side in (1, 2, 4):
+        tiling = Tiling(divide(points, side), rings=bands.RINGS)
+        require_same_features(join_bands(tiling, points, {"interval": 2.0}), whole)
