@@ -18,7 +18,14 @@ if TYPE_CHECKING:
     from ...base.georeference import PlaneUnits
     from ...tin import TIN
 
-__all__ = ["Reference", "Surface", "find_common_reference", "find_reference", "require_finite"]
+__all__ = [
+    "Reference",
+    "Surface",
+    "find_common_reference",
+    "find_reference",
+    "make_reference",
+    "require_finite",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +65,11 @@ def find_reference(tin: TIN, purpose: str) -> Reference:
         If coordinates are angles.
     """
     require_tin(tin)
-    crs, unit = tin.crs, tin.elevation_unit
+    return make_reference(tin.crs, tin.elevation_unit, purpose)
+
+
+def make_reference(crs: CRS | None, unit: Unit | None, purpose: str) -> Reference:
+    """Return the units of a CRS and of elevations; errors as of :func:`find_reference`."""
     _require_lengths(crs, purpose)
     return Reference(crs, unit, scale_elevations(crs, unit), describe_unknown(crs, unit))
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..base.atomic import as_path
-from ..base.checks import is_finite_number
+from ..base.checks import as_flag, is_finite_number
 from ..base.crs import CRS, Unit, shorten_crs
 from ..base.errors import OptionError, choice
 from ..base.policies import DuplicatePolicy, RasterValue
@@ -23,8 +23,13 @@ from .how import How, Way, estimate_memory
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike
 
     from ..base.crs import CrsLike, UnitLike
+    from ..base.types import Bounds
+    from ..tin import TIN
 
 __all__ = ["Plan", "TiledPoints", "tiles"]
 
@@ -195,6 +200,11 @@ class TiledPoints:
         return None if None in counts else sum(count for count in counts if count is not None)
 
     @property
+    def crs(self) -> CRS | None:
+        """CRS of the points, as the first header names it."""
+        return self.headers[0].crs
+
+    @property
     def is_raster(self) -> bool:
         """Whether the points are the cells of one raster."""
         formats = [find_format(header.format) for header in self.headers]
@@ -264,7 +274,7 @@ class TiledPoints:
         ----------
         path : path-like
         format : str, optional
-            Name of a format of rasters, to choose it whatever the suffix.
+            Name of a format, to choose it whatever the suffix.
         write : mapping, optional
             Options of the writer.
         spacing, like, value, azimuth, altitude, smooth
@@ -295,17 +305,203 @@ class TiledPoints:
         ...     cloud.rasterize(Path(folder, "dtm.tif"), spacing=1.0, workers=1).name
         'dtm.tif'
         """
+        light = {"azimuth": azimuth, "altitude": altitude, "smooth": smooth}
+        asked = {"spacing": spacing, "like": like, "value": value, **light}
+        return self._write("raster", asked, path, (format, write), way)
+
+    def contours(
+        self,
+        path: str | os.PathLike[str],
+        interval: float | None = None,
+        *,
+        format: str | None = None,  # noqa: A002 - as in write
+        write: Mapping[str, Any] | None = None,
+        levels: ArrayLike | None = None,
+        base: float = 0.0,
+        index: int | None = 5,
+        bands: bool = False,
+        **way: Unpack[Way],
+    ) -> Path:
+        """Write contours, as :func:`tinsmith.contours` traces them on the whole surface.
+
+        Parameters
+        ----------
+        path, format, write, **way
+            As of :meth:`rasterize`.
+        interval, levels, base, index
+            As of :func:`tinsmith.contours`.
+        bands : bool
+            Write the polygons between levels, as :func:`tinsmith.contour_bands`.
+
+        Returns
+        -------
+        Path
+
+        Raises
+        ------
+        ReadError, WriteError
+            As :meth:`rasterize`.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+        >>> with TemporaryDirectory() as folder:
+        ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")))
+        ...     cloud.contours(Path(folder, "lines.csv"), 1.0, workers=1).name
+        'lines.csv'
+        """
+        asked: dict[str, Any] = {"interval": interval, "levels": levels, "base": base}
+        if as_flag("bands", bands):
+            return self._write("bands", asked, path, (format, write), way)
+        return self._write("contours", {**asked, "index": index}, path, (format, write), way)
+
+    def volume(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        base: Any,
+        regions: Any = None,
+        format: str | None = None,  # noqa: A002 - as in write
+        write: Mapping[str, Any] | None = None,
+        **way: Unpack[Way],
+    ) -> Path:
+        """Write cut and fill to a level or plane, as :func:`tinsmith.volume` of the whole surface.
+
+        Parameters
+        ----------
+        path, format, write, **way
+            As of :meth:`rasterize`.
+        base, regions
+            As of :func:`tinsmith.volume`.
+
+        Returns
+        -------
+        Path
+
+        Raises
+        ------
+        ReadError, WriteError
+            As :meth:`rasterize`.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+        >>> with TemporaryDirectory() as folder:
+        ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")))
+        ...     cloud.volume(Path(folder, "volume.json"), base=5.0, workers=1).name
+        'volume.json'
+        """
+        asked = {"base": base, "regions": regions, "crs": self.crs}
+        return self._write("volume", asked, path, (format, write), way)
+
+    def profile(
+        self,
+        path: str | os.PathLike[str],
+        line: Any,
+        *,
+        interval: float | None = None,
+        start: float = 0.0,
+        format: str | None = None,  # noqa: A002 - as in write
+        write: Mapping[str, Any] | None = None,
+        **way: Unpack[Way],
+    ) -> Path:
+        """Write the profile along lines, as :func:`tinsmith.profile` of the whole surface.
+
+        Parameters
+        ----------
+        path, format, write, **way
+            As of :meth:`rasterize`.
+        line, interval, start
+            As of :func:`tinsmith.profile`.
+
+        Returns
+        -------
+        Path
+
+        Raises
+        ------
+        ReadError, WriteError
+            As :meth:`rasterize`.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+        >>> with TemporaryDirectory() as folder:
+        ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")))
+        ...     cloud.profile(Path(folder, "profile.csv"), [[0, 1], [2, 1]], workers=1).name
+        'profile.csv'
+        """
+        asked = {"line": line, "interval": interval, "start": start}
+        return self._write("profile", asked, path, (format, write), way)
+
+    def map(
+        self, function: Callable[[TIN, Bounds], Any], *, run: str | os.PathLike[str], **way: Any
+    ) -> list[Any]:
+        """Call a function for each tile, with all triangles of the whole that meet it.
+
+        Parameters
+        ----------
+        function : callable
+            Of a module that workers can import; takes a TIN and the tile's box, whose sides at the
+            rim are infinite. A triangle that meets several tiles is in the TIN of each. What it
+            returns must be picklable.
+        run : path-like
+            Folder of the run.
+        **way
+            How the run is carried out, see :class:`Way`.
+
+        Returns
+        -------
+        list
+            What it returned, in the order of the tiles; nothing for tiles without triangles.
+
+        Raises
+        ------
+        ReadError, WriteError
+            As :meth:`rasterize`.
+        OptionError
+            If workers cannot import the function.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+        >>> with TemporaryDirectory() as folder:
+        ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")))
+        ...     len(cloud.map(ts.quality, run=Path(folder, "run"), workers=1))
+        Traceback (most recent call last):
+        ...
+        tinsmith.base.errors.ReadError: ...
+        """
+        folder = as_path(run, "run")
+        how = How.of(**{**way, "run": folder})
+        with computing(self, "mapped", folder, how, function=function) as made:
+            found: list[Any] = made
+        return found
+
+    def _write(
+        self,
+        product: str,
+        asked: Mapping[str, Any],
+        path: str | os.PathLike[str],
+        writing: tuple[str | None, Mapping[str, Any] | None],
+        way: Way,
+    ) -> Path:
         output = as_path(path)
-        asked = {
-            "spacing": spacing,
-            "like": like,
-            "value": value,
-            "azimuth": azimuth,
-            "altitude": altitude,
-            "smooth": smooth,
-        }
-        with computing(self, "raster", output, How.of(**way), **asked) as made:
-            return write_file(made, output, format=format, **(write or {}))
+        name, options = writing
+        with computing(self, product, output, How.of(**way), **asked) as made:
+            return write_file(made, output, format=name, **(options or {}))
 
 
 def _list_files(paths: Any, name: str | None) -> list[Path]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -98,6 +99,7 @@ def _read(job: ReadJob, started: float) -> Record:
     job.source.require_same()
     chunks: list[Chunk] = []
     skeletons: list[NumberedPoints] = []
+    low, high = math.inf, -math.inf
     with stream_points(path, chunk_points=CHUNK_POINTS, **job.options) as stream:
         left_out = 0
         for found in stream:
@@ -111,6 +113,7 @@ def _read(job: ReadJob, started: float) -> Record:
             numbers = rows + np.int64(job.number) * ROWS_OF_A_FILE
             chunk = write_chunk(job.folder, job.number, len(chunks), points, numbers)
             chunks.append(chunk)
+            low, high = min(low, points[:, 2].min()), max(high, points[:, 2].max())
             skeletons.append(find_skeleton(NumberedPoints(points, numbers)))
         crs, unit = stream.crs, stream.elevation_unit
         notes = list(stream.notes)
@@ -131,6 +134,7 @@ def _read(job: ReadJob, started: float) -> Record:
         values={
             "crs": None if crs is None else str(crs),
             "elevation_unit": None if unit is None else unit.text,
+            "elevations": [float(low), float(high)] if chunks else [],
             "notes": notes,
         },
         files={name: hash_file(job.folder / name) for name in files},
@@ -185,6 +189,8 @@ class StoredPoints:
         What the readers tell.
     count : int
     bounds : Bounds
+    elevations : (float, float)
+        The lowest and the highest.
     is_raster : bool
         Whether they are the cells of one raster.
     """
@@ -195,6 +201,7 @@ class StoredPoints:
     notes: tuple[str, ...]
     count: int
     bounds: Bounds
+    elevations: tuple[float, float]
     is_raster: bool = False
 
     def open(self) -> PointStore:
@@ -254,6 +261,10 @@ def read_inputs(
         _join_notes(records),
         sum(chunk.count for chunk in chunks),
         bounds,
+        (
+            min(record.values["elevations"][0] for record in filled),
+            max(record.values["elevations"][1] for record in filled),
+        ),
     )
 
 

@@ -8,6 +8,9 @@ from importlib import import_module
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, cast
 
+import numpy as np
+
+from ..base.atomic import replacing
 from ..base.errors import TinsmithError, WriteError
 from ..tin.tiling import LocalTriangulation, triangulate_box, widen
 from .division import Tile, quarter
@@ -18,12 +21,22 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
+    from ..base.arrays import AnyArray
     from ..base.policies import DuplicatePolicy
     from ..base.types import Bounds
     from .reading import StoredPoints
     from .store import PointStore
 
-__all__ = ["PHASE", "Part", "TileJob", "TileProduct", "compute_tile", "divide_job"]
+__all__ = [
+    "PHASE",
+    "Part",
+    "TileJob",
+    "TileProduct",
+    "compute_tile",
+    "divide_job",
+    "load_arrays",
+    "save_arrays",
+]
 
 PHASE = "tiles"
 _HALO = 10.0
@@ -91,6 +104,21 @@ class Part(NamedTuple):
         height = min(tile.box.ymax, bounds.ymax) - max(tile.box.ymin, bounds.ymin)
         area = max(width, 0.0) * max(height, 0.0)
         return _HALO * math.sqrt(area / max(tile.count, 1))
+
+
+def save_arrays(part: Part, **arrays: AnyArray) -> list[str]:
+    """Write arrays of a tile to one file, and return its name."""
+    name = f"{part.job.key}.npz"
+    with replacing(part.folder / name) as file:
+        np.savez(file, **arrays)  # type: ignore[arg-type]
+    return [name]
+
+
+def load_arrays(folder: Path, record: Record) -> dict[str, AnyArray]:
+    """Return what :func:`save_arrays` wrote of a tile."""
+    (name,) = record.files
+    with np.load(folder / name) as found:
+        return dict(found)
 
 
 class TileProduct(Protocol):

@@ -1,0 +1,81 @@
+"""Bands between contours: each tile lists the segments around them, of which polygons are made."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...base.crs import CRS, Unit
+from ...terrain.earthwork import measure_rounding
+from ...terrain.isolines import LevelOptions, Levels
+from ...terrain.parts import bands
+from ..tasks import load_arrays, save_arrays
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from ...base.results import Features
+    from ..reading import StoredPoints
+    from ..runs import Record
+    from ..tasks import Part
+
+__all__ = ["check_options", "compute", "join", "settle_options"]
+
+
+def check_options(
+    *, interval: float | None = None, levels: Any = None, base: float = 0.0
+) -> dict[str, Any]:
+    """Return plain options, or refuse what is none."""
+    chosen = None if levels is None else np.asarray(levels, np.float64).tolist()
+    LevelOptions(interval, chosen, base)
+    return {"interval": interval, "levels": chosen, "base": base}
+
+
+def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Settle the levels, when the elevations of all points are known."""
+    given = LevelOptions(*(options[name] for name in ("interval", "levels", "base")))
+    found = given.for_bands_between(*points.elevations)
+    box, crs, unit = points.bounds, points.crs, points.elevation_unit
+    corners = np.array([[box.xmin, box.ymin], [box.xmax, box.ymax]])
+    return {
+        "values": found.values.tolist(),
+        "notes": list(found.notes),
+        "rounding": measure_rounding(corners),
+        "crs": None if crs is None else str(crs),
+        "elevation_unit": None if unit is None else unit.text,
+    }
+
+
+def _make_options(options: Mapping[str, Any]) -> bands.BandOptions:
+    values = np.array(options["values"], np.float64)
+    levels = Levels(values, np.zeros(len(values), np.bool_), tuple(options["notes"]))
+    return bands.BandOptions(
+        levels,
+        options["rounding"],
+        CRS.of(options["crs"]),
+        Unit.of(options["elevation_unit"] or None),
+    )
+
+
+def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
+    """List the segments around the bands of a tile."""
+    box = part.job.tile.box
+    local = part.triangulate(box, rings=bands.RINGS)
+    if not len(local.triangles):
+        return 0, {}, []
+    found = bands.compute_part(local, box, _make_options(part.job.options))
+    return len(local.points), {}, save_arrays(part, **found._asdict())
+
+
+def join(
+    points: StoredPoints, options: Mapping[str, Any], records: Mapping[str, Record], folder: Path
+) -> Features:
+    """Return all polygons."""
+    parts = [
+        bands.BandPart(**load_arrays(folder, record)) for record in records.values() if record.files
+    ]
+    made = bands.join(parts, _make_options(options))
+    return replace(made, notes=[*points.notes, *made.notes])

@@ -1,0 +1,73 @@
+"""What a function of the caller's makes of each tile."""
+
+from __future__ import annotations
+
+import pickle
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from ...base.atomic import replacing
+from ...base.crs import CRS, Unit
+from ...base.errors import OptionError
+from ...terrain.parts import surfaces
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from ..reading import StoredPoints
+    from ..runs import Record
+    from ..tasks import Part
+
+__all__ = ["check_options", "compute", "join", "settle_options"]
+
+
+def check_options(*, function: Any) -> dict[str, Any]:
+    """Return the name of a function that workers can import."""
+    module, name = getattr(function, "__module__", None), getattr(function, "__qualname__", "")
+    if module in (None, "__main__") or "<" in name or not callable(function):
+        raise OptionError("function", function, "a function of a module that workers can import")
+    return {"function": f"{module}:{name}"}
+
+
+def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Add the units of all points."""
+    crs, unit = points.crs, points.elevation_unit
+    return {
+        **options,
+        "crs": None if crs is None else str(crs),
+        "elevation_unit": None if unit is None else unit.text,
+    }
+
+
+def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
+    """Call the function with the triangles that meet a tile, and its box."""
+    job = part.job
+    local = part.triangulate(job.tile.box)
+    if not len(local.triangles):
+        return 0, {}, []
+    options = job.options
+    tin = surfaces.as_surface(
+        local, CRS.of(options["crs"]), Unit.of(options["elevation_unit"] or None)
+    )
+    module, _, name = options["function"].partition(":")
+    function: Any = import_module(module)
+    for one in name.split("."):
+        function = getattr(function, one)
+    file_name = f"{job.key}.pickle"
+    with replacing(part.folder / file_name) as file:
+        pickle.dump(function(tin, job.tile.box), file)
+    return len(local.points), {}, [file_name]
+
+
+def join(
+    points: StoredPoints, options: Mapping[str, Any], records: Mapping[str, Record], folder: Path
+) -> list[Any]:
+    """Return what the function made, in the order of the tiles."""
+    del points, options
+    made = []
+    for record in records.values():
+        for name in record.files:
+            with (folder / name).open("rb") as file:
+                made.append(pickle.load(file))  # noqa: S301 - written by this run's own tasks
+    return made
