@@ -6,6 +6,7 @@ from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from contextvars import Context, copy_context
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -163,6 +164,14 @@ class PointStream:
         """What the reader left out and how often; known at the end."""
         return dict(self._require_end().skipped)
 
+    @property
+    def has_voids(self) -> bool:
+        """Whether the surface ends at voids of a raster, ``extent`` of a survey; known at the end.
+
+        Points do not tell it: a surface of them alone spans the voids.
+        """
+        return self._require_end().has_voids
+
     def _require_end(self) -> StreamEnd:
         if self._end is None or self._n_waiting:
             raise ReadError("Notes of a stream are known once all of its chunks have been taken.")
@@ -293,7 +302,7 @@ def _stream_path(
     if inner == file:
         return end
     notes = [note.replace(inner.name, file.name) for note in end.notes]
-    return StreamEnd(notes, end.skipped, end.more)
+    return replace(end, notes=notes)
 
 
 def _stream_file(call: Call, file: Path, options: dict[str, Any]) -> Blocks:
@@ -328,7 +337,7 @@ def _slice_whole(
     if len(rows) > 1 and not (np.diff(rows) > 0).all():
         rows = np.arange(len(survey))
     yield PointChunk(survey.points, rows, dict(survey.attributes))
-    return StreamEnd(survey.notes, survey.skipped)
+    return StreamEnd(survey.notes, survey.skipped, has_voids=len(survey.extent) > 0)
 
 
 def _measure_size(file: Path) -> int:

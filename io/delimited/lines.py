@@ -40,8 +40,8 @@ _BOMS = (
 _SPACE, _TAB, _LINE_FEED = 32, 9, 10
 _PROBE = 4096
 LONGEST_LINE = 1_000_000
-BLOCK_BYTES = 1 << 23
-"""Bytes of a block: some 250,000 rows of points."""
+BLOCK_BYTES = 1 << 22
+"""Bytes of a block: some 100,000 rows of points."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -124,8 +124,8 @@ def stream(path: Path, **options: Any) -> Blocks:
 
     Notes
     -----
-    A file of up to 16 MB is one block, and read as :func:`read` does. Of a larger one the first
-    block, some 250,000 rows, decides on layout, columns and CRS, and a row further on that
+    A file of up to 8 MB is one block, and read as :func:`read` does. Of a larger one the first
+    block, some 100,000 rows, decides on layout, columns and CRS, and a row further on that
     contradicts is refused with its line, once it is reached. What is odd of the rows of a block by
     themselves is told with their lines.
     """
@@ -146,7 +146,7 @@ def _read_blocks(path: Path, asked: Asked, block_bytes: int | None) -> Blocks:
         placing = placing or reader.begin_placing()
         placed = placing.add(taken.points)
         if is_first:
-            yield StreamHead(placed.crs, placed.elevation_unit)
+            yield StreamHead(placed.crs, placed.elevation_unit, has_lines=True)
         yield PointChunk(placed.points, taken.rows + 1, taken.attributes)
     assert placing is not None
     return reader.conclude([*notes, *placing.finish()])

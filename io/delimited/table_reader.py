@@ -359,7 +359,6 @@ class TableReader:
             notes,
             {**skipped, **{what: len(at) for what, at in left_out.items()}},
             {"skipped_lines": left_out},
-            has_lines=True,
         )
 
 

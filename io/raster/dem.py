@@ -21,11 +21,13 @@ from ...base.progress import Progress
 from ...base.sentences import FILE, coordinate, counted
 from ...terrain.gridding.voids import trace_rings
 from ...tin import Bounds, Survey
-from ...tin.screening.nodata import describe_elevations, parse_nodata
+from ...tin.screening.elevation_summary import ElevationSummary
+from ...tin.screening.nodata import parse_nodata
 from ..door import names_its_file
 from ..isolated import Limits, choose_limits, run_isolated, stream_isolated
 from ..isolated.limits import measure_free_memory
-from ..reprojection import place, settle_unit
+from ..registry import PointChunk, StreamEnd, StreamHead, gather
+from ..reprojection import Placing, place, settle_unit
 from .meaning import Meaning, find_meaning, settle_axes
 from .virtual import is_virtual, require_plain_sources
 
@@ -38,23 +40,32 @@ if TYPE_CHECKING:
     from ...base.crs import CrsLike, UnitLike
     from ...base.progress import Tell
     from ..isolated import Answer
+    from ..registry import Blocks
 
     OpenStrips: TypeAlias = Callable[[dict[str, Any]], AbstractContextManager[Iterator[Answer]]]
 
 __all__ = [
     "LEFT_OUT",
     "Affine",
+    "Cells",
     "Choice",
     "Header",
+    "Plan",
+    "Strip",
     "choose_band",
+    "cut_bounds",
     "find_elevation_unit",
     "find_middle",
     "is_raster",
+    "make_choice",
     "make_survey",
+    "plan_cells",
     "read",
     "read_georeference",
     "read_header",
+    "read_strips",
     "require_elevation_band",
+    "stream",
     "stream_strips",
 ]
 
@@ -92,7 +103,7 @@ class Choice:
 
 
 @dataclass(frozen=True, slots=True)
-class _Cells:
+class Cells:
     """The cells to read: a window, every how many of its rows and columns, within which bounds."""
 
     column: int
@@ -104,10 +115,12 @@ class _Cells:
 
     @property
     def count(self) -> int:
+        """How many there are."""
         return -(-self.width // self.stride) * -(-self.height // self.stride)
 
     @property
     def columns(self) -> Int64Array:
+        """The columns wanted."""
         return np.arange(self.column, self.column + self.width, self.stride)
 
     def find_rows(self, start: int, stop: int) -> Int64Array:
@@ -204,39 +217,174 @@ def make_survey(
 
     ``open_strips`` takes what to read, and gives the strips that ``gdal_child.read_strips`` yields.
     """
-    path, target = dataset.path, CRS.of(crs)
+    valid: list[BoolArray] = []
+    blocks = _read_blocks(
+        dataset, open_strips, choice, _Placed(crs, elevation_unit, progress), valid
+    )
+    survey = gather(blocks, dataset.path)
+    whole = np.concatenate(valid)
+    return survey if choice.fill or whole.all() else _add_void_rings(survey, whole)
+
+
+def stream(
+    path: Path,
+    *,
+    crs: CrsLike | None = None,
+    elevation_unit: UnitLike | None = None,
+    progress: Tell | None = None,
+    **options: Any,
+) -> Blocks:
+    """Read a raster as points strip by strip; the options are those of :func:`read`.
+
+    Notes
+    -----
+    The surface ends at voids unless ``fill`` spans them, which the end of the stream tells; the
+    points alone do not.
+    """
+    header = read_header(path)
+    choice = make_choice(options)
+    placed = _Placed(crs, elevation_unit, progress)
+    return _read_blocks(header, partial(stream_strips, header), choice, placed, None)
+
+
+def make_choice(options: Mapping[str, Any]) -> Choice:
+    """Return what of a raster is taken, from options of :func:`read` that are given."""
+    names = ("band", "window", "cells", "stride", "nodata")
+    usual = {**dict.fromkeys(names), "fill": False}
+    return Choice(**{**usual, **options})
+
+
+class _Placed(NamedTuple):
+    """Where the points are wanted, and who is told how far reading is."""
+
+    crs: CrsLike | None
+    elevation_unit: UnitLike | None
+    progress: Tell | None = None
+
+
+class Plan(NamedTuple):
+    """Which cells are read, and where they are."""
+
+    dataset: Header
+    band: int
+    cells: Cells
+    source: CRS | None
+    unit: Unit | None
+    marks: Float64Array
+    said: list[str]
+    """What is to be told of it."""
+
+
+def plan_cells(dataset: Header, choice: Choice, target: CRS | None, declared: Unit | None) -> Plan:
+    """Choose the cells to read, as :func:`read` tells; refuse what the header shows."""
     number, dataset, said = choose_elevations(dataset, choice.band)
     dataset, source, noted = settle_axes(dataset, target)
-    unit, noted_unit = find_elevation_unit(dataset, number, source, Unit.of(elevation_unit))
+    unit, noted_unit = find_elevation_unit(dataset, number, source, declared)
     cells = _choose_cells(dataset, choice)
     said = [*said, *noted, *noted_unit, *_describe_window(dataset, choice)]
-    left_out = 0 if choice.most_cells is None else cells.width * cells.height - cells.count
     marks = parse_nodata(choice.nodata)
-    _require_few_cells(cells)
-    place(find_middle(dataset), source=source, target=target)
-    points, valid, n_nodata = _read_points(dataset, open_strips, number, cells, marks, progress)
-    if len(points) == 0:
-        raise ReadError(
-            f"{FILE}: of {counted(n_nodata, 'cell')} of band {number}, none has an elevation but "
-            "nodata.",
+    return Plan(dataset, number, cells, source, unit, marks, said)
+
+
+def _read_blocks(
+    dataset: Header,
+    open_strips: OpenStrips,
+    choice: Choice,
+    wanted: _Placed,
+    kept: list[BoolArray] | None,
+) -> Blocks:
+    """Yield the points of strips; which cells are valid is added to ``kept``, if it is a list."""
+    target = CRS.of(wanted.crs)
+    plan = plan_cells(dataset, choice, target, Unit.of(wanted.elevation_unit))
+    cells = plan.cells
+    left_out = 0 if choice.most_cells is None else cells.width * cells.height - cells.count
+    if kept is not None:
+        _require_few_cells(cells)
+    place(find_middle(plan.dataset), source=plan.source, target=target)
+    placing = Placing(plan.source, target, plan.unit)
+    heights, voids = ElevationSummary("cell", keeps_all=kept is not None), _Voids()
+    n_nodata = n_points = 0
+    for strip in read_strips(plan, cells, open_strips, wanted.progress):
+        n_nodata += strip.n_nodata
+        voids.add(strip.valid)
+        if kept is not None:
+            kept.append(strip.valid)
+        if len(strip.points) == 0:
+            continue
+        _require_finite_centres(strip.points, plan.band)
+        heights.add(strip.points[:, 2])
+        placed = placing.add(strip.points)
+        if n_points == 0:
+            yield StreamHead(placed.crs, placed.elevation_unit)
+        n_points += len(strip.points)
+        yield PointChunk(placed.points, strip.cells, {})
+    _require_points(plan, n_points, n_nodata)
+    has_voids = not choice.fill and not voids.is_full
+    noted = [*_describe_sample(cells, left_out), *heights.describe(), *placing.finish()]
+    if has_voids and kept is None:
+        voids.require_surface()
+        noted.append(_VOIDS_STAY)
+    counts = {"nodata cells": n_nodata, LEFT_OUT: left_out}
+    skipped = {name: count for name, count in counts.items() if count}
+    notes = [*plan.said, *noted]
+    return StreamEnd(notes, skipped, {"from_raster": True}, has_voids=has_voids)
+
+
+def _require_points(plan: Plan, n_points: int, n_nodata: int) -> None:
+    if n_points:
+        return
+    if n_nodata == 0:
+        raise OptionError(
+            "window", plan.cells.bounds, f"an area with a cell centre of {FILE}{_CELLS_ARE}"
         )
-    _require_finite_centres(points, number)
-    notes = describe_elevations(points[:, 2], "cell")
-    placed = place(points, source=source, target=target, unit=unit)
-    survey = Survey(
-        points=placed.points,
-        crs=placed.crs,
-        elevation_unit=placed.elevation_unit,
-        source=path.name,
-        from_raster=True,
-        skipped={
-            name: count
-            for name, count in (("nodata cells", n_nodata), (LEFT_OUT, left_out))
-            if count
-        },
-        notes=[*said, *_describe_sample(cells, left_out), *notes, *placed.notes],
+    raise ReadError(
+        f"{FILE}: of {counted(n_nodata, 'cell')} of band {plan.band}, none has an elevation but "
+        "nodata.",
     )
-    return survey if choice.fill or valid.all() else _add_void_rings(survey, valid)
+
+
+class _Voids:
+    """Whether cells have gaps between them, and three side by side, row by row."""
+
+    def __init__(self) -> None:
+        self.is_full = True
+        self._has_surface = False
+        self._last: BoolArray | None = None
+
+    def add(self, valid: BoolArray) -> None:
+        """Add rows of cells."""
+        self.is_full &= bool(valid.all())
+        rows = valid if self._last is None else np.concatenate([self._last, valid])
+        self._last = rows[-1:]
+        if not self._has_surface and rows.shape[0] > 1:
+            pairs = rows[:-1].astype(np.int8) + rows[1:]
+            self._has_surface = bool((pairs[:, :-1] + pairs[:, 1:] >= _CORNERS).any())
+
+    def require_surface(self) -> None:
+        """Refuse cells between which there is no surface.
+
+        Raises
+        ------
+        ReadError
+        """
+        if not self._has_surface:
+            raise _describe_no_surface()
+
+
+_CORNERS = 3
+"""Cells of a square of four that make a surface."""
+
+_VOIDS_STAY = (
+    "Voids of the raster stay: the surface ends at the cells around them; the option `fill` spans "
+    "them."
+)
+
+
+def _describe_no_surface() -> ReadError:
+    return ReadError(
+        f"{FILE}: no three cells side by side have an elevation, so there is no "
+        "surface between voids: the option `fill` spans them."
+    )
 
 
 @names_its_file
@@ -269,16 +417,9 @@ def _add_void_rings(survey: Survey, valid: BoolArray) -> Survey:
     """Return the survey with the rings at which its surface ends."""
     rings = trace_rings(valid)
     if not rings:
-        raise ReadError(
-            f"'{survey.source}': no three cells side by side have an elevation, so there is no "
-            "surface between voids: the option `fill` spans them."
-        )
-    note = (
-        "Voids of the raster stay: the surface ends at the cells around them; the option `fill` "
-        "spans them."
-    )
+        raise _describe_no_surface()
     extent = [survey.points[ring] for ring in rings]
-    return replace(survey, extent=extent, notes=[*survey.notes, note])
+    return replace(survey, extent=extent, notes=[*survey.notes, _VOIDS_STAY])
 
 
 def is_raster(path: Path) -> bool:
@@ -482,18 +623,18 @@ def find_middle(dataset: Header) -> Float64Array:
 # ------------------------------------------------------------------ which cells
 
 
-def _choose_cells(dataset: Header, choice: Choice) -> _Cells:
+def _choose_cells(dataset: Header, choice: Choice) -> Cells:
     stride, bounds = choice.stride, None
     part = (0, 0, dataset.width, dataset.height)
     if choice.window is not None and choice.cells is not None:
         raise OptionError("cells", choice.cells, "None where a window is given")
     if choice.window is not None:
         bounds = _parse_window(choice.window)
-        part = _cut_bounds(dataset, bounds)
+        part = cut_bounds(dataset, bounds)
     elif choice.cells is not None:
         part = _cut_cells(dataset, choice.cells)
     if choice.most_cells is not None:
-        return _Cells(*part, _choose_stride(part[2], part[3], stride, choice.most_cells), bounds)
+        return Cells(*part, _choose_stride(part[2], part[3], stride, choice.most_cells), bounds)
     smaller, stride = min(part[2:]), 1 if stride is None else stride
     if not isinstance(stride, Integral) or not (1 <= stride < smaller or stride == 1):
         raise OptionError(
@@ -502,7 +643,7 @@ def _choose_cells(dataset: Header, choice: Choice) -> _Cells:
             f"a whole number from 1 to {max(1, smaller - 1)} for the {counted(part[2], 'column')} "
             f"and {counted(part[3], 'row')} to read",
         )
-    return _Cells(*part, int(stride), bounds)
+    return Cells(*part, int(stride), bounds)
 
 
 def _choose_stride(width: int, height: int, stride: int | None, most_cells: int) -> int:
@@ -516,7 +657,7 @@ def _choose_stride(width: int, height: int, stride: int | None, most_cells: int)
     return max(1, min(found, min(width, height) - 1))
 
 
-def _describe_sample(cells: _Cells, left_out: int) -> list[str]:
+def _describe_sample(cells: Cells, left_out: int) -> list[str]:
     if left_out == 0:
         return []
     return [
@@ -580,7 +721,7 @@ def _describe_window(dataset: Header, choice: Choice) -> list[str]:
     ]
 
 
-def _cut_bounds(dataset: Header, bounds: Bounds) -> tuple[int, int, int, int]:
+def cut_bounds(dataset: Header, bounds: Bounds) -> tuple[int, int, int, int]:
     """Return the cells of the smallest upright window that covers the bounds."""
     x = np.array([bounds.xmin, bounds.xmin, bounds.xmax, bounds.xmax])
     y = np.array([bounds.ymin, bounds.ymax, bounds.ymin, bounds.ymax])
@@ -599,7 +740,7 @@ def _cut_bounds(dataset: Header, bounds: Bounds) -> tuple[int, int, int, int]:
     return column, row, right - column, bottom - row
 
 
-def _require_few_cells(cells: _Cells) -> None:
+def _require_few_cells(cells: Cells) -> None:
     """Refuse more cells than can be read, before memory is asked for."""
     count = cells.count
     memory = measure_free_memory()
@@ -627,36 +768,33 @@ def stream_strips(
     )
 
 
-def _read_points(
-    dataset: Header,
-    open_strips: OpenStrips,
-    band: int,
-    cells: _Cells,
-    marks: Float64Array,
-    progress: Tell | None,
-) -> tuple[Float64Array, BoolArray, int]:
-    """Return the points of valid cells, which cells are valid, and how many have no elevation."""
+class Strip(NamedTuple):
+    """The points of some rows of cells."""
+
+    points: Float64Array
+    cells: Int64Array
+    """Their cells, counted row by row from 0."""
+    valid: BoolArray
+    """(rows, columns), which cells they are."""
+    n_nodata: int
+
+
+def read_strips(
+    plan: Plan, cells: Cells, open_strips: OpenStrips, progress: Tell | None = None
+) -> Iterator[Strip]:
+    """Yield the points of valid cells, strip by strip."""
+    dataset = plan.dataset
     strips = _cut_into_strips(dataset, cells)
-    window = {"band": band, "column": cells.column, "width": cells.width, "stride": cells.stride}
+    window = {"band": plan.band, "column": cells.column, "width": cells.width}
     ends = [[int(rows[0]), int(rows[-1])] for rows in strips]
-    found: list[Float64Array] = []
-    kept: list[BoolArray] = []
-    n_nodata, done = 0, Progress(progress)
-    with open_strips({**window, "rows": ends}) as answers:
-        for rows, answer in zip(strips, answers, strict=False):
-            points, keep, missing = _read_strip(dataset, band, cells, rows, answer.arrays, marks)
-            found.append(points)
-            kept.append(keep)
-            n_nodata += missing
-            done(_READ * len(found) / len(strips))
-    if not any(map(len, found)) and n_nodata == 0:
-        raise OptionError(
-            "window", cells.bounds, f"an area with a cell centre of {FILE}{_CELLS_ARE}"
-        )
-    return np.concatenate(found), np.concatenate(kept), n_nodata
+    done = Progress(progress)
+    with open_strips({**window, "stride": cells.stride, "rows": ends}) as answers:
+        for number, (rows, answer) in enumerate(zip(strips, answers, strict=False), start=1):
+            yield _read_strip(plan, cells, rows, answer.arrays)
+            done(_READ * number / len(strips))
 
 
-def _cut_into_strips(dataset: Header, cells: _Cells) -> list[Int64Array]:
+def _cut_into_strips(dataset: Header, cells: Cells) -> list[Int64Array]:
     """Cut the rows wanted into strips."""
     height = _choose_strip_height(dataset, cells)
     end = cells.row + cells.height
@@ -666,20 +804,16 @@ def _cut_into_strips(dataset: Header, cells: _Cells) -> list[Int64Array]:
     return [rows for rows in strips if len(rows)]
 
 
-def _choose_strip_height(dataset: Header, cells: _Cells) -> int:
+def _choose_strip_height(dataset: Header, cells: Cells) -> int:
     """Return a number of rows that are whole blocks of the file, of some million cells."""
     block = max(1, dataset.block_height)
     return max(1, _STRIP_CELLS // (block * cells.width)) * block
 
 
 def _read_strip(
-    dataset: Header,
-    band: int,
-    cells: _Cells,
-    rows: Int64Array,
-    arrays: Mapping[str, AnyArray],
-    marks: Float64Array,
-) -> tuple[Float64Array, BoolArray, int]:
+    plan: Plan, cells: Cells, rows: Int64Array, arrays: Mapping[str, AnyArray]
+) -> Strip:
+    dataset, band, marks = plan.dataset, plan.band, plan.marks
     values, has_value = arrays["values"], arrays["valid"] != 0
     x, y = _compute_centres(dataset, cells.columns, rows)
     wanted = _find_within(cells.bounds, x, y)
@@ -693,7 +827,8 @@ def _read_strip(
     if len(marks):
         is_value = ~np.isin(elevation, marks)
         points, keep[keep] = points[is_value], is_value
-    return points, keep, int(np.count_nonzero(wanted & ~keep))
+    numbers = (rows[:, None] * dataset.width + cells.columns)[keep]
+    return Strip(points, numbers, keep, int(np.count_nonzero(wanted & ~keep)))
 
 
 def _require_finite_centres(points: Float64Array, band: int) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import wraps
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
@@ -43,7 +43,11 @@ _SPARSE = 0.5
 """Share of the points below which those taken are copied, so that memory is given back."""
 
 
-class PointChunk(NamedTuple):
+_NO_ROWS = np.empty(0, np.int64)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PointChunk:
     """Some points of a file.
 
     Attributes
@@ -77,6 +81,8 @@ class StreamHead(NamedTuple):
     elevation_unit: Unit | None
     most_points: int | None = None
     """How many there are at most; None if that is not known."""
+    has_lines: bool = False
+    """Whether rows are lines of a text, which the survey keeps as those of its points."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,8 +93,8 @@ class StreamEnd:
     skipped: Mapping[str, int] = field(default_factory=dict)
     more: Mapping[str, Any] = field(default_factory=dict)
     """Further attributes of the survey."""
-    has_lines: bool = False
-    """Whether rows are lines of a text, which the survey keeps as those of its points."""
+    has_voids: bool = False
+    """Whether the surface ends at voids between the points, which the points do not tell."""
 
 
 Blocks: TypeAlias = Generator["StreamHead | PointChunk", None, StreamEnd]
@@ -198,7 +204,7 @@ def gather(blocks: Blocks, path: Path) -> Survey:
     return Survey(
         points=points,
         attributes=gathered.finish_attributes(),
-        row_sources=RowSources.of_file(path.name, gathered.rows) if end.has_lines else None,
+        row_sources=RowSources.of_file(path.name, gathered.rows) if head.has_lines else None,
         crs=head.crs,
         elevation_unit=head.elevation_unit,
         source=path.name,
@@ -214,7 +220,8 @@ class _Gathered:
     def __init__(self) -> None:
         self._points = np.empty((0, 3))
         self._columns: dict[str, AnyArray] = {}
-        self.rows = np.empty(0, np.int64)
+        self._has_lines = False
+        self.rows = _NO_ROWS
         """Of chunks whose number was not known before."""
         self._chunks: list[PointChunk] | None = None
         self._count = 0
@@ -227,7 +234,7 @@ class _Gathered:
         ReadError
             If there is not.
         """
-        count = head.most_points
+        count, self._has_lines = head.most_points, head.has_lines
         if count is None:
             self._chunks = []
             return
@@ -243,7 +250,7 @@ class _Gathered:
     def append(self, chunk: PointChunk) -> None:
         """Add a chunk."""
         if self._chunks is not None:
-            self._chunks.append(chunk)
+            self._chunks.append(chunk if self._has_lines else replace(chunk, rows=_NO_ROWS))
             return
         end = self._count + len(chunk)
         self._points[self._count : end] = chunk.points

@@ -84,7 +84,7 @@ def test_centres_lie_half_a_cell_in_and_the_middle_in_the_middle():
 @pytest.mark.parametrize("block", [1, 2, 3, 50])
 def test_strips_hold_every_row_wanted_once(monkeypatch, stride, row, height, block):
     monkeypatch.setattr(dem, "_STRIP_CELLS", 12)
-    cells = dem._Cells(2, row, 4, height, stride)
+    cells = dem.Cells(2, row, 4, height, stride)
     raster = header(height=40, block_height=block)
     strips = dem._cut_into_strips(raster, cells)
     wanted = list(range(row, row + height, stride))
@@ -99,7 +99,7 @@ def test_strips_hold_every_row_wanted_once(monkeypatch, stride, row, height, blo
 )
 def test_strips_are_whole_blocks_of_some_cells(monkeypatch, block, width, height):
     monkeypatch.setattr(dem, "_STRIP_CELLS", 12)
-    cells = dem._Cells(0, 0, width, 9, 1)
+    cells = dem.Cells(0, 0, width, 9, 1)
     assert dem._choose_strip_height(header(block_height=block), cells) == height
 
 
@@ -224,7 +224,7 @@ def test_a_stride_leaves_two_rows_and_columns_at_least(cells, stride, most):
 
 @pytest.mark.parametrize(("width", "height", "stride"), [(10, 10, 1), (21, 19, 2), (30, 28, 3)])
 def test_no_more_cells_are_read_than_memory_holds(monkeypatch, width, height, stride):
-    cells = dem._Cells(0, 0, width, height, stride)
+    cells = dem.Cells(0, 0, width, height, stride)
     count = -(-width // stride) * -(-height // stride)
     monkeypatch.setattr(dem, "measure_free_memory", lambda: 48 * count)
     dem._require_few_cells(cells)
@@ -238,8 +238,8 @@ def test_no_more_cells_are_read_than_memory_holds(monkeypatch, width, height, st
 
 def test_no_more_cells_are_read_than_a_tin_holds(monkeypatch):
     monkeypatch.setattr(dem, "measure_free_memory", lambda: 1 << 60)
-    dem._require_few_cells(dem._Cells(0, 0, 2**31 - 1, 1, 1))
-    said = sentence_of(ReadError, dem._require_few_cells, dem._Cells(0, 0, 2**31, 1, 1))
+    dem._require_few_cells(dem.Cells(0, 0, 2**31 - 1, 1, 1))
+    said = sentence_of(ReadError, dem._require_few_cells, dem.Cells(0, 0, 2**31, 1, 1))
     assert "2,147,483,648 cells are to be read, and 2,147,483,647 are the most that a TIN" in said
 
 
@@ -263,17 +263,18 @@ def test_free_memory_is_what_the_system_tells(monkeypatch, tmp_path):
 
 def test_a_strip_is_scaled_after_its_mask_and_before_nodata_of_the_caller():
     raster = header(scales=[1.0, 0.5], offsets=[0.0, 10.0])
-    cells = dem._Cells(0, 0, 3, 2, 1, Bounds(100.0, 494.0, 104.0, 500.0))
+    cells = dem.Cells(0, 0, 3, 2, 1, Bounds(100.0, 494.0, 104.0, 500.0))
     values = np.array([[1, 2, 3], [4, 5, 6]], np.int16)
     valid = np.array([[255, 0, 255], [1, 255, 255]], np.uint8)
     arrays = {"values": values, "valid": valid}
-    points, keep, missing = dem._read_strip(
-        raster, 2, cells, np.array([0, 1]), arrays, np.array([12.0])
-    )
+    plan = dem.Plan(raster, 2, cells, None, None, np.array([12.0]), [])
+    points, numbers, keep, missing = dem._read_strip(plan, cells, np.array([0, 1]), arrays)
+    assert numbers.tolist() == [0, raster.width + 1]
     assert points.tolist() == [[101, 498.5, 10.5], [103, 495.5, 12.5]]
     assert keep.tolist() == [[True, False, False], [False, True, False]]
     assert missing == 2  # one by the mask, one by the caller's word; the last column is outside
-    plain, _, _ = dem._read_strip(raster, 1, cells, np.array([0, 1]), arrays, np.array([]))
+    plan = plan._replace(band=1, marks=np.array([]))
+    plain = dem._read_strip(plan, cells, np.array([0, 1]), arrays).points
     assert plain[:, 2].tolist() == [1, 4, 5]
 
 

@@ -247,9 +247,9 @@ def test_window_that_the_raster_does_not_have(raster, window):
 def test_cells_are_no_more_than_an_int32_can_number(monkeypatch, stride):
     monkeypatch.setattr(reading, "measure_free_memory", lambda: 1 << 60)
     most = np.iinfo(np.int32).max
-    reading._require_few_cells(reading._Cells(0, 0, stride * most, 1, stride))
+    reading._require_few_cells(reading.Cells(0, 0, stride * most, 1, stride))
     with pytest.raises(ReadError, match=f"{most + 1:,} cells .* {most:,} are the most that a TIN"):
-        reading._require_few_cells(reading._Cells(0, 0, stride * most + 1, 1, stride))
+        reading._require_few_cells(reading.Cells(0, 0, stride * most + 1, 1, stride))
 
 
 @pytest.mark.parametrize("stride", [0, -2, 6, 100, 1.5, "2"])

@@ -1,0 +1,95 @@
+"""What is odd of elevations that come block by block, without keeping all of them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .nodata import describe_elevations, describe_suspects, find_suspect_elevations, is_customary
+
+if TYPE_CHECKING:
+    from ...base.arrays import Float64Array
+
+__all__ = ["ElevationSummary"]
+
+_SOME = 65_536
+"""Elevations of each block that are kept, spread over it."""
+
+_EXTREMES = 4
+"""Lowest and highest values of each block that are kept, and counted."""
+
+_REPEATS = 3
+"""How often an extreme value counts among those that are kept."""
+
+
+class ElevationSummary:
+    """Elevations of blocks, of which the extremes and some others are kept.
+
+    Parameters
+    ----------
+    what : str
+        What has the elevations.
+    keeps_all : bool
+        Keep all of them, where memory holds them anyway.
+
+    Notes
+    -----
+    One block is described by all of its elevations. Of several, an elevation that may stand for no
+    data is found among those kept, and counted in the blocks where it is one of the four lowest or
+    highest values.
+    """
+
+    def __init__(self, what: str, *, keeps_all: bool = False) -> None:
+        self._what, self._keeps_all = what, keeps_all
+        self._kept: list[Float64Array] = []
+        self._counts: Counter[float] = Counter()
+        self._n_blocks = 0
+        self._n = 0
+
+    def add(self, z: Float64Array) -> None:
+        """Add finite elevations of a block."""
+        if len(z) == 0:
+            return
+        self._n_blocks += 1
+        self._n += len(z)
+        if not self._keeps_all and self._n_blocks == 2:
+            self._kept = [self._thin(self._kept[0])]
+        self._kept.append(z if self._keeps_all or self._n_blocks == 1 else self._thin(z))
+
+    def _thin(self, z: Float64Array) -> Float64Array:
+        counts: dict[float, int] = {}
+        extremes = [one for sign in (1.0, -1.0) for one in _count_extremes(z, sign, counts)]
+        self._counts.update(counts)
+        some = z[:: max(1, len(z) // _SOME)]
+        return np.concatenate([some, extremes])
+
+    def describe(self) -> list[str]:
+        """Say which elevations may stand for no data, as :func:`describe_elevations`."""
+        if not self._kept:
+            return []
+        kept = np.concatenate(self._kept)
+        if self._keeps_all or self._n_blocks == 1:
+            return describe_elevations(kept, self._what)
+        if is_customary(float(kept[0])) and bool((kept == kept[0]).all()):
+            return describe_elevations(np.full(self._n, kept[0]), self._what)
+        suspects = find_suspect_elevations(kept)
+        told = [replace(one, count=self._counts.get(one.value, one.count)) for one in suspects]
+        return describe_suspects(told, self._what)
+
+
+def _count_extremes(z: Float64Array, sign: float, counts: dict[float, int]) -> list[float]:
+    """Count the lowest values, or the highest, and return them as often as they matter."""
+    found: list[float] = []
+    last = -np.inf
+    for _ in range(_EXTREMES):
+        rest = (sign * z)[sign * z > last]
+        if len(rest) == 0:
+            break
+        last = float(rest.min())
+        count = int((rest == last).sum())
+        counts[sign * last] = count
+        found += [sign * last] * min(count, _REPEATS)
+    return found
