@@ -31,6 +31,7 @@ from .isolated.spooling import (
     spool,
     translate_system_errors,
 )
+from .lidar.signatures import is_virtual_cloud
 from .lidar.signatures import list_tiles as list_lidar_tiles
 from .raster.virtual import is_virtual
 from .registry import lookup, signatures
@@ -681,9 +682,12 @@ def detect(path: Path, head: bytes, options: Iterable[str] = ()) -> Format:
        a virtual raster is read under its own suffix.
     3. A table of numbers is delimited text where the suffix names a format that the content
        would have shown, so that an ``.asc`` may be a grid or a list of points.
-    4. Otherwise the suffix decides.
+    4. Otherwise the suffix decides; that of a virtual point cloud does before the content, which is
+       that of any GeoJSON.
     5. A file of unknown suffix is a raster if GDAL says so.
     """
+    if is_virtual_cloud(path):
+        return lookup.find_format("las")
     shown = [
         one
         for one in lookup.known_formats()

@@ -1,9 +1,16 @@
 """The formats of lidar."""
 
+from pathlib import Path
+
 from ..registry import SURFACES, Format
-from .signatures import is_lidar, is_lidar_folder
+from .signatures import is_lidar, is_lidar_folder, is_virtual_cloud, list_named_files
 
 __all__ = ["FORMATS"]
+
+
+def _list_named(path: Path) -> list[Path]:
+    return list_named_files(path) if is_virtual_cloud(path) else []
+
 
 FORMATS = (
     Format(
@@ -34,5 +41,6 @@ FORMATS = (
         extra="lidar",
         sniff=is_lidar,
         sniff_folder=is_lidar_folder,
+        find_sources=_list_named,
     ),
 )

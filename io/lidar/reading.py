@@ -25,7 +25,7 @@ from .selection import (
     describe_marks,
     parse_selection,
 )
-from .signatures import SUFFIXES, list_tiles
+from .signatures import SUFFIXES, is_virtual_cloud, list_named_files, list_tiles
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence
@@ -70,8 +70,9 @@ def stream(
 ) -> Blocks:
     """Read a lidar file, or a folder of tiles as one survey.
 
-    Of a folder all files ``.las`` and ``.laz`` in it are read, in the order of their names. Points
-    are reprojected to ``crs``, which also declares the CRS of a file whose own is not understood.
+    Of a folder all files ``.las`` and ``.laz`` in it are read, in the order of their names; a
+    virtual point cloud (``.vpc``) stands for those that it names. Points are reprojected to
+    ``crs``, which also declares the CRS of a file whose own is not understood.
 
     Parameters
     ----------
@@ -156,6 +157,8 @@ def locate_tiles(
 
 
 def _list_files(path: Path) -> list[Path]:
+    if is_virtual_cloud(path):
+        return list_named_files(path)
     if not path.is_dir():
         return [path]
     files = list_tiles(path)

@@ -1,5 +1,7 @@
 """Lidar in chunks is the lidar read at once; boxes of an octree are those of all its points."""
 
+import json
+
 import numpy as np
 import pytest
 from support.lidar_files import CORNER, make_cloud, write_copc
@@ -236,3 +238,60 @@ def test_an_octree_whose_points_lie_elsewhere_is_refused(tmp_path):
     path.write_bytes(content)
     with pytest.raises(ts.ReadError, match="outside of the node"):
         read_box(path, BOXES[2])
+
+
+# ------------------------------------------------------------- virtual point clouds
+
+
+def write_cloud_of_clouds(folder, names, **more):
+    places = [one if ":" in one else f"./{one}" for one in names]
+    items = [{"type": "Feature", "assets": {"data": {"href": one, **more}}} for one in places]
+    content = {"type": "FeatureCollection", "stac_version": "1.0.0", "features": items}
+    (folder / "all.vpc").write_text(json.dumps(content))
+    return folder / "all.vpc"
+
+
+@pytest.fixture
+def tiles(tmp_path):
+    for k in (2, 1):
+        made = make_cloud(300, seed=k)
+        made.header.add_crs(_crs())
+        made.write(tmp_path / f"tile {k}.laz")
+    return tmp_path
+
+
+@pytest.mark.parametrize("options", [{}, {"classes": 2, "every": 3}, {"crs": "EPSG:2274"}])
+def test_a_virtual_point_cloud_is_its_files(tiles, options):
+    path = write_cloud_of_clouds(tiles, ["tile%202.laz", "tile 1.laz"], roles=["data"])
+    survey = require_same(path, chunks=(77,), **options)
+    single = [ts.read(tiles / f"tile {k}.laz", **options).points for k in (2, 1)]
+    if "every" not in options:
+        assert np.array_equal(survey.points, np.concatenate(single))
+    header = describe_source(path, **options)
+    assert (header.count, header.crs) == (600, survey.crs)
+    assert not header.has_boxes
+
+
+@pytest.mark.parametrize(
+    ("names", "words"),
+    [
+        ([], "names no files"),
+        (["missing.laz"], "no such file"),
+        (["https://example.com/a.laz"], "is an address"),
+        (["all.vpc"], "no lidar file"),
+    ],
+)
+def test_a_virtual_point_cloud_that_names_what_is_not_there(tiles, names, words):
+    error = require_same(write_cloud_of_clouds(tiles, names), chunks=(77,))
+    assert words in str(error)
+
+
+@pytest.mark.parametrize("text", ["{}", "[]", "no JSON", '{"features": [{"assets": 1}]}'])
+def test_what_is_no_virtual_point_cloud(tmp_path, text):
+    (tmp_path / "a.vpc").write_text(text)
+    assert "no virtual point cloud" in str(require_same(tmp_path / "a.vpc", chunks=(7,)))
+
+
+def test_nothing_is_written_as_a_virtual_point_cloud(tmp_path, cloud):
+    with pytest.raises(ts.FormatError, match="unknown suffix"):
+        ts.write(ts.read(cloud), tmp_path / "a.vpc")
