@@ -2,7 +2,7 @@ import enum
 from collections.abc import Callable
 from typing import Final
 
-from ..base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
+from ..base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array, UInt8Array
 
 SMALLEST_COORDINATE: float
 MOST_POINTS: int
@@ -30,6 +30,16 @@ def grow(
 class Growth:
     triangles: Final[Int32Array]
     neighbors: Final[Int32Array]
+    kept_row: Final[Int32Array | None]
+    distinct_count: Final[int]
+
+def sweep(points: Float64Array, threads: int, path: str) -> Sweep: ...
+
+class Sweep:
+    triangles: Final[Int32Array]
+    neighbors: Final[Int32Array]
+    rows: Final[Int32Array]
+    places: Final[Float64Array]
     kept_row: Final[Int32Array | None]
     distinct_count: Final[int]
 
@@ -231,3 +241,33 @@ class LeaveOneOut:
 def measure_neighbors(points: Float64Array, triangles: Int32Array) -> Float64Array: ...
 def find_long_edges(points: Float64Array, triangles: Int32Array, length: float) -> BoolArray: ...
 def find_peaks_and_pits(points: Float64Array, triangles: Int32Array) -> Int32Array: ...
+def find_in_box(
+    places: Float64Array,
+    triangles: Int32Array,
+    box: tuple[float, float, float, float],
+    around: tuple[float, float, float, float],
+) -> BoxTriangles: ...
+
+class BoxTriangles:
+    chosen: Final[Int32Array]
+    firsts: Final[UInt8Array]
+    owned: Final[BoolArray]
+    open: Final[Int32Array]
+
+def extract(
+    places: Float64Array,
+    triangles: Int32Array,
+    neighbors: Int32Array,
+    rows: Int32Array | None,
+    fixed: BoolArray | None,
+    chosen: Int32Array,
+    firsts: UInt8Array,
+    is_ordered: bool,
+) -> Extracted: ...
+
+class Extracted:
+    vertices: Final[Int32Array]
+    triangles: Final[Int32Array]
+    neighbors: Final[Int32Array]
+    order: Final[Int32Array]
+    fixed: Final[BoolArray | None]

@@ -19,6 +19,7 @@ __all__ = [
     "LARGEST_ELEVATION",
     "MOST_POINTS",
     "VECTOR_PATHS",
+    "BoxTriangles",
     "EditedMesh",
     "Growth",
     "LeaveOneOut",
@@ -36,6 +37,8 @@ __all__ = [
     "contacts",
     "count_work",
     "crossings",
+    "extract",
+    "find_in_box",
     "find_long_edges",
     "find_peaks_and_pits",
     "grow",
@@ -50,6 +53,7 @@ __all__ = [
     "regions",
     "simplify",
     "snap",
+    "sweep",
     "touches",
     "turns_of_triangles",
     "vertices_at",
@@ -95,6 +99,9 @@ LeaveOneOut = _core.LeaveOneOut
 measure_neighbors = _core.measure_neighbors
 find_long_edges = _core.find_long_edges
 find_peaks_and_pits = _core.find_peaks_and_pits
+find_in_box = _core.find_in_box
+extract = _core.extract
+BoxTriangles = _core.BoxTriangles
 Method = _core.Method
 Growth = _core.Growth
 
@@ -135,6 +142,23 @@ def grow(
     if len(growth.triangles) == 0:
         raise PointsError(_explain_no_triangle(len(points), growth.distinct_count))
     return growth
+
+
+def sweep(points: Float64Array, *, threads: int = 1, path: str = VECTOR_PATHS[-1]) -> _core.Sweep:
+    """Grow the same triangulation as :func:`grow`, its vertices numbered in the sweep.
+
+    There neighbours lie side by side, whatever order the points are in: what goes over triangles
+    and looks at their corners is faster by that.
+
+    Raises
+    ------
+    PointsError
+        As :func:`grow`.
+    """
+    swept = _core.sweep(points, threads, path)
+    if len(swept.triangles) == 0:
+        raise PointsError(_explain_no_triangle(len(points), swept.distinct_count))
+    return swept
 
 
 def _explain_no_triangle(n_rows: int, n_distinct: int) -> str:

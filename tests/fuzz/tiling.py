@@ -1,6 +1,8 @@
-"""Campaign: triangles of boxes from the points near by, against the whole triangulation."""
+"""Campaigns: triangles of boxes from what lies near, against the whole triangulation."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 from support.point_cells import PointCells
@@ -36,18 +38,54 @@ def generate(rng: np.random.Generator) -> Case:
     }
 
 
+def generate_lines(rng: np.random.Generator) -> Case:
+    """Add lines and rings between the points, and beyond them, to such a case."""
+    case = generate(rng)
+    pool = np.array(case["points"], np.float64)
+    return case | {
+        "breaklines": [_draw(rng, pool, 2, 7) for _ in range(int(rng.integers(0, 6)))],
+        "boundary": [_draw_ring(rng, pool) for _ in range(int(rng.random() < 0.2))],
+        "holes": [_draw_ring(rng, pool) for _ in range(int(rng.choice([0, 0, 0, 1, 2])))],
+    }
+
+
+def _draw(rng: np.random.Generator, pool: Any, least: int, most: int) -> list[list[float]]:
+    """Return corners that are points, or lie between two of them."""
+    count = int(rng.integers(least, most))
+    one, other = (pool[rng.integers(0, len(pool), count)] for _ in range(2))
+    share = np.where(rng.random((count, 1)) < 0.5, 0.0, rng.random((count, 1)))
+    rows: list[list[float]] = (one + share * (other - one)).tolist()
+    return rows
+
+
+def _draw_ring(rng: np.random.Generator, pool: Any) -> list[list[float]]:
+    """Return corners by their direction from the middle, so that most rings are simple."""
+    corners = np.array(_draw(rng, pool, 3, 8))
+    away = corners[:, :2] - corners[:, :2].mean(axis=0)
+    rows: list[list[float]] = corners[np.argsort(np.arctan2(away[:, 1], away[:, 0]))].tolist()
+    return rows
+
+
 def examine(case: Case) -> str:
     """Ask for every cell."""
     xyz = np.array(case["points"], np.float64).reshape(-1, 3)
+    lines = {
+        name: [np.array(line, np.float64) for line in case[name]]
+        for name in ("breaklines", "boundary", "holes")
+        if case.get(name)
+    }
     try:
-        ts.triangulate(xyz)
-    except ts.PointsError:
-        return "refused"
+        ts.triangulate(xyz, duplicates=case["duplicates"], **lines)
+    except ts.TinsmithError as error:
+        return f"refused: {type(error).__name__}"
     source = PointCells(xyz, case["xs"], case["ys"])
     rounds = require_triangles_of_the_whole(
-        xyz, source, margin=case["margin"], duplicates=case["duplicates"]
+        xyz, source, margin=case["margin"], duplicates=case["duplicates"], **lines
     )
     return f"{rounds} rounds" if rounds < 4 else "more rounds"
 
 
-CAMPAIGNS = (Campaign("tiling", "triangles of boxes of a surface in cells", generate, examine),)
+CAMPAIGNS = (
+    Campaign("tiling", "triangles of boxes of a surface in cells", generate, examine),
+    Campaign("tiling lines", "the same with lines, boundaries and holes", generate_lines, examine),
+)

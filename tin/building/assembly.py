@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from .inputs import BuildInputs
 
-__all__ = ["assemble"]
+__all__ = ["assemble", "find_ring_groups"]
 
 
 def assemble(inputs: BuildInputs, progress: Progress | None = None) -> Version:
@@ -149,7 +149,7 @@ def _gather_pslg(
         points=made.surface.points,
         polylines=made.polylines,
         constraints=lines.table,
-        groups=_find_groups(inputs, lines),
+        groups=find_ring_groups(inputs, lines),
         clip=Clip(
             boundary=inputs.boundary,
             extent=inputs.extent,
@@ -162,7 +162,7 @@ def _gather_pslg(
     )
 
 
-def _find_groups(inputs: BuildInputs, lines: LineSet) -> Int64Array:
+def find_ring_groups(inputs: BuildInputs, lines: LineSet) -> Int64Array:
     """Return the group of each line among the rings; that of other lines says nothing."""
     of_ring = [
         *([BOUNDARY] * len(inputs.boundary)),

@@ -11,6 +11,7 @@
 #include "base/arrays.hpp"
 #include "base/ids.hpp"
 #include "base/parallel.hpp"
+#include "base/point.hpp"
 #include "growth/growth.hpp"
 #include "growth/stitch.hpp"
 #include "growth/work_stealing.hpp"
@@ -29,6 +30,7 @@ struct Options {
   Method method = Method::kAutomatic;
   int threads = 1;
   VectorPath path = vector_paths().back().path;
+  bool keeps_sweep = false;  // number vertices in the sweep, where neighbours lie side by side
 };
 
 struct Triangulation {
@@ -37,6 +39,8 @@ struct Triangulation {
   std::int64_t triangle_count = 0;
   std::vector<std::int32_t> kept_row;  // empty if all rows are kept
   std::int64_t distinct_count = 0;
+  StreamedArray<std::int32_t> rows;  // of each vertex in the sweep, if these are the numbers
+  StreamedArray<Point> places;       // likewise
   SearchCounts counts;
   bool is_complete = true;  // false if asked to stop
 
@@ -81,6 +85,7 @@ class Triangulator {
   // Growth, or insertion where its searches cost too much.
   void build(PointGrid& grid, std::vector<Vertex> hull) {
     rows_of_ = grid.rows();
+    if (options_.keeps_sweep) keep_sweep(grid);
     const bool is_curve = static_cast<std::int32_t>(hull.size()) > grid.count() / kMostOnHull &&
                           grid.count() > kLeastToInsert;
     const bool is_worth_growing =
@@ -166,7 +171,9 @@ class Triangulator {
     for (const GrownPart& part : parts) base.push_back(base.back() + part.kept());
     team_.run([&](int member) {
       for (int i = member; i < count; i += team_.size()) {
-        parts[i].write(base[i], result_.arrays(), [this](Vertex v) { return rows_of_[number(v)]; });
+        parts[i].write(base[i], result_.arrays(), [this](Vertex v) {
+          return options_.keeps_sweep ? Row{number(v)} : rows_of_[number(v)];
+        });
       }
     });
     join_open_edges(parts, result_.arrays());
@@ -192,7 +199,18 @@ class Triangulator {
     number_by_rows();
   }
 
+  void keep_sweep(const PointGrid& grid) {
+    const auto count = static_cast<std::size_t>(grid.count());
+    result_.rows = streamed_array<std::int32_t>(count);
+    result_.places = streamed_array<Point>(count);
+    for (const Vertex v : Ids<Vertex>(grid.count())) {
+      result_.rows[number(v)] = number(rows_of_[number(v)]);
+      result_.places[number(v)] = grid.point(v);
+    }
+  }
+
   void number_by_rows() {
+    if (options_.keeps_sweep) return;
     team_.run([this](int part) {
       const Range range = part_of(result_.triangle_count, part, team_.size());
       for (std::int64_t i = std::int64_t{3} * range.begin; i < std::int64_t{3} * range.end; ++i) {

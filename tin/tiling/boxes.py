@@ -11,7 +11,7 @@ from ...base.types import Bounds
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
 
-__all__ = ["are_in_box", "find_limits", "widen"]
+__all__ = ["are_in_box", "find_limits", "list_sides", "widen"]
 
 
 def find_limits(box: Bounds) -> tuple[Float64Array, Float64Array]:
@@ -24,6 +24,11 @@ def are_in_box(places: Float64Array, box: Bounds) -> BoolArray:
     low, high = find_limits(box)
     xy = places[..., :2]
     return np.asarray(((xy >= low) & (xy <= high)).all(axis=-1))
+
+
+def list_sides(box: Bounds) -> tuple[float, float, float, float]:
+    """Return the western, southern, eastern and northern side."""
+    return float(box.xmin), float(box.ymin), float(box.xmax), float(box.ymax)
 
 
 def widen(box: Bounds, margin: float) -> Bounds:

@@ -1,9 +1,10 @@
-"""The triangles of a whole surface that meet a box, each proven from the points near by.
+"""The triangles of a whole surface that meet a box, each proven from what lies near.
 
-Ties between cocircular points are broken by the points' own coordinates, so the Delaunay
-triangulation is a function of the set of points. A triangle of some of the points whose closed
-circumscribed disc holds no other point is therefore a triangle of the whole, whatever else there
-is: no point that was not looked at can take part in it.
+Ties between cocircular points are broken by the points' own coordinates, so the constrained
+Delaunay triangulation is a function of the sets of points and segments. A triangle of some of them
+whose closed circumscribed disc holds no other point and meets no other segment is therefore one of
+the whole, whatever else there is: nothing that was not looked at can take part in it, and nothing
+that was looked at is hidden by what was not.
 """
 
 from __future__ import annotations
@@ -14,23 +15,23 @@ import numpy as np
 
 from .. import _kernel
 from ..building.duplicates import merge_rows
-from .boxes import are_in_box, find_limits
-from .circles import Discs, bound_discs
-from .sources import NumberedPoints, PointSource
+from ..topology import edge_keys, ends
+from .boxes import list_sides
+from .circles import bound_discs
+from .rings import find_inside
+from .sources import NumberedPoints, NumberedSegments
+from .unseen import Question, find_unseen_points, find_unseen_segments
 
 if TYPE_CHECKING:
-    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
     from ...base.policies import DuplicatePolicy
     from ...base.types import Bounds
+    from .rings import Rings
+    from .sources import PointSource, SegmentSource
 
 __all__ = ["LocalTriangulation", "find_around", "find_triangles_at", "triangulate_box"]
 
-_MOST_OF_A_DISC = 64
-"""Points that are taken from one disc in a round: the deepest, which change the triangle most."""
-
-
-_SLACK = 2.0**-48
-_NO_POINTS = NumberedPoints(np.empty((0, 3)), np.empty(0, np.int64))
+_EVERYWHERE = (-np.inf, -np.inf, np.inf, np.inf)
 
 
 class LocalTriangulation(NamedTuple):
@@ -43,10 +44,17 @@ class LocalTriangulation(NamedTuple):
     numbers : (n,) int64 array
         The first row, among all, that each stands for; ascending.
     triangles : (m, 3) int32 array
-        Counter-clockwise from the vertex with the least easting, then northing, in ascending order
-        of these: the same for each triangle, whatever box it is asked with.
+        Counter-clockwise from the vertex with the least easting, then northing: the same for each
+        triangle, whatever box it is asked with.
     neighbors : (m, 3) int32 array
         The triangle across the edge opposite each corner; -1 where none of these is.
+    constrained : (m, 3) bool array
+        Whether the edge opposite each corner is a segment of a line.
+    owned : (m,) bool array
+        Whether the first corner lies in the box without its eastern and northern side. Of boxes
+        that tile the plane each triangle has one owner.
+    cutting : (h,) bool array
+        Which holes cut away triangles that meet the box.
     rounds : int
         How often the source was asked for more.
     """
@@ -55,6 +63,9 @@ class LocalTriangulation(NamedTuple):
     numbers: Int64Array
     triangles: Int32Array
     neighbors: Int32Array
+    constrained: BoolArray
+    owned: BoolArray
+    cutting: BoolArray
     rounds: int
 
 
@@ -63,9 +74,11 @@ def triangulate_box(
     box: Bounds,
     *,
     around: Bounds | None = None,
+    lines: SegmentSource | None = None,
     duplicates: DuplicatePolicy = "mean",
     rings: int = 0,
     threads: int = 1,
+    ordered: bool = True,
 ) -> LocalTriangulation:
     """Return the triangles of the whole surface that meet a closed box.
 
@@ -74,13 +87,18 @@ def triangulate_box(
     source : PointSource
     box : Bounds
     around : Bounds, optional
-        Box whose points are read at once; a margin of some ten distances between points spares
-        most questions. Default the box itself.
+        Box whose points and segments are read at once; a margin of some ten distances between
+        points spares most questions. Default the box itself.
+    lines : SegmentSource, optional
     duplicates : DuplicatePolicy
         As of :func:`tinsmith.triangulate`.
     rings : int
         How often to go on to all triangles around the vertices of these.
     threads : int
+    ordered : bool
+        Whether triangles are in the order of the numbers of their first and second corners. Else
+        they are in the order in which they are found, where neighbours mostly lie side by side:
+        another one with other points around, and had for less time.
 
     Raises
     ------
@@ -88,110 +106,172 @@ def triangulate_box(
         If all points are collinear, or rows of vertices coincide and may not.
     """
     around = box if around is None else around
-    known = NumberedPoints.join([source.read_box(around), source.skeleton])
+    seen = _Seen(source, lines, around)
     proven = np.empty((0, 3), np.int64)
     rounds = 0
     while True:
-        growth = _kernel.grow(np.ascontiguousarray(known.points), threads=threads)
-        first = known.numbers if growth.kept_row is None else _choose_first(known, growth.kept_row)
-        xy = known.points if growth.kept_row is None else known.points[_is_first(growth.kept_row)]
-        meets = find_triangles_at(xy, growth.triangles, box)
-        for _ in range(rings):
-            meets = find_around(growth.triangles, meets, len(xy))
-        asked = growth.triangles[meets]
-        discs = bound_discs(xy, asked)
-        names = np.sort(first[asked], axis=1)
-        is_open = ~discs.are_within(around) & ~_are_among(names, proven)
-        asking = np.flatnonzero(is_open)
-        question = Question(xy[asked[asking], :2], discs.choose(asking))
-        more, is_empty = _ask(source, question, known.numbers)
-        if not len(more.numbers):
+        made = _triangulate(seen, threads)
+        found = _find(made, box, around, rings)
+        names, question = _find_open(made, found, around, proven, seen.segments)
+        is_safe, has_more = seen.ask(question)
+        if not has_more:
             break
-        rounds += len(asking) > 0
-        proven = np.concatenate([proven, names[asking[is_empty]]])
-        known = NumberedPoints.join([known, more])
-    merged = merge_rows(known.points, growth.kept_row, duplicates, known.numbers)
-    return _extract(merged.points, first, growth, meets, rounds)
+        rounds += 1
+        proven = np.concatenate([proven, names[is_safe]])
+    merged = merge_rows(seen.points.points, made.kept_row, duplicates, seen.points.numbers)
+    local = _extract(made, found, merged.points, ordered=ordered)._replace(rounds=rounds)
+    if len(seen.segments.are_rings):
+        _set_elevations(local, seen.segments.vertices)
+    if lines is None or lines.rings is None:
+        return local
+    return _cut(local, seen.segments, lines.rings)
 
 
-def _is_first(kept_row: Int32Array) -> BoolArray:
-    return np.asarray(kept_row == np.arange(len(kept_row)))
+class _Found(NamedTuple):
+    """Triangles, as the core finds them: see ``_kernel.find_in_box``."""
+
+    chosen: Int32Array
+    firsts: AnyArray
+    owned: BoolArray
+    open: Int32Array
 
 
-def _choose_first(known: NumberedPoints, kept_row: Int32Array) -> Int64Array:
-    return known.numbers[_is_first(kept_row)]
+def _find(made: _Made, box: Bounds, around: Bounds, rings: int) -> _Found:
+    """Return the triangles that meet a box, and rings around them, which it does not own."""
+    met = _kernel.find_in_box(made.places, made.triangles, list_sides(box), list_sides(around))
+    if rings == 0:
+        return _Found(met.chosen, met.firsts, met.owned, met.open)
+    chosen = met.chosen
+    for _ in range(rings):
+        chosen = find_around(made.triangles, chosen, len(made.places))
+    corners = np.ascontiguousarray(made.triangles[chosen])
+    every = _kernel.find_in_box(made.places, corners, _EVERYWHERE, list_sides(around))
+    owned = np.zeros(len(chosen), np.bool_)
+    owned[np.searchsorted(chosen, met.chosen)] = met.owned
+    return _Found(chosen, every.firsts, owned, every.open)
 
 
-def find_triangles_at(xy: Float64Array, triangles: Int32Array, box: Bounds) -> Int64Array:
-    """Return the triangles that meet a closed box, exactly.
-
-    Of convex figures that do not meet, one lies beyond a side of the other.
-    """
-    corners = xy[triangles, :2]
-    low, high = find_limits(box)
-    rows = np.flatnonzero(
-        ((corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)).all(axis=1)
-    )
-    doubtful = np.flatnonzero(~are_in_box(corners[rows], box).any(axis=1))
-    west, south = np.maximum(low, xy[:, :2].min(axis=0))  # no side of a box at the rim is endless
-    east, north = np.minimum(high, xy[:, :2].max(axis=0))
-    is_beyond = np.zeros(len(doubtful), np.bool_)
-    for k in range(3):
-        start, end = corners[rows[doubtful], k], corners[rows[doubtful], (k + 1) % 3]
-        is_right = np.ones(len(doubtful), np.bool_)
-        for place in ((west, south), (east, south), (east, north), (west, north)):
-            places = np.broadcast_to(np.array(place), start.shape)
-            is_right &= _kernel.orientation(*map(np.ascontiguousarray, (start, end, places))) < 0
-        is_beyond |= is_right
-    return np.delete(rows, doubtful[is_beyond])
-
-
-def find_around(triangles: Int32Array, chosen: Int64Array, n_vertices: int) -> Int64Array:
+def find_around(triangles: Int32Array, chosen: Int32Array, n_vertices: int) -> Int32Array:
     """Return all triangles that have a vertex of chosen ones: these, and a ring around them."""
     is_corner = np.zeros(n_vertices, np.bool_)
     is_corner[triangles[chosen]] = True
-    return np.flatnonzero(is_corner[triangles].any(axis=1))
+    return np.flatnonzero(is_corner[triangles].any(axis=1)).astype(np.int32)
 
 
-class Question(NamedTuple):
-    """Triangles that an unseen point may put an end to: their corners (k, 3, 2), and discs."""
+def find_triangles_at(points: Float64Array, triangles: Int32Array, box: Bounds) -> Int32Array:
+    """Return the triangles that meet a closed box, exactly; ascending."""
+    places = np.ascontiguousarray(points[:, :2])
+    return _kernel.find_in_box(places, triangles, list_sides(box), _EVERYWHERE).chosen
 
-    corners: Float64Array
-    discs: Discs
+
+class _Seen:
+    """The points and segments that are known."""
+
+    def __init__(self, source: PointSource, lines: SegmentSource | None, around: Bounds) -> None:
+        self._source, self._lines = source, lines
+        self.segments = NumberedSegments.none()
+        others = source.skeleton
+        if lines is not None:
+            self.segments = lines.read_box(around)
+            others = NumberedPoints.join([others, lines.skeleton, self.segments.vertices])
+        self.points = source.read_box(around).sort().add(others.sort())
+
+    def ask(self, question: Question) -> tuple[BoolArray, bool]:
+        """Look at more; tell which triangles are proven, and whether anything was found."""
+        points, is_safe = find_unseen_points(self._source, question, self.points.numbers)
+        if self._lines is not None:
+            segments, is_clear = find_unseen_segments(self._lines, question, self.segments)
+            self.segments = self.segments.add(segments)
+            points = NumberedPoints.join([points, segments.vertices])
+            is_safe &= is_clear
+        self.points = self.points.add(points)
+        return is_safe, not bool(is_safe.all())
 
 
-def _ask(
-    source: PointSource, question: Question, seen: Int64Array
-) -> tuple[NumberedPoints, BoolArray]:
-    """Return unseen points in the closed discs of triangles, and which discs hold none.
+class _Made(NamedTuple):
+    """A triangulation of all that is known.
 
-    Of a disc that holds many, those are taken that lie deepest.
+    Attributes
+    ----------
+    places : (n, 2) float64 array
+        Of distinct vertices.
+    triangles, neighbors : (m, 3) int32 arrays
+    fixed : (m, 3) bool array or None
+        Whether an edge is a segment; None if there are no segments.
+    rows : (n,) int32 array or None
+        The number of each vertex among the kept rows; None if that is its own.
+    kept_row : (k,) int32 array or None
+        As that of :func:`._kernel.grow`, of all known points.
+    first : (n,) int64 array
+        The number, among all points, of each kept row.
     """
-    corners, discs = question
-    found = source.read_discs(discs) if len(corners) else _NO_POINTS
-    found = found.choose(~np.isin(found.numbers, seen))
-    found = found.choose(np.argsort(found.points[:, 0], kind="stable"))
-    reach = discs.radii + _SLACK * (np.abs(discs.centers[:, 0]) + discs.radii)
-    west = np.searchsorted(found.points[:, 0], discs.centers[:, 0] - reach, "left")
-    east = np.searchsorted(found.points[:, 0], discs.centers[:, 0] + reach, "right")
-    is_wanted = np.zeros(len(found.numbers), np.bool_)
-    is_empty = np.ones(len(corners), np.bool_)
-    for k in np.flatnonzero(west < east).tolist():
-        near = np.arange(west[k], east[k])
-        distances = np.hypot(*(found.points[near, :2] - discs.centers[k]).T)
-        is_near = distances <= discs.radii[k] * (1 + _SLACK)
-        near, distances = near[is_near], distances[is_near]
-        is_inside = _are_in_disc(corners[k], found.points[near, :2])
-        near, distances = near[is_inside], distances[is_inside]
-        is_wanted[near[np.argsort(distances, kind="stable")[:_MOST_OF_A_DISC]]] = True
-        is_empty[k] = len(near) == 0
-    return found.choose(is_wanted), is_empty
+
+    places: Float64Array
+    triangles: Int32Array
+    neighbors: Int32Array
+    fixed: BoolArray | None
+    rows: Int32Array | None
+    kept_row: Int32Array | None
+    first: Int64Array
+
+    def list_names(self, triangles: Int32Array) -> Int64Array:
+        """Return the numbers of the corners of triangles, ascending."""
+        rows = triangles if self.rows is None else self.rows[triangles]
+        return np.sort(self.first[rows], axis=1)
 
 
-def _are_in_disc(corners: Float64Array, places: Float64Array) -> BoolArray:
-    """Tell which places lie in the closed circumscribed disc of a triangle, exactly."""
-    a, b, c = (np.broadcast_to(corner, places.shape).copy() for corner in corners)
-    return np.asarray(_kernel.in_circle(a, b, c, np.ascontiguousarray(places)) >= 0)
+def _triangulate(seen: _Seen, threads: int) -> _Made:
+    points = np.ascontiguousarray(seen.points.points)
+    if len(seen.segments.are_rings):
+        return _triangulate_constrained(points, seen, threads)
+    grown = _kernel.sweep(points, threads=threads)
+    first = _choose_kept(seen.points.numbers, grown.kept_row)
+    return _Made(
+        grown.places, grown.triangles, grown.neighbors, None, grown.rows, grown.kept_row, first
+    )
+
+
+def _triangulate_constrained(points: Float64Array, seen: _Seen, threads: int) -> _Made:
+    growth = _kernel.grow(points, threads=threads)
+    kept = _choose_kept(points, growth.kept_row)
+    mesh = _kernel.Mesh(kept, growth.triangles, growth.neighbors)
+    names = np.searchsorted(seen.points.numbers, seen.segments.names)
+    if growth.kept_row is not None:
+        is_kept = growth.kept_row == np.arange(len(growth.kept_row))
+        names = (np.cumsum(is_kept) - 1)[growth.kept_row[names]]
+    segments = np.unique(names[names[:, 0] != names[:, 1]], axis=0)
+    passed, blocked = mesh.force(segments.astype(np.int32))
+    if len(passed) or len(blocked):
+        raise AssertionError("lines were not cut at all places where they meet")
+    first = _choose_kept(seen.points.numbers, growth.kept_row)
+    places = np.ascontiguousarray(kept[:, :2])
+    return _Made(places, *mesh.arrays(threads), None, growth.kept_row, first)
+
+
+def _choose_kept(rows: AnyArray, kept_row: Int32Array | None) -> AnyArray:
+    if kept_row is None:
+        return rows
+    return rows[kept_row == np.arange(len(kept_row), dtype=np.int32)]
+
+
+def _find_open(
+    made: _Made,
+    found: _Found,
+    around: Bounds,
+    proven: Int64Array,
+    segments: NumberedSegments,
+) -> tuple[Int64Array, Question]:
+    """Return the names of triangles that are not proven yet, and what to ask for them."""
+    number = found.chosen[found.open]
+    triangles = made.triangles[number]
+    discs = bound_discs(made.places, triangles)
+    names = made.list_names(triangles)
+    is_open = ~discs.are_within(around) & ~_are_among(names, proven)
+    number, triangles = number[is_open], triangles[is_open]
+    fixed = np.zeros(triangles.shape, np.bool_) if made.fixed is None else made.fixed[number]
+    return names[is_open], Question(
+        made.places[triangles], fixed, discs.choose(is_open), segments.ends_in_plane
+    )
 
 
 def _are_among(names: Int64Array, proven: Int64Array) -> BoolArray:
@@ -203,29 +283,71 @@ def _are_among(names: Int64Array, proven: Int64Array) -> BoolArray:
 
 
 def _extract(
-    points: Float64Array,
-    numbers: Int64Array,
-    growth: _kernel.Growth,
-    chosen: Int64Array,
-    rounds: int,
+    made: _Made, found: _Found, merged: Float64Array, *, ordered: bool
 ) -> LocalTriangulation:
-    """Return some triangles, with their vertices numbered anew, in an order of their own."""
-    triangles = growth.triangles[chosen]
-    place = np.empty(len(points), np.int64)
-    place[np.lexsort((points[:, 1], points[:, 0]))] = np.arange(len(points))
-    turns = (np.arange(3) + np.argmin(place[triangles], axis=1)[:, None]) % 3
-    triangles = np.take_along_axis(triangles, turns, axis=1)
-    order = np.lexsort(place[triangles].T[::-1])
-    chosen, triangles, turns = chosen[order], triangles[order], turns[order]
-    is_used = np.zeros(len(points), np.bool_)
-    is_used[triangles] = True
-    vertex = np.cumsum(is_used, dtype=np.int32) - np.int32(1)
-    number = np.full(len(growth.triangles) + 1, -1, np.int32)
-    number[chosen] = np.arange(len(chosen), dtype=np.int32)
-    return LocalTriangulation(
-        points=points[is_used],
-        numbers=numbers[is_used],
-        triangles=vertex[triangles],
-        neighbors=np.take_along_axis(number[growth.neighbors[chosen]], turns, axis=1),
-        rounds=rounds,
+    """Return the triangles found, with their vertices numbered anew."""
+    chosen = _kernel.extract(
+        made.places,
+        made.triangles,
+        made.neighbors,
+        made.rows,
+        made.fixed,
+        found.chosen,
+        found.firsts,
+        ordered,
     )
+    fixed = np.zeros(chosen.triangles.shape, np.bool_) if chosen.fixed is None else chosen.fixed
+    return LocalTriangulation(
+        points=np.take(merged, chosen.vertices, axis=0),
+        numbers=made.first[chosen.vertices],
+        triangles=chosen.triangles,
+        neighbors=chosen.neighbors,
+        constrained=fixed,
+        owned=found.owned[chosen.order] if ordered else found.owned,
+        cutting=np.empty(0, np.bool_),
+        rounds=0,
+    )
+
+
+# ------------------------------------------------------------------------ lines
+
+
+def _set_elevations(local: LocalTriangulation, vertices: NumberedPoints) -> None:
+    """Give vertices on lines the elevations of these, in place."""
+    at = np.searchsorted(local.numbers, vertices.numbers)
+    is_there = np.append(local.numbers, -1)[at] == vertices.numbers
+    local.points[at[is_there], 2] = vertices.points[is_there, 2]
+
+
+def _cut(local: LocalTriangulation, segments: NumberedSegments, rings: Rings) -> LocalTriangulation:
+    """Return the triangles that are inside rings."""
+    barrier = _find_barrier(local, segments.choose(segments.are_rings))
+    keep, cutting = find_inside(local.points, local.triangles, local.neighbors, barrier, rings)
+    number = np.append(np.where(keep, np.cumsum(keep) - 1, -1), -1).astype(np.int32)
+    triangles = local.triangles[keep]
+    is_used = np.zeros(len(local.points), np.bool_)
+    is_used[triangles] = True
+    return LocalTriangulation(
+        points=local.points[is_used],
+        numbers=local.numbers[is_used],
+        triangles=(np.cumsum(is_used, dtype=np.int32) - np.int32(1))[triangles],
+        neighbors=number[local.neighbors[keep]],
+        constrained=local.constrained[keep],
+        owned=local.owned[keep],
+        cutting=cutting,
+        rounds=local.rounds,
+    )
+
+
+def _find_barrier(local: LocalTriangulation, rings: NumberedSegments) -> BoolArray:
+    """Tell which edges are segments of rings."""
+    n = len(local.numbers)
+    names = rings.names
+    at = np.searchsorted(local.numbers, names)
+    is_there = (np.append(local.numbers, -1)[at] == names).all(axis=1)
+    triangle, corner = np.nonzero(local.constrained)
+    pairs = np.stack(ends(local.triangles, triangle, corner), axis=1)
+    is_ring = np.isin(edge_keys(pairs, n), edge_keys(at[is_there], n))
+    barrier = np.zeros(local.constrained.shape, np.bool_)
+    barrier[triangle[is_ring], corner[is_ring]] = True
+    return barrier

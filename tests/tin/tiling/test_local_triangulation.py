@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from support.point_cells import PointCells
-from support.tiled import divide, require_triangles_of_the_whole
+from support.tiled import divide, find_triangles_at, require_triangles_of_the_whole
 
 import tinsmith as ts
-from tinsmith.tin import PointsError
-from tinsmith.tin.tiling.boxes import widen
-from tinsmith.tin.tiling.local_triangulation import find_triangles_at, triangulate_box
+from tinsmith.tin import PointsError, _kernel
+from tinsmith.tin.tiling.boxes import list_sides, widen
+from tinsmith.tin.tiling.local_triangulation import triangulate_box
 
 
 def rng(seed=0):
@@ -73,7 +73,7 @@ def test_no_margin_asks_more_often_and_finds_the_same():
     source = divide(points, 4)
     box = source.box_of((1, 2))
     one, other = (triangulate_box(source, box, around=widen(box, margin)) for margin in (0.0, 0.2))
-    for name in ("points", "numbers", "triangles", "neighbors"):
+    for name in ("points", "numbers", "triangles", "neighbors", "owned"):
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
     assert one.rounds > 0
 
@@ -112,8 +112,10 @@ def test_triangles_that_meet_a_box():
         corners = shapely.polygons(tin.points[tin.triangles][:, :, :2])
         drawn = shapely.box(box.xmin, box.ymin, box.xmax, box.ymax)
         wanted = np.flatnonzero(shapely.intersects(corners, drawn))
-        found = find_triangles_at(tin.points, tin.triangles, box)
-        np.testing.assert_array_equal(found, wanted)
+        np.testing.assert_array_equal(find_triangles_at(tin.points, tin.triangles, box), wanted)
+        places = np.ascontiguousarray(tin.points[:, :2])
+        found = _kernel.find_in_box(places, tin.triangles, list_sides(box), list_sides(box))
+        np.testing.assert_array_equal(found.chosen, wanted)
 
 
 def test_the_cells_of_a_source_hold_every_point_once():

@@ -18,10 +18,11 @@
 namespace tinsmith::python {
 
 inline Triangulation triangulate(const GivenXyz& points, Method method, int threads,
-                                 const std::string& path, const Listener::Tell& tell = {}) {
+                                 const std::string& path, const Listener::Tell& tell = {},
+                                 bool keeps_sweep = false) {
   const PointRows rows = rows_of(points);
   if (threads < 1) throw std::invalid_argument("at least one thread is needed");
-  const Options options{method, threads, vector_path_named(path)};
+  const Options options{method, threads, vector_path_named(path), keeps_sweep};
   Triangulation made = [&] {
     ReleasedLock release;
     Listener listener(tell);
@@ -46,6 +47,29 @@ inline GrownArrays grow(const GivenXyz& points, Method method, int threads, cons
   if (!made.kept_row.empty()) kept_row = hand_over(made.kept_row);
   return {hand_over<Triples>(std::move(made.corners), {size, 3}),
           hand_over<Triples>(std::move(made.neighbors), {size, 3}), std::move(kept_row),
+          made.distinct_count};
+}
+
+struct SweptArrays {
+  Triples triangles, neighbors;
+  Numbers rows;
+  Xy places;
+  std::optional<Numbers> kept_row;
+  std::int64_t distinct_count;
+};
+
+inline SweptArrays sweep(const GivenXyz& points, int threads, const std::string& path) {
+  Triangulation made = triangulate(points, Method::kAutomatic, threads, path, {}, true);
+  const auto size = static_cast<std::size_t>(made.triangle_count);
+  const auto count = size == 0 ? 0 : static_cast<std::size_t>(made.distinct_count);
+  std::optional<Numbers> kept_row;
+  if (!made.kept_row.empty()) kept_row = hand_over(made.kept_row);
+  StreamedArray<double> places(reinterpret_cast<double*>(made.places.release()));
+  return {hand_over<Triples>(std::move(made.corners), {size, 3}),
+          hand_over<Triples>(std::move(made.neighbors), {size, 3}),
+          hand_over<Numbers>(std::move(made.rows), {count}),
+          hand_over<Xy>(std::move(places), {count, 2}),
+          std::move(kept_row),
           made.distinct_count};
 }
 
@@ -86,6 +110,15 @@ inline void bind_triangulation(nb::module_& m) {
                  "(n,), for each row the first row at the same place; None when no two points "
                  "share a place.")
       .def_ro("distinct_count", &GrownArrays::distinct_count, "How many places there are.");
+  Result<SweptArrays>(m, "Sweep", "As Growth, but numbered in the sweep, neighbours side by side.")
+      .def_array("triangles", &SweptArrays::triangles, "(m, 3), vertices in the sweep.")
+      .def_array("neighbors", &SweptArrays::neighbors, "(m, 3), opposite the corners, -1 outside.")
+      .def_array("rows", &SweptArrays::rows, "(n,), the kept row of each vertex.")
+      .def_array("places", &SweptArrays::places, "(n, 2), of each vertex.")
+      .def_array("kept_row", &SweptArrays::kept_row, "As that of Growth.")
+      .def_ro("distinct_count", &SweptArrays::distinct_count, "How many places there are.");
+  m.def("sweep", &sweep, "points"_a.noconvert(), "threads"_a, "path"_a,
+        "The triangulation of points, numbered in the sweep.");
   m.def("count_work", &count_work, "points"_a.noconvert(), "method"_a = Method::kAutomatic,
         "threads"_a = 1, "path"_a = fastest, "Triangulate and return how much the searches did.");
   m.def("vector_paths", &names_of_vector_paths,

@@ -10,6 +10,7 @@
 #include "bind_refinement.hpp"
 #include "bind_screening.hpp"
 #include "bind_simplification.hpp"
+#include "bind_tiling.hpp"
 #include "bind_triangulation.hpp"
 
 NB_MODULE(_core, m) {
@@ -26,4 +27,5 @@ NB_MODULE(_core, m) {
   bind_refinement(m);
   bind_screening(m);
   bind_simplification(m);
+  bind_tiling(m);
 }

@@ -1,0 +1,261 @@
+"""All lines of a survey, cut where they meet on one machine, for tasks that see parts of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...base.errors import LinesError, OptionError
+from .. import _kernel
+from ..building.assembly import find_ring_groups
+from ..building.duplicates import merge_rows
+from ..constraints.clipping import HOLES
+from ..constraints.constraint_set import ABOVE_ALL, BELOW_ALL
+from ..constraints.noding import node
+from ..constraints.polylines import Polylines
+from .rings import Rings
+from .skeleton import reduce_to_hull
+from .sources import NumberedPoints, NumberedSegments
+
+if TYPE_CHECKING:
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.types import Bounds
+    from ..building.inputs import BuildInputs
+    from ..building.options import BuildOptions
+    from ..constraints.constraint_set import LineSet
+    from .circles import Discs
+
+__all__ = ["NodedLines", "node_lines", "require_local"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class NodedLines:
+    """Segments in memory, of which a task gets those near it: a :class:`.SegmentSource`.
+
+    Attributes
+    ----------
+    vertices : NumberedPoints
+        With the elevations that they have in the surface.
+    segments : (k, 2) int32 array
+        The places of their ends among the vertices.
+    are_rings : (k,) bool array
+        Whether each is a segment of the boundary or of a hole.
+    rings : Rings or None
+    """
+
+    vertices: NumberedPoints
+    segments: Int32Array
+    are_rings: BoolArray
+    rings: Rings | None = None
+
+    @cached_property
+    def skeleton(self) -> NumberedPoints:
+        """The vertices of the convex hull of all lines."""
+        return reduce_to_hull(self.vertices)
+
+    def read_box(self, box: Bounds) -> NumberedSegments:
+        """Return the segments whose bounds meet a box."""
+        low, high = self._bounds
+        meets = (low[:, 0] <= box.xmax) & (high[:, 0] >= box.xmin)
+        meets &= (low[:, 1] <= box.ymax) & (high[:, 1] >= box.ymin)
+        return self._choose(meets)
+
+    def read_discs(self, discs: Discs) -> NumberedSegments:
+        """Return the segments whose bounds meet those of any disc."""
+        low, high = self._bounds
+        meets = np.zeros(len(self.segments), np.bool_)
+        reach = (discs.radii + _SLACK * np.abs(discs.centers).max(axis=1, initial=0.0))[:, None]
+        reach = reach * (1 + _SLACK)
+        for west_south, east_north in zip(
+            discs.centers - reach, discs.centers + reach, strict=True
+        ):
+            meets |= ((low <= east_north) & (high >= west_south)).all(axis=1)
+        return self._choose(meets)
+
+    @cached_property
+    def _bounds(self) -> tuple[Float64Array, Float64Array]:
+        ends = self.vertices.points[self.segments, :2]
+        return ends.min(axis=1), ends.max(axis=1)
+
+    def _choose(self, which: BoolArray) -> NumberedSegments:
+        starts, ends = self.segments[which].T
+        return NumberedSegments(
+            self.vertices.choose(starts), self.vertices.choose(ends), self.are_rings[which]
+        )
+
+
+_ALL_OVER = "for a surface in tiles: vertices change one after the other, all over the surface"
+
+_SLACK = 2.0**-40
+_ROUNDINGS = 2.0**-42
+"""Of coordinates: a thousand units in the last place."""
+
+
+def require_local(inputs: BuildInputs) -> None:
+    """Refuse what cannot be told of a part of a surface from what lies near it.
+
+    Raises
+    ------
+    OptionError
+        If triangles are dropped by their edges, lines are made to conform, or rows are merged
+        within a distance.
+    LinesError
+        If lines take their elevations from the surface, or points within water go.
+    """
+    options, lines = inputs.options, inputs.lines
+    if options.max_edge is not None:
+        raise OptionError(
+            "max_edge",
+            options.max_edge,
+            "None for a surface in tiles: what it drops from the rim inwards no tile can tell",
+        )
+    if options.conforming:
+        raise OptionError("conforming", True, f"False {_ALL_OVER}")
+    if options.snap > 0:
+        raise OptionError("snap", options.snap, f"0 {_ALL_OVER}")
+    draped = np.flatnonzero(lines.is_draped)
+    if len(draped):
+        raise LinesError(
+            f"{lines.title(int(draped[0]))} has no elevations: lines of surfaces in "
+            "tiles need them.",
+            lines=draped[:5].tolist(),
+        )
+    if (lines.priorities == ABOVE_ALL).any() or inputs.has_own_boundary:
+        raise LinesError(
+            "Water and existing triangles are not available for surfaces in tiles: a hole is."
+        )
+
+
+def choose_near(points: NumberedPoints, lines: LineSet) -> NumberedPoints:
+    """Return the points, of a chunk of all, that lines may pass, and maybe others.
+
+    Those are on a line, or so near that a line may be bent onto them where lines cross: vertices
+    there are rounded to doubles.
+    """
+    xy, rows = points.points[:, :2], len(points.numbers)
+    if not rows or not len(lines.xy):
+        return points.choose(slice(0, 0))
+    together = np.ascontiguousarray(np.concatenate([xy, lines.xy]))
+    distance = _ROUNDINGS * float(np.abs(together).max())
+    segments = Polylines.whole(np.arange(len(lines.xy), dtype=np.int32), lines.offsets).segments()
+    touched = _kernel.touches(together, segments + np.int32(rows), distance)[:, 1]
+    is_near = np.ones(rows, np.bool_)
+    for axis in (0, 1):
+        ends = np.sort(lines.xy[:, axis])
+        low = np.searchsorted(ends, xy[:, axis] - 2 * distance, "left")
+        is_near &= low < np.searchsorted(ends, xy[:, axis] + 2 * distance, "right")
+    is_near[touched[touched < rows]] = True
+    return points.choose(is_near)
+
+
+def node_lines(near: NumberedPoints, inputs: BuildInputs, *, first_number: int) -> NodedLines:
+    """Cut lines where they meet, as :func:`tinsmith.triangulate` does.
+
+    Parameters
+    ----------
+    near : NumberedPoints
+        Those that :func:`choose_near` returns of all points, in order of numbers: a line is cut
+        where it passes one of them.
+    inputs : BuildInputs
+        Their lines, rings and options count.
+    first_number : int
+        From here on vertices are numbered that no point has; above the number of any point.
+
+    Raises
+    ------
+    OptionError, LinesError
+        As :func:`require_local`; if lines cross that must not.
+    """
+    require_local(inputs)
+    lines, options = inputs.lines, inputs.options
+    places, vertex_of = _find_places(np.concatenate([near.points[:, :2], lines.xy]))
+    of_points, of_lines = vertex_of[: len(near.numbers)], vertex_of[len(near.numbers) :]
+    numbers, elevations = _describe(near, of_points, len(places), options)
+    polylines = Polylines.whole(of_lines, lines.offsets)
+    _set_line_elevations(elevations, of_lines, lines)
+    noded = node(
+        places,
+        polylines,
+        lines.elevations,
+        lines.priorities,
+        crossing=options.crossing,
+        names=lines.labels(),
+    )
+    points = np.concatenate([np.column_stack([places, elevations]), noded.new_points])
+    numbers = np.append(numbers, np.full(len(noded.new_points), -1))
+    return _gather(points, numbers, noded.polylines, _find_groups(inputs), first_number)
+
+
+def _find_groups(inputs: BuildInputs) -> Int64Array:
+    """Return the group of each line, as in :mod:`..constraints.clipping`; -1 if it is no ring."""
+    is_ring = inputs.lines.table.is_kind("boundary", "hole")
+    return np.where(is_ring, find_ring_groups(inputs, inputs.lines), -1)
+
+
+def _find_places(xy: Float64Array) -> tuple[Float64Array, Int32Array]:
+    """Return distinct places, and which of them each row has."""
+    xy = xy + 0.0  # no zero has a sign
+    places, place_of = np.unique(xy, axis=0, return_inverse=True)
+    return np.ascontiguousarray(places), place_of.ravel().astype(np.int32)
+
+
+def _describe(
+    near: NumberedPoints, place_of: Int32Array, count: int, options: BuildOptions
+) -> tuple[Int64Array, Float64Array]:
+    """Return the number and the elevation that the points at each place give; -1 and NaN."""
+    numbers, elevations = np.full(count, -1, np.int64), np.full(count, np.nan)
+    first = np.full(count, len(place_of), np.int32)
+    np.minimum.at(first, place_of, np.arange(len(place_of), dtype=np.int32))
+    merged = merge_rows(near.points, first[place_of], options.duplicates, near.numbers)
+    is_there = first < len(place_of)
+    numbers[is_there] = near.numbers[first[is_there]]
+    elevations[is_there] = merged.points[merged.vertex_of[first[is_there]], 2]
+    return numbers, elevations
+
+
+def _set_line_elevations(elevations: Float64Array, vertex_of: Int32Array, lines: LineSet) -> None:
+    """Give vertices the elevation of the line that counts most there, its lowest, in place."""
+    line_of = lines.line_of
+    priority = lines.priorities[line_of]
+    rank = np.where(priority == BELOW_ALL, 0, line_of)
+    order = np.lexsort((line_of, lines.elevations, rank, -priority, vertex_of))
+    best = order[np.append(True, np.diff(vertex_of[order]) > 0)[: len(order)]]
+    counts = (priority[best] > BELOW_ALL) | np.isnan(elevations[vertex_of[best]])
+    elevations[vertex_of[best[counts]]] = lines.elevations[best[counts]]
+
+
+def _gather(
+    points: Float64Array,
+    numbers: Int64Array,
+    polylines: Polylines,
+    groups: Int64Array,
+    first_number: int,
+) -> NodedLines:
+    """Name the vertices, and leave out those that are on no line."""
+    is_new = numbers < 0
+    numbers[is_new] = first_number + np.arange(np.count_nonzero(is_new))
+    alone = polylines.vertices[np.repeat(polylines.lengths == 1, polylines.lengths)]
+    segments = np.concatenate([polylines.segments(), np.stack([alone, alone], axis=1)])
+    used, ends = np.unique(segments, return_inverse=True)
+    are_rings = groups[polylines.segment_lines()] >= 0
+    return NodedLines(
+        vertices=NumberedPoints(points[used], numbers[used]),
+        segments=ends.reshape(-1, 2).astype(np.int32),
+        are_rings=np.append(are_rings, np.zeros(len(alone), np.bool_)),
+        rings=_gather_rings(points, polylines, groups),
+    )
+
+
+def _gather_rings(points: Float64Array, polylines: Polylines, groups: Int64Array) -> Rings | None:
+    if (groups < 0).all():
+        return None
+    found: dict[int, list[AnyArray]] = {group: [] for group in range(HOLES)}
+    found |= {group: [] for group in range(HOLES, int(groups.max()) + 1)}
+    for line, chain in zip(polylines.lines.tolist(), polylines, strict=True):
+        if groups[line] >= 0:
+            found[int(groups[line])].append(points[chain, :2])
+    boundary, extent, *holes = found.values()
+    return Rings(boundary=boundary, extent=extent, holes=holes)

@@ -1,0 +1,189 @@
+"""What a task has not seen, and what of it may put an end to a triangle.
+
+A triangle of some points and segments is one of the whole if its closed circumscribed disc holds
+no other point and meets no other segment. What a segment hides from all of the triangle does not
+count. Beyond an edge of it that is a segment, that is all in the disc, of which it is a chord; of
+other segments, that are their shadows::
+
+             . - ~ - .
+          .     p     .       p does not count if the edge a-b is a segment, nor if a longer one
+         a-------------b      runs between them: no line of sight from the triangle to p misses it
+          .           .
+            ` - c - `
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from .. import _kernel
+from .circles import Discs
+from .sources import NumberedPoints, NumberedSegments
+
+if TYPE_CHECKING:
+    from ...base.arrays import BoolArray, Float64Array, Int8Array, Int64Array
+    from .sources import PointSource, SegmentSource
+
+__all__ = ["Question", "find_unseen_points", "find_unseen_segments"]
+
+_MOST_OF_A_DISC = 64
+"""What is taken for one disc in a round: the deepest, which change the triangle most."""
+
+_MOST_SCREENS = 8
+
+_SLACK = 2.0**-48
+"""Of distances, relative to all that they are computed from: far more than their roundings."""
+
+
+class Question(NamedTuple):
+    """Triangles that something unseen may put an end to.
+
+    Attributes
+    ----------
+    corners : (k, 3, 2) float64 array
+        Counter-clockwise.
+    hiding : (k, 3) bool array
+        Whether the edge opposite each corner is a segment.
+    discs : Discs
+    screens : (s, 2, 2) float64 array
+        The ends of all segments that are known.
+    """
+
+    corners: Float64Array
+    hiding: BoolArray
+    discs: Discs
+    screens: Float64Array
+
+    def find_hidden(self, k: int, figures: Float64Array) -> BoolArray:
+        """Tell what is hidden from a triangle, of the hulls of (f, p, 2) places each, exactly."""
+        is_hidden = _are_beyond_edges(self.corners[k], self.hiding[k], figures)
+        for screen in self._choose_screens(k) if len(figures) else ():
+            left = np.flatnonzero(~is_hidden)
+            is_hidden[left] = _are_in_shadow(self.corners[k], screen, figures[left])
+        return is_hidden
+
+    def _choose_screens(self, k: int) -> Float64Array:
+        """Return the longest of the segments whose bounds meet those of a disc."""
+        center, radius = self.discs.centers[k], self.discs.radii[k]
+        low, high = self.screens.min(axis=1), self.screens.max(axis=1)
+        is_near = ((low <= center + radius) & (high >= center - radius)).all(axis=1)
+        near = self.screens[is_near]
+        lengths = np.hypot(*(near[:, 1] - near[:, 0]).T)
+        chosen: Float64Array = near[np.argsort(-lengths, kind="stable")[:_MOST_SCREENS]]
+        return chosen
+
+
+def find_unseen_points(
+    source: PointSource, question: Question, seen: Int64Array
+) -> tuple[NumberedPoints, BoolArray]:
+    """Return unseen points that may change triangles, and of which triangles none may.
+
+    Of a disc that holds many, those are taken that lie deepest.
+    """
+    discs = question.discs
+    is_safe = np.ones(len(discs.radii), np.bool_)
+    if not len(is_safe):
+        return NumberedPoints.none(), is_safe
+    found = source.read_discs(discs)
+    found = found.choose(~np.isin(found.numbers, seen))
+    found = found.choose(np.argsort(found.points[:, 0], kind="stable"))
+    reach = discs.radii + _SLACK * (np.abs(discs.centers[:, 0]) + discs.radii)
+    west = np.searchsorted(found.points[:, 0], discs.centers[:, 0] - reach, "left")
+    east = np.searchsorted(found.points[:, 0], discs.centers[:, 0] + reach, "right")
+    is_wanted = np.zeros(len(found.numbers), np.bool_)
+    for k in np.flatnonzero(west < east).tolist():
+        near = np.arange(west[k], east[k])
+        distances = np.hypot(*(found.points[near, :2] - discs.centers[k]).T)
+        is_near = distances <= discs.radii[k] * (1 + _SLACK)
+        near, distances = near[is_near], distances[is_near]
+        places = found.points[near, :2]
+        counts = _are_in_disc(question.corners[k], places)
+        counts[counts] = ~question.find_hidden(k, places[counts][:, None])
+        is_wanted[_take_deepest(near[counts], distances[counts])] = True
+        is_safe[k] = not counts.any()
+    return found.choose(is_wanted).sort(), is_safe
+
+
+def find_unseen_segments(
+    lines: SegmentSource, question: Question, seen: NumberedSegments
+) -> tuple[NumberedSegments, BoolArray]:
+    """Return unseen segments that may change triangles, and of which triangles none may."""
+    discs = question.discs
+    is_safe = np.ones(len(discs.radii), np.bool_)
+    if not len(is_safe):
+        return NumberedSegments.none(), is_safe
+    found = lines.read_discs(discs)
+    found = found.choose(~found.are_among(seen))
+    ends = found.ends_in_plane
+    is_wanted = np.zeros(len(ends), np.bool_)
+    for k in range(len(is_safe) if len(ends) else 0):
+        distances, roundings = _measure_distances(ends, discs.centers[k])
+        near = np.flatnonzero(
+            (distances <= discs.radii[k] * (1 + _SLACK) + roundings) | np.isinf(discs.radii[k])
+        )
+        near = near[~question.find_hidden(k, ends[near])]
+        is_wanted[_take_deepest(near, distances[near])] = True
+        is_safe[k] = not len(near)
+    return found.choose(is_wanted), is_safe
+
+
+def _take_deepest(rows: Int64Array, distances: Float64Array) -> Int64Array:
+    return rows[np.argsort(distances, kind="stable")[:_MOST_OF_A_DISC]]
+
+
+def _are_in_disc(corners: Float64Array, places: Float64Array) -> BoolArray:
+    """Tell which places lie in the closed circumscribed disc of a triangle, exactly."""
+    a, b, c = (np.broadcast_to(corner, places.shape).copy() for corner in corners)
+    return np.asarray(_kernel.in_circle(a, b, c, np.ascontiguousarray(places)) >= 0)
+
+
+def _are_beyond_edges(corners: Float64Array, hiding: BoolArray, figures: Float64Array) -> BoolArray:
+    """Tell what lies beyond an edge that is a segment; it may end at its line."""
+    is_beyond = np.zeros(len(figures), np.bool_)
+    for k in np.flatnonzero(hiding).tolist():
+        start, end = corners[(k + 1) % 3], corners[(k + 2) % 3]
+        sides = [_turn(start, end, places) for places in np.moveaxis(figures, 1, 0)]
+        is_beyond |= (np.max(sides, axis=0) <= 0) & (np.min(sides, axis=0) < 0)
+    return is_beyond
+
+
+def _are_in_shadow(corners: Float64Array, screen: Float64Array, figures: Float64Array) -> BoolArray:
+    """Tell what lies beyond a segment from which each line to a corner meets the segment.
+
+    The shadow of a segment is convex, as is what sees the triangle through it.
+    """
+    start, end = screen
+    is_hidden = np.zeros(len(figures), np.bool_)
+    turns = _turn(start, end, corners)
+    if (turns.max() > 0 and turns.min() < 0) or not turns.any():
+        return is_hidden
+    side = 1 if turns.max() > 0 else -1
+    is_hidden[:] = True
+    for places in np.moveaxis(figures, 1, 0):
+        is_hidden &= _turn(start, end, places) == -side
+        for corner in corners:
+            one, other = (_turn(corner, at, places) for at in (start, end))
+            is_hidden &= one * other <= 0
+    return is_hidden
+
+
+def _turn(start: Float64Array, end: Float64Array, places: Float64Array) -> Int8Array:
+    """Return the side of a line on which places lie: +1 left, 0 on it, -1 right."""
+    a, b = (np.broadcast_to(one, places.shape).copy() for one in (start, end))
+    return _kernel.orientation(a, b, np.ascontiguousarray(places))
+
+
+def _measure_distances(
+    ends: Float64Array, center: Float64Array
+) -> tuple[Float64Array, Float64Array]:
+    """Return distances of segments, (k, 2, 2), from a place, and how far rounding puts them off."""
+    start, end = ends[:, 0] - center, ends[:, 1] - center
+    along = end - start
+    with np.errstate(all="ignore"):
+        share = -(start * along).sum(axis=1) / (along * along).sum(axis=1)
+    share = np.clip(np.nan_to_num(share), 0.0, 1.0)
+    distances = np.hypot(*(start + share[:, None] * along).T)
+    size = np.abs(ends).max(axis=(1, 2)) + np.abs(center).max(initial=0.0)
+    return np.asarray(distances), np.asarray(_SLACK * size)
