@@ -69,5 +69,5 @@ def join(
     for record in records.values():
         for name in record.files:
             with (folder / name).open("rb") as file:
-                made.append(pickle.load(file))  # noqa: S301 - written by this run's own tasks
+                made.append(pickle.load(file))
     return made

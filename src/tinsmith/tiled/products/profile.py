@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -102,4 +103,4 @@ def join(
 def _split(line: Features) -> list[Float64Array]:
     """Return lines as plain arrays, which are in the CRS of the surface."""
     bounds = line.offsets[0]
-    return [line.coordinates[a:b] for a, b in zip(bounds[:-1], bounds[1:], strict=True)]
+    return [line.coordinates[a:b] for a, b in pairwise(bounds)]
