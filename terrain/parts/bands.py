@@ -139,7 +139,10 @@ def join(parts: Sequence[BandPart], options: BandOptions) -> Features:
         If polygons meet themselves by rounding: what repairs them needs the whole surface.
     """
     levels = options.levels.values
-    made = [_fill(parts, band) for band in range(len(levels) + 1)]
+    filled = [_fill(parts, band) for band in range(len(levels) + 1)]
+    made = [one for one in filled if len(one.band)]
+    if not made:
+        raise PointsError("No triangle is left that is thicker than the rounding of coordinates.")
     found, notes = repair_polygons(_concatenate(made))
     terms = np.concatenate([part.areas for part in parts], axis=1)
     if notes or not has_area(found, float(_kernel.sum_rows(terms)[0])):

@@ -59,9 +59,11 @@ def are_inner(part: LocalTriangulation, box: Bounds, rings: int) -> BoolArray:
 
     A side of theirs without a neighbour is on the boundary of the whole surface.
     """
+    is_inner = np.zeros(len(part.triangles), np.bool_)
+    if not len(is_inner):
+        return is_inner
     chosen = find_triangles_at(part.points, part.triangles, box)
     for _ in range(rings - 1):
         chosen = find_around(part.triangles, chosen, len(part.points))
-    is_inner = np.zeros(len(part.triangles), np.bool_)
     is_inner[chosen] = True
     return is_inner

@@ -10,8 +10,11 @@ from ...base.errors import LinesError
 from ...tin.topology import NO_NEIGHBOR, find_owners
 
 if TYPE_CHECKING:
-    from ...base.arrays import Float64Array, Int8Array, Int32Array, Int64Array
+    from collections.abc import Sequence
+
+    from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
     from ...tin import TIN
+    from ...tin.triangulation import Triangulation
     from .segments import Segments
 
 __all__ = ["CROSSED", "Breaks", "trace_breaks"]
@@ -99,7 +102,7 @@ def trace_breaks(tin: TIN, segments: Segments) -> Breaks:
     crossed[is_edge] = _EDGE
     crossed[is_edge & surface.constrained.ravel()[edges]] = _BREAKLINE
     crossed[is_edge & (surface.neighbors.ravel()[edges] == NO_NEIGHBOR)] = _BOUNDARY
-    return Breaks(
+    found = Breaks(
         find_owners(traced.offsets),
         traced.ratios,
         traced.places,
@@ -109,3 +112,41 @@ def trace_breaks(tin: TIN, segments: Segments) -> Breaks:
         traced.vertices,
         edges,
     )
+    return found._replace(triangles=_choose_triangles(surface, found))
+
+
+def _choose_triangles(surface: Triangulation, breaks: Breaks) -> Int32Array:
+    """Return the triangles of breaks; along an edge the one whose third corner comes first.
+
+    So it does not matter how triangles are numbered, nor which way the segment runs.
+    """
+    chosen = breaks.triangles.copy()
+    goes_on = np.append(breaks.segments[1:] == breaks.segments[:-1], False)
+    rows = np.flatnonzero(goes_on & (chosen != NO_NEIGHBOR))
+    triangles = chosen[rows]
+    for k in range(3):
+        ends = [surface.triangles[triangles, (k + j) % 3] for j in (1, 2)]
+        is_along = _are_on_edge(surface, breaks, rows, ends)
+        is_along &= _are_on_edge(surface, breaks, rows + 1, ends)
+        at = np.flatnonzero(is_along & (surface.neighbors[triangles, k] != NO_NEIGHBOR))
+        beyond = surface.neighbors[triangles[at], k]
+        far = surface.triangles[beyond].sum(axis=1) - ends[0][at] - ends[1][at]
+        own, other = (surface.points[v].T for v in (surface.triangles[triangles[at], k], far))
+        is_first = (other[0] < own[0]) | ((other[0] == own[0]) & (other[1] < own[1]))
+        chosen[rows[at[is_first]]] = beyond[is_first]
+    return chosen
+
+
+def _are_on_edge(
+    surface: Triangulation, breaks: Breaks, rows: Int64Array, ends: Sequence[Int32Array]
+) -> BoolArray:
+    """Tell which breaks are at an end of an edge each, or on it."""
+    vertices, edges = breaks.vertices[rows], breaks.edges[rows]
+    start, end = ends
+    corners = surface.triangles[edges // 3]
+    own = [np.take_along_axis(corners, (edges[:, None] + j) % 3, axis=1)[:, 0] for j in (1, 2)]
+    is_same = (np.minimum(*own) == np.minimum(start, end)) & (
+        np.maximum(*own) == np.maximum(start, end)
+    )
+    is_end = (vertices >= 0) & ((vertices == start) | (vertices == end))
+    return np.asarray(is_end | ((edges >= 0) & is_same))

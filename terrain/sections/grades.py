@@ -57,10 +57,11 @@ def _measure_rise_over_run(
 def _compute_gradients(tin: TIN, triangles: Int32Array) -> Float64Array:
     """Return the rise of triangles eastwards and northwards, (n, 2).
 
-    Counted from the corner opposite the longest side, so that differences lose the least.
+    Counted from the corner opposite the longest side, so that differences lose the least; whichever
+    corner is named first.
     """
     chosen, inverse = np.unique(triangles, return_inverse=True)
-    corners = tin.points[tin.triangles[chosen]]
+    corners = _begin_at_first(tin.points[tin.triangles[chosen]])
     sides = np.roll(corners, -1, axis=1) - np.roll(corners, -2, axis=1)
     first = np.argmax(np.hypot(sides[:, :, 0], sides[:, :, 1]), axis=1)
     row = np.arange(len(chosen))
@@ -71,6 +72,17 @@ def _compute_gradients(tin: TIN, triangles: Int32Array) -> Float64Array:
         east = _subtract_products(z, v, y, w) / area
         north = _subtract_products(x, w, z, u) / area
     return np.stack([east, north], axis=1)[inverse.reshape(-1)]
+
+
+def _begin_at_first(corners: Float64Array) -> Float64Array:
+    """Turn triangles, (n, 3, 3), to their first corner by easting, then northing."""
+    x, y = corners[:, :, 0], corners[:, :, 1]
+    is_west = x == x.min(axis=1)[:, None]
+    first = np.argmin(np.where(is_west, y, np.inf), axis=1)
+    turned: Float64Array = corners[
+        np.arange(len(corners))[:, None], (first[:, None] + (0, 1, 2)) % 3
+    ]
+    return turned
 
 
 def _subtract_products(

@@ -38,6 +38,7 @@ def require_same_features(found, wanted):
 
 def require_same_table(found, wanted):
     """Require the same columns."""
+    found, wanted = (dict(getattr(one, "columns", one)) for one in (found, wanted))
     assert list(found) == list(wanted)
     for name in wanted:
         require_same_bits(np.asarray(found[name]), np.asarray(wanted[name]), name)
