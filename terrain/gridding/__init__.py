@@ -4,9 +4,10 @@ from .bands import SurfaceBand
 from .grids import as_cells, cover, describe_extent, locate_edges
 from .ground_heights import height_above
 from .rasters import list_units, rasterize
-from .relief_bands import ReliefBand, describe_smooth
+from .relief_bands import DESCRIBED_MEANS, ReliefBand, describe_smooth
 
 __all__ = [
+    "DESCRIBED_MEANS",
     "ReliefBand",
     "SurfaceBand",
     "as_cells",

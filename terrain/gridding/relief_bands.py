@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from ...tin import TIN, Grid
     from ..relief import PlaneMeasure
 
-__all__ = ["ReliefBand", "choose_smooth"]
+__all__ = ["DESCRIBED_MEANS", "ReliefBand", "choose_smooth"]
+
+DESCRIBED_MEANS = "Slopes are those of the triangles, averaged over the part of a cell."
 
 _PARTS, _FIRST_CORNER = 8, 4
 """Of a triangle: the edges opposite its corners, and from the second on the corners."""
@@ -42,7 +44,7 @@ def choose_smooth(tin: TIN, smooth: Any, *, is_mean: bool = False) -> tuple[bool
     is_terrain = tin.report.from_raster and not (tin.constrained & (tin.neighbors >= 0)).any()
     chosen = is_terrain and not is_mean if smooth is None else as_flag("smooth", smooth)
     if is_mean:
-        return False, "Slopes are those of the triangles, averaged over the part of a cell."
+        return False, DESCRIBED_MEANS
     return chosen, describe_smooth(is_smooth=chosen, is_default=smooth is None)
 
 

@@ -3,7 +3,7 @@
 from .bands import contour_bands
 from .checking import ContourCheck, check_contours
 from .labels import contour_labels
-from .levels import LevelOptions, Levels
+from .levels import LevelOptions, Levels, as_levels
 from .lines import as_features, contours
 
 __all__ = [
@@ -11,6 +11,7 @@ __all__ = [
     "LevelOptions",
     "Levels",
     "as_features",
+    "as_levels",
     "check_contours",
     "contour_bands",
     "contour_labels",

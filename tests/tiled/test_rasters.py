@@ -4,65 +4,21 @@ from __future__ import annotations
 
 import filecmp
 import itertools
-import random
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 import rasterio
+from support.many_files import Shuffled, write_lidar
 
 import tinsmith as ts
 from tinsmith.tiled import tasks
 
 
-class Shuffled(Executor):
-    """Runs tasks here, in an order at random: each when the next but some is asked for."""
-
-    def __init__(self, seed=0, most=10**9):
-        self._random = random.Random(seed)
-        self._waiting = []
-        self.most = most
-
-    def submit(self, function, /, *given, **named):
-        """Run one of the tasks that wait, if it is not the last that may be run."""
-        future = Future()
-        self._waiting.append((future, function, given, named))
-        self._random.shuffle(self._waiting)
-        self._run(self._waiting.pop())
-        return future
-
-    def _run(self, task):
-        future, function, given, named = task
-        self.most -= 1
-        if self.most < 0:
-            raise KeyboardInterrupt
-        try:
-            future.set_result(function(*given, **named))
-        except BaseException as error:
-            future.set_exception(error)
-
-
 @pytest.fixture(scope="module")
 def lidar(tmp_path_factory):
     """Return a folder of tiles that overlap, with points at one place and of two classes."""
-    rng = np.random.default_rng(3)
-    folder = tmp_path_factory.mktemp("lidar")
-    count = 6_000
-    xy = rng.random((count, 2)) * [300, 200] + [500_000, 4_000_000]
-    z = 300 + 20 * np.sin(xy[:, 0] / 50) + rng.normal(0, 0.1, count)
-    points = np.round(np.column_stack([xy, z]), 1)
-    classes = np.where(rng.random(count) < 0.7, 2, 5)
-    strip = np.minimum((points[:, 0] - 500_000) // 90, 2)
-    strip[rng.random(count) < 0.05] = 0
-    for number in range(3):
-        chosen = strip == number
-        survey = ts.Survey(
-            points=points[chosen],
-            attributes={"classification": classes[chosen].astype(np.uint8)},
-            crs="EPSG:32616",
-        )
-        ts.write(survey, folder / f"tile{number}.laz")
-    return folder
+    return write_lidar(tmp_path_factory.mktemp("lidar"))
 
 
 @pytest.fixture(scope="module")

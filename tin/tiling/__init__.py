@@ -3,6 +3,7 @@
 from .boxes import are_in_box, widen
 from .circles import Discs
 from .local_triangulation import LocalTriangulation, find_around, find_triangles_at, triangulate_box
+from .proof import TilesProof, TileTriangles, check_tiles
 from .skeleton import find_outermost, find_skeleton, reduce_to_hull
 from .sources import NumberedPoints, PointSource
 
@@ -11,7 +12,10 @@ __all__ = [
     "LocalTriangulation",
     "NumberedPoints",
     "PointSource",
+    "TileTriangles",
+    "TilesProof",
     "are_in_box",
+    "check_tiles",
     "find_around",
     "find_outermost",
     "find_skeleton",

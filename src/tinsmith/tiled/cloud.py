@@ -11,7 +11,7 @@ from ..base.atomic import as_path
 from ..base.checks import as_flag, is_finite_number
 from ..base.crs import CRS, Unit, shorten_crs
 from ..base.errors import OptionError, choice
-from ..base.policies import DuplicatePolicy, RasterValue
+from ..base.policies import DuplicatePolicy, RasterSample, RasterValue
 from ..base.sentences import counted
 from ..io.reading import list_files
 from ..io.registry.lookup import find_format
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from ..base.crs import CrsLike, UnitLike
     from ..base.types import Bounds
     from ..tin import TIN
+    from ..tin.tiling import TilesProof
 
 __all__ = ["Plan", "TiledPoints", "tiles"]
 
@@ -266,6 +267,7 @@ class TiledPoints:
         azimuth: float = 315.0,
         altitude: float = 45.0,
         smooth: bool | None = None,
+        at: RasterSample = "center",
         **way: Unpack[Way],
     ) -> Path:
         """Write a raster, as :func:`tinsmith.rasterize` makes it of the whole surface.
@@ -277,7 +279,7 @@ class TiledPoints:
             Name of a format, to choose it whatever the suffix.
         write : mapping, optional
             Options of the writer.
-        spacing, like, value, azimuth, altitude, smooth
+        spacing, like, value, azimuth, altitude, smooth, at
             As of :func:`tinsmith.rasterize`.
         **way
             How the run is carried out, see :class:`Way`.
@@ -305,7 +307,7 @@ class TiledPoints:
         ...     cloud.rasterize(Path(folder, "dtm.tif"), spacing=1.0, workers=1).name
         'dtm.tif'
         """
-        light = {"azimuth": azimuth, "altitude": altitude, "smooth": smooth}
+        light = {"azimuth": azimuth, "altitude": altitude, "smooth": smooth, "at": at}
         asked = {"spacing": spacing, "like": like, "value": value, **light}
         return self._write("raster", asked, path, (format, write), way)
 
@@ -476,18 +478,59 @@ class TiledPoints:
         >>> import tinsmith as ts
         >>> from pathlib import Path
         >>> from tempfile import TemporaryDirectory
+        >>> from tinsmith.tiled.products.mapped import measure_area
         >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
         >>> with TemporaryDirectory() as folder:
         ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")))
-        ...     len(cloud.map(ts.quality, run=Path(folder, "run"), workers=1))
-        Traceback (most recent call last):
-        ...
-        tinsmith.base.errors.ReadError: ...
+        ...     (made,) = cloud.map(measure_area, run=Path(folder, "run"), workers=1)
+        ...     made
+        6.0
         """
         folder = as_path(run, "run")
         how = How.of(**{**way, "run": folder})
         with computing(self, "mapped", folder, how, function=function) as made:
             found: list[Any] = made
+        return found
+
+    def check(self, *, run: str | os.PathLike[str], **way: Any) -> TilesProof:
+        """Prove from outside that the triangles of all tiles are one surface.
+
+        Every inner edge has two triangles, across tiles too, which see it in opposite directions;
+        the areas of all triangles add up to that of the convex hull, exactly.
+
+        Parameters
+        ----------
+        run : path-like
+            Folder of the run.
+        **way
+            How the run is carried out, see :class:`Way`.
+
+        Returns
+        -------
+        TilesProof
+            What was counted.
+
+        Raises
+        ------
+        CheckError
+            At the first fault, with the tile and the edge.
+        ReadError, WriteError
+            As :meth:`rasterize`.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+        >>> with TemporaryDirectory() as folder:
+        ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")))
+        ...     cloud.check(run=Path(folder, "run"), workers=1).triangles
+        2
+        """
+        folder = as_path(run, "run")
+        with computing(self, "proof", folder, How.of(**{**way, "run": folder})) as made:
+            found: TilesProof = made
         return found
 
     def _write(

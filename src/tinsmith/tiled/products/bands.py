@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base.crs import CRS, Unit
 from ...terrain.earthwork import measure_rounding
-from ...terrain.isolines import LevelOptions, Levels
+from ...terrain.isolines import LevelOptions, Levels, as_levels
 from ...terrain.parts import bands
 from ..tasks import load_arrays, save_arrays
 
@@ -29,7 +29,7 @@ def check_options(
     *, interval: float | None = None, levels: Any = None, base: float = 0.0
 ) -> dict[str, Any]:
     """Return plain options, or refuse what is none."""
-    chosen = None if levels is None else np.asarray(levels, np.float64).tolist()
+    chosen = None if levels is None else as_levels(levels).tolist()
     LevelOptions(interval, chosen, base)
     return {"interval": interval, "levels": chosen, "base": base}
 

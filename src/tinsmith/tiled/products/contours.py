@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.crs import CRS, Unit
-from ...terrain.isolines import LevelOptions, Levels
+from ...terrain.isolines import LevelOptions, Levels, as_levels
 from ...terrain.parts import contours, refusals
 from ..tasks import load_arrays, save_arrays
 
@@ -37,7 +37,7 @@ def check_options(
     for name, value in (("smooth", smooth), ("simplify", simplify)):
         if value is not None:
             refusals.require_local(name)
-    chosen = None if levels is None else np.asarray(levels, np.float64).tolist()
+    chosen = None if levels is None else as_levels(levels).tolist()
     LevelOptions(interval, chosen, base, index)
     return {"interval": interval, "levels": chosen, "base": base, "index": index}
 

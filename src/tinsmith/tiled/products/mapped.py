@@ -9,17 +9,24 @@ from typing import TYPE_CHECKING, Any
 from ...base.atomic import replacing
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError
-from ...terrain.parts import surfaces
+from ...terrain.parts.surfaces import are_owned, as_surface
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
+    from ...base.types import Bounds
+    from ...tin import TIN
     from ..reading import StoredPoints
     from ..runs import Record
     from ..tasks import Part
 
-__all__ = ["check_options", "compute", "join", "settle_options"]
+__all__ = ["check_options", "compute", "join", "measure_area", "settle_options"]
+
+
+def measure_area(tin: TIN, box: Bounds) -> float:
+    """Return the area of the triangles of a tile whose first corner lies in it: an example."""
+    return float(tin.triangle_areas[are_owned(tin.points[tin.triangles[:, 0]], box)].sum())
 
 
 def check_options(*, function: Any) -> dict[str, Any]:
@@ -47,9 +54,7 @@ def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     if not len(local.triangles):
         return 0, {}, []
     options = job.options
-    tin = surfaces.as_surface(
-        local, CRS.of(options["crs"]), Unit.of(options["elevation_unit"] or None)
-    )
+    tin = as_surface(local, CRS.of(options["crs"]), Unit.of(options["elevation_unit"] or None))
     module, _, name = options["function"].partition(":")
     function: Any = import_module(module)
     for one in name.split("."):

@@ -12,10 +12,17 @@ from ...base.checks import as_flag, as_length
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, PointsError, choice
 from ...base.georeference import describe_unknown
-from ...base.policies import RasterValue
+from ...base.policies import RasterSample, RasterValue
 from ...base.results import Raster
 from ...base.types import Bounds, Grid
-from ...terrain.gridding import as_cells, cover, describe_extent, describe_smooth, list_units
+from ...terrain.gridding import (
+    DESCRIBED_MEANS,
+    as_cells,
+    cover,
+    describe_extent,
+    describe_smooth,
+    list_units,
+)
 from ...terrain.parts.rasters import (
     RasterOptions,
     compute_block,
@@ -43,7 +50,7 @@ def check_options(
     like: Any = None,
     value: RasterValue = "elevation",
     method: str = "linear",
-    at: str = "center",
+    at: RasterSample = "center",
     azimuth: float = 315.0,
     altitude: float = 45.0,
     smooth: bool | None = None,
@@ -56,12 +63,15 @@ def check_options(
     choice("value", value, RasterValue)
     if method != "linear":
         raise OptionError("method", method, "linear where a raster is computed in tiles")
-    if at != "center":
-        raise OptionError("at", at, "center where a raster is computed in tiles")
+    choice("at", at, RasterSample)
+    if at == "mean" and value == "aspect":
+        raise OptionError("at", at, "center for aspect, as directions have no mean")
     if smooth is not None:
         as_flag("smooth", smooth)
-        if value == "elevation":
-            raise OptionError("smooth", smooth, "None for elevations, which have a method")
+    if smooth is not None and value == "elevation":
+        raise OptionError("smooth", smooth, "None for elevations, which have a method")
+    if smooth and at == "mean":
+        raise OptionError("smooth", smooth, "False for means, which are those of triangles")
     as_light(azimuth, altitude)
     return {
         "spacing": spacing,
@@ -70,6 +80,7 @@ def check_options(
         "azimuth": azimuth,
         "altitude": altitude,
         "smooth": smooth,
+        "at": at,
     }
 
 
@@ -81,7 +92,7 @@ def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str
     return {
         **options,
         "grid": grid,
-        "smooth": smooth and options["value"] != "elevation",
+        "smooth": smooth and options["value"] != "elevation" and options["at"] == "center",
         "crs": None if crs is None else str(crs),
         "elevation_unit": None if unit is None else unit.text,
     }
@@ -93,6 +104,7 @@ def _make_options(options: Mapping[str, Any]) -> RasterOptions:
         grid=Grid(Bounds(**grid["bounds"]), tuple(grid["shape"]), grid["spacing"]),
         value=options["value"],
         is_smooth=options["smooth"],
+        at=options["at"],
         light=as_light(options["azimuth"], options["altitude"]),
         crs=CRS.of(options["crs"]),
         elevation_unit=Unit.of(options["elevation_unit"]),
@@ -105,7 +117,7 @@ def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     rows, columns = find_cells(options.grid, tile.box)
     if rows.start == rows.stop:
         return 0, {}, []
-    local = part.triangulate(find_reach(options.grid, rows, columns), rings=count_rings(options))
+    local = part.triangulate(find_reach(options, rows, columns), rings=count_rings(options))
     if not len(local.triangles):
         return 0, {}, []
     values = compute_block(local, rows, columns, options).values
@@ -162,9 +174,10 @@ def join(
         If no cell has a value.
     """
     grid, value = _make_options(options).grid, options["value"]
+    what = "part of a cell" if options["at"] == "mean" else "centre of a cell"
     if not any(record.values.get("covered") for record in records.values()):
         raise PointsError(
-            f"No centre of a cell lies on the surface: the cells are {grid.spacing:g} wide and "
+            f"No {what} lies on the surface: the cells are {grid.spacing:g} wide and "
             f"cover {describe_extent(grid.bounds)}, the points {describe_extent(points.bounds)}."
         )
     blocks: Any = _Blocks(folder, records, grid)
@@ -178,6 +191,12 @@ def join(
         notes=[
             *points.notes,
             *describe_unknown(crs, points.elevation_unit),
-            *(() if is_elevation else (describe_smooth(is_smooth=options["smooth"]),)),
+            *([] if is_elevation else [_describe_slopes(options)]),
         ],
     )
+
+
+def _describe_slopes(options: Mapping[str, Any]) -> str:
+    if options["at"] == "mean":
+        return DESCRIBED_MEANS
+    return describe_smooth(is_smooth=options["smooth"])

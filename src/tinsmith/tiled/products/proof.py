@@ -1,0 +1,69 @@
+"""The proof of a surface in tiles: the triangles of all tiles fill the hull once."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...tin.tiling import NumberedPoints, TilesProof, TileTriangles, check_tiles, reduce_to_hull
+from ..reading import open_store
+from ..tasks import load_arrays, save_arrays
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+    from ..reading import StoredPoints
+    from ..runs import Record
+    from ..tasks import Part
+
+__all__ = ["check_options", "compute", "join", "settle_options"]
+
+
+def check_options() -> dict[str, Any]:
+    """Return no options."""
+    return {}
+
+
+def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return no options."""
+    del points
+    return dict(options)
+
+
+def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
+    """Write the triangles that a tile owns, their vertices with the numbers of the whole."""
+    local = part.triangulate(part.job.tile.box)
+    owned = local.triangles[local.owned]
+    if not len(owned):
+        return 0, {}, []
+    used, corners = np.unique(owned, return_inverse=True)
+    names = save_arrays(
+        part,
+        points=local.points[used],
+        numbers=local.numbers[used],
+        triangles=corners.reshape(-1, 3).astype(np.int32),
+    )
+    return len(used), {}, names
+
+
+def join(
+    points: StoredPoints, options: Mapping[str, Any], records: Mapping[str, Record], folder: Path
+) -> TilesProof:
+    """Prove the triangles of all tiles.
+
+    Raises
+    ------
+    CheckError
+        At the first fault.
+    """
+    del options
+    hull: NumberedPoints = reduce_to_hull(open_store(points.folder).skeleton)
+    return check_tiles(_load(records, folder), hull=hull.points)
+
+
+def _load(records: Mapping[str, Record], folder: Path) -> Iterator[TileTriangles]:
+    for record in records.values():
+        if record.files:
+            yield TileTriangles(tile=record.key, **load_arrays(folder, record))

@@ -1,0 +1,58 @@
+"""Many files: executors that run tasks in any order, and a folder of lidar tiles."""
+
+from __future__ import annotations
+
+import random
+from concurrent.futures import Executor, Future
+
+import numpy as np
+
+import tinsmith as ts
+
+
+class Shuffled(Executor):
+    """Runs tasks here, in an order at random: each when the next but some is asked for."""
+
+    def __init__(self, seed=0, most=10**9):
+        self._random = random.Random(seed)
+        self._waiting = []
+        self.most = most
+
+    def submit(self, function, /, *given, **named):
+        """Run one of the tasks that wait, if it is not the last that may be run."""
+        future = Future()
+        self._waiting.append((future, function, given, named))
+        self._random.shuffle(self._waiting)
+        self._run(self._waiting.pop())
+        return future
+
+    def _run(self, task):
+        future, function, given, named = task
+        self.most -= 1
+        if self.most < 0:
+            raise KeyboardInterrupt
+        try:
+            future.set_result(function(*given, **named))
+        except BaseException as error:
+            future.set_exception(error)
+
+
+def write_lidar(folder):
+    """Write tiles that overlap, with points at one place and of two classes; return the folder."""
+    rng = np.random.default_rng(3)
+    count = 6_000
+    xy = rng.random((count, 2)) * [300, 200] + [500_000, 4_000_000]
+    z = 300 + 20 * np.sin(xy[:, 0] / 50) + rng.normal(0, 0.1, count)
+    points = np.round(np.column_stack([xy, z]), 1)
+    classes = np.where(rng.random(count) < 0.7, 2, 5)
+    strip = np.minimum((points[:, 0] - 500_000) // 90, 2)
+    strip[rng.random(count) < 0.05] = 0
+    for number in range(3):
+        chosen = strip == number
+        survey = ts.Survey(
+            points=points[chosen],
+            attributes={"classification": classes[chosen].astype(np.uint8)},
+            crs="EPSG:32616",
+        )
+        ts.write(survey, folder / f"tile{number}.laz")
+    return folder

@@ -1,0 +1,163 @@
+"""Products of many files are those of the surface in memory, to the last bit and byte."""
+
+from __future__ import annotations
+
+import filecmp
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import rasterio
+from support.many_files import Shuffled, write_lidar
+
+import tinsmith as ts
+from tinsmith.tiled.products.mapped import measure_area
+
+SQUARES = {
+    "a": [(500_010, 4_000_010), (500_080, 4_000_015), (500_070, 4_000_090)],
+    "b": [(500_150, 4_000_050), (500_290, 4_000_050), (500_290, 4_000_150), (500_150, 4_000_150)],
+}
+LINE = [[500_010.0, 4_000_020.0], [500_150.5, 4_000_180.0], [500_290.0, 4_000_030.0]]
+
+
+@pytest.fixture(scope="module")
+def lidar(tmp_path_factory):
+    """Return a folder of tiles that overlap, with points at one place and of two classes."""
+    return write_lidar(tmp_path_factory.mktemp("lidar"))
+
+
+@pytest.fixture(scope="module")
+def tin(lidar):
+    """Return the surface in memory."""
+    return ts.triangulate(ts.read(lidar, classes=2))
+
+
+@pytest.fixture
+def cloud(lidar, tmp_path):
+    """Return the points, whose store is kept for all tilings."""
+    return ts.tiles(lidar, classes=2, store=tmp_path / "points")
+
+
+def without_notes(made):
+    """Return a product without notes, which name files differently."""
+    return replace(made, notes=())
+
+
+def require_same_files(tmp_path, suffix, wanted, make):
+    """Require the bytes of a product of 1, 4 and 16 tiles to be those of the product in memory.
+
+    Formats are such as do not hold notes.
+    """
+    target = ts.write(without_notes(wanted), tmp_path / f"whole{suffix}")
+    for tiles in (1, 4, 16):
+        path = make(tmp_path / f"tiles{suffix}", tiles=tiles, executor=Shuffled(tiles))
+        assert filecmp.cmp(path, target, shallow=False), tiles
+
+
+@pytest.mark.filterwarnings("ignore:.* is a shapefile")
+def test_contours(cloud, tin, tmp_path):
+    def make(path, **way):
+        return cloud.contours(path, 0.7, base=0.1, **way)
+
+    require_same_files(tmp_path, ".shp", ts.contours(tin, 0.7, base=0.1), make)
+
+
+@pytest.mark.filterwarnings("ignore:.* is a shapefile")
+def test_contours_at_levels(cloud, tin, tmp_path):
+    def make(path, **way):
+        return cloud.contours(path, levels=[300.0, 310.3], index=None, **way)
+
+    wanted = ts.contours(tin, levels=[300.0, 310.3], index=None)
+    require_same_files(tmp_path, ".shp", wanted, make)
+
+
+@pytest.mark.filterwarnings("ignore:.* is a shapefile")
+def test_bands(cloud, tin, tmp_path):
+    def make(path, **way):
+        return cloud.contours(path, 5.0, bands=True, **way)
+
+    require_same_files(tmp_path, ".shp", ts.contour_bands(tin, 5.0), make)
+
+
+@pytest.mark.parametrize("regions", [None, SQUARES])
+def test_volumes(cloud, tin, tmp_path, regions):
+    def make(path, **way):
+        return cloud.volume(path, base=301.0, regions=regions, **way)
+
+    require_same_files(tmp_path, ".csv", ts.volume(tin, base=301.0, regions=regions), make)
+
+
+def test_profiles(cloud, tin, tmp_path):
+    def make(path, **way):
+        return cloud.profile(path, LINE, interval=10.0, start=5.0, **way)
+
+    require_same_files(tmp_path, ".csv", ts.profile(tin, LINE, interval=10.0, start=5.0), make)
+
+
+@pytest.mark.parametrize("value", ["slope", "aspect", "hillshade"])
+@pytest.mark.parametrize("smooth", [False, True])
+def test_slopes_and_light(cloud, tin, tmp_path, value, smooth):
+    wanted = ts.rasterize(tin, spacing=2.0, value=value, smooth=smooth).bands[value]
+    for tiles in (1, 9):
+        path = cloud.rasterize(
+            tmp_path / "a.tif",
+            spacing=2.0,
+            value=value,
+            smooth=smooth,
+            tiles=tiles,
+            executor=Shuffled(),
+        )
+        with rasterio.open(path) as dataset:
+            np.testing.assert_array_equal(dataset.read(1), wanted)
+
+
+@pytest.mark.parametrize("value", ["elevation", "slope"])
+def test_means_of_cells(cloud, tin, tmp_path, value):
+    wanted = ts.rasterize(tin, spacing=3.0, value=value, at="mean").bands[value]
+    for tiles in (1, 9):
+        path = cloud.rasterize(
+            tmp_path / "a.tif",
+            spacing=3.0,
+            value=value,
+            at="mean",
+            tiles=tiles,
+            executor=Shuffled(),
+        )
+        with rasterio.open(path) as dataset:
+            np.testing.assert_array_equal(dataset.read(1), wanted)
+
+
+def test_tiles_are_proven_and_mapped(cloud, tin, tmp_path):
+    for tiles in (1, 7):
+        proof = cloud.check(run=tmp_path / "run", tiles=tiles, executor=Shuffled(tiles))
+        assert 1 <= proof.tiles <= tiles
+        assert proof.triangles == len(tin.triangles)
+        assert proof.vertices == len(tin.points)
+        assert proof.edges == len(tin.edges)
+        areas = cloud.map(measure_area, run=tmp_path / "run", tiles=tiles, executor=Shuffled(tiles))
+        assert sum(areas) == pytest.approx(tin.area, rel=1e-12)
+        assert float(proof.area) == pytest.approx(tin.area, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("method", "given"),
+    [
+        ("contours", {}),
+        ("contours", {"interval": -1.0}),
+        ("contours", {"interval": 1.0, "levels": [1.0]}),
+        ("contours", {"levels": ["high"]}),
+        ("volume", {"base": "low"}),
+        ("volume", {"base": 5.0, "regions": {"a": [(0, 0), (1, 1)]}}),
+        ("profile", {"line": [[0.0, 0.0]]}),
+        ("profile", {"line": LINE, "interval": 0.0}),
+    ],
+)
+def test_options_that_are_none_are_refused_before_the_work(lidar, tmp_path, method, given):
+    with pytest.raises(ts.TinsmithError):
+        getattr(ts.tiles(lidar), method)(tmp_path / "a.csv", executor=Shuffled(), **given)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_functions_that_workers_cannot_import_are_refused(lidar, tmp_path):
+    with pytest.raises(ts.OptionError, match="a function of a module"):
+        ts.tiles(lidar).map(lambda tin, box: None, run=tmp_path / "run")
