@@ -87,7 +87,7 @@ def find_unseen_points(
     if not len(is_safe):
         return NumberedPoints.none(), is_safe
     found = source.read_discs(discs)
-    found = found.choose(~np.isin(found.numbers, seen))
+    found = found.choose(seen[np.searchsorted(seen, found.numbers) % len(seen)] != found.numbers)
     found = found.choose(np.argsort(found.points[:, 0], kind="stable"))
     reach = discs.radii + _SLACK * (np.abs(discs.centers[:, 0]) + discs.radii)
     west = np.searchsorted(found.points[:, 0], discs.centers[:, 0] - reach, "left")
