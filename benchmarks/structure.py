@@ -7,12 +7,12 @@ this repository. A room is a package below tin, terrain, io, cli or base, or a m
 from __future__ import annotations
 
 import ast
-import re
 import subprocess
 import sys
 import tempfile
 from collections import Counter, defaultdict
 from dataclasses import dataclass, field
+from importlib.util import find_spec
 from pathlib import Path
 
 from .report.tables import TEXT, Table
@@ -20,7 +20,7 @@ from .report.tables import TEXT, Table
 ROOT = Path(__file__).parents[1]
 AREAS = ("tin", "terrain", "io", "tiled", "cli", "base")
 FOLDERS = {"tin": "tin", "terrain": "terrain", "io": "io", "": "src/tinsmith"}
-PARAMETERS = ("crs", "elevation_unit", "elevation_unit", "interval", "path")
+PARAMETERS = ("crs", "elevation_unit", "interval", "path")
 MOST_POSITIONAL = 4
 
 _FIRST = """
@@ -174,7 +174,7 @@ def _count_functions(tree, module, found):
 
 
 def count_options(root: Path) -> str:
-    """Return how many options the helps of all commands list; "-" if they do not run."""
+    """Return how many options the helps of all commands list; "-" if they do not run, with why."""
     with tempfile.TemporaryDirectory() as folder:
         package = Path(folder) / "tinsmith"
         package.mkdir()
@@ -183,9 +183,21 @@ def count_options(root: Path) -> str:
         for name in ("tin", "terrain", "io"):
             (package / name).symlink_to(root / name)
         program = _FIRST.format(folder=folder) + _COUNT_OPTIONS
-        command = [sys.executable, "-c", program]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-    return done.stdout.strip() if re.fullmatch(r"\d+", done.stdout.strip()) else "-"
+        done = subprocess.run(
+            [_find_python(), "-c", program], capture_output=True, text=True, check=False
+        )
+    last = done.stdout.strip().rpartition("\n")[2]
+    if done.returncode == 0 and last.isdecimal():
+        return last
+    why = done.stderr.strip().rpartition("\n")[2] or f"exit code {done.returncode}"
+    print(f"The commands of {root} do not run: {why}", file=sys.stderr)
+    return "-"
+
+
+def _find_python() -> str:
+    """Return an interpreter that has what commands import: this one, or that of the checkout."""
+    own = ROOT / ".venv/bin/python"
+    return sys.executable if find_spec("click") or not own.exists() else str(own)
 
 
 def main(places: list[str]) -> None:

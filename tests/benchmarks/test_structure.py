@@ -43,8 +43,19 @@ def test_figures_of_a_small_checkout(checkout):
     assert found.with_path == 2
 
 
-def test_a_checkout_that_does_not_run_has_no_options(checkout):
+def test_a_checkout_that_does_not_run_has_no_options_and_says_why(checkout, capsys):
     assert count_options(checkout) == "-"
+    assert "do not run: ImportError" in capsys.readouterr().err
+
+
+def test_options_are_counted_by_an_interpreter_that_can_run_the_commands(monkeypatch):
+    monkeypatch.setattr("benchmarks.structure.find_spec", lambda name: None)
+    assert 0 < int(count_options(ROOT)) < 500
+
+
+def test_no_figure_stands_twice(checkout):
+    labels = [label for label, _ in measure(checkout).rows]
+    assert len(labels) == len(set(labels))
 
 
 def test_this_checkout_lists_less_than_500_options():
