@@ -37,12 +37,7 @@ _STEM = 40
 
 
 def as_path(path: Any, option: str = "path") -> Path:
-    """Return the path of a file, or refuse what is none.
-
-    Raises
-    ------
-    OptionError
-    """
+    """Return the path of a file, or refuse what is none."""
     if not isinstance(path, str | os.PathLike) or isinstance(os.fspath(path), bytes):
         raise OptionError(option, path, "the name of a file, as text or Path")
     return Path(path)
@@ -56,21 +51,9 @@ def replacing(path: Path, *, binary: Literal[False]) -> AbstractContextManager[I
 def replacing(path: Path, *, binary: bool = True) -> Iterator[IO[bytes] | IO[str]]:
     r"""Open a file that takes the place of ``path`` when the block ends without an error.
 
-    Parameters
-    ----------
-    path : Path
-    binary : bool
-        Bytes; otherwise UTF-8 text whose line ends are written as given (``"\n"``).
-
-    Yields
-    ------
-    file object
-
-    Raises
-    ------
-    WriteError
-        If the file cannot be written (no such folder, no permission, disk full). The file that
-        was at ``path`` is then as it was.
+    It is of bytes, or else of UTF-8 text whose line ends are written as given (``"\n"``). If the
+    file cannot be written (no such folder, no permission, disk full) a WriteError is raised, and
+    the file that was at ``path`` is as it was.
     """
     with replacing_path(path) as beside:
         if binary:
@@ -85,20 +68,16 @@ def replacing(path: Path, *, binary: bool = True) -> Iterator[IO[bytes] | IO[str
 def replacing_path(path: Path) -> Iterator[Path]:
     """Yield the path of an empty file beside ``path``, same suffix, for libraries that open files.
 
-    Yields
-    ------
-    Path
-        Takes the place of ``path`` when the block ends without an error; removed otherwise.
-
-    Raises
-    ------
-    WriteError
-        As :func:`replacing`.
+    It takes the place of ``path`` when the block ends without an error, and is removed otherwise;
+    raises as :func:`replacing`.
     """
     with _finding_target(path) as target:
-        beside = _choose_path_beside(target)
+        beside = _name_beside(target, target.suffix)
         try:  # begins before the file is there, so that no signal can come in between
-            _create(beside, target)
+            descriptor = os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
+            os.close(descriptor)
+            if target.exists():  # whose permissions it gets
+                beside.chmod(target.stat().st_mode & 0o777)
             with _naming_full_disks(path, target):
                 yield beside
                 beside.replace(target)
@@ -107,13 +86,10 @@ def replacing_path(path: Path) -> Iterator[Path]:
 
 
 def require_writable(path: Path) -> None:
-    """Find out, before any work is done, whether a file can be written at ``path``.
+    """Raise a WriteError, before any work is done, if no file can be written at ``path``.
 
-    Raises
-    ------
-    WriteError
-        If there is no such folder, it may not be written to, or what is there is a folder, a
-        device or read-only.
+    That is where there is no such folder, or it may not be written to, or where a folder, a device
+    or a read-only file is.
     """
     with _finding_target(path) as target:
         if not os.access(target.parent, os.W_OK | os.X_OK):
@@ -128,7 +104,18 @@ def _finding_target(path: Path) -> Iterator[Path]:
     """Yield the file that is replaced, behind links, if it may be; faults become sentences."""
     with _translate_faults(path):
         target = _find_target(path)
-        _require_replaceable(path, target)
+        if target.is_dir():
+            raise WriteError(
+                f"Cannot write '{path}': it is a folder; name a file in it.", path=path
+            )
+        _require_parent(path, target)
+        if target.exists() and not target.is_file():
+            raise WriteError(
+                f"Cannot write '{path}': it is a device or a pipe; name an ordinary file.",
+                path=path,
+            )
+        if target.exists() and not os.access(target, os.W_OK):
+            raise WriteError(f"Cannot write '{path}': the file there is read-only.", path=path)
         yield target
 
 
@@ -176,23 +163,6 @@ def _require_parent(path: Path, target: Path) -> None:
         )
 
 
-def _require_replaceable(path: Path, target: Path) -> None:
-    if target.is_dir():
-        raise WriteError(f"Cannot write '{path}': it is a folder; name a file in it.", path=path)
-    _require_parent(path, target)
-    if target.exists() and not target.is_file():
-        raise WriteError(
-            f"Cannot write '{path}': it is a device or a pipe; name an ordinary file.", path=path
-        )
-    if target.exists() and not os.access(target, os.W_OK):
-        raise WriteError(f"Cannot write '{path}': the file there is read-only.", path=path)
-
-
-def _choose_path_beside(target: Path) -> Path:
-    """Return a new name in the folder of the target: hidden, with its suffix."""
-    return _name_beside(target, target.suffix)
-
-
 def _name_beside(target: Path, suffix: str = "") -> Path:
     return target.with_name(f".{target.stem[:_STEM]}-{os.urandom(4).hex()}{suffix}")
 
@@ -212,12 +182,7 @@ def find_leftovers(path: Path) -> list[Path]:
 
 @contextmanager
 def scratch_folder() -> Iterator[Path]:
-    """Yield a new folder among the system's temporary files, which is removed at the end.
-
-    Yields
-    ------
-    Path
-    """
+    """Yield a new folder among the system's temporary files, which is removed at the end."""
     with tempfile.TemporaryDirectory(prefix=f"{_SCRATCH}{os.getpid()}-") as folder:
         yield Path(folder)
 
@@ -247,31 +212,21 @@ def _is_running(process: int) -> bool:
 
 @contextmanager
 def folder_beside(path: Path) -> Iterator[Path]:
-    """Yield a new hidden folder beside a file, which is removed at the end.
-
-    Yields
-    ------
-    Path
-    """
+    """Yield a new hidden folder beside a file, which is removed at the end."""
     folder = _name_beside(path)
-    try:
+    try:  # begins before the folder is there, so that no signal can come in between
         folder.mkdir()
         yield folder
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _create(beside: Path, target: Path) -> None:
-    """Create the file with the permissions that the target has, or that a new file gets."""
-    descriptor = os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
-    os.close(descriptor)
-    if target.exists():
-        beside.chmod(target.stat().st_mode & 0o777)
-
-
 @contextmanager
 def replacing_files(path: Path, *, parts: Sequence[str] = ()) -> Iterator[Path]:
     """Yield a path of the same name in a new folder, for libraries that write several files.
+
+    All files in that folder, which is beside ``path``, take their places when the block ends
+    without an error, that of ``path`` last; raises as :func:`replacing`.
 
     Parameters
     ----------
@@ -280,66 +235,43 @@ def replacing_files(path: Path, *, parts: Sequence[str] = ()) -> Iterator[Path]:
         What the names of files that belong to it end with instead of its suffix (``".shx"``), or
         after it (``".tif.ovr"``). Those of an earlier file, which do not belong to the new one,
         are removed.
-
-    Yields
-    ------
-    Path
-        In a folder beside ``path``. All files there take their places when the block ends without
-        an error, that of ``path`` last; the folder is removed in any case.
-
-    Raises
-    ------
-    WriteError
-        As :func:`replacing`.
     """
-    with _finding_target(path) as target:
-        folder = _name_beside(target)
-        try:  # begins before the folder is there, so that no signal can come in between
-            folder.mkdir()
-            with _naming_full_disks(path, target):
-                yield folder / target.name
-                _move(folder, target, parts)
-        finally:
-            shutil.rmtree(folder, ignore_errors=True)
-
-
-def _move(folder: Path, target: Path, parts: Sequence[str]) -> None:
-    """Let the files of a folder take their places, and remove parts of the file before."""
-    made = sorted(folder.iterdir(), key=lambda one: one.name == target.name)
-    if target.exists():
-        (folder / target.name).chmod(target.stat().st_mode & 0o777)
-    stale = {target.with_name(target.stem + part) for part in parts}
-    for one in stale - {target.with_name(one.name) for one in made}:
-        one.unlink(missing_ok=True)
-    for one in made:
-        one.replace(target.with_name(one.name))
+    with (
+        _finding_target(path) as target,
+        folder_beside(target) as folder,
+        _naming_full_disks(path, target),
+    ):
+        yield folder / target.name
+        made = sorted(folder.iterdir(), key=lambda one: one.name == target.name)
+        if target.exists():
+            (folder / target.name).chmod(target.stat().st_mode & 0o777)
+        stale = {target.with_name(target.stem + part) for part in parts}
+        for one in stale - {target.with_name(one.name) for one in made}:
+            one.unlink(missing_ok=True)
+        for one in made:
+            one.replace(target.with_name(one.name))
 
 
 @contextmanager
 def replacing_folder(path: Path, *, marker: str) -> Iterator[Path]:
     """Yield a new folder that takes the place of ``path`` when the block ends without an error.
 
-    Parameters
-    ----------
-    path : Path
-        A folder, if there is one, that is empty or holds a file ``marker``; of another one nothing
-        is touched.
-    marker : str
-        File that tells that a folder was written by this program's kind of writer.
-
-    Yields
-    ------
-    Path
-        Beside ``path``; removed where the block ends with an error.
-
-    Raises
-    ------
-    WriteError
-        If the folder cannot be written, or holds something else.
+    A folder that is there must be empty or hold a file ``marker``, which tells that this program's
+    kind of writer wrote it: of another one nothing is touched, and a WriteError is raised.
     """
     with _translate_faults(path):
         target = _find_target(path)
-        _require_replaceable_folder(path, target, marker)
+        _require_parent(path, target)
+        if target.exists() and not target.is_dir():
+            raise WriteError(
+                f"Cannot write '{path}': a file is there, and a folder is written.", path=path
+            )
+        if target.is_dir() and any(target.iterdir()) and not (target / marker).is_file():
+            raise WriteError(
+                f"Cannot write '{path}': the folder is not empty, and holds no {marker} of an "
+                "earlier one; name a new folder.",
+                path=path,
+            )
         fresh, old = _name_beside(target), _name_beside(target)
         try:
             fresh.mkdir()
@@ -355,17 +287,3 @@ def replacing_folder(path: Path, *, marker: str) -> Iterator[Path]:
         finally:
             shutil.rmtree(fresh, ignore_errors=True)
             shutil.rmtree(old, ignore_errors=True)
-
-
-def _require_replaceable_folder(path: Path, target: Path, marker: str) -> None:
-    _require_parent(path, target)
-    if target.exists() and not target.is_dir():
-        raise WriteError(
-            f"Cannot write '{path}': a file is there, and a folder is written.", path=path
-        )
-    if target.is_dir() and any(target.iterdir()) and not (target / marker).is_file():
-        raise WriteError(
-            f"Cannot write '{path}': the folder is not empty, and holds no {marker} of an earlier "
-            "one; name a new folder.",
-            path=path,
-        )

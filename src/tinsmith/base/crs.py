@@ -432,39 +432,32 @@ def _parse(value: object) -> pyproj.CRS:
             "its number, a WKT or a PROJ text is needed.",
             crs=value,
         ) from error
-    _require_map(parsed, value)
-    return parsed
-
-
-def _require_map(parsed: pyproj.CRS, value: object) -> None:
-    """Refuse what has no eastings and northings, or elevations that grow downwards."""
     axes = parsed.axis_info
     is_flat = parsed.is_geocentric or (parsed.is_vertical and not parsed.is_compound)
     if is_flat or len(axes) == 1:
         raise CrsError(
-            f"'{_shorten(str(value))}' is {parsed.name}, a {parsed.type_name}: one of eastings "
+            f"'{_shorten(value)}' is {parsed.name}, a {parsed.type_name}: one of eastings "
             "and northings, or longitude and latitude, is needed.",
             crs=value,
         )
     if len(axes) > 2 and axes[2].direction == "down":
         raise CrsError(
-            f"'{_shorten(str(value))}' is {parsed.name}, whose third axis points down: "
+            f"'{_shorten(value)}' is {parsed.name}, whose third axis points down: "
             "elevations must grow upwards; change the sign of the depths, and name the CRS "
             "without its vertical part.",
             crs=value,
         )
+    return parsed
 
 
-def _shorten(text: str) -> str:
-    return text if len(text) <= _SHOWN_LETTERS else text[: _SHOWN_LETTERS - 3] + "..."
+def _shorten(value: object, most: int = _SHOWN_LETTERS) -> str:
+    text = str(value)
+    return text if len(text) <= most else text[: most - 3] + "..."
 
 
 def shorten_crs(crs: CRS | None) -> str:
     """Return the text of a CRS, cut to fit a one-line repr."""
-    if crs is None:
-        return "unknown"
-    text = str(crs)
-    return text if len(text) <= _LABEL_LETTERS else text[: _LABEL_LETTERS - 3] + "..."
+    return "unknown" if crs is None else _shorten(crs, _LABEL_LETTERS)
 
 
 # --------------------------------------------------------------------- elevations
@@ -473,10 +466,7 @@ def shorten_crs(crs: CRS | None) -> str:
 def require_one_unit(crs: CRS | None, unit: Unit | None) -> Unit | None:
     """Return the unit of elevations that is known: that of the CRS's vertical axis, or ``unit``.
 
-    Raises
-    ------
-    OptionError
-        If both are known and differ.
+    Refused if both are known and differ.
     """
     vertical = None if crs is None else crs.vertical_unit
     if crs is not None and vertical is not None and unit is not None:
@@ -485,12 +475,7 @@ def require_one_unit(crs: CRS | None, unit: Unit | None) -> Unit | None:
 
 
 def require_same_unit(known: Unit, declared: Unit, why: str) -> None:
-    """Refuse a unit of elevations that is declared to be another than it is known to be.
-
-    Raises
-    ------
-    OptionError
-    """
+    """Refuse a unit of elevations that is declared to be another than it is known to be."""
     if known != declared:
         raise OptionError(
             "elevation_unit", declared.name, f"{known.name}, {why}", what="unit of elevations"
@@ -511,24 +496,12 @@ def measure_angular_unit(crs: CRS | None) -> float | None:
 
 
 def assume_elevation_unit(crs: CRS | None, unit: Unit | None) -> Unit | None:
-    """Return the unit that elevations are taken to have; None if nothing tells.
-
-    Parameters
-    ----------
-    crs : CRS or None
-    unit : Unit or None
-        The one that is known.
-    """
+    """Return the unit that elevations are taken to have: the known ``unit``; None if none tells."""
     return unit if unit is not None or crs is None else crs.usual_elevation_unit
 
 
 def require_lengths(crs: CRS | None) -> None:
-    """Refuse to measure areas in the plane where coordinates are longitude and latitude.
-
-    Raises
-    ------
-    CrsError
-    """
+    """Refuse to measure areas in the plane where coordinates are longitude and latitude."""
     if crs is not None and crs.is_geographic:
         raise CrsError(
             f"Coordinates in {crs.label} are angles, and areas cannot be measured in their "
@@ -540,12 +513,7 @@ def require_lengths(crs: CRS | None) -> None:
 def scale_elevations(crs: CRS | None, unit: Unit | None) -> float:
     """Return the factor from elevations to the unit of eastings and northings.
 
-    Where either is unknown they are taken to be the same.
-
-    Raises
-    ------
-    CrsError
-        If eastings are angles.
+    Where either is unknown they are taken to be the same; where eastings are angles it is refused.
     """
     if crs is None:
         return 1.0

@@ -28,13 +28,7 @@ def lazy_names(
     lines ``from .module import name as name``, or ``from .package import *`` for all names of the
     stub of another package. The modules of the package that are named there can be used as
     attributes, too. No name is that of a module of the package, which would hide it once loaded.
-
-    Parameters
-    ----------
-    package : str
-        Its ``__name__``.
-    instead : mapping of str to str, optional
-        Modules of names that are loaded from elsewhere than type checkers are told.
+    ``instead`` has modules of names that are loaded from elsewhere than type checkers are told.
     """
     module_of = _read_stub(package) | dict(instead or {})
     modules = {name for name, module in module_of.items() if module == "."}
@@ -62,7 +56,9 @@ def lazy_names(
 def _read_stub(package: str) -> dict[str, str]:
     """Return the module of each name in the stub of a package, relative to it."""
     found: dict[str, str] = {}
-    for statement in ast.parse(_load_stub(package)).body:
+    spec: Any = find_spec(package)  # the stub lies beside the source, in a folder or an archive
+    stub = spec.loader.get_data(f"{spec.origin.rpartition('.')[0]}.pyi")
+    for statement in ast.parse(stub).body:
         if not isinstance(statement, ast.ImportFrom):
             continue
         module = "." * statement.level + (statement.module or "")
@@ -74,21 +70,10 @@ def _read_stub(package: str) -> dict[str, str]:
     return found
 
 
-def _load_stub(package: str) -> bytes:
-    """Return the stub that lies beside the source of a package, in a folder or an archive."""
-    spec: Any = find_spec(package)
-    data: bytes = spec.loader.get_data(f"{spec.origin.rpartition('.')[0]}.pyi")
-    return data
-
-
 def register_methods(functions: dict[str, str]) -> None:
     """Name the functions that do the work of methods; each is loaded when first called.
 
-    Parameters
-    ----------
-    functions : dict of str to str
-        By class and method (``"TIN.plot"``), the function as ``package.module:name``; it takes the
-        object first.
+    By class and method (``"TIN.plot"``), as ``package.module:name``; it takes the object first.
     """
     _FUNCTIONS.update(functions)
 

@@ -42,15 +42,11 @@ def warn(sentence: str, category: type[Warning] = LossWarning) -> None:
     file = _FILE.get()
     if file is not None and FILE in sentence:
         sentence = name_file(sentence, str(file))
-    warnings.warn(sentence, category, stacklevel=_find_caller())
-
-
-def _find_caller() -> int:
-    """Return the ``stacklevel`` of the first frame outside of this package, seen from `warn`."""
-    level, frame = 2, sys._getframe(2)
+    # The first frame outside of this package is that of the caller.
+    level, frame = 2, sys._getframe(1)
     while frame.f_back and str(frame.f_globals.get("__name__")).partition(".")[0] == _PACKAGE:
         level, frame = level + 1, frame.f_back
-    return level
+    warnings.warn(sentence, category, stacklevel=level)
 
 
 def join_notes(*groups: Iterable[str]) -> tuple[str, ...]:

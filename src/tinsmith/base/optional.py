@@ -31,20 +31,10 @@ _EXTRA_OF = {
 
 
 def load(module: str, purpose: str = "This") -> Any:
-    """Return a module of an optional library, or name what brings it.
+    """Return a module of an optional library, or name what brings it in a MissingExtraError.
 
-    Parameters
-    ----------
-    module : str
-        Such as ``"pyvista"`` or ``"matplotlib.figure"``, whose figures are drawn without a screen
-        and leave no state behind.
-    purpose : str, optional
-        Subject of the sentence: what needs the library.
-
-    Raises
-    ------
-    MissingExtraError
-        If it is not installed.
+    ``purpose`` is the subject of the sentence: what needs the library. Figures of
+    ``"matplotlib.figure"`` are drawn without a screen and leave no state behind.
     """
     try:
         return import_module(module)
@@ -60,13 +50,7 @@ def describe_missing(error: ImportError) -> MissingExtraError | None:
 
 
 def require(library: str, purpose: str) -> None:
-    """Name the extra that brings a library if it is not installed; do not load it.
-
-    Raises
-    ------
-    MissingExtraError
-        If it is not installed.
-    """
+    """Raise MissingExtraError if a library is not installed; do not load it."""
     if find_spec(library) is None:
         raise _describe_missing(library, purpose)
 

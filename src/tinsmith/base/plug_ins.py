@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
 from importlib.machinery import PathFinder
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -30,13 +31,7 @@ class PlugIn(NamedTuple):
 
 
 def find_plug_ins(group: str) -> list[PlugIn]:
-    """Return the plug-ins of a group of entry points, by name and distribution.
-
-    Parameters
-    ----------
-    group : str
-        Such as ``"tinsmith.formats"``.
-    """
+    """Return the plug-ins of a group of entry points, by name and distribution."""
     found = [
         PlugIn(one.name, name_distribution(one), one.load) for one in entry_points(group=group)
     ]
@@ -62,15 +57,12 @@ def _may_have(place: Path, section: bytes) -> bool:
         return True
     except OSError:
         return False
-    metadata = [one for one in inside if one.suffix in (".dist-info", ".egg-info")]
-    return any(section in _read_entry_points(one) for one in metadata)
-
-
-def _read_entry_points(folder: Path) -> bytes:
-    try:
-        return (folder / "entry_points.txt").read_bytes()
-    except OSError:
-        return b""
+    for folder in inside:
+        if folder.suffix in (".dist-info", ".egg-info"):
+            with suppress(OSError):
+                if section in (folder / "entry_points.txt").read_bytes():
+                    return True
+    return False
 
 
 def name_distribution(entry: EntryPoint) -> str:
@@ -86,16 +78,9 @@ def describe_failure(error: BaseException) -> str:
 
 
 def warn_of_plug_in(what: str, distribution: str, reason: str) -> None:
-    """Warn that a plug-in is left out, or a part of it.
+    """Warn that a plug-in is left out, or a part of it, such as ``"format 'mine'"``, and why.
 
-    Parameters
-    ----------
-    what : str
-        Such as ``"format 'mine'"``.
-    distribution : str
-        Name and version of the distribution that is to be mended or removed.
-    reason : str
-        End of the sentence.
+    ``distribution`` is the name and version of what is to be repaired or removed.
     """
     text = f"Plug-in {distribution}, {what}: {reason}."
     warn(printable(text), PlugInWarning)

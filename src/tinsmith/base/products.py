@@ -54,7 +54,8 @@ def product(function: F) -> F:
             made = function(*still, **of_name)
         finally:
             _is_inside.reset(token)
-        return _add_notes(made, surfaces)
+        has_notes = hasattr(type(made), "with_notes")
+        return made.with_notes(notes_of_surfaces(surfaces)) if has_notes else made
 
     make.__dict__["is_product"] = True
     return cast("F", make)
@@ -81,31 +82,22 @@ def _is_surface(value: Any) -> bool:
     return hasattr(type(value), "snapshot") and hasattr(type(value), "triangulation")
 
 
-def _add_notes(made: Any, surfaces: Iterable[_Surface]) -> Any:
-    if not hasattr(type(made), "with_notes"):
-        return made
-    return made.with_notes(notes_of_surfaces(surfaces))
-
-
 def notes_of_surfaces(surfaces: Iterable[_Surface]) -> tuple[str, ...]:
-    """Return the notes of surfaces; of several ones each with the name of its surface."""
+    """Return the notes of surfaces; of several ones each with the name of its surface.
+
+    They are named after their files, by number where these do not tell them apart.
+    """
     named = list(surfaces)
     if len(named) == 1:
         return named[0].notes
-    names = _name_apart(named)
+    names = [surface.source for surface in named]
+    if not all(names) or len(set(names)) < len(names):
+        names = [
+            f"Surface {number}" + (f" ({name})" if name else "")
+            for number, name in enumerate(names, start=1)
+        ]
     return tuple(
         f"{name}: {note}"
         for name, surface in zip(names, named, strict=True)
         for note in surface.notes
     )
-
-
-def _name_apart(surfaces: list[_Surface]) -> list[str]:
-    """Name surfaces after their files, by number where these do not tell them apart."""
-    names = [surface.source for surface in surfaces]
-    if all(names) and len(set(names)) == len(names):
-        return names
-    return [
-        f"Surface {number}" + (f" ({name})" if name else "")
-        for number, name in enumerate(names, start=1)
-    ]

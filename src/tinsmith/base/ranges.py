@@ -31,19 +31,7 @@ def require_degrees(xy: AnyArray, crs: CRS | None, what: str) -> None:
     """Refuse what is no longitude and latitude where a CRS says so; NaN passes.
 
     Longitudes are from -180 to 360 degrees, so counted from the antimeridian or from Greenwich.
-
-    Parameters
-    ----------
-    xy : (n, 2) or wider float64 array
-    crs : CRS or None
-        Projected ones, and none, allow anything.
-    what : str
-        In the plural: the sentence begins with it.
-
-    Raises
-    ------
-    PointsError
-        With the first row.
+    ``what`` is in the plural: the sentence begins with it. Raises PointsError with the first row.
     """
     degrees = measure_angular_unit(crs)
     if crs is None or degrees is None or len(xy) == 0:
@@ -73,10 +61,6 @@ def describe_span(xy: AnyArray, crs: CRS | None, what: str) -> list[str]:
     point is empty, then the points all lie within less than 180 degrees across the antimeridian,
     and triangles would join them the long way round. If none is that wide, they may go round the
     globe, and only the caller knows.
-
-    Raises
-    ------
-    PointsError
     """
     degrees = measure_angular_unit(crs)
     if crs is None or degrees is None or len(xy) == 0:

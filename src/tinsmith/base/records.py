@@ -29,12 +29,7 @@ _NAMES = {**vars(types), **vars(arrays), **vars(policies)}
 
 
 def require(is_so: Any, what: str) -> None:
-    """Raise unless something is so.
-
-    Raises
-    ------
-    PointsError
-    """
+    """Raise PointsError unless something is so."""
     if not is_so:
         raise PointsError(f"The record does not fit the TIN ({what}).")
 
@@ -42,11 +37,7 @@ def require(is_so: Any, what: str) -> None:
 def require_fields(value: Any, names: Mapping[str, Any]) -> None:
     """Require of each field of a value what its annotation says, dtypes of arrays included.
 
-    Parameters
-    ----------
-    value : dataclass or named tuple
-    names : mapping of str to type
-        Classes that its annotations name.
+    ``value`` is a dataclass or a named tuple; ``names`` are classes that its annotations name.
     """
     own = cast("Hashable", type(value))
     for name, kind in _find_annotations(own, tuple(names.items())).items():

@@ -122,13 +122,8 @@ def name_file(text: str, name: str) -> str:
 def name_options(text: str, find_flag: Callable[[str], str | None]) -> str:
     """Return a sentence with flags of a command in place of the options that it marks.
 
-    Sentences of the library have options, and options with a value, between backticks.
-
-    Parameters
-    ----------
-    text : str
-    find_flag : callable
-        Returns the flag of an option, None if the command has none: it is left as it is.
+    Sentences of the library have options, and options with a value, between backticks. An option
+    for which ``find_flag`` returns None is left as it is: the command has none.
 
     Examples
     --------
@@ -163,7 +158,8 @@ def shown(value: Any) -> str:
     >>> shown("x" * 99)[-9:], shown(list(range(9)))
     ('xxxxxx...', '[0, 1, 2, 3, 4, ...]')
     """
-    if _is_of_numpy(value):
+    bases = {(base.__module__, base.__name__) for base in type(value).__mro__}
+    if bases & {("numpy", "ndarray"), ("numpy", "generic")}:  # which this module does not load
         if value.shape:
             return f"an array of shape {value.shape}"
         value = value.item()
@@ -177,14 +173,6 @@ def shown(value: Any) -> str:
     except Exception:
         text = f"a {type(value).__name__}"
     return _shorten(text)
-
-
-def _is_of_numpy(value: Any) -> bool:
-    """Whether it is an array or a number of NumPy, which this module does not load."""
-    return any(
-        base.__name__ in ("ndarray", "generic") and base.__module__ == "numpy"
-        for base in type(value).__mro__
-    )
 
 
 def _shorten(text: str) -> str:

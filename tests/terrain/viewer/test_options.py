@@ -10,7 +10,7 @@ from PIL import Image
 from support.pictures import make_dipping_plane, read_pixels
 
 from tinsmith import triangulate
-from tinsmith.base.georeference.units import METRE
+from tinsmith.base.crs import METRE
 from tinsmith.terrain import OptionError, preview
 from tinsmith.terrain.palette import choose_palette, compute_lightness
 from tinsmith.terrain.viewer.actors import add_lights

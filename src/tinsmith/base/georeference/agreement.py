@@ -98,16 +98,23 @@ def agree(surfaces: Sequence[Referenced], names: Sequence[str]) -> Agreement:
     ``names`` are what each is called in a sentence: "the ground". Raises CrsError if CRSs differ,
     or are known of some only; if it cannot be told whether elevations are in one unit.
     """
-    for one, name in zip(surfaces, names, strict=True):
-        _require_one_crs(surfaces[0], names[0], one, name)
-    _require_one_datum(surfaces, names)
+    named = list(zip(surfaces, names, strict=True))
+    for one, name in named[1:]:
+        _require_one_crs(*named[0], one, name)
     crs = surfaces[0].crs
-    units = [assume_elevation_unit(crs, one.elevation_unit) for one in surfaces]
-    known = [one.elevation_unit for one in surfaces if one.elevation_unit is not None]
-    unit = known[0] if known else None
-    notes = [*_describe_datum(surfaces, names), *_describe_units(surfaces, names, unit)]
+    notes = _agree_on_datum(named)
+    unit = next((one.elevation_unit for one in surfaces if one.elevation_unit is not None), None)
+    if crs is None or unit is None:  # of all of them once, else of each
+        notes += describe_unknown(crs, unit)
+    else:
+        notes += [
+            f"The unit of the elevations of {name} is not known: taken to be the {unit.name}."
+            for one, name in named
+            if one.elevation_unit is None
+        ]
     factors = []
-    for own, one, name in zip(units, surfaces, names, strict=True):
+    for one, name in named:
+        own = assume_elevation_unit(crs, one.elevation_unit)
         factor = 1.0 if unit is None or own == unit else _convert(one, own, unit, name, names)
         if factor != 1.0:
             notes.append(f"The elevations of {name} were converted from {own} to {unit}.")
@@ -136,13 +143,10 @@ def _require_one_crs(first: Referenced, its_name: str, other: Referenced, name: 
         )
 
 
-def _require_one_datum(surfaces: Sequence[Referenced], names: Sequence[str]) -> None:
-    """Refuse elevations that refer to different vertical CRSs."""
-    stated = [
-        (one.crs, name)
-        for one, name in zip(surfaces, names, strict=True)
-        if one.crs is not None and one.crs.vertical_unit is not None
-    ]
+def _agree_on_datum(named: Sequence[tuple[Referenced, str]]) -> list[str]:
+    """Refuse elevations that refer to different vertical CRSs, and tell which is assumed."""
+    known = [(one.crs, name) for one, name in named if one.crs is not None]
+    stated = [(crs, name) for crs, name in known if crs.vertical_unit is not None]
     for crs, name in stated[1:]:
         if not crs.is_same(stated[0][0]):
             raise CrsError(
@@ -150,34 +154,10 @@ def _require_one_datum(surfaces: Sequence[Referenced], names: Sequence[str]) -> 
                 f"those of {crs.label}: both must refer to one vertical CRS.",
                 crs=crs,
             )
-
-
-def _describe_datum(surfaces: Sequence[Referenced], names: Sequence[str]) -> list[str]:
-    silent = [
-        name
-        for one, name in zip(surfaces, names, strict=True)
-        if one.crs is not None and one.crs.vertical_unit is None
-    ]
-    stated = next((one.crs for one in surfaces if one.crs and one.crs.vertical_unit), None)
-    if stated is None:
-        return []
     return [
-        f"The vertical CRS of {name} is not known: taken to be that of {stated.label}."
-        for name in silent
-    ]
-
-
-def _describe_units(
-    surfaces: Sequence[Referenced], names: Sequence[str], unit: Unit | None
-) -> list[str]:
-    """Say what is not known: of all of them once, else of each."""
-    crs = surfaces[0].crs
-    if crs is None or unit is None:
-        return list(describe_unknown(crs, unit))
-    return [
-        f"The unit of the elevations of {name} is not known: taken to be the {unit.name}."
-        for one, name in zip(surfaces, names, strict=True)
-        if one.elevation_unit is None
+        f"The vertical CRS of {name} is not known: taken to be that of {stated[0][0].label}."
+        for crs, name in known
+        if stated and crs.vertical_unit is None
     ]
 
 

@@ -74,16 +74,13 @@ class Axes(NamedTuple):
             Label(f"{names[up]}ing", float(self.matrix[1, up])),
         )
 
-    def turn(self, places: Any) -> Float64Array:
-        """Return coordinates, (..., 2 or more), as those to the east and north; the rest stays."""
-        turned = np.array(places, np.float64)
-        turned[..., :2] = turned[..., :2] @ self.matrix.T + 0.0
-        return turned
+    def turn(self, places: Any, *, back: bool = False) -> Float64Array:
+        """Return coordinates, (..., 2 or more), as those to the east and north, or back again.
 
-    def turn_back(self, places: Any) -> Float64Array:
-        """Return coordinates of the CRS from those to the east and north, as :meth:`turn`."""
+        What lies behind the first two stays.
+        """
         turned = np.array(places, np.float64)
-        turned[..., :2] = turned[..., :2] @ self.matrix + 0.0
+        turned[..., :2] = turned[..., :2] @ (self.matrix if back else self.matrix.T) + 0.0
         return turned
 
 
@@ -163,4 +160,4 @@ def turn_into_drawing(places: Any, crs: CRS | None) -> Any:
 
 def undo_north_up(places: Any, crs: CRS | None) -> Any:
     """Return places of a drawing in coordinates of the CRS that what is drawn had."""
-    return crs.axes.turn_back(places) if isinstance(crs, DrawnCRS) else places
+    return crs.axes.turn(places, back=True) if isinstance(crs, DrawnCRS) else places

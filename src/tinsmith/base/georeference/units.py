@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from ..crs import METRE, Unit, assume_elevation_unit, scale_elevations
-from .agreement import Referenced
+from ..crs import Unit, assume_elevation_unit, scale_elevations
+from .agreement import Referenced, find_plane_units
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ..arrays import Float64Array
     from ..crs import CRS
     from ..types import Bounds
 
@@ -83,17 +82,11 @@ def find_ground(tin: Located) -> Ground:
     scales = find_scales(crs, tin.elevation_unit, tin.bounds.center[1])
     return Ground(
         "CRS unknown" if crs is None else crs.caption,
-        _choose_drawn_unit(crs),
+        find_plane_units(crs).length or NOT_KNOWN,
         up,
         tin.elevation_unit is None,
         (float(scales.east), float(scales.north), scales.up),
     )
-
-
-def _choose_drawn_unit(crs: CRS | None) -> Unit:
-    if crs is None:
-        return NOT_KNOWN
-    return METRE if crs.is_geographic else crs.horizontal_unit
 
 
 def find_scales(crs: CRS | None, unit: Unit | None, northing: ArrayLike) -> Scales:
@@ -108,17 +101,12 @@ def find_scales(crs: CRS | None, unit: Unit | None, northing: ArrayLike) -> Scal
         return Scales(1.0, 1.0, scale_elevations(crs, unit))
     up = assume_elevation_unit(crs, unit)
     metres = None if up is None else up.metres
-    return Scales(*_measure_degrees(crs, northing), metres or 1.0)
-
-
-def _measure_degrees(crs: CRS, latitude: ArrayLike) -> tuple[Float64Array, Float64Array]:
-    """Return metres per CRS unit along a parallel and along a meridian."""
     major, squared, to_radians = _read_ellipsoid(crs)
-    turn = np.asarray(latitude, np.float64) * to_radians
+    turn = np.asarray(northing, np.float64) * to_radians
     bulge = 1.0 - squared * np.sin(turn) ** 2
     prime_vertical = major / np.sqrt(bulge)
     meridian = prime_vertical * (1.0 - squared) / bulge
-    return prime_vertical * np.cos(turn) * to_radians, meridian * to_radians
+    return Scales(prime_vertical * np.cos(turn) * to_radians, meridian * to_radians, metres or 1.0)
 
 
 def find_ellipsoid(crs: CRS | None) -> Ellipsoid | None:

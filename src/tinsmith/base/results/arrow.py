@@ -17,8 +17,7 @@ from ..errors import OptionError
 from .columns import UNKNOWN_UNIT, unit_text
 
 if TYPE_CHECKING:
-    from ..arrays import Int64Array
-    from .parts import FeatureParts
+    from .features import Features
 
 __all__ = ["build_table"]
 
@@ -35,7 +34,7 @@ _NESTING = {
 _LARGEST_OFFSET = 2**31 - 1
 
 
-def build_table(features: FeatureParts) -> Any:
+def build_table(features: Features) -> Any:
     """Return a ``pyarrow.Table`` of the columns, and of the geometries in column ``geometry``.
 
     Raises MissingExtraError if pyarrow is not installed, OptionError if a column is called
@@ -48,16 +47,32 @@ def build_table(features: FeatureParts) -> Any:
         )
     arrays = [pa.array(values) for values in features.columns.values()]
     fields = [
-        pa.field(name, array.type, metadata=_write_unit(features, name))
+        pa.field(
+            name,
+            array.type,
+            metadata={"unit": unit_text(features.units, name)} if name in features.units else None,
+        )
         for name, array in zip(features.columns, arrays, strict=True)
     ]
     geometries = _build_geometries(pa, features)
-    fields.append(pa.field(_GEOMETRY, geometries.type, False, metadata=_write_extension(features)))
-    schema = pa.schema(fields, metadata=_write_description(features))
-    return pa.Table.from_arrays([*arrays, geometries], schema=schema)
+    crs: dict[str, Any] = {}
+    if features.crs is not None:
+        crs = {"crs": features.crs.to_pyproj().to_json_dict(), "crs_type": "projjson"}
+    extension = {  # what tells readers that a column has geometries, and their CRS
+        "ARROW:extension:name": f"geoarrow.{features.geometry_type.lower()}",
+        "ARROW:extension:metadata": json.dumps(crs),
+    }
+    fields.append(pa.field(_GEOMETRY, geometries.type, False, metadata=extension))
+    about = {"name": features.name}
+    if features.has_elevations:
+        unit = features.elevation_unit
+        about["elevation_unit"] = UNKNOWN_UNIT if unit is None else unit.name
+    about["notes"] = json.dumps(list(features.notes))
+    return pa.Table.from_arrays([*arrays, geometries], schema=pa.schema(fields, metadata=about))
 
 
-def _build_geometries(pa: Any, features: FeatureParts) -> Any:
+def _build_geometries(pa: Any, features: Features) -> Any:
+    """Return lists in lists of coordinates, with offsets of 32 bits where they fit."""
     size = features.coordinates.shape[1]
     names = _NESTING[features.geometry_type]
     built = pa.FixedSizeListArray.from_arrays(
@@ -65,40 +80,10 @@ def _build_geometries(pa: Any, features: FeatureParts) -> Any:
         type=pa.list_(pa.field("xyz"[:size], pa.float64(), False), size),
     )
     for name, offsets in zip(names, features.offsets, strict=True):
-        built = _nest(pa, built, name, offsets)
+        member = pa.field(name, built.type, False)
+        if offsets[-1] > _LARGEST_OFFSET:
+            kind, numbers, array = pa.large_list(member), offsets, pa.LargeListArray
+        else:
+            kind, numbers, array = pa.list_(member), offsets.astype(np.int32), pa.ListArray
+        built = array.from_arrays(pa.array(numbers), built, type=kind)
     return built
-
-
-def _nest(pa: Any, values: Any, name: str, offsets: Int64Array) -> Any:
-    """Return lists of values, with offsets of 32 bits where they fit."""
-    member = pa.field(name, values.type, False)
-    if offsets[-1] > _LARGEST_OFFSET:
-        kind, numbers, array = pa.large_list(member), offsets, pa.LargeListArray
-    else:
-        kind, numbers, array = pa.list_(member), offsets.astype(np.int32), pa.ListArray
-    return array.from_arrays(pa.array(numbers), values, type=kind)
-
-
-def _write_extension(features: FeatureParts) -> dict[str, str]:
-    """Return what tells readers that a column has geometries, and their CRS."""
-    crs: dict[str, Any] = {}
-    if features.crs is not None:
-        crs = {"crs": features.crs.to_pyproj().to_json_dict(), "crs_type": "projjson"}
-    return {
-        "ARROW:extension:name": f"geoarrow.{features.geometry_type.lower()}",
-        "ARROW:extension:metadata": json.dumps(crs),
-    }
-
-
-def _write_unit(features: FeatureParts, name: str) -> dict[str, str] | None:
-    return {"unit": unit_text(features.units, name)} if name in features.units else None
-
-
-def _write_description(features: FeatureParts) -> dict[str, str]:
-    unit = features.elevation_unit
-    heights = {"elevation_unit": UNKNOWN_UNIT if unit is None else unit.name}
-    return {
-        "name": features.name,
-        **(heights if features.has_elevations else {}),
-        "notes": json.dumps(list(features.notes)),
-    }

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 import numpy as np
 
 from ..crs import Unit
 from ..errors import OptionError
-from ..types import seal
+from ..lazy import make_html_repr
+from ..notes import join_notes
+from ..types import Frozen, seal
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Sequence
+    from typing import Self
 
     from ..arrays import AnyArray
 
 __all__ = [
     "FrozenMapping",
+    "Noted",
     "Units",
     "as_columns",
     "as_name",
@@ -34,6 +39,27 @@ UNKNOWN_UNIT = "unknown"
 """How a unit that is not known is written."""
 
 _NUMBERS = "biuf"
+
+
+class Noted(Frozen):
+    """Base of results, which have notes."""
+
+    notes: Sequence[str]
+
+    def with_notes(self, notes: Sequence[str]) -> Self:
+        """Return the same with further notes in front of its own, each once.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> ts.Features.of_points([[0, 0]]).with_notes(["One row was left out."]).notes
+        ('One row was left out.',)
+        """
+        joined = join_notes(notes, self.notes)
+        return self if joined == self.notes else replace(self, notes=joined)  # type: ignore[type-var]
+
+    def _repr_html_(self) -> str:
+        return make_html_repr(self)
 
 
 class FrozenMapping(Mapping[str, Value], Generic[Value]):

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, Unpack
 
 import numpy as np
 
 from ..crs import CRS, Unit, require_one_unit, shorten_crs
 from ..errors import OptionError
-from ..lazy import make_html_repr
-from ..notes import as_notes, join_notes
+from ..notes import as_notes
 from ..ranges import require_degrees
 from ..sentences import counted
-from ..types import Bounds, Frozen
-from .columns import as_columns, as_name, as_units, frozen_copy
+from ..types import Bounds
+from .columns import Noted, as_columns, as_name, as_units, frozen_copy
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -47,7 +46,7 @@ class FeatureKeywords(TypedDict, total=False):
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Features(Frozen):
+class Features(Noted):
     """Points, lines or polygons derived from a surface, with columns and units.
 
     Made by :meth:`of_points`, :meth:`of_lines` and :meth:`of_polygons`. Nothing in it can be
@@ -230,18 +229,6 @@ class Features(Frozen):
         levels = tuple(level for level in offsets if level is not None)
         return cls(kind=kind, coordinates=coordinates, offsets=levels, **given)
 
-    def with_notes(self, notes: Sequence[str]) -> Features:
-        """Return the same with further notes in front of its own, each once.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> ts.Features.of_points([[0, 0]]).with_notes(["One row was left out."]).notes
-        ('One row was left out.',)
-        """
-        joined = join_notes(notes, self.notes)
-        return self if joined == self.notes else replace(self, notes=joined)
-
     # ------------------------------------------------------------------ what it is
 
     @property
@@ -271,9 +258,6 @@ class Features(Frozen):
         names = f", columns {', '.join(self.columns)}" if self.columns else ""
         title = f" {self.name}" if self.name else ""
         return f"<Features{title}: {self._count()}{names}, crs {shorten_crs(self.crs)}>"
-
-    def _repr_html_(self) -> str:
-        return make_html_repr(self)
 
     def _count(self) -> str:
         noun = self.kind[:-1]

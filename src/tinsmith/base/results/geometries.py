@@ -12,12 +12,12 @@ from .columns import unit_text
 
 if TYPE_CHECKING:
     from ..arrays import AnyArray, ObjectArray
-    from .parts import FeatureParts
+    from .features import Features
 
 __all__ = ["build_collection", "build_frame", "build_geometries"]
 
 
-def build_geometries(features: FeatureParts) -> ObjectArray:
+def build_geometries(features: Features) -> ObjectArray:
     """Return the geometries of shapely, one a feature."""
     shapely = optional.load("shapely")
     kind = shapely.GeometryType[features.geometry_type.upper()]
@@ -26,7 +26,7 @@ def build_geometries(features: FeatureParts) -> ObjectArray:
     return made
 
 
-def build_frame(features: FeatureParts) -> Any:
+def build_frame(features: Features) -> Any:
     """Return a GeoDataFrame of features, as :meth:`Features.to_geodataframe` describes it."""
     geopandas = optional.load("geopandas", "Turning features into a GeoDataFrame")
     if "geometry" in features.columns:
@@ -47,7 +47,7 @@ def build_frame(features: FeatureParts) -> Any:
     return frame
 
 
-def build_collection(features: FeatureParts) -> dict[str, Any]:
+def build_collection(features: Features) -> dict[str, Any]:
     """Return features as the ``__geo_interface__`` has them."""
     mapping = optional.load("shapely.geometry").mapping
     names = list(features.columns)

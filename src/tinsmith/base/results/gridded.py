@@ -12,7 +12,7 @@ from .columns import unit_text
 if TYPE_CHECKING:
     from ..arrays import Float64Array
     from ..types import Grid
-    from .parts import RasterParts
+    from .raster import Raster
 
 __all__ = ["build_dataset", "locate_centers"]
 
@@ -41,33 +41,24 @@ def _list_numbers(part: slice | None, count: int) -> Float64Array:
     return np.arange(chosen.start, chosen.stop, dtype=np.float64)
 
 
-def build_dataset(raster: RasterParts) -> Any:
+def build_dataset(raster: Raster) -> Any:
     """Return a data set of xarray, as :meth:`Raster.to_xarray` describes it."""
     xarray = optional.load("xarray", "Turning a raster into a data set")
     east, north = locate_centers(raster.grid)
-    variables = {
-        name: (("y", "x"), np.array(band[:, :]), _list_attributes(raster, name))
-        for name, band in raster.bands.items()
-    }
-    coordinates = {"y": ("y", north), "x": ("x", east), _MAPPING: ((), 0, _write_reference(raster))}
-    about = {"title": raster.name, "notes": list(raster.notes)}
-    return xarray.Dataset(
-        variables, coords=coordinates, attrs={name: value for name, value in about.items() if value}
-    )
-
-
-def _list_attributes(raster: RasterParts, name: str) -> dict[str, Any]:
-    unit = unit_text(raster.units, name)
-    kind = np.dtype(raster.bands[name].dtype).kind
-    fill = {} if np.isnan(raster.nodata) and kind != "f" else {"_FillValue": raster.nodata}
-    return {"grid_mapping": _MAPPING, **({"units": unit} if unit else {}), **fill}
-
-
-def _write_reference(raster: RasterParts) -> dict[str, str]:
-    """Return the attributes of the grid mapping: CRS and georeference."""
+    variables = {}
+    for name, band in raster.bands.items():
+        unit, kind = unit_text(raster.units, name), np.dtype(band.dtype).kind
+        attributes: dict[str, Any] = {"grid_mapping": _MAPPING} | ({"units": unit} if unit else {})
+        if kind == "f" or not np.isnan(raster.nodata):
+            attributes["_FillValue"] = raster.nodata
+        variables[name] = (("y", "x"), np.array(band[:, :]), attributes)
     bounds, spacing = raster.grid.bounds, raster.grid.spacing
     numbers = (bounds.xmin, spacing, 0.0, bounds.ymax, 0.0, -spacing)
     reference = {"GeoTransform": " ".join(map(repr, map(float, numbers)))}
     if raster.crs is not None:
         reference["crs_wkt"] = raster.crs.to_wkt()
-    return reference
+    coordinates = {"y": ("y", north), "x": ("x", east), _MAPPING: ((), 0, reference)}
+    about = {"title": raster.name, "notes": list(raster.notes)}
+    return xarray.Dataset(
+        variables, coords=coordinates, attrs={name: value for name, value in about.items() if value}
+    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,17 +11,16 @@ import numpy as np
 from ..checks import as_length
 from ..crs import CRS, shorten_crs
 from ..errors import OptionError
-from ..lazy import make_html_repr
-from ..notes import as_notes, join_notes
+from ..notes import as_notes
 from ..ranges import require_degrees
 from ..sentences import counted
-from ..types import Frozen, Grid
-from .columns import FrozenMapping, as_name, as_units, frozen_copy, named_items
+from ..types import Grid
+from .columns import FrozenMapping, Noted, as_name, as_units, frozen_copy, named_items
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ..arrays import AnyArray, Float64Array
+    from ..arrays import AnyArray
     from .columns import Units
 
 __all__ = ["Raster", "require_grid"]
@@ -31,7 +30,7 @@ _FEWEST_ULPS = 8.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Raster(Frozen):
+class Raster(Noted):
     """Values in the square cells of a grid, in one or several bands.
 
     Attributes
@@ -84,9 +83,16 @@ class Raster(Frozen):
         bands = {name: _as_band(name, values, shape) for name, values in items.items()}
         keep(self, "bands", FrozenMapping(bands))
         crs = CRS.of(self.crs)
-        require_degrees(_list_corner_cells(self.grid), crs, "Corners")
+        # Of the first and the last cell of the last and the first row the centres.
+        box, (rows, columns) = self.grid.bounds, self.grid.shape
+        across, up = box.width / columns / 2, box.height / rows / 2
+        low, high = (box.xmin + across, box.ymin + up), (box.xmax - across, box.ymax - up)
+        require_degrees(np.array([low, high]), crs, "Corners")
         keep(self, "crs", crs)
-        keep(self, "nodata", _as_nodata(self.nodata))
+        nodata: Any = self.nodata
+        if isinstance(nodata, bool) or not isinstance(nodata, int | float | np.number):
+            raise OptionError("nodata", nodata, allowed="a number or NaN")
+        keep(self, "nodata", float(nodata))
         keep(self, "units", as_units(self.units, bands))
         keep(self, "name", as_name(self.name))
         keep(self, "notes", as_notes(self.notes))
@@ -123,20 +129,6 @@ class Raster(Frozen):
 
         return build_dataset(self)
 
-    def with_notes(self, notes: Sequence[str]) -> Raster:
-        """Return the same with further notes in front of its own, each once.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> grid = ts.Grid(ts.Bounds(0.0, 0.0, 2.0, 2.0), shape=(2, 2), spacing=1.0)
-        >>> raster = ts.Raster({"z": [[1.0, 2.0], [3.0, 4.0]]}, grid)
-        >>> raster.with_notes(["One row was left out."]).notes
-        ('One row was left out.',)
-        """
-        joined = join_notes(notes, self.notes)
-        return self if joined == self.notes else replace(self, notes=joined)
-
     def __repr__(self) -> str:
         rows, columns = self.grid.shape
         title = f" {self.name}" if self.name else ""
@@ -145,16 +137,6 @@ class Raster(Frozen):
             f"spacing {self.grid.spacing:g}, bands {', '.join(self.bands)}, "
             f"crs {shorten_crs(self.crs)}>"
         )
-
-    def _repr_html_(self) -> str:
-        return make_html_repr(self)
-
-
-def _list_corner_cells(grid: Grid) -> Float64Array:
-    """Return the centres of the first and the last cell of the last and the first row."""
-    box, (rows, columns) = grid.bounds, grid.shape
-    across, up = box.width / columns / 2, box.height / rows / 2
-    return np.array([[box.xmin + across, box.ymin + up], [box.xmax - across, box.ymax - up]])
 
 
 def _as_band(name: str, values: Any, shape: tuple[int, ...]) -> Any:
@@ -171,19 +153,8 @@ def _as_band(name: str, values: Any, shape: tuple[int, ...]) -> Any:
     return band if is_lazy else frozen_copy(band)
 
 
-def _as_nodata(value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float | np.number):
-        raise OptionError("nodata", value, allowed="a number or NaN")
-    return float(value)
-
-
 def require_grid(grid: Any) -> None:
-    """Refuse a grid whose bounds, shape and spacing do not fit together.
-
-    Raises
-    ------
-    OptionError
-    """
+    """Refuse a grid whose bounds, shape and spacing do not fit together."""
     if not isinstance(grid, Grid):
         raise OptionError("grid", type(grid).__name__, allowed="a Grid")
     rows, columns = grid.shape

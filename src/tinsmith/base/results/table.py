@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from .. import optional
 from ..errors import OptionError
-from ..lazy import make_html_repr
-from ..notes import as_notes, join_notes
+from ..notes import as_notes
 from ..sentences import counted
-from ..types import Frozen
-from .columns import as_columns, as_name, as_units, unit_text
+from .columns import Noted, as_columns, as_name, as_units, unit_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -20,13 +18,13 @@ if TYPE_CHECKING:
 
     from ..arrays import AnyArray
     from .columns import Units
-    from .parts import FeatureParts
+    from .features import Features
 
 __all__ = ["Table", "tabulate_columns"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Table(Frozen):
+class Table(Noted):
     """Named columns of equal length, with units.
 
     Attributes
@@ -100,27 +98,12 @@ class Table(Frozen):
         frame.attrs |= {"name": self.name, "units": units, "notes": list(self.notes)}
         return frame
 
-    def with_notes(self, notes: Sequence[str]) -> Table:
-        """Return the same with further notes in front of its own, each once.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> ts.Table({"level": [318.0]}).with_notes(["One row was left out."]).notes
-        ('One row was left out.',)
-        """
-        joined = join_notes(notes, self.notes)
-        return self if joined == self.notes else replace(self, notes=joined)
-
     def __repr__(self) -> str:
         title = f" {self.name}" if self.name else ""
         return f"<Table{title}: {counted(len(self), 'row')}, columns {', '.join(self.columns)}>"
 
-    def _repr_html_(self) -> str:
-        return make_html_repr(self)
 
-
-def tabulate_columns(features: FeatureParts) -> Table:
+def tabulate_columns(features: Features) -> Table:
     """Return the columns of features as a table, without their geometries."""
     return Table(
         dict(features.columns), units=dict(features.units), name=features.name, notes=features.notes
