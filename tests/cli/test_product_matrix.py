@@ -170,11 +170,13 @@ def test_every_command_is_here_or_says_what_it_writes():
 def test_every_command_writes_every_format_of_what_it_makes(files, tmp_path, monkeypatch, name):
     line, expected = COMMANDS[name]
     planned = []
-    plan = Job.plan_products
+    plan = Job.plan
     monkeypatch.setattr(
         Job,
-        "plan_products",
-        lambda self, inputs, *kinds: planned.extend(kinds) or plan(self, inputs, *kinds),
+        "plan",
+        lambda self, inputs, *kinds, **how: (
+            planned.extend(kinds) or plan(self, inputs, *kinds, **how)
+        ),
     )
     arguments = [word for part in line.split() for word in files.get(part, [part])]
     kinds = [one for one in expected.split() if one != "picture"]

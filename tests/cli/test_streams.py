@@ -17,6 +17,7 @@ import pytest
 
 from tinsmith.cli.output import console, progress, streams
 from tinsmith.cli.output.console import Console, format_json
+from tinsmith.cli.output.facts import Facts
 from tinsmith.cli.output.failures import Failure
 
 # --------------------------------------------------------------------------- letters
@@ -46,10 +47,12 @@ def test_a_summary_has_labels_of_one_width_and_lines_below_each_other(capsys):
     )
     Console(quiet=True).summarise(fields)
     assert capsys.readouterr() == ("", "")
-    Console(quiet=True).answer(fields[:1], {"a": 1})
+    facts = Facts("a.csv", a=1)
+    facts.add("Points", "7")
+    Console(quiet=True).answer(facts)
     assert capsys.readouterr().out == "Points      7\n"
-    Console(as_json=True).answer(fields, {"a": 1})
-    assert json.loads(capsys.readouterr().out) == {"a": 1, "notes": []}
+    Console(as_json=True).answer(facts)
+    assert json.loads(capsys.readouterr().out) == {"input": "a.csv", "a": 1, "notes": []}
 
 
 def test_facts_are_strict_json():

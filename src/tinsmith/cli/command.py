@@ -1,24 +1,40 @@
-"""Commands: what they take, and how their help lists it."""
+"""Commands: what they take, how their help lists it, and their flags in the library's sentences."""
 
 from __future__ import annotations
 
+import re
+from inspect import cleandoc
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
-from .format_options import list_format_options
+from ..base.sentences import name_options
+from .format_options import find_format_flag, list_format_options
 from .parameters import input_file, output_files
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["OF_BUILDING", "Command", "command", "file_command"]
+__all__ = [
+    "OF_BUILDING",
+    "Command",
+    "command",
+    "file_command",
+    "find_flag",
+    "find_given_flag",
+    "name_flags",
+    "note_given",
+]
 
 _OWN = "Options"
 _BUILDER = "build"
 OF_BUILDING = ("Triangulation", "Lines and areas", "Codes of points")
 """Subjects of options that only the help of one command lists: of points that become a TIN."""
 _OF_FORMATS = "tinsmith.options_of_formats"
+_CONTEXT = "tinsmith.context"
+_VERBATIM = re.compile(r"^(?=(?:Example|A script):$)", re.MULTILINE)
+"""Where lines of a help begin that are not wrapped."""
 
 
 class Command(click.Command):
@@ -39,13 +55,18 @@ class Command(click.Command):
         return [*super().get_params(ctx), *ctx.meta.get(_OF_FORMATS, ())]
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Read the arguments."""
+        """Read the arguments; refuse an option that is given more often than it is looked at."""
         lists = ctx.resilient_parsing or bool({"-h", "--help"} & {*args})
         ctx.meta[_OF_FORMATS] = list_format_options(
             self.params, self.format_ways, args, lists=lists
         )
-        if not ctx.resilient_parsing:
-            _require_once(self.make_parser(ctx).parse_args(args=list(args))[2])
+        given = [] if ctx.resilient_parsing else self.make_parser(ctx).parse_args(list(args))[2]
+        for one in {id(one): one for one in given}.values():
+            is_option = isinstance(one, click.Option)
+            is_single = is_option and not (one.multiple or one.is_flag or one.count)
+            if is_single and sum(other is one for other in given) > 1:
+                flag = max(one.opts, key=len)
+                raise click.UsageError(f"{flag} is given several times: it takes one.")
         return super().parse_args(ctx, args)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -62,8 +83,8 @@ class Command(click.Command):
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Tell where the options are listed that this help leaves out."""
-        left = list(dict.fromkeys(getattr(one, "subject", _OWN) for one in self.params))
-        left = [one for one in left if one in OF_BUILDING and self.name != _BUILDER]
+        subjects = dict.fromkeys(getattr(one, "subject", _OWN) for one in self.params)
+        left = [one for one in subjects if one in OF_BUILDING and self.name != _BUILDER]
         text = ""
         if left:
             text = (
@@ -81,21 +102,82 @@ class Command(click.Command):
         super().format_epilog(ctx, formatter)
 
 
-def _require_once(given: list[click.Parameter]) -> None:
-    """Refuse an option that was given more often than it is looked at."""
-    for one in {id(one): one for one in given}.values():
-        is_single = isinstance(one, click.Option) and not (one.multiple or one.is_flag or one.count)
-        if is_single and sum(other is one for other in given) > 1:
-            raise click.UsageError(
-                f"{max(one.opts, key=len)} is given several times: it takes one."
-            )
-
-
 def command(function: Callable[..., Any]) -> click.Command:
-    """Make a command of a function."""
-    return click.command(cls=Command)(function)
+    """Make a command of a function, whose documentation is its help: examples as they are."""
+    text = _VERBATIM.sub("\b\n", cleandoc(function.__doc__ or ""))
+    return click.command(cls=Command, help=text)(function)
 
 
 def file_command(function: Callable[..., Any]) -> click.Command:
     """Make a command that reads one file, and writes what it makes of it to others."""
     return command(input_file("file")(output_files(function)))
+
+
+# ------------------------------------------------------- options in sentences of the library
+
+
+def name_flags(text: str, **renamed: str) -> str:
+    """Return a sentence of the library with the flags of this command for the options it marks.
+
+    ``renamed`` has flags of options that the library calls by another name.
+    """
+    return name_options(text, lambda name: renamed.get(name) or find_flag(name))
+
+
+def note_given(context: click.Context) -> None:
+    """Remember the command that runs, for a failure when only its group is left."""
+    context.find_root().meta[_CONTEXT] = context
+
+
+def find_flag(name: str) -> str | None:
+    """Return the flag of the command that runs, or failed, for an option of the library."""
+    root = click.get_current_context(silent=True)
+    if root is None:
+        return None
+    context = root.find_root().meta.get(_CONTEXT, root)
+    running = context.command
+    if isinstance(running, click.Group) and context.invoked_subcommand:
+        running = running.get_command(context, context.invoked_subcommand) or running
+    options = _list_options(running, context)
+    flags = _rank_flags(options, name)
+    return (
+        flags[0] if flags else find_format_flag(name, getattr(running, "format_ways", ()), options)
+    )
+
+
+def find_given_flag(name: str) -> tuple[click.Context, str] | None:
+    """Return the context and the flag by which a value of a library's option was given.
+
+    None if it came from elsewhere than the command line.
+    """
+    root = click.get_current_context(silent=True)
+    context = None if root is None else root.find_root().meta.get(_CONTEXT)
+    if context is None:
+        return None
+    given = [
+        one
+        for one in _list_options(context.command, context)
+        if context.get_parameter_source(one.name or "") is ParameterSource.COMMANDLINE
+    ]
+    flags = _rank_flags(given, name)
+    return (context, flags[0]) if flags else None
+
+
+def _list_options(of: click.Command, context: click.Context) -> list[click.Option]:
+    return [
+        one
+        for one in of.get_params(context)
+        if isinstance(one, click.Option) and one.name and one.opts[0].startswith("--")
+    ]
+
+
+def _rank_flags(options: list[click.Option], name: str) -> list[str]:
+    """Return the flags of those options that are that of the library with a name, nearest first."""
+    ranked = []
+    for one in options:
+        plain = one.opts[0].removeprefix("--").replace("-", "_")
+        ways = (getattr(one, "instead", "") == name, plain == name, one.name == name)
+        ways = (*ways, name in getattr(one, "sets", ()))
+        if any(ways):
+            ranked.append((ways.index(True), one.opts[0]))
+    return [flag for _, flag in sorted(ranked)]

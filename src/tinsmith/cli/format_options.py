@@ -7,7 +7,6 @@ hand, which its arguments name by suffix or by ``--format``, are listed in its h
 from __future__ import annotations
 
 import re
-from ast import literal_eval
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
@@ -23,7 +22,14 @@ if TYPE_CHECKING:
     from ..io import Format
     from ..io.registry.options import FormatOption
 
-__all__ = ["find_format_flag", "list_flags_of", "list_format_options", "make_flag", "take_options"]
+__all__ = [
+    "find_format_flag",
+    "find_parameters",
+    "list_flags_of",
+    "list_format_options",
+    "make_flag",
+    "take_options",
+]
 
 _PREFIXES = {"read": "read__", "write": "write__"}
 """What the names of their values begin with, by what a format does."""
@@ -41,16 +47,9 @@ def list_format_options(
 ) -> list[click.Option]:
     """Return the options of formats that a command's arguments need.
 
-    Parameters
-    ----------
-    own : sequence of click.Parameter
-        The command's own, whose flags no option of a format has.
-    ways : sequence of {"read", "write"}
-        What the command does with files.
-    arguments : sequence of str
-    lists : bool
-        Whether all options of the formats at hand are wanted, for a list; else only if there is a
-        flag that the command has not, which saves loading readers and writers.
+    None has a flag of the command's ``own``. With ``lists`` all options of the formats at hand are
+    wanted, for a list; else only if there is a flag that the command has not, which saves loading
+    readers and writers. ``ways`` are what the command does with files: "read", "write".
     """
     found = _Flags({flag for one in own for flag in _list_flags(one)} | {"--help"})
     named = {text.partition("=")[0] for text in arguments if re.match("--[a-z]", text)}
@@ -160,7 +159,7 @@ def _find_formats(arguments: Sequence[str], way: str) -> list[Format]:
 
 
 def _make_option(one: FormatOption, name: str, flag: str, subject: str) -> LibraryOption:
-    how = _find_parameters(one)
+    how = find_parameters(one)
     declared = flag
     if how.get("is_flag") and one.default is not False:
         declared = f"{flag}/--no-{flag.removeprefix('--')}"
@@ -175,7 +174,7 @@ def _make_option(one: FormatOption, name: str, flag: str, subject: str) -> Libra
     return made
 
 
-def _find_parameters(one: FormatOption) -> dict[str, Any]:
+def find_parameters(one: FormatOption) -> dict[str, Any]:
     """Return what click needs to know of a value, by the types of the option."""
     annotation, kind = one.annotation, one.kind
     several = re.match(r".*\((\d),\) sequence of (int|float)", kind)
@@ -210,7 +209,7 @@ def _find_words(one: FormatOption) -> tuple[str, ...]:
         if words:
             return words
     listed = re.match(r"(\{.*?\})(, optional)?$", one.kind)
-    return () if listed is None or "..." in one.kind else tuple(sorted(literal_eval(listed[1])))
+    return () if listed is None or "..." in one.kind else tuple(re.findall(r'"(.*?)"', listed[1]))
 
 
 def _word_help(one: FormatOption) -> str:

@@ -26,7 +26,7 @@ from .output.streams import (
 from .plug_in_commands import describe_faults, find_commands, find_owner, load_command
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
 __all__ = ["main"]
 
@@ -57,22 +57,13 @@ class _Commands(click.Group):
             with formatter.section(heading):
                 formatter.write_dl(list(summaries.items()))
         added = self.list_commands(ctx)[len(_BUILT_IN) :]
-        self._list_commands_under("Commands of plug-ins", added, ctx, formatter)
-        for fault in describe_faults(_BUILT_IN):
-            report_warning(fault)
-
-    def _list_commands_under(
-        self,
-        heading: str,
-        names: Iterable[str],
-        ctx: click.Context,
-        formatter: click.HelpFormatter,
-    ) -> None:
-        found = {name: self.get_command(ctx, name) for name in names}
+        found = {name: self.get_command(ctx, name) for name in added}
         rows = [(name, one.get_short_help_str(200)) for name, one in found.items() if one]
         if rows:
-            with formatter.section(heading):
+            with formatter.section("Commands of plug-ins"):
                 formatter.write_dl(rows)
+        for fault in describe_faults(_BUILT_IN):
+            report_warning(fault)
 
     def main(self, args: Sequence[str] | None = None, **how: Any) -> Any:  # type: ignore[override]
         """Run; click's own ``main``, but for failures, signals and streams that are closed."""
@@ -80,22 +71,20 @@ class _Commands(click.Group):
             return super().main(args, standalone_mode=False, **how)
         arguments = sys.argv[1:] if args is None else list(args)
         reserve_standard_streams()
+        code: Any = 0
         with raise_for_signals():
-            sys.exit(self._find_exit_code(arguments, **how))
-
-    def _find_exit_code(self, arguments: list[str], **how: Any) -> int:
-        try:
-            code = super().main(arguments, standalone_mode=False, **how)
-        except click.ClickException as error:
-            return show_failure(error, arguments)
-        except BrokenPipeError:
-            silence(sys.stdout)
-            return 1
-        except (click.Abort, KeyboardInterrupt):
-            return 128 + signal.SIGINT
-        except Terminated as ended:
-            return 128 + ended.number
-        return code if isinstance(code, int) else 0
+            try:
+                code = super().main(arguments, standalone_mode=False, **how)
+            except click.ClickException as error:
+                code = show_failure(error, arguments)
+            except BrokenPipeError:
+                silence(sys.stdout)
+                code = 1
+            except (click.Abort, KeyboardInterrupt):
+                code = 128 + signal.SIGINT
+            except Terminated as ended:
+                code = 128 + ended.number
+            sys.exit(code if isinstance(code, int) else 0)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parse the group's own options, and remember how what follows is to be told."""

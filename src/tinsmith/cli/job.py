@@ -1,262 +1,367 @@
-"""What a command on surfaces was asked for, and the steps that all of them take."""
+"""What a command was asked for, and the steps from there to its last words."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import sys
+from dataclasses import dataclass, field, replace
 from functools import wraps
+from inspect import signature
+from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
-from .files import (
-    add_lines,
-    build_tin,
-    describe_written,
-    list_inputs,
-    note_surfaces,
-    plan_outputs,
-    read_input,
-    read_tin,
-    write_figure,
-    write_outputs,
-)
+import click
+
+from ..base.sentences import counted
+from .command import note_given
+from .format_options import take_options
 from .options import (
     CODE_FLAGS,
-    console_options,
-    reading_options,
-    triangulating_options,
-    writing_options,
+    CONSOLE,
+    READING,
+    TRIANGULATING,
+    WRITING,
+    Reading,
+    Triangulating,
+    Writing,
 )
 from .output.failures import Failure
-from .paths import STANDARD, Named, describe_leftovers, require_separate, split_output
+from .outputs import plan_products, require_format
+from .paths import STANDARD, Named, name_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from contextlib import AbstractContextManager
-    from pathlib import Path
 
-    from ..terrain import Features, Table
-    from ..tin import TIN
-    from .files import Output
-    from .options import Reading, Triangulating, Writing
+    from ..terrain import Features, Raster
+    from ..tin import TIN, Survey
+    from .options import Coding, Group
     from .output.console import Console
     from .output.facts import Facts
+    from .outputs import Output, Products
     from .parameters import Decorator
 
-__all__ = ["Job", "Products", "surface_options"]
-
-
-_DOTS = 150
-
-
-@dataclass(frozen=True, kw_only=True)
-class Products:
-    """Outputs by what they hold: tables, features, TINs and pictures."""
-
-    console: Console
-    outputs: dict[str, list[Output]]
-    pictures: list[Path] = field(default_factory=list)
-    tabulates: bool = False
-    """Whether tables are those of the features' columns."""
-
-    def holds(self, kind: str) -> bool:
-        """Whether something of a kind is to be written."""
-        return bool(self.pictures if kind == "picture" else self.outputs.get(kind))
-
-    def write(self, kind: str, product: Any) -> None:
-        """Write a product, or what a function makes, to all outputs of its kind, if there are."""
-        if callable(product):
-            if not self.holds(kind):
-                return
-            product = product()
-        write_outputs(product, self.outputs.get(kind, []), self.console)
-        if kind == "Features" and self.tabulates and self.holds("Table"):
-            table, note = _tabulate(product)
-            self.console.note(note)
-            write_outputs(table, self.outputs["Table"], self.console)
-
-    def draw(self, make_figure: Callable[[], Any]) -> None:
-        """Write the pictures."""
-        for path in self.pictures:
-            with self.console.step("Drawing"):
-                write_figure(make_figure(), path, dpi=_DOTS)
-
-    @property
-    def paths(self) -> list[Path]:
-        """All of them."""
-        return [one.path for group in self.outputs.values() for one in group] + self.pictures
-
-    @property
-    def text(self) -> str:
-        """What was written, a line each."""
-        from .output.summaries import describe_file_size
-
-        texts = [describe_written(group) for group in self.outputs.values() if group]
-        return "\n".join(texts + [f"{path} ({describe_file_size(path)})" for path in self.pictures])
+__all__ = ["Job", "name_features", "open_standard_input", "surface_options"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Job:
-    """Options that commands on surfaces share, and the steps from them to the last words."""
+    """Options that commands share, and what each of them does with files."""
 
-    outputs: tuple[Path, ...]
-    reading: Reading
-    how: Triangulating
-    writing: Writing
     console: Console
+    outputs: tuple[Path, ...] = ()
+    reading: Reading = field(default_factory=Reading)
+    how: Coding = field(default_factory=Triangulating)
+    writing: Writing = field(default_factory=Writing)
     started: float = field(default_factory=perf_counter)
     """When the command began."""
-
-    def plan(self, inputs: Sequence[Named], kind: str, *, report: Path | None = None) -> Products:
-        """Choose the formats of outputs that all hold one thing, before any work is done."""
-        planned = plan_outputs(
-            self.outputs,
-            self.writing,
-            inputs=inputs,
-            console=self.console,
-            report=report,
-            kinds=(kind,),
-        )
-        return Products(console=self.console, outputs={kind: planned})
-
-    def plan_products(self, inputs: Sequence[Named], *kinds: str) -> Products:
-        """Choose what each output holds, of several things, before any work is done."""
-        return _plan_products(
-            self.outputs, self.writing, inputs=inputs, console=self.console, kinds=kinds
-        )
-
-    def list_inputs(self, *files: Path, more: Sequence[Named] = ()) -> list[Named]:
-        """Return all files that are read: surfaces, lines, and others."""
-        return [*list_inputs(*files, how=self.how), *more]
 
     def step(self, text: str) -> AbstractContextManager[Callable[[float], None]]:
         """Return the context in which long work shows its progress."""
         return self.console.step(text)
 
-    def read_tin(self, file: Path) -> TIN:
-        """Read a TIN, or points and build theirs."""
-        return read_tin(file, self.reading, self.how, self.console)[0]
+    @property
+    def building(self) -> Triangulating:
+        """How points become a TIN."""
+        if not isinstance(self.how, Triangulating):
+            raise TypeError("the command has no options of triangulation")
+        return self.how
 
-    def read_tins(self, files: Sequence[Path]) -> list[TIN]:
-        """Read TINs, or points and build theirs; files of lines are for the one file of points.
+    def with_fallback(self, **options: Any) -> Job:
+        """Return the same with options of reading that count where a format has them."""
+        reading = replace(self.reading, fallbacks=self.reading.fallbacks | options)
+        return replace(self, reading=reading)
 
-        Codes, and the longest edge, are for each file of points.
+    def list_inputs(self, *files: Path, more: Sequence[Named] = ()) -> list[Named]:
+        """Return all files that are read: surfaces, lines, and others."""
+        inputs = [Named(file, "the input") for file in files]
+        if self.how.code_table is not None:
+            inputs.append(Named(self.how.code_table, "the file of --code-table"))
+        for flag, paths in self.how.line_files.items():
+            for path in paths:
+                inputs += name_features(path, f"the file of {flag}")
+        return [*inputs, *more]
 
-        Raises
-        ------
-        Failure
-            If it cannot be told for which file an option is.
-        """
-        from ..tin import TIN
-
-        found = [read_input(file, self.reading, self.console) for file in files]
-        self._require_points(sum(not isinstance(one, TIN) for one in found))
-        surfaces = [
-            one
-            if isinstance(one, TIN)
-            else build_tin(add_lines(one, self.how, self.console), self.how, self.console)
-            for one in found
-        ]
-        note_surfaces(surfaces, self.console)
-        return surfaces
-
-    def _require_points(self, n_surveys: int) -> None:
-        of_each = [f"--{name.replace('_', '-')}" for name in ("max_edge", *CODE_FLAGS)]
-        given = self.how.shaping
-        named = [flag for flag in given if flag not in of_each]
-        if (named and n_surveys != 1) or (given and n_surveys == 0):
-            flag = (named or given)[0]
-            raise Failure(
-                f"{flag} needs {'a' if n_surveys == 0 else 'one'} file of points, and there are "
-                f"{n_surveys}: 'tinsmith build' makes TINs of them first."
-            )
+    def plan(
+        self,
+        inputs: Sequence[Named],
+        *kinds: str,
+        report: Path | None = None,
+        choose: Callable[[Output], str] | None = None,
+    ) -> Products:
+        """Choose what each output holds, and its format, before any work is done."""
+        return plan_products(
+            self.outputs,
+            self.writing,
+            self.console,
+            inputs=inputs,
+            kinds=kinds,
+            report=report,
+            choose=choose,
+        )
 
     def finish(self, planned: Products, facts: Facts) -> None:
         """Tell what was done: a summary for people, and a record as JSON if it was asked for."""
-        written = [("Written", planned.text)] if planned.paths else []
-        seconds = perf_counter() - self.started
-        self.console.summarise([*facts.lines, *written, ("Time", f"{seconds:.2f} s")])
+        if planned.paths:
+            facts.add("Written", planned.text)
+        facts.add("Time", f"{perf_counter() - self.started:.2f} s")
+        self.console.summarise(facts.lines)
         if self.console.as_json:
             outputs = [str(path) for path in planned.paths]
             self.console.emit_record({"outputs": outputs} | facts.values)
 
+    # ------------------------------------------------------------ points and surfaces
 
-def surface_options(reading_options: Decorator = reading_options) -> Decorator:
-    """Return a decorator that adds the shared options, and hands them over as ``job``.
+    def read(self, *paths: Path) -> Survey | TIN:
+        """Read points or a TIN, showing progress; several files of points as one survey.
 
-    The options of reading may be those that a command has in their place.
+        They are reprojected if that is asked for.
+        """
+        from ..io import reproject
+        from ..io.reading import join_files
+
+        require_format("--format", self.reading.format)
+        found: list[Survey | TIN] = []
+        for path in paths:
+            with self.step(f"Reading {name_file(Path(path.name))}") as progress:
+                if self.reading.to_crs is None:
+                    found.append(_read_once(path, self.reading, progress))
+                else:
+                    one = _read_to_reproject(path, self.reading, self.reading.to_crs)
+                    found.append(reproject(one, self.reading.to_crs))
+        if len(found) == 1:
+            return found[0]
+        return join_files(found, [Path(name_file(path)) for path in paths])
+
+    def read_survey(self, *paths: Path, need: str) -> Survey:
+        """Read points, or refuse a TIN; ``need`` ends the sentence that says why."""
+        from ..tin import TIN
+
+        found = self.read(*paths)
+        if isinstance(found, TIN):
+            raise Failure(f"'{paths[0]}' holds a TIN{need}")
+        return found
+
+    def read_tin(self, *paths: Path) -> TIN:
+        """Read a TIN, or points and build theirs."""
+        return self.read_surface(*paths)[0]
+
+    def read_surface(self, *paths: Path) -> tuple[TIN, Survey | None]:
+        """Read a TIN, or points and build theirs; the points are None for a file of a TIN."""
+        from ..tin import TIN
+
+        found = self.read(*paths)
+        if not isinstance(found, TIN):
+            survey = self.add_lines(found)
+            tin = self.build_tin(survey)
+            self.note_surfaces(tin)
+            return tin, survey
+        if self.building.shaping:
+            raise Failure(
+                f"'{paths[0]}' holds a TIN already, and {self.building.shaping[0]} needs points to "
+                "build from: 'tinsmith edit' adds lines to a TIN."
+            )
+        self.note_surfaces(found)
+        return found, None
+
+    def read_tins(self, files: Sequence[Path]) -> list[TIN]:
+        """Read TINs, or points and build theirs; files of lines are for the one file of points.
+
+        Codes, and the longest edge, are for each file of points. Refused where it cannot be told
+        for which file an option is.
+        """
+        from ..tin import TIN
+
+        found = [self.read(file) for file in files]
+        n_surveys = sum(not isinstance(one, TIN) for one in found)
+        of_each = [f"--{name.replace('_', '-')}" for name in ("max_edge", *CODE_FLAGS)]
+        given = self.building.shaping
+        named = [flag for flag in given if flag not in of_each]
+        if (named and n_surveys != 1) or (given and n_surveys == 0):
+            raise Failure(
+                f"{(named or given)[0]} needs {'a' if n_surveys == 0 else 'one'} file of points, "
+                f"and there are {n_surveys}: 'tinsmith build' makes TINs of them first."
+            )
+        surfaces = [
+            one if isinstance(one, TIN) else self.build_tin(self.add_lines(one)) for one in found
+        ]
+        self.note_surfaces(*surfaces)
+        return surfaces
+
+    def read_cells(self, path: Path) -> Raster | None:
+        """Return the raster of a file; None if its cells are to be points, or it is no raster."""
+        from ..base.errors import OptionError, ReadError
+        from ..io.registry.lookup import choose_format
+
+        given = self.reading.given
+        chosen = None if "format" in given else choose_format(path, "read")
+        if chosen is None or chosen.read_cells is None:
+            return None
+        read = chosen.load("read_cells")
+        is_moved = self.reading.to_crs is not None
+        if is_moved or self.building.shaping or {*given} - {*signature(read).parameters}:
+            return None
+        try:
+            return read(path, **given)  # type: ignore[no-any-return]
+        except (OptionError, ReadError):
+            return None  # as points it can be read, or it is told why not
+
+    def add_coded_lines(self, survey: Survey) -> Survey:
+        """Add the lines of the points' codes to a survey, if they are asked for.
+
+        A tolerance of curves or an order of shots without codes is wrong usage.
+        """
+        for flag in ("arc_tolerance", "shot_order"):
+            if getattr(self.how, flag) is not None and not self.how.has_codes:
+                name = flag.replace("_", "-")
+                raise click.UsageError(f"--{name} needs --codes, --code-table or --code-style.")
+        if not self.how.has_codes:
+            return survey
+        from ..io import lines_from_codes
+
+        return lines_from_codes(survey, **self.how.coding)
+
+    def add_lines(self, survey: Survey) -> Survey:
+        """Add the lines of the points' codes and of files to a survey, showing progress.
+
+        A height of water without water is wrong usage.
+        """
+        how = self.building
+        if how.water_z is not None and not how.water:
+            raise click.UsageError(
+                "--water-z needs --water: a file of the polygons that it is for."
+            )
+        survey = self.add_coded_lines(survey)
+        if not how.files:
+            return survey
+        from ..io import with_lines
+
+        with self.step("Reading lines"):
+            return with_lines(survey, **how.files)
+
+    def build_tin(self, survey: Survey) -> TIN:
+        """Build the TIN of a survey, showing progress; rows at fault are named by number too."""
+        from ..base.errors import PointsError
+        from ..tin import triangulate
+
+        try:
+            with self.step(f"Triangulating {counted(len(survey), 'point')}") as progress:
+                return triangulate(survey, **self.building.method, progress=progress)
+        except PointsError as error:
+            numbers = survey.attributes.get("number")
+            named = " Rows are points of the file, counted from 0." if error.rows else ""
+            if named and numbers is not None:
+                rows = ", ".join(str(numbers[row]) for row in error.rows)
+                named = f" Their point numbers: {rows}."
+            raise Failure(f"{error}{named}") from error
+
+    def note_found(self, found: Survey | TIN) -> None:
+        """Take note of what is known of what was read."""
+        from ..tin import TIN
+        from ..tin.report import describe_skipped
+
+        if isinstance(found, TIN):
+            self.note_surfaces(found)
+        else:
+            self.console.note([*describe_skipped(found.skipped), *found.notes])
+
+    def note_surfaces(self, *surfaces: TIN) -> None:
+        """Take note of what is known of surfaces, showing progress, for summary and record."""
+        from ..base.products import notes_of_surfaces
+
+        with self.step("Looking for blunders and gaps"):
+            self.console.note(notes_of_surfaces(surface.snapshot() for surface in surfaces))
+
+    # ------------------------------------------------------------ features of a vector file
+
+    def read_features(self, given: Path, tin: TIN, kind: str = "", purpose: str = "") -> Features:
+        """Return the features of a vector file, ``FILE:LAYER``, in the CRS of a TIN.
+
+        Where "points" are asked for nothing else is taken, where "lines" are no points, and of
+        polygons the rings; ``purpose`` ends the refusal.
+        """
+        from ..io.vector.geometries import read_geometries
+        from ..io.vector.survey_lines import split_layer
+        from ..terrain import Features
+
+        path, layer = split_layer(given)
+        found = read_geometries(path, crs=tin.crs, layer=layer)
+        if kind and (found.kind == "points") != (kind == "points"):
+            raise Failure(f"'{given}' has {found.kind}: {purpose or 'points are needed'}.")
+        if kind != "lines":
+            return found
+        lines = Features.of_lines(found.coordinates, found.offsets[0], crs=found.crs)
+        return lines.with_notes(found.notes)
+
+
+def name_features(path: Path | None, place: str) -> list[Named]:
+    """Return a vector file, if one is given, for the list of inputs; ``place`` says where."""
+    from ..io.vector.survey_lines import split_layer
+
+    return [] if path is None else [Named(split_layer(path)[0], place)]
+
+
+def _read_once(
+    path: Path, reading: Reading, progress: Callable[[float], None] | None = None
+) -> Survey | TIN:
+    from ..io.reading import read_stream, read_with_fallbacks
+
+    asked = reading.given
+    fallbacks = {
+        name: value for name, value in reading.fallbacks.items() if name not in reading.options
+    }
+    if path == STANDARD:
+        asked.pop("remote", None)
+        return read_stream(open_standard_input(), name_file(path), fallbacks, **asked)
+    return read_with_fallbacks(path, fallbacks, **asked, progress=progress)
+
+
+def _read_to_reproject(path: Path, reading: Reading, target: str) -> Survey | TIN:
+    """Read in the input's own CRS; one in degrees, which no TIN has, in the one that is wanted."""
+    from ..io.reprojection.placement import DegreesError
+
+    try:
+        return _read_once(path, reading)
+    except DegreesError:
+        if path == STANDARD:
+            raise  # it is read only once
+        source = reading.crs if reading.source_crs is None else reading.source_crs
+        return _read_once(path, replace(reading, crs=target, source_crs=source))
+
+
+def open_standard_input() -> IO[bytes]:
+    """Return standard input, to be read once."""
+    if sys.stdin is None or sys.stdin.isatty():
+        what = "closed" if sys.stdin is None else "a terminal"
+        raise Failure(f"Standard input is {what}: pipe the data in, or name a file.")
+    return sys.stdin.buffer
+
+
+def surface_options(*groups: Group) -> Decorator:
+    """Return a decorator that adds groups of options, and hands them over as ``job``.
+
+    Without a group these are all that commands on surfaces share. Options of formats, whose names
+    are known only once arguments are, come from the ways of a group: to read, to write.
     """
-    groups = (reading_options, triangulating_options, writing_options, console_options)
+    chosen = groups or (READING, TRIANGULATING, WRITING, CONSOLE)
 
     def decorate(function: Any) -> Any:
         @wraps(function)
         def gathering(**given: Any) -> Any:
-            shared = ("outputs", "reading", "how", "writing", "console")
-            job = Job(**{name: given.pop(name) for name in shared})
-            return function(**given, job=job)
+            note_given(click.get_current_context())
+            shared = {"outputs": given.pop("outputs")} if "outputs" in given else {}
+            for group in chosen:
+                values = {name: given.pop(name) for name in group.fields if name in given}
+                if group.way:
+                    values["options"] = take_options(given, group.way)
+                shared[group.name] = group.factory(**values)
+            return function(**given, job=Job(**shared))
 
         decorated: Any = gathering
-        for group in reversed(groups):
-            decorated = group(decorated)
+        decorated.format_ways = tuple(group.way for group in chosen if group.way)
+        for group in reversed(chosen):
+            for option in reversed(group.options):
+                decorated = option(decorated)
         return decorated
 
     return decorate
-
-
-def _plan_products(
-    paths: Sequence[Path],
-    writing: Writing,
-    *,
-    inputs: Sequence[Named],
-    console: Console,
-    kinds: Sequence[str],
-) -> Products:
-    """Choose what each output holds, before any work is done.
-
-    What there will be is of the ``kinds`` "Table", "Features", "TIN" and "picture". Features that
-    have no table of their own are written to tables too.
-    """
-    tabulates = "Features" in kinds and "Table" not in kinds
-    if tabulates:
-        kinds = (*kinds, "Table")
-    plain = [path for path in paths if split_output(path)[1] is None]
-    require_separate(inputs, [Named(path, "--output") for path in plain])
-    groups: dict[str, list[Path]] = {}
-    for path in paths:
-        groups.setdefault(_find_kind(split_output(path)[0], writing, kinds), []).append(path)
-    pictures = groups.pop("picture", [])
-    console.note(describe_leftovers(pictures))
-    if sum(path == STANDARD for path in paths) > 1:
-        raise Failure("'-o -' is given twice: standard output takes one thing.")
-    planned = {
-        kind: plan_outputs(group, writing, inputs=(), console=console, kinds=(kind,))
-        for kind, group in groups.items()
-    }
-    return Products(console=console, outputs=planned, pictures=pictures, tabulates=tabulates)
-
-
-def _tabulate(features: Features) -> tuple[Table, list[str]]:
-    """Return features as a table: of points their coordinates too; and what it lacks, if any."""
-    from ..base.results.table import tabulate_columns
-    from ..io.tables.csv_tables import tabulate_points
-
-    if features.kind == "points":
-        return tabulate_points(features), []
-    return tabulate_columns(features), [
-        f"Tables hold the columns of the {features.kind}, not their geometries: GeoPackage and "
-        "GeoJSON hold both."
-    ]
-
-
-def _find_kind(path: Path, writing: Writing, kinds: Sequence[str]) -> str:
-    """Return what a suffix, or a format that is named, is meant for."""
-    from ..io.registry.lookup import list_writers
-    from ..terrain.drawing.pictures import PICTURE_SUFFIXES
-
-    name = writing.output_format
-    suffix = path.suffix.lower() if name is None else f".{name.strip().lower().lstrip('.')}"
-    if suffix in PICTURE_SUFFIXES and "picture" in kinds:
-        return "picture"
-    for kind in ("Table", "Features", "TIN"):
-        if kind in kinds and list_writers(path, name, kind):
-            return kind
-    return next(kind for kind in kinds if kind != "picture")  # whose refusal names what it takes

@@ -6,11 +6,13 @@ from typing import Any
 
 import click
 
-from ..base.policies import CodeStyle, CrossingPolicy, ShotOrder, TrimPolicy
-from .parameters import LibraryOption, choice_option, number_option, under
+from .parameters import LibraryOption, under
 from .paths import LINES
+from .product_options import list_product_options
 
 __all__ = ["CODE_OPTIONS", "LINE_OPTIONS"]
+
+_TRIANGULATE = "tin.construction.triangulate"
 
 
 def _make_files_option(name: str, words: str) -> Any:
@@ -51,20 +53,10 @@ CODE_OPTIONS = under(
         type=LINES,
         help="As --codes, with a table of codes (TOML) that defines their kinds and marks.",
     ),
-    choice_option(
-        "--code-style",
-        CodeStyle,
-        "As --codes, in this style; default that of the table, else detected.",
-    ),
-    number_option(
-        "--arc-tolerance",
-        "LENGTH",
-        "Largest distance of chords from the curves of field codes, in CRS units; default 0.01 m.",
-    ),
-    choice_option(
-        "--shot-order",
-        ShotOrder,
-        "What gives the order of shots along lines; default their numbers, if they have any.",
+    *list_product_options(
+        "io.field_survey.field_codes.lines_from_codes",
+        "code_style arc_tolerance shot_order",
+        code_style="As --codes, in this style; default that of the table, else detected.",
     ),
 )
 
@@ -100,24 +92,9 @@ _LINES = under(
     click.option(
         "--drape", is_flag=True, help="Take the elevations of lines in files from the surface."
     ),
-    choice_option(
-        "--crossing",
-        CrossingPolicy,
-        "Where lines cross: add a vertex, or refuse the input.",
-        default="split",
-    ),
-    click.option("--conforming", is_flag=True, help="Split lines until every edge is Delaunay."),
+    *list_product_options(_TRIANGULATE, "crossing conforming"),
 )
 
-_TRIMMING = under(
-    "Triangulation",
-    number_option("--max-edge", "LENGTH", "Remove triangles with longer edges, in CRS units."),
-    choice_option(
-        "--trim",
-        TrimPolicy,
-        "Where --max-edge removes triangles: from the outside inwards, or everywhere.",
-        default="perimeter",
-    ),
-)
+_TRIMMING = under("Triangulation", *list_product_options(_TRIANGULATE, "max_edge trim"))
 
 LINE_OPTIONS = (*_LINES, *CODE_OPTIONS, *_TRIMMING)

@@ -1,47 +1,41 @@
-"""Options that commands share, gathered into one value for each purpose."""
+"""Options that commands share, in groups: one value for each purpose."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field, fields, replace
-from functools import wraps
+from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import click
 
-from ..base.policies import DuplicatePolicy
-from .flags import note_given
-from .format_options import take_options
 from .line_options import CODE_OPTIONS, LINE_OPTIONS
 from .output.console import Console
 from .parameters import (
     Decorator,
     FormatName,
     LibraryOption,
-    choice_option,
     crs_option,
     number_option,
     under,
 )
+from .product_options import list_product_options
 
 __all__ = [
     "CODE_FLAGS",
+    "CODING",
+    "CONSOLE",
+    "READING",
+    "TRIANGULATING",
+    "WRITING",
     "Coding",
+    "Group",
     "Reading",
     "Triangulating",
     "Writing",
-    "coding_options",
-    "console_options",
-    "gather_options",
-    "make_reading_options",
-    "reading_options",
-    "triangulating_options",
-    "writing_options",
+    "make_reading",
 ]
 
-Function = TypeVar("Function", bound=Callable[..., Any])
-
+_OF_FORMATS = ("options", "fallbacks")
 _METHOD = ("duplicates", "snap", "threads", "crossing", "conforming", "max_edge", "trim")
 CODE_FLAGS = ("codes", "code_table", "code_style")
 _FILES = ("breaklines", "soft_breaklines", "boundary", "holes", "erase", "water")
@@ -67,20 +61,10 @@ class Reading:
     @property
     def given(self) -> dict[str, Any]:
         """All that :func:`tinsmith.io.read` is to take, by the names of its options."""
-        usual = {
-            "crs": self.crs,
-            "elevation_unit": self.elevation_unit,
-            "source_crs": self.source_crs,
-            "format": self.format,
-            "unit": self.length_unit,
-            "check_crs": self.check_crs,
-            "remote": self.remote,
-        }
+        usual = {one.name: getattr(self, one.name) for one in fields(self)[: -len(_OF_FORMATS)]}
+        usual["unit"] = usual.pop("length_unit")
+        del usual["to_crs"]
         return {name: value for name, value in usual.items() if value is not None} | self.options
-
-    def with_fallback(self, **options: Any) -> Reading:
-        """Return the same with options that count where a format has them."""
-        return replace(self, fallbacks=self.fallbacks | options)
 
 
 @dataclass(frozen=True)
@@ -94,6 +78,11 @@ class Coding:
     shot_order: str | None = None
 
     @property
+    def line_files(self) -> dict[str, tuple[Path, ...]]:
+        """Files of lines, by the flag that names them: there are none."""
+        return {}
+
+    @property
     def has_codes(self) -> bool:
         """Whether lines are made of codes; a table or a style asks for it, too."""
         return self.codes or self.code_table is not None or self.code_style is not None
@@ -101,7 +90,7 @@ class Coding:
     @property
     def coding(self) -> dict[str, Any]:
         """Options of :func:`tinsmith.lines_from_codes`."""
-        names = ("code_table", "code_style", "arc_tolerance", "shot_order")
+        names = (one.name for one in fields(Coding) if one.name != "codes")
         return {name: getattr(self, name) for name in names}
 
 
@@ -164,32 +153,21 @@ class Writing:
     """Options of the formats that were given."""
 
 
-def gather_options(
-    name: str, factory: type, *options: Decorator, way: str | None = None
-) -> Callable[[Function], Function]:
-    """Return a decorator that adds options and hands them over as one value called ``name``.
+@dataclass(frozen=True)
+class Group:
+    """Options that a command hands over as one value of its job."""
 
-    With a ``way``, "read" or "write", the options of formats are among them.
-    """
-    names = [one.name for one in fields(factory)]
+    name: str
+    """Of the field of the job."""
+    factory: type
+    options: tuple[Decorator, ...]
+    way: str = ""
+    """"read" or "write": the options of formats are among them."""
 
-    def decorate(function: Function) -> Function:
-        @wraps(function)
-        def gathering(**given: Any) -> Any:
-            note_given(click.get_current_context())
-            values = {key: given.pop(key) for key in names if key in given}
-            if way is not None:
-                values["options"] = take_options(given, way)
-            return function(**given, **{name: factory(**values)})
-
-        decorated: Any = gathering
-        if way is not None:
-            decorated.format_ways = (way, *getattr(function, "format_ways", ()))
-        for option in reversed(options):
-            decorated = option(decorated)
-        return decorated  # type: ignore[no-any-return]
-
-    return decorate
+    @property
+    def fields(self) -> list[str]:
+        """Names of the values."""
+        return [one.name for one in fields(self.factory)]
 
 
 def _take_unchecked(
@@ -248,14 +226,8 @@ _INPUT = under(
 )
 
 
-def make_reading_options(*, unit_flag: str = "--unit") -> Callable[[Function], Function]:
-    """Return the decorator that adds the options of reading.
-
-    Parameters
-    ----------
-    unit_flag : str
-        Flag of the unit of lengths, for a command whose own ``--unit`` is another.
-    """
+def make_reading(unit_flag: str = "--unit") -> Group:
+    """Return the options of reading, with a flag of the unit of lengths that is free."""
     unit = click.option(
         unit_flag,
         "length_unit",
@@ -266,22 +238,14 @@ def make_reading_options(*, unit_flag: str = "--unit") -> Callable[[Function], F
         "DXF file also where it states one that differs from its CRS.",
     )
     options = (*_COORDINATES, *under("Coordinates and units", unit), *_INPUT)
-    return gather_options("reading", Reading, *options, way="read")
+    return Group("reading", Reading, options, "read")
 
 
-reading_options = make_reading_options()
+READING = make_reading()
 
 _TRIANGULATION = under(
     "Triangulation",
-    choice_option(
-        "--duplicates",
-        DuplicatePolicy,
-        "Elevation of points with equal easting and northing.",
-        default="mean",
-    ),
-    number_option(
-        "--snap", "DISTANCE", "Merge points no further apart than this, in CRS units.", default=0.0
-    ),
+    *list_product_options("tin.construction.triangulate", "duplicates snap"),
     number_option(
         "--threads",
         "N",
@@ -290,14 +254,14 @@ _TRIANGULATION = under(
     ),
 )
 
-triangulating_options = gather_options("how", Triangulating, *_TRIANGULATION, *LINE_OPTIONS)
+TRIANGULATING = Group("how", Triangulating, (*_TRIANGULATION, *LINE_OPTIONS))
 
-coding_options = gather_options("how", Coding, *CODE_OPTIONS)
+CODING = Group("how", Coding, CODE_OPTIONS)
 
-writing_options = gather_options(
+WRITING = Group(
     "writing",
     Writing,
-    *under(
+    under(
         "Output",
         click.option(
             "--output-format",
@@ -306,17 +270,20 @@ writing_options = gather_options(
             help="Format of the output, in place of that of its suffix.",
         ),
     ),
-    way="write",
+    "write",
 )
 
-console_options = gather_options(
+CONSOLE = Group(
     "console",
     Console,
-    click.option("--json", "as_json", is_flag=True, help="Write the result as JSON to stdout."),
-    click.option(
-        "--events",
-        is_flag=True,
-        help="Write progress, summary, warnings and errors to stderr as JSON, one object per line.",
+    (
+        click.option("--json", "as_json", is_flag=True, help="Write the result as JSON to stdout."),
+        click.option(
+            "--events",
+            is_flag=True,
+            help="Write progress, summary, warnings and errors to stderr as JSON, one object per "
+            "line.",
+        ),
+        click.option("-q", "--quiet", is_flag=True, help="No summary, no progress."),
     ),
-    click.option("-q", "--quiet", is_flag=True, help="No summary, no progress."),
 )

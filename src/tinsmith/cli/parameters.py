@@ -26,11 +26,11 @@ __all__ = [
     "output_option",
     "parse_columns",
     "parse_crs",
+    "parse_numbers",
     "picture_option",
     "position_option",
     "refuse_value",
     "report_option",
-    "smooth_option",
     "under",
 ]
 
@@ -45,12 +45,8 @@ Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 class LibraryOption(click.Option):
     """An option of a command that the library calls otherwise.
 
-    Parameters
-    ----------
-    sets : sequence of str
-        Options of the library that have its value, where the command has no flag of that name.
-    instead : str
-        The one for which it stands whatever other flag has that name.
+    It ``sets`` options of the library that have its value, where the command has no flag of that
+    name, or stands ``instead`` of one, whatever other flag has that name.
     """
 
     def __init__(
@@ -124,18 +120,20 @@ def number_option(
     **more: Any,
 ) -> Decorator:
     """Return an option for a number; a default is shown."""
-    names = [flag] if name is None else [flag, name]
-    if default is not None:
-        more |= {"default": default, "show_default": True}
-    return click.option(*names, metavar=metavar, type=type, help=help, **more)
+    more |= {"metavar": metavar, "type": type, "help": help, "default": default}
+    return click.option(flag, *_list(name), show_default=default is not None, **more)
+
+
+def _list(name: str | None) -> list[str]:
+    return [] if name is None else [name]
 
 
 def numbers_option(flag: str, metavar: str, help: str) -> Decorator:  # noqa: A002 - click's name
     """Return an option for several numbers."""
-    return click.option(flag, metavar=metavar, callback=_parse_numbers, help=help)
+    return click.option(flag, metavar=metavar, callback=parse_numbers, help=help)
 
 
-def _parse_numbers(
+def parse_numbers(
     ctx: click.Context,  # noqa: ARG001 - click's signature
     param: click.Parameter,
     value: str | None,
@@ -160,9 +158,9 @@ def choice_option(
     default: str | None = None,
 ) -> Decorator:
     """Return an option for one of the words of a Literal; a default is shown."""
-    names = [flag] if name is None else [flag, name]
     return click.option(
-        *names,
+        flag,
+        *_list(name),
         type=Words(get_args(words)),
         default=default,
         show_default=default is not None,
@@ -261,8 +259,8 @@ def file_option(
     required: bool = False,
 ) -> Decorator:
     """Return an option for one more file to read, of lines or points if nothing else is said."""
-    names = [flag] if name is None else [flag, name]
-    return click.option(*names, metavar="FILE", type=type, required=required, help=help)
+    how: dict[str, Any] = {"metavar": "FILE", "type": type, "required": required, "help": help}
+    return click.option(flag, *_list(name), **how)
 
 
 def report_option(help: str) -> Decorator:  # noqa: A002 - click's name
@@ -284,11 +282,3 @@ def _require_json(
 def picture_option(help: str) -> Decorator:  # noqa: A002 - click's name
     """Return the option for the one picture that a command writes."""
     return click.option("-o", "--output", metavar="FILE", type=OUTPUT, help=help)
-
-
-smooth_option: Decorator = click.option(
-    "--smooth/--no-smooth",
-    default=None,
-    help="Interpolate the normals of the vertices, or take those of the triangles; default smooth "
-    "for a raster without breaklines.",
-)

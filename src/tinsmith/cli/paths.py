@@ -122,13 +122,8 @@ def require_separate(inputs: Iterable[Named], outputs: Sequence[Named]) -> None:
     """Refuse outputs that would overwrite an input, a file that is read with it, or each other.
 
     Files are compared by what they are, not by what they are called: links, other ways to the same
-    folder, and capitals where the system does not tell them apart.
-
-    Raises
-    ------
-    click.UsageError
-    WriteError
-        If an output cannot be written where it should be.
+    folder, and capitals where the system does not tell them apart. An output that cannot be written
+    where it should be is a WriteError.
     """
     from ..base.atomic import require_writable
     from ..io.registry.side_files import is_replaceable_folder, list_sources

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 __all__ = ["describe_faults", "find_commands", "find_owner", "load_command"]
 
 _GROUP = "tinsmith.commands"
-_BROKEN = {"ignore_unknown_options": True, "help_option_names": list[str]()}
 
 
 @cache
@@ -37,9 +36,19 @@ def find_commands() -> dict[str, list[PlugIn]]:
 def load_command(name: str, claims: Sequence[PlugIn]) -> click.Command:
     """Load a plug-in's command; in place of a faulty one stands one that says what is wrong."""
     command, fault = _try_to_load(claims)
-    if command is None:
-        return _make_faulty_command(name, fault)
-    return command
+    if command is not None:
+        return command
+
+    def fail(**_: object) -> None:
+        raise Failure(fault)
+
+    return click.Command(
+        name,
+        callback=fail,
+        short_help="(cannot be used)",
+        context_settings={"ignore_unknown_options": True, "help_option_names": list[str]()},
+        params=[click.Argument(["arguments"], nargs=-1)],
+    )
 
 
 def _try_to_load(claims: Sequence[PlugIn]) -> tuple[click.Command | None, str]:
@@ -62,28 +71,10 @@ def _try_to_load(claims: Sequence[PlugIn]) -> tuple[click.Command | None, str]:
     )
 
 
-def _make_faulty_command(name: str, fault: str) -> click.Command:
-    def fail(**_: object) -> None:
-        raise Failure(fault)
-
-    return click.Command(
-        name,
-        callback=fail,
-        short_help="(cannot be used)",
-        context_settings=dict(_BROKEN),
-        params=[click.Argument(["arguments"], nargs=-1)],
-    )
-
-
 def describe_faults(built_in: Sequence[str], name: str | None = None) -> list[str]:
-    """Return a sentence for each command of a plug-in that cannot be used.
+    """Return a sentence for each command of a plug-in that cannot be used, or that of a name.
 
-    Parameters
-    ----------
-    built_in : sequence of str
-        Names of the commands of the package, which no plug-in replaces.
-    name : str, optional
-        Look at the commands of this name only.
+    ``built_in`` are the names of the commands of the package, which no plug-in replaces.
     """
     faults = []
     for called, claims in find_commands().items():

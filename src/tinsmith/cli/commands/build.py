@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
 import click
 
+from ...base.sentences import counted
 from ..command import command
-from ..job import surface_options
+from ..job import Job, surface_options
+from ..output.counts import describe_counts
+from ..output.facts import Facts
+from ..output.failures import Failure
 from ..parameters import input_files, output_files, report_option
 from ..paths import describe_inputs, name_files
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from ...tin import TIN, Survey
-    from ..job import Job
     from ..output.blunder_summaries import Suspects
     from ..output.console import Row
-    from ..output.facts import Facts
-
-__all__ = ["build"]
 
 
 @command
@@ -58,37 +58,30 @@ def build(
     and written. Breaklines, a boundary, holes and water are read from vector files, in any CRS, or
     made from the field codes of the points.
 
-    \b
     Example:
       tinsmith build sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.geojson
       tinsmith build sample_data/jacksboro.tif --stride 4 -o hills.ply -o hills.stl
       tinsmith build --from-contours contours.gpkg --z-field elevation -o hills.gpkg
-    """  # noqa: D301 - click reads the control character
+    """
     from ...terrain import mend_flats
-    from ..files import add_lines, build_tin, note_surfaces, read_inputs, write_text
-    from ..inputs import as_contours, require_contours
     from ..output.blunder_summaries import describe_suspects, report_suspects
     from ..output.console import format_json
     from ..output.summaries import describe_report
+    from ..outputs import write_text
 
-    how, console = job.how, job.console
     planned = job.plan(job.list_inputs(*points), "TIN", report=report)
-    reading = as_contours(job.reading) if from_contours else job.reading
-    survey = _require_survey(read_inputs(points, reading, console), points[0])
-    if from_contours:
-        require_contours(survey, points[0])
-    survey = add_lines(survey, how, console)
-    tin = build_tin(survey, how, console)
-    tin, suspects = _find_blunders(tin, job, drop=drop_blunders)
+    survey = _read(points, job, is_contours=from_contours)
+    tin, suspects = _find_blunders(job.build_tin(survey), job, drop=drop_blunders)
     if from_contours:
         with job.step("Mending flat triangles") as progress:
             tin = mend_flats(tin, progress=progress)
-    note_surfaces([tin], console)
+    job.note_surfaces(tin)
     planned.write("TIN", tin)
-    account = describe_report(tin.report, survey, console.notes) | describe_suspects(suspects)
+    account = describe_report(tin.report, survey, job.console.notes) | describe_suspects(suspects)
     if report is not None:
         write_text(report, format_json(account) + "\n")
-    facts = _list_facts(points, survey, tin, report_suspects(suspects), is_mended=from_contours)
+    rows = [*report_suspects(suspects), *_summarise_flats(tin, is_mended=from_contours)]
+    facts = _list_facts(points, survey, tin, rows)
     facts.record(
         report=account,
         outputs=lambda: [
@@ -102,6 +95,32 @@ def build(
         seconds=lambda: round(perf_counter() - job.started, 3),
     )
     job.finish(planned, facts)
+
+
+def _read(points: Sequence[Path], job: Job, *, is_contours: bool) -> Survey:
+    """Read points with their lines; of contours lines as breaklines, where formats have a choice.
+
+    Most lines of contours must be level.
+    """
+    import numpy as np
+
+    need = " already: use 'tinsmith convert' to write it in another format."
+    if not is_contours:
+        return job.add_lines(job.read_survey(*points, need=need))
+    if job.reading.options.get("lines_as") == "points":
+        raise click.UsageError("--from-contours takes lines as breaklines, --lines-as as points.")
+    job = job.with_fallback(lines_as="breaklines")
+    survey = job.read_survey(*points, need=need)
+    lines = [np.asarray(getattr(line, "coords", line)) for line in survey.breaklines]
+    if not lines:
+        raise Failure(f"'{points[0]}' has no lines: --from-contours needs contour lines.")
+    level = sum(line.shape[1] == 3 and bool((line[:, 2] == line[0, 2]).all()) for line in lines)
+    if 2 * level < len(lines):
+        raise Failure(
+            f"'{points[0]}': of {counted(len(lines), 'line')} {level:,} are level: these are not "
+            "contours, since all points of a contour have the same elevation."
+        )
+    return job.add_lines(survey)
 
 
 def _find_blunders(tin: TIN, job: Job, *, drop: bool) -> tuple[TIN, Suspects]:
@@ -118,22 +137,18 @@ def _find_blunders(tin: TIN, job: Job, *, drop: bool) -> tuple[TIN, Suspects]:
         return tin, Suspects(table, dropped)
 
 
-def _require_survey(found: Survey | TIN, path: Path) -> Survey:
-    from ...tin import TIN
-    from ..output.failures import Failure
+def _summarise_flats(tin: TIN, *, is_mended: bool) -> list[Row]:
+    """Tell what was mended, or else of flat triangles if the points look like contours."""
+    from ...terrain.inspection.flat_triangles.finding import describe_flats
 
-    if isinstance(found, TIN):
-        raise Failure(
-            f"'{path}' holds a TIN already: use 'tinsmith convert' to write it in another format."
-        )
-    return found
+    if is_mended:
+        return [("Contours", tin.report.notes[-1])]
+    advice = "'tinsmith build --from-contours' takes contour lines and mends them."
+    return [("Flats", f"{sentence}: {advice}") for sentence in describe_flats(tin)]
 
 
-def _list_facts(
-    points: Sequence[Path], survey: Survey, tin: TIN, rows: list[Row], *, is_mended: bool
-) -> Facts:
-    from ..output.facts import Facts
-    from ..output.line_summaries import count_lines, describe_counts, summarise_lines
+def _list_facts(points: Sequence[Path], survey: Survey, tin: TIN, rows: list[Row]) -> Facts:
+    from ..output.line_summaries import count_lines, summarise_lines
     from ..output.summaries import (
         describe_survey,
         describe_tin,
@@ -143,24 +158,12 @@ def _list_facts(
         summarise_reading,
     )
 
-    facts = Facts()
-    facts.record(input=describe_inputs(points), survey=lambda: describe_survey(survey))
+    facts = Facts(input=describe_inputs(points), survey=lambda: describe_survey(survey))
     facts.add("Points", f"{len(survey):,} from {name_files(points)}")
     facts.extend(summarise_reading(survey))
     facts.extend(summarise_merges(tin.report, survey))
     facts.extend(summarise_lines(survey, tin))
     facts.add("TIN", describe_counts(tin), tin=lambda: describe_tin(tin))
-    facts.record(counts=lambda: count_lines(tin.report))
-    facts.extend([*rows, *_summarise_flats(tin, is_mended=is_mended)])
+    facts.extend(rows, counts=lambda: count_lines(tin.report))
     facts.extend([*summarise_extent(tin), summarise_crs(tin.crs)])
     return facts
-
-
-def _summarise_flats(tin: TIN, *, is_mended: bool) -> list[Row]:
-    """Tell what was mended, or else of flat triangles if the points look like contours."""
-    from ...terrain.inspection.flat_triangles.finding import describe_flats
-
-    if is_mended:
-        return [("Contours", tin.report.notes[-1])]
-    advice = "'tinsmith build --from-contours' takes contour lines and mends them."
-    return [("Flats", f"{sentence}: {advice}") for sentence in describe_flats(tin)]

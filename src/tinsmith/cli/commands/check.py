@@ -2,31 +2,29 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from ...base.sentences import counted
 from ..command import command
-from ..options import console_options, reading_options, triangulating_options
+from ..job import Job, surface_options
+from ..options import CONSOLE, READING, TRIANGULATING
+from ..output.facts import Facts
 from ..output.failures import Failure
 from ..parameters import input_file
 from ..paths import name_file
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ...tin.checking.checker import CheckResult
-    from ..options import Reading, Triangulating
-    from ..output.console import Console, Row
-
-__all__ = ["check"]
 
 _PROVED = {
     1: "indices, neighbours and edge flags agree",
     2: "sound, and its triangles tile the hull with no gap or overlap",
     3: "exactly Delaunay, and its triangles tile the hull with no gap or overlap",
 }
+_NOUNS = {"vertices": "vertex", "triangles": "triangle", "edges": "edge"}
 
 
 @command
@@ -39,46 +37,37 @@ _PROVED = {
     help="1: indices and neighbours. 2: also orientation, hull, areas. "
     "3: also every edge exactly Delaunay, every point present.",
 )
-@reading_options
-@triangulating_options
-@console_options
-def check(file: Path, level: int, reading: Reading, how: Triangulating, console: Console) -> None:
+@surface_options(READING, TRIANGULATING, CONSOLE)
+def check(file: Path, level: int, job: Job) -> None:
     """Check the TIN in FILE, or built from the points in it, in exact arithmetic.
 
     The exit code is 1 if a problem is found. A surface of another program may be sound and not
     Delaunay, or have a concave boundary: that is told apart.
 
-    \b
     Example:
       tinsmith check sample_data/site_survey.csv
-    """  # noqa: D301 - click reads the control character
+    """
     from ...tin.checking.checker import check as check_tin
-    from ..files import read_tin
 
-    tin, survey = read_tin(file, reading, how, console)
-    triangles = counted(len(tin.triangles), "triangle")
-    with console.steps() as steps, steps.step(f"Checking {triangles}"):
+    tin, survey = job.read_surface(file)
+    with job.step(f"Checking {counted(len(tin.triangles), 'triangle')}"):
         result = check_tin(tin, level=level, points=survey)
-    console.answer(_summarise_check(file, result), {"input": str(file)} | result.to_dict())
-    if not result.ok:
-        raise Failure(f"The TIN of '{file}' is {_describe_verdict(result)}.")
-
-
-def _summarise_check(file: Path, result: CheckResult) -> list[Row]:
-    counts = ", ".join(
+    facts = Facts(file, **result.to_dict())
+    facts.add("File", name_file(file))
+    counts = (
         counted(result.counts[name], one, name)
-        for name, one in (("vertices", "vertex"), ("triangles", "triangle"), ("edges", "edge"))
+        for name, one in _NOUNS.items()
         if name in result.counts
     )
-    verdict = _PROVED[result.level] if result.ok else _describe_verdict(result)
+    facts.add("Counted", ", ".join(counts))
+    verdict = "" if result.ok else _describe_verdict(result)
+    facts.add(f"Level {result.level}", verdict or _PROVED[result.level])
     label = "Reason" if result.is_surface else "Problem"
-    return [
-        ("File", name_file(file)),
-        ("Counted", counts),
-        (f"Level {result.level}", verdict),
-        *((label, problem.sentence) for problem in result.problems),
-        *(("Note", note.sentence) for note in result.notes),
-    ]
+    facts.extend((label, problem.sentence) for problem in result.problems)
+    facts.extend(("Note", note.sentence) for note in result.notes)
+    job.console.answer(facts)
+    if verdict:
+        raise Failure(f"The TIN of '{file}' is {verdict}.")
 
 
 def _describe_verdict(result: CheckResult) -> str:

@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from ...base.sentences import counted
 from ..command import command
-from ..options import console_options, reading_options
+from ..job import Job, surface_options
+from ..options import CONSOLE, READING
+from ..output.facts import Facts
 from ..output.failures import Failure
 from ..parameters import input_file, number_option, picture_option
 from ..paths import make_title, name_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from ...base.arrays import AnyArray
     from ...tin import Comparison, Outcome
-    from ..options import Reading
-    from ..output.console import Console, Row
-
-__all__ = ["compare"]
 
 _COLUMN = 16
 
@@ -36,38 +34,42 @@ _COLUMN = 16
     "Use N of the points, chosen at random but the same every time.",
     type=click.IntRange(min=3),
 )
-@reading_options
-@console_options
-def compare(
-    file: Path, output: Path | None, sample: int | None, reading: Reading, console: Console
-) -> None:
+@surface_options(READING, CONSOLE)
+def compare(file: Path, output: Path | None, sample: int | None, job: Job) -> None:
     """Triangulate the points in FILE by the paper's algorithms and by the exact kernel.
 
     Shown for each are triangles, time, memory, searches, angles, and faults. Without --sample at
     most 2,500 points are allowed, because the paper's algorithms take quadratic time.
 
-    \b
     Example:
       tinsmith compare sample_data/site_survey.csv --sample 200 -o comparison.png
-    """  # noqa: D301 - click reads the control character
-    from ...tin import TIN
+    """
+    from ...terrain import comparison_picture
     from ...tin import compare as compare_points
-    from ..files import list_inputs, note_found, read_input, require_picture
+    from ..outputs import describe_file, require_picture, write_figure
 
     if output is not None:
-        require_picture(output, place="--output", inputs=list_inputs(file))
-    found = read_input(file, reading, console)
-    if isinstance(found, TIN):
-        raise Failure(f"'{file}' holds a TIN: 'tinsmith compare' needs points.")
-    note_found(found, console)
+        require_picture(output, "--output", job.list_inputs(file))
+    found = job.read_survey(file, need=": 'tinsmith compare' needs points.")
+    job.note_found(found)
     points = _sample_points(found.points, sample)
-    with console.steps() as steps, steps.step(f"Comparing on {counted(len(points), 'point')}"):
+    with job.step(f"Comparing on {counted(len(points), 'point')}"):
         result = compare_points(points, limit=len(points))
-    record = {"input": str(file)} | result.to_dict()
     if output is not None:
-        _draw_comparison(result, file, output, console)
-        record["output"] = str(output)
-    console.answer(_summarise_comparison(file, result, output), record)
+        title = f"{make_title(file) or 'points'}: {len(result.points):,} points"
+        with job.step("Drawing"):
+            write_figure(comparison_picture(result, title=title), output, dpi=120)
+    facts = Facts(file, **result.to_dict())
+    hull = f"{len(result.points):,} points, {len(result.hull):,} of them on the hull"
+    make = "makes" if result.expected == 1 else "make"
+    due = f"2n - 2 - h = {counted(result.expected, 'triangle')} {make} a triangulation"
+    facts.extend([("File", name_file(file)), ("Points", f"{hull}: {due}"), ("", "")])
+    for label, text in _ROWS:
+        cells = (text(outcome, result) for outcome in result.outcomes)
+        facts.add(label, "".join(f"{cell:>{_COLUMN}}" for cell in cells))
+    if output is not None:
+        facts.add("Written", describe_file(output), output=str(output))
+    job.console.answer(facts)
 
 
 def _sample_points(points: AnyArray, count: int | None) -> AnyArray:
@@ -89,40 +91,7 @@ def _sample_points(points: AnyArray, count: int | None) -> AnyArray:
     return points[np.sort(rows)]
 
 
-def _draw_comparison(result: Comparison, file: Path, output: Path, console: Console) -> None:
-    """Write the picture, whole or not at all."""
-    from ...terrain import comparison_picture
-    from ..files import write_figure
-
-    title = f"{make_title(file) or 'points'}: {len(result.points):,} points"
-    with console.steps() as steps, steps.step("Drawing"):
-        figure = comparison_picture(result, title=title)
-        write_figure(figure, output, dpi=120)
-
-
 # ---------------------------------------------------------------- for people
-
-
-def _summarise_comparison(file: Path, result: Comparison, output: Path | None) -> list[Row]:
-    from ..output.summaries import describe_file_size
-
-    hull = f"{len(result.points):,} points, {len(result.hull):,} of them on the hull"
-    make = "makes" if result.expected == 1 else "make"
-    due = f"2n - 2 - h = {counted(result.expected, 'triangle')} {make} a triangulation"
-    rows = [("File", name_file(file)), ("Points", f"{hull}: {due}"), ("", "")]
-    rows += [_make_row(label, result, text) for label, text in _ROWS]
-    if output is not None:
-        rows.append(("Written", f"{output} ({describe_file_size(output)})"))
-    return rows
-
-
-def _make_row(label: str, result: Comparison, text: Callable[[Outcome, Comparison], str]) -> Row:
-    cells = (text(outcome, result) for outcome in result.outcomes)
-    return label, "".join(f"{cell:>{_COLUMN}}" for cell in cells)
-
-
-def _count_triangles_made(outcome: Outcome, _: Comparison) -> str:
-    return f"{len(outcome.triangles):,}" + (" (stopped)" if outcome.is_stopped else "")
 
 
 def _count_without_removal(outcome: Outcome, _: Comparison) -> str:
@@ -136,7 +105,10 @@ def _format_share(part: float, whole: float) -> str:
 
 _ROWS: list[tuple[str, Callable[[Outcome, Comparison], str]]] = [
     ("", lambda one, _: one.name),
-    ("Triangles", _count_triangles_made),
+    (
+        "Triangles",
+        lambda one, _: f"{len(one.triangles):,}" + (" (stopped)" if one.is_stopped else ""),
+    ),
     ("Open edges", lambda one, _: f"{len(one.unextended):,}"),
     ("In circle", lambda one, _: _format_share(one.violating.sum(), len(one.triangles))),
     ("Overlapping", lambda one, _: _format_share(one.overlapping.sum(), len(one.triangles))),

@@ -8,8 +8,6 @@ from ..command import command
 from ..output.console import emit_text
 from ..parameters import Words
 
-__all__ = ["completion"]
-
 _VARIABLE = "_TINSMITH_COMPLETE"
 """What click asks for in the environment, by the name of the program."""
 
@@ -22,12 +20,11 @@ def completion(ctx: click.Context, shell: str) -> None:
 
     It completes commands, options, their values, formats and files.
 
-    \b
     Example:
       tinsmith completion bash >> ~/.bashrc
       tinsmith completion zsh >> ~/.zshrc
       tinsmith completion fish > ~/.config/fish/completions/tinsmith.fish
-    """  # noqa: D301 - click reads the control character
+    """
     from click.shell_completion import get_completion_class
 
     kind = get_completion_class(shell)

@@ -2,34 +2,32 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ...base.sentences import counted, height
 from ..command import file_command
-from ..job import surface_options
-from ..parameters import LibraryOption, number_option, numbers_option
+from ..job import Job, surface_options
+from ..output.facts import Facts, list_rows, name_unit, name_units
+from ..parameters import LibraryOption, number_option
 from ..paths import make_title
+from ..product_options import product_options
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ...base.progress import Tell
     from ...terrain import Features
     from ...tin import TIN
-    from ..job import Job
-    from ..output.facts import Facts
-
-__all__ = ["contours"]
 
 
 @file_command
-@number_option("--interval", "HEIGHT", "Contour interval, in the unit of elevations.")
-@numbers_option(
-    "--levels", "Z,Z,...", "Explicit levels instead of an interval, separated by commas."
+@product_options(
+    "terrain.isolines.lines.contours",
+    "interval levels base",
+    interval="Contour interval, in the unit of elevations.",
+    levels="Explicit levels instead of an interval, separated by commas.",
 )
-@number_option("--base", "ELEVATION", "Level from which the others are counted.", default=0.0)
 @number_option(
     "--index",
     "N",
@@ -37,12 +35,7 @@ __all__ = ["contours"]
     type=click.IntRange(min=0),
     default=5,
 )
-@number_option(
-    "--smooth",
-    "HEIGHT",
-    "Smooth the lines, as long as the surface stays within this height of the level.",
-)
-@number_option("--simplify", "HEIGHT", "Remove points of lines, within this height of the level.")
+@product_options("terrain.isolines.lines.contours", "smooth simplify")
 @click.option("--bands", is_flag=True, help="Write the bands between levels, as polygons.")
 @click.option(
     "--labels", is_flag=True, help="Write labels of the lines, as points with a rotation."
@@ -55,25 +48,20 @@ __all__ = ["contours"]
     sets=("spacing",),
 )
 @surface_options()
-def contours(
-    file: Path,
-    job: Job,
-    **options: Any,
-) -> None:
+def contours(file: Path, job: Job, **options: Any) -> None:
     """Draw contours of the TIN in FILE, or built from the points in it.
 
     Levels are given by an interval or one by one. A level is treated as infinitesimally below its
     value: lines are closed or end at the boundary, and flat areas at a level lie above it. Smoothed
     and simplified lines do not touch one another.
 
-    \b
     Example:
       tinsmith contours sample_data/site_survey.csv --crs EPSG:32616 --interval 0.5 -o site.gpkg
       tinsmith contours sample_data/site_survey.csv --crs EPSG:32616 --interval 0.5 -o site.png
       tinsmith contours sample_data/site_survey.csv --crs EPSG:32616 --interval 1 --bands -o b.gpkg
-    """  # noqa: D301 - click reads the control character
+    """
     _require_one_product(options)
-    planned = job.plan_products(job.list_inputs(file), "Features", "picture")
+    planned = job.plan(job.list_inputs(file), "Features", "picture")
     tin = job.read_tin(file)
     with job.step("Tracing contours") as progress:
         made = _make_product(tin, options, progress)
@@ -129,32 +117,24 @@ def _draw(tin: TIN, made: Features, options: dict[str, Any], title: str) -> Any:
 
 
 def _list_facts(file: Path, made: Features) -> Facts:
-    from ..output.facts import Facts, list_rows, name_units
-
-    facts = Facts(file)
-    facts.record(kind=made.name, features=len(made), points=len(made.coordinates))
+    facts = Facts(file, kind=made.name, features=len(made), points=len(made.coordinates))
     facts.record(units=name_units(made.units, made.columns))
     facts.note(made.notes)
     if made.kind == "polygons":
         bands = list_rows({name: made.columns[name] for name in ("from", "to", "area")})
         facts.add("Bands", counted(len(made), "band"), bands=bands)
-    elif made.kind == "points":
+        return facts
+    if made.kind == "points":
         facts.add("Labels", counted(len(made), "label"))
-    else:
-        closed = int(made.columns["is_closed"].sum())
-        text = f"{counted(len(made), 'line')}, {closed:,} of them closed"
-        facts.add("Contours", text, closed=closed, length=float(made.columns["length"].sum()))
-        facts.add("Points", f"{len(made.coordinates):,}")
-        _add_levels(facts, made)
-    return facts
-
-
-def _add_levels(facts: Facts, made: Features) -> None:
-    from ..output.line_summaries import name_unit
-
+        return facts
+    closed = int(made.columns["is_closed"].sum())
+    text = f"{counted(len(made), 'line')}, {closed:,} of them closed"
+    facts.add("Contours", text, closed=closed, length=float(made.columns["length"].sum()))
+    facts.add("Points", f"{len(made.coordinates):,}")
     levels = sorted(set(made.columns["elevation"].tolist()))
     facts.record(levels=levels)
     if levels:
         unit = name_unit(made.units, "elevation")
         ends = f"from {height(levels[0])} to {height(levels[-1])}"
         facts.add("Levels", f"{len(levels):,}, {ends} {unit}".rstrip())
+    return facts

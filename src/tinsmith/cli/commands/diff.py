@@ -8,19 +8,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..command import command
-from ..job import surface_options
+from ..job import Job, surface_options
+from ..output.counts import mesh_counts
+from ..output.facts import Facts, name_units
 from ..parameters import input_file, output_files
 from ..paths import make_title
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ...terrain import Difference, Table
-    from ...tin import TIN
-    from ..job import Job
-    from ..output.facts import Facts
-
-__all__ = ["diff"]
+    from ...terrain import Table
 
 
 @command
@@ -34,28 +29,20 @@ __all__ = ["diff"]
 )
 @click.option("--title", metavar="TEXT", help="Title of the map; default the names of the files.")
 @surface_options()
-def diff(
-    file: Path,
-    other: Path,
-    zero_line: bool,
-    title: str | None,
-    job: Job,
-) -> None:
+def diff(file: Path, other: Path, zero_line: bool, title: str | None, job: Job) -> None:
     """Subtract the TIN in FILE from that in OTHER, exactly, where both exist.
 
     The difference is itself a TIN (.ply, .obj, .vtu ...), above 0 where OTHER is higher.
     Statistics, weighted by area, go to .csv or .json, the parts that are cut and filled to .gpkg,
     .geojson, .shp or .fgb, a map to .png.
 
-    \b
     Example:
       tinsmith diff sample_data/site_survey.csv sample_data/design_pad.csv --codes -o pad.ply
-    """  # noqa: D301 - click reads the control character
+    """
     from ...terrain import difference, earthwork_map
 
     files = (file, other)
-    inputs = job.list_inputs(*files)
-    planned = job.plan_products(inputs, "TIN", "Table", "Features", "picture")
+    planned = job.plan(job.list_inputs(*files), "TIN", "Table", "Features", "picture")
     surfaces = job.read_tins(files)
     with job.step("Overlaying") as progress:
         found = difference(*surfaces, progress=progress)
@@ -64,13 +51,6 @@ def diff(
     planned.write("Features", lambda: found.zero_line if zero_line else found.zones)
     title = title or f"Difference: {make_title(other)} less {make_title(file)}"
     planned.draw(lambda: earthwork_map(found, ground=surfaces[0], title=title))
-    job.finish(planned, _list_facts(files, found, surfaces))
-
-
-def _list_facts(files: Sequence[Path], found: Difference, surfaces: Sequence[TIN]) -> Facts:
-    from ..output.facts import Facts, name_units
-    from ..output.line_summaries import mesh_counts
-
     table, tin = found.statistics, found.tin
     facts = Facts(*files)
     facts.extend(zip(("First", "Other"), map(mesh_counts, surfaces), strict=True))
@@ -89,7 +69,7 @@ def _list_facts(files: Sequence[Path], found: Difference, surfaces: Sequence[TIN
         fill=found.fill,
     )
     facts.note(found.notes)
-    return facts
+    job.finish(planned, facts)
 
 
 def _format(table: Table, name: str) -> str:

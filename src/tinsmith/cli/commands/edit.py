@@ -4,21 +4,17 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 from ...base.sentences import counted
 from ..command import command
-from ..job import surface_options
+from ..job import Job, open_standard_input, surface_options
+from ..output.counts import mesh_counts
+from ..output.facts import Facts
+from ..output.failures import Failure
 from ..parameters import input_file, output_files, report_option
 from ..paths import STANDARD, Named, name_file
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from ...tin import TIN
-    from ..job import Job
-
-__all__ = ["edit"]
 
 
 @command
@@ -27,12 +23,7 @@ __all__ = ["edit"]
 @output_files
 @report_option("JSON file that accounts for every row and every edit.")
 @surface_options()
-def edit(
-    file: Path,
-    script: Path,
-    report: Path | None,
-    job: Job,
-) -> None:
+def edit(file: Path, script: Path, report: Path | None, job: Job) -> None:
     """Edit the TIN in FILE, or built from the points in it, by the edits in SCRIPT.
 
     SCRIPT is a JSON list of edits, applied in order: insert, remove, move, set_elevation, flip,
@@ -40,24 +31,19 @@ def edit(
     the vertex numbers after the edits before it: removing a vertex lowers the numbers of later
     ones. Removing a breakline also removes the vertices that only it had.
 
-    \b
     Example:
       tinsmith edit sample_data/site_survey.csv sample_data/edits.json --crs EPSG:32616 -o site.ply
 
-    \b
     A script:
       [{"op": "insert", "points": [[752700.5, 4024250.0, 322.1]]},
        {"op": "remove", "vertices": [17]},
        {"op": "move", "vertex": 3, "point": [752771.2, 4024321.0, 329.1]},
        {"op": "set_elevation", "vertices": [4, 5], "z": [320.0, 320.5]},
        {"op": "add_breakline", "coords": [[752650, 4024200, 321], [752700, 4024300, 323]]}]
-    """  # noqa: D301 - click reads the control character
+    """
     from ...tin.editing.history import apply_edits
-    from ..files import write_text
     from ..output.console import format_json
-    from ..output.facts import Facts
-    from ..output.line_summaries import mesh_counts
-    from ..output.summaries import describe_tin
+    from ..outputs import write_text
 
     inputs = job.list_inputs(file, more=[Named(script, "the script")])
     planned = job.plan(inputs, "TIN", report=report)
@@ -71,24 +57,25 @@ def edit(
         write_text(report, format_json(tin.report.to_dict()) + "\n")
     facts = Facts(file)
     facts.add("Read", f"a TIN of {before} from {name_file(file)}", script=str(script))
-    facts.add("Edits", _count_edits(tin), report=tin.report.to_dict)
-    facts.add("TIN", mesh_counts(tin), tin=lambda: describe_tin(tin))
+    counts = Counter(one.operation for one in tin.edits)
+    named = ", ".join(f"{count} {operation}" for operation, count in counts.items())
+    text = f"{len(tin.edits):,} ({named})" if named else "none"
+    facts.add("Edits", text, report=tin.report.to_dict)
+    facts.add_tin("TIN", tin)
     facts.note(note for one in tin.edits for note in one.notes)
     job.finish(planned, facts)
 
 
-def _count_edits(tin: TIN) -> str:
-    counts = Counter(one.operation for one in tin.edits)
-    named = ", ".join(f"{count} {operation}" for operation, count in counts.items())
-    return f"{len(tin.edits):,} ({named})" if named else "none"
-
-
 def _read_script(path: Path) -> list[dict[str, Any]]:
-    from ..output.failures import Failure
+    from ...io.isolated.spooling import open_ordinary_file, translate_system_errors
 
     wanted = 'a list of edits is needed, such as [{"op": "remove", "vertices": [3]}]'
     try:
-        content = json.loads(_read_bytes(path).decode("utf-8-sig"))
+        if path == STANDARD:
+            content = json.loads(open_standard_input().read().decode("utf-8-sig"))
+        else:
+            with open_ordinary_file(path) as local, translate_system_errors(path):
+                content = json.loads(local.read_bytes().decode("utf-8-sig"))
     except json.JSONDecodeError as error:
         raise Failure(
             f"'{path}' is not JSON (line {error.lineno}: {error.msg}): {wanted}."
@@ -99,13 +86,3 @@ def _read_script(path: Path) -> list[dict[str, Any]]:
     if not isinstance(edits, list) or not all(isinstance(one, dict) for one in edits):
         raise Failure(f"'{path}' holds something else: {wanted}.")
     return edits
-
-
-def _read_bytes(path: Path) -> bytes:
-    from ...io.isolated.spooling import open_ordinary_file, translate_system_errors
-    from ..files import open_standard_input
-
-    if path == STANDARD:
-        return open_standard_input().read()
-    with open_ordinary_file(path) as local, translate_system_errors(path):
-        return local.read_bytes()

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ...base.policies import FlowProduct
 from ..command import file_command
-from ..inputs import name_features, read_places
-from ..job import surface_options
+from ..job import Job, name_features, surface_options
+from ..output.facts import describe_features, name_unit
 from ..parameters import choice_option, file_option, number_option, position_option
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ...base.progress import Tell
     from ...terrain import Features
     from ...tin import TIN
-    from ..job import Job
-
-__all__ = ["flow"]
 
 _SHOWN = 8
 _TOLD = ("kind", "end", "length", "drop", "pit_level", "spill_level", "depth", "area", "volume")
@@ -68,21 +64,19 @@ def flow(file: Path, find: FlowProduct, job: Job, **asked: Any) -> None:
     leaves the surface at its boundary. Vector files get the features, tables (.csv, .json) their
     columns.
 
-    \b
     Example:
       tinsmith flow sample_data/jacksboro.tif --min-depth 1 -o depressions.gpkg
       tinsmith flow site.ply --find paths --from 752700 4024300 -o path.geojson
       tinsmith flow site.ply --find catchments --fill-depressions -o basins.gpkg
-    """  # noqa: D301 - click reads the control character
+    """
     from ...base.results.table import tabulate_columns
-    from ..output.line_summaries import describe_features
 
     _require_fitting(find, asked)
     inputs = job.list_inputs(file, more=name_features(asked["points"], "the file of --points"))
-    planned = job.plan_products(inputs, "Features", "Table")
+    planned = job.plan(inputs, "Features", "Table")
     tin = job.read_tin(file)
     with job.step("Finding") as progress:
-        found = _find(tin, find, asked, progress)
+        found = _find(tin, find, asked, job, progress)
     planned.write("Features", found)
     planned.write("Table", tabulate_columns(found))
     facts = describe_features(file, tin, found)
@@ -104,20 +98,21 @@ def _require_fitting(find: str, asked: dict[str, Any]) -> None:
         raise click.UsageError("A level is needed for ponds: --level ELEVATION.")
 
 
-def _find(tin: TIN, find: str, asked: dict[str, Any], progress: Tell) -> Features:
+def _find(tin: TIN, find: str, asked: dict[str, Any], job: Job, progress: Tell) -> Features:
     from ... import terrain
 
+    places: Any = [list(place) for place in asked["begins"]] or None
+    if asked["points"] is not None:
+        places = job.read_features(asked["points"], tin, "points")
     is_full = asked["fill_depressions"]
     if find == "paths":
-        return terrain.flow_path(tin, _list_places(tin, asked), fill_depressions=is_full)
+        return terrain.flow_path(tin, places, fill_depressions=is_full)
     if find == "pits":
         return terrain.pits(tin)
     if find == "ponds":
         return terrain.ponds(tin, asked["level"])
     if find == "catchments":
-        given = asked["begins"] or asked["points"] is not None
-        outlets = _list_places(tin, asked) if given else None
-        return terrain.catchments(tin, outlets, fill_depressions=is_full, progress=progress)
+        return terrain.catchments(tin, places, fill_depressions=is_full, progress=progress)
     if find == "accumulation":
         least = asked["min_area"] or 0.0
         return terrain.flow_accumulation(
@@ -128,19 +123,10 @@ def _find(tin: TIN, find: str, asked: dict[str, Any], progress: Tell) -> Feature
     return terrain.depressions(tin, nested=asked["nested"], min_depth=asked["min_depth"] or 0.0)
 
 
-def _list_places(tin: TIN, asked: dict[str, Any]) -> Any:
-    """Return the places given, or those of a file."""
-    if asked["points"] is None:
-        return [list(place) for place in asked["begins"]]
-    return read_places(asked["points"], tin)
-
-
 # ---------------------------------------------------------------- for people
 
 
 def _describe_row(found: Features, row: int) -> str:
-    from ..output.line_summaries import name_unit
-
     parts = []
     for name in _TOLD:
         if name in found.columns:

@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import sys
+from shutil import get_terminal_size
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..command import command
 from ..format_options import list_flags_of
-from ..options import console_options
+from ..job import Job, surface_options
+from ..options import CONSOLE
 from ..output.console import format_json
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...io import Format
-    from ..output.console import Console
-
-__all__ = ["formats"]
 
 _OF_OUTPUT = (
     "An option of writing is --output-NAME where the command, or the format of its input, has one "
@@ -28,8 +27,8 @@ _OF_OUTPUT = (
 
 @command
 @click.argument("names", metavar="[NAME]...", nargs=-1)
-@console_options
-def formats(names: tuple[str, ...], console: Console) -> None:
+@surface_options(CONSOLE)
+def formats(names: tuple[str, ...], job: Job) -> None:
     """List the formats: what each reads and writes, what it needs, and whether that is installed.
 
     With the NAME or suffix of a format all that is known of it: its options for reading and
@@ -37,14 +36,14 @@ def formats(names: tuple[str, ...], console: Console) -> None:
     come back, and what is lost. A TIN is a surface, a Survey points with their lines, Features are
     points, lines or polygons. Formats of plug-ins come last.
 
-    \b
     Example:
       tinsmith formats
       tinsmith formats csv gpkg
-    """  # noqa: D301 - click reads the control character
+    """
     from ...io import known_formats
 
     chosen = known_formats() if not names else _choose(names)
+    console = job.console
     if console.as_json:
         console.emit(format_json({"formats": [_describe_format(one) for one in chosen]}))
     elif names:
@@ -80,7 +79,7 @@ def _describe_in_full(one: Format) -> str:
         "Not kept": one.losses if one.write else "",
         "From": "" if one.is_built_in else one.distribution,
     }
-    formatter = click.HelpFormatter(width=_find_width())
+    formatter = click.HelpFormatter(width=max(min(get_terminal_size().columns, 100) - 2, 50))
     formatter.write_heading(heading)
     with formatter.indentation():
         formatter.write_dl([(f"{name}:", text) for name, text in facts.items() if text])
@@ -93,12 +92,6 @@ def _describe_in_full(one: Format) -> str:
         with formatter.indentation():
             formatter.write_text(_OF_OUTPUT)
     return formatter.getvalue().rstrip("\n")
-
-
-def _find_width() -> int:
-    from shutil import get_terminal_size
-
-    return max(min(get_terminal_size().columns, 100) - 2, 50)
 
 
 def _describe_format(one: Format) -> dict[str, Any]:
@@ -128,7 +121,6 @@ def _describe_format(one: Format) -> dict[str, Any]:
 
 def _draw_table(known: tuple[Format, ...]) -> str:
     from io import StringIO
-    from shutil import get_terminal_size
 
     from rich import box
     from rich.console import Console as RichConsole

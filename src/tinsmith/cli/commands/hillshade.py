@@ -3,66 +3,37 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import Any
 
 from ..command import file_command
-from ..job import surface_options
-from ..parameters import number_option, smooth_option
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from ..job import Job
-
-__all__ = ["hillshade"]
+from ..job import Job, surface_options
+from ..output.facts import Facts
+from ..product_options import product_options
 
 
 @file_command
-@number_option("--spacing", "LENGTH", "Cell size; default a thousandth of the extent.")
-@number_option(
-    "--azimuth", "DEGREES", "Direction of the light, clockwise from north.", default=315.0
-)
-@number_option("--altitude", "DEGREES", "Altitude of the light above the horizon.", default=45.0)
-@number_option("--exaggeration", "FACTOR", "Vertical exaggeration.", default=1.0)
-@smooth_option
+@product_options("terrain.relief.shading.hillshade", "spacing azimuth altitude exaggeration smooth")
 @surface_options()
-def hillshade(
-    file: Path,
-    spacing: float | None,
-    azimuth: float,
-    altitude: float,
-    exaggeration: float,
-    smooth: bool | None,
-    job: Job,
-) -> None:
+def hillshade(file: Path, job: Job, **asked: Any) -> None:
     """Write a georeferenced hillshade raster of the TIN in FILE, or built from the points in it.
 
     Cells are 1 (no light) to 255, as in gdaldem, and 0 where there is no surface.
 
-    \b
     Example:
       tinsmith hillshade sample_data/site_survey.csv --crs EPSG:32616 --spacing 0.5 -o shade.tif
-    """  # noqa: D301 - click reads the control character
+    """
     from ... import terrain
-    from ..output.facts import Facts
     from ..output.summaries import describe_raster_size
 
     planned = job.plan(job.list_inputs(file), "Raster")
     tin = job.read_tin(file)
     with job.step("Shading"):
-        made = terrain.hillshade(
-            tin,
-            spacing=spacing,
-            azimuth=azimuth,
-            altitude=altitude,
-            exaggeration=exaggeration,
-            smooth=smooth,
-        )
+        made = terrain.hillshade(tin, **asked)
     planned.write("Raster", made)
-    raster = {"shape": list(made.shape), "spacing": made.grid.spacing}
     facts = Facts(file)
-    facts.add(
-        "Raster", describe_raster_size(made), raster=raster | {"bounds": asdict(made.grid.bounds)}
-    )
+    grid = made.grid
+    raster = {"shape": list(made.shape), "spacing": grid.spacing, "bounds": asdict(grid.bounds)}
+    facts.add("Raster", describe_raster_size(made), raster=raster)
     facts.note(made.notes)
     job.finish(planned, facts)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -9,20 +10,16 @@ import click
 from ...base.policies import Extrapolation, InterpolationMethod
 from ...base.sentences import counted
 from ..command import command
-from ..job import surface_options
+from ..job import Job, surface_options
+from ..output.counts import mesh_counts
+from ..output.facts import Facts
 from ..output.failures import Failure
 from ..parameters import choice_option, crs_option, file_option, input_file, output_files
 from ..paths import Named
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ...io.delimited.query_points import QueryPoints
-    from ...terrain import Table
     from ...tin import TIN
-    from ..job import Job
-
-__all__ = ["interpolate"]
 
 
 @command
@@ -58,24 +55,17 @@ __all__ = ["interpolate"]
     help="Name of the column that is added.",
 )
 @surface_options()
-def interpolate(
-    file: Path,
-    points_file: Path,
-    job: Job,
-    **asked: Any,
-) -> None:
+def interpolate(file: Path, points_file: Path, job: Job, **asked: Any) -> None:
     """Interpolate elevations of the TIN in FILE, or built from its points, at other points.
 
-    \b
     Example:
       tinsmith interpolate sample_data/site_survey.csv --crs EPSG:32616
         --at places.csv --method natural -o elevations.csv
-    """  # noqa: D301 - click reads the control character
+    """
     from ...base.crs import CRS
     from ...base.georeference import describe_unknown
     from ...io.delimited.query_points import read_query_points
-    from ..output.facts import Facts
-    from ..output.line_summaries import mesh_counts
+    from ...terrain import Table
 
     inputs = job.list_inputs(file, more=[Named(points_file, "the file of --at")])
     planned = job.plan(inputs, "Table")
@@ -88,9 +78,24 @@ def interpolate(
     )
     notes = [*describe_unknown(tin.crs, tin.elevation_unit), *points.notes]
     with job.step(f"Interpolating {counted(len(points.xy), 'point')}"):
-        table = _interpolate(tin, points, notes, job.how.threads, asked)
+        column = asked["column"]
+        if column in points.columns:
+            raise Failure(
+                f"The points have a column '{column}' already: name another with --column."
+            )
+        elevations = tin.interpolate(
+            _reproject(tin, points, asked["at_crs"], notes),
+            method=asked["method"],
+            extrapolate=asked["extrapolate"],
+            threads=job.building.threads,
+        )
+        table = Table(
+            {**points.columns, column: elevations},
+            units={column: tin.elevation_unit},
+            name="elevations",
+            notes=notes,
+        )
     planned.write("Table", table)
-    elevations = table[asked["column"]]
     outside = int((elevations != elevations).sum())
     text = f"{outside:,} outside the surface, without elevation" if outside else "all inside"
     if asked["extrapolate"]:
@@ -101,28 +106,6 @@ def interpolate(
     facts.add("Method", asked["method"], method=asked["method"])
     facts.note(notes)
     job.finish(planned, facts)
-
-
-def _interpolate(
-    tin: TIN, points: QueryPoints, notes: list[str], threads: int | None, asked: dict[str, Any]
-) -> Table:
-    from ...terrain import Table
-
-    column = asked["column"]
-    if column in points.columns:
-        raise Failure(f"The points have a column '{column}' already: name another with --column.")
-    elevations = tin.interpolate(
-        _reproject(tin, points, asked["at_crs"], notes),
-        method=asked["method"],
-        extrapolate=asked["extrapolate"],
-        threads=threads,
-    )
-    return Table(
-        {**points.columns, column: elevations},
-        units={column: tin.elevation_unit},
-        name="elevations",
-        notes=notes,
-    )
 
 
 def _reproject(tin: TIN, points: QueryPoints, given: str | None, notes: list[str]) -> Any:

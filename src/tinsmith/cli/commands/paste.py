@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ..command import command
-from ..job import surface_options
+from ..job import Job, surface_options
+from ..output.counts import mesh_counts
+from ..output.facts import Facts
 from ..parameters import input_file, output_files
-
-if TYPE_CHECKING:
-    from ..job import Job
-
-__all__ = ["paste"]
 
 
 @command
@@ -28,14 +24,10 @@ def paste(base: Path, patch: Path, job: Job) -> None:
     larger, with a note. Either file may hold points, from which the TIN is built. Elevations along
     the seam are those of PATCH.
 
-    \b
     Example:
       tinsmith paste sample_data/site_survey.csv sample_data/design_pad.csv --codes -o site.gpkg
-    """  # noqa: D301 - click reads the control character
+    """
     from ...terrain import paste as paste_tin
-    from ..output.facts import Facts
-    from ..output.line_summaries import mesh_counts
-    from ..output.summaries import describe_tin
 
     files = (base, patch)
     planned = job.plan(job.list_inputs(*files), "TIN")
@@ -44,8 +36,7 @@ def paste(base: Path, patch: Path, job: Job) -> None:
         pasted = paste_tin(*surfaces)
     planned.write("TIN", pasted)
     facts = Facts(*files)
-    counts = map(mesh_counts, (*surfaces, pasted))
-    facts.extend(zip(("Base", "Patch", "Pasted"), counts, strict=True))
-    facts.record(tin=lambda: describe_tin(pasted), report=pasted.report.to_dict)
+    facts.extend(zip(("Base", "Patch"), map(mesh_counts, surfaces), strict=True))
+    facts.add_tin("Pasted", pasted, report=pasted.report.to_dict)
     facts.note(pasted.report.notes)
     job.finish(planned, facts)

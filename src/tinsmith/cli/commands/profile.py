@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,42 +9,20 @@ import click
 
 from ...base.sentences import counted
 from ..command import command
-from ..inputs import name_features, read_lines
-from ..job import surface_options
+from ..job import Job, name_features, surface_options
+from ..output.counts import mesh_counts
+from ..output.facts import Facts
 from ..parameters import LibraryOption, file_option, number_option, output_files, position_option
 from ..paths import INPUT, make_title
+from ..product_options import product_options
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...terrain import Features, Table
     from ...tin import TIN
-    from ..job import Job
-
-__all__ = ["profile"]
 
 Pair = tuple[float, float]
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Line:
-    """Where to cut."""
-
-    file: Path | None
-    start: Pair | None
-    end: Pair | None
-
-    def require_one(self) -> None:
-        """Refuse a line that is given twice, or by halves."""
-        ends = (self.start is not None) + (self.end is not None)
-        if (self.file is None) == (ends == 0) or ends == 1:
-            raise click.UsageError("A line is needed: --line FILE, or --from X Y and --to X Y.")
-
-    def read(self, tin: TIN) -> Any:
-        """Return the lines to cut along, in the CRS of the TIN."""
-        if self.file is None:
-            return [self.start, self.end]
-        return read_lines(self.file, tin, "a profile runs along lines")
 
 
 @command
@@ -54,8 +31,7 @@ class _Line:
 @file_option("--line", "Vector file of the lines.", name="line_file")
 @position_option("--from", "begin", "Start of a line.")
 @position_option("--to", "end", "End of the line.")
-@number_option("--interval", "LENGTH", "Add a row at every multiple of this length.")
-@number_option("--start", "STATION", "Station at the start of the line.", default=0.0)
+@product_options("terrain.sections.profiles.profile", "interval start")
 @click.option(
     "--sections",
     cls=LibraryOption,
@@ -92,22 +68,22 @@ def profile(
     Tables are written to .csv or .json, a picture to .png; cross sections also to .gpkg, .geojson
     and others as 3D lines; their picture is a sheet. Lines in another CRS are reprojected.
 
-    \b
     Example:
       tinsmith profile sample_data/site_survey.csv --crs EPSG:32616 --codes
         --from 752690 4024225 --to 752850 4024330 -o profile.csv -o profile.png
-    """  # noqa: D301 - click reads the control character
-    from ..output.facts import Facts
-    from ..output.line_summaries import mesh_counts
-
-    line = _Line(file=line_file, start=begin, end=end)
-    line.require_one()
+    """
+    ends = (begin is not None) + (end is not None)
+    if (line_file is None) == (ends == 0) or ends == 1:
+        raise click.UsageError("A line is needed: --line FILE, or --from X Y and --to X Y.")
     chosen, asked["is_named"] = _choose_names(files, names), bool(names)
     inputs = job.list_inputs(*files, more=name_features(line_file, "the file of --line"))
     with_sections = () if asked["sections"] is None else ("Features",)
-    planned = job.plan_products(inputs, "Table", *with_sections, "picture")
+    planned = job.plan(inputs, "Table", *with_sections, "picture")
     surfaces = dict(zip(chosen, job.read_tins(files), strict=True))
-    lines = line.read(next(iter(surfaces.values())))
+    lines: Any = [begin, end]
+    if line_file is not None:
+        first = next(iter(surfaces.values()))
+        lines = job.read_features(line_file, first, "lines", "a profile runs along lines")
     with job.step("Cutting"):
         table, sections = _cut(surfaces, lines, planned.holds("Features"), asked)
     figure = _draw(table, surfaces, files, asked) if planned.holds("picture") else None
@@ -115,8 +91,7 @@ def profile(
     planned.write("Features", sections)
     planned.draw(lambda: figure)
     measured = [name for name, values in table.columns.items() if values.dtype.kind == "f"]
-    facts = Facts()
-    facts.record(inputs=[str(file) for file in files])
+    facts = Facts(inputs=[str(file) for file in files])
     facts.extend(("Surface", f"{name}: {mesh_counts(tin)}") for name, tin in surfaces.items())
     facts.add("Rows", f"{len(table):,}", rows=len(table), columns=list(table.columns))
     facts.record(ranges={name: _find_range(table[name]) for name in measured})

@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..command import file_command
-from ..inputs import name_features, read_places
-from ..job import surface_options
+from ..job import Job, name_features, surface_options
+from ..output.facts import describe_features, name_unit
 from ..parameters import file_option, number_option, position_option
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from pathlib import Path
+    from collections.abc import Callable
 
     from ...terrain import Features
     from ...tin import TIN
-    from ..job import Job
     from ..output.console import Row
-
-__all__ = ["sight"]
 
 _SHOWN = 12
 
@@ -61,21 +58,19 @@ def sight(file: Path, job: Job, **asked: Any) -> None:
     that only touches a line of sight does not block it. Points of files are reprojected; several
     eyes need as many targets.
 
-    \b
     Example:
       tinsmith sight site.ply --from 752700 4024300 --eye-height 1.7 -o viewshed.gpkg
       tinsmith sight site.ply --from 752700 4024300 --to 752800 4024300 -o line.csv
-    """  # noqa: D301 - click reads the control character
+    """
     from ...base.results.table import tabulate_columns
-    from ..output.line_summaries import describe_features
 
     _require_fitting(asked)
     more = name_features(asked["eyes"], "the file of --eye")
     more += name_features(asked["points"], "the file of --targets")
-    planned = job.plan_products(job.list_inputs(file, more=more), "Features", "Table")
+    planned = job.plan(job.list_inputs(file, more=more), "Features", "Table")
     tin = job.read_tin(file)
     with job.step("Looking") as progress:
-        found = _look(tin, asked, progress)
+        found = _look(tin, asked, job, progress)
     planned.write("Features", found)
     planned.write("Table", tabulate_columns(found))
     facts = describe_features(file, tin, found)
@@ -101,30 +96,26 @@ def _require_fitting(asked: dict[str, Any]) -> None:
         raise click.UsageError("--sight-refraction is a coefficient from -1 to 1.")
 
 
-def _list_eyes(eyes: Sequence[tuple[float, float]]) -> list[Any]:
-    """Return one eye, or several."""
-    return list(eyes[0]) if len(eyes) == 1 else [list(one) for one in eyes]
-
-
-def _look(tin: TIN, asked: dict[str, Any], progress: Callable[[float], None]) -> Features:
+def _look(tin: TIN, asked: dict[str, Any], job: Job, progress: Callable[[float], None]) -> Features:
     """Return lines of sight, or the viewshed where no targets are given."""
     from ... import terrain
 
     names = ("eye_height", "target_height", "curvature")
     how = {name: asked[name] for name in names} | {"refraction": asked["sight_refraction"]}
-    eye = _list_eyes(asked["eye"]) if asked["eyes"] is None else read_places(asked["eyes"], tin)
+    eyes: Any = [list(one) for one in asked["eye"]]
+    eye = eyes[0] if len(eyes) == 1 else eyes
+    if asked["eyes"] is not None:
+        eye = job.read_features(asked["eyes"], tin, "points")
+    targets: Any = [list(one) for one in asked["targets"]] or None
     if asked["points"] is not None:
-        return terrain.line_of_sight(tin, eye, read_places(asked["points"], tin), **how)
-    if asked["targets"]:
-        targets = [list(one) for one in asked["targets"]]
+        targets = job.read_features(asked["points"], tin, "points")
+    if targets is not None:
         return terrain.line_of_sight(tin, eye, targets, **how)
     of_viewshed = {name: asked[name] for name in ("radius", "whole_triangles")}
     return terrain.viewshed(tin, eye, progress=progress, **of_viewshed, **how)
 
 
 def _describe_line(found: Features, row: int) -> Row:
-    from ..output.line_summaries import name_unit
-
     columns, unit = found.columns, name_unit(found.units, "distance")
     text = f"visible at {columns['distance'][row]:,.2f} {unit}".rstrip()
     if not columns["visible"][row]:
@@ -137,8 +128,6 @@ def _describe_line(found: Features, row: int) -> Row:
 
 
 def _name_class(found: Features, row: int) -> Row:
-    from ..output.line_summaries import name_unit
-
     columns, unit = found.columns, name_unit(found.units, "area")
     name = str(columns["class"][row]).capitalize()
     return name, f"{columns['area'][row]:,.1f} {unit}, {columns['share'][row]:.1f} %"

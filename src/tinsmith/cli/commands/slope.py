@@ -2,25 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import click
 
 from ...base.policies import SlopeUnit
 from ..command import file_command
-from ..job import surface_options
-from ..options import make_reading_options
+from ..job import Job, surface_options
+from ..options import CONSOLE, TRIANGULATING, WRITING, make_reading
+from ..output.counts import describe_counts
+from ..output.facts import Facts, list_rows, name_units
 from ..parameters import choice_option, numbers_option
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from ...terrain import Features, Table
-    from ...tin import TIN
-    from ..job import Job
-    from ..output.facts import Facts
-
-__all__ = ["slope"]
 
 
 @file_command
@@ -35,43 +27,31 @@ __all__ = ["slope"]
     "--breaks", "S,S,...", "Limits between the classes, in that unit; default the usual ones."
 )
 @click.option("--aspect", is_flag=True, help="Classes of aspect instead of slope.")
-@surface_options(make_reading_options(unit_flag="--length-unit"))
+@surface_options(make_reading("--length-unit"), TRIANGULATING, WRITING, CONSOLE)
 def slope(
-    file: Path,
-    slope_unit: SlopeUnit,
-    breaks: list[float] | None,
-    aspect: bool,
-    job: Job,
+    file: Path, slope_unit: SlopeUnit, breaks: list[float] | None, aspect: bool, job: Job
 ) -> None:
     """Divide the TIN in FILE, or built from the points in it, into classes of slope.
 
     Vector files get the classes as polygons with a legend, tables (.csv, .json) their areas. The
     statistics in the summary are weighted by area.
 
-    \b
     Example:
       tinsmith slope sample_data/site_survey.csv --crs EPSG:32616 -o slope.gpkg -o slope.csv
       tinsmith slope sample_data/jacksboro.tif --unit percent --breaks 5,15,30 -o slope.geojson
-    """  # noqa: D301 - click reads the control character
+    """
     from ...base.results.table import tabulate_columns
     from ...terrain import aspect_classes, slope_classes, slope_statistics
 
     if aspect and breaks is not None:
         raise click.UsageError("--breaks is for slopes: aspects have the eight directions.")
-    planned = job.plan_products(job.list_inputs(file), "Features", "Table")
+    planned = job.plan(job.list_inputs(file), "Features", "Table")
     tin = job.read_tin(file)
     with job.step("Classifying"):
         made = aspect_classes(tin) if aspect else slope_classes(tin, breaks=breaks, unit=slope_unit)
         statistics = slope_statistics(tin, unit=slope_unit)
     planned.write("Features", made)
     planned.write("Table", tabulate_columns(made))
-    job.finish(planned, _list_facts(file, tin, made, statistics))
-
-
-def _list_facts(file: Path, tin: TIN, made: Features, statistics: Table) -> Facts:
-    from ..output.facts import Facts, list_rows, name_units
-    from ..output.line_summaries import describe_counts
-
     found = {name: f"{statistics[name][0]:.1f}" for name in statistics.columns}
     mark = str(statistics.units["mean"])
     behind = mark if mark == "°" else f" {mark}"
@@ -95,4 +75,4 @@ def _list_facts(file: Path, tin: TIN, made: Features, statistics: Table) -> Fact
         class_units=name_units(made.units),
     )
     facts.note(made.notes)
-    return facts
+    job.finish(planned, facts)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ...base.policies import Tint
 from ..command import command
-from ..options import console_options, reading_options, triangulating_options
+from ..job import Job, surface_options
+from ..options import CONSOLE, READING, TRIANGULATING
+from ..output.facts import Facts
 from ..output.failures import note_written, report_warning
 from ..parameters import (
     choice_option,
@@ -22,13 +25,7 @@ from ..parameters import (
 from ..paths import INPUT, Named, describe_inputs, make_title
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ...tin import Survey
-    from ..options import Reading, Triangulating
-    from ..output.console import Console, Row
-
-__all__ = ["view"]
 
 _MOST_CELLS = 1_000_000
 _UNNAMED = "Terrain surface"
@@ -103,66 +100,57 @@ def _parse_size(
 )
 @choice_option("--tint", Tint, "Quantity shown by the colours of a picture.", default="elevation")
 @number_option("--contours", "INTERVAL", "Draw contours in a picture, in the unit of elevations.")
-@reading_options
-@triangulating_options
-@console_options
+@surface_options(READING, TRIANGULATING, CONSOLE)
 def view(
     files: tuple[Path, ...],
     output: Path | None,
     ortho: Path | None,
     full: bool,
-    reading: Reading,
-    how: Triangulating,
-    console: Console,
+    job: Job,
     **drawing: Any,
 ) -> None:
     """Show the TIN in FILES, or built from the points in them, in 3D.
 
-    \b
     Example:
       tinsmith view sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.html
-    """  # noqa: D301 - click reads the control character
+    """
     from ...terrain import preview
     from ...terrain.viewer.presentation import PREVIEW_SUFFIXES
-    from ..files import list_inputs, read_tin_of_files, require_picture
+    from ..outputs import describe_file, require_picture
 
-    inputs = list_inputs(*files, how=how)
-    if ortho is not None:
-        inputs.append(Named(ortho, "the picture to drape"))
+    more = [] if ortho is None else [Named(ortho, "the picture to drape")]
     if output is not None:
-        require_picture(output, place="--output", inputs=inputs, suffixes=PREVIEW_SUFFIXES)
-
-    if not full and "stride" not in reading.options:
-        reading = reading.with_fallback(most_cells=_choose_most_cells(output))
-    tin, survey = read_tin_of_files(files, reading, how, console)
+        inputs = job.list_inputs(*files, more=more)
+        require_picture(output, "--output", inputs, PREVIEW_SUFFIXES)
+    if not full and "stride" not in job.reading.options:
+        # Half as many for a page: pages are sent by mail.
+        is_page = output is not None and output.suffix.lower().startswith(".htm")
+        job = job.with_fallback(most_cells=_MOST_CELLS // 2 if is_page else _MOST_CELLS)
+    tin, survey = job.read_surface(*files)
     sample = None if survey is None else _describe_sample(survey)
-    top = drawing.pop("top")
+    drawing["view"] = "top" if drawing.pop("top") else "oblique"
     drawing["title"] = drawing["title"] or make_title(files[0])
     if sample is not None:
-        console.summarise([("Sampled", f"{sample} are shown; --full shows all")])
+        job.console.summarise([("Sampled", f"{sample} are shown; --full shows all")])
         drawing["title"] = f"{drawing['title'] or _UNNAMED} ({sample})"
-    with console.steps() as steps, steps.step("Drawing"):
-        seen = "top" if top else "oblique"
-        shown = preview(tin, survey=survey, ortho=ortho, view=seen, **drawing)
+    with job.step("Drawing"):
+        shown = preview(tin, survey=survey, ortho=ortho, **drawing)
         if output is None:
             shown.show()
         else:
             shown.save(output)
     for note in shown.notes:
-        if note not in console.notes:
+        if note not in job.console.notes:
             report_warning(note)
     if output is not None:
         note_written(output)
-        console.summarise(_summarise_picture(output))
-        if console.as_json:
-            record = {"input": describe_inputs(files), "output": str(output)}
-            console.answer([], record | ({} if sample is None else {"sample": sample}))
-
-
-def _choose_most_cells(output: Path | None) -> int:
-    """Return how many cells of a raster are shown at most: pages are sent by mail."""
-    is_page = output is not None and output.suffix.lower().startswith(".htm")
-    return _MOST_CELLS // 2 if is_page else _MOST_CELLS
+        facts = Facts(input=describe_inputs(files))
+        facts.add("Written", describe_file(output), output=str(output))
+        job.console.summarise(facts.lines)
+        if sample is not None:
+            facts.record(sample=sample)
+        if job.console.as_json:
+            job.console.emit_record(facts.values)
 
 
 def _describe_sample(survey: Survey) -> str | None:
@@ -172,9 +160,3 @@ def _describe_sample(survey: Survey) -> str | None:
     left_out = survey.skipped.get(LEFT_OUT, 0)
     read = len(survey.points) + survey.skipped.get("nodata cells", 0)
     return f"{read:,} of {read + left_out:,} cells" if left_out else None
-
-
-def _summarise_picture(output: Path) -> list[Row]:
-    from ..output.summaries import describe_file_size
-
-    return [("Written", f"{output} ({describe_file_size(output)})")]

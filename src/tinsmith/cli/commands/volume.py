@@ -8,22 +8,17 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..command import command
-from ..inputs import name_features, read_features
-from ..job import surface_options
+from ..job import Job, name_features, surface_options
+from ..output.counts import mesh_counts
+from ..output.facts import Facts, list_rows, name_units
 from ..parameters import file_option, number_option, output_option
 from ..paths import INPUT, make_title
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...base.progress import Tell
-    from ...terrain import Difference, Table
-    from ...tin import TIN
-    from ..job import Job
+    from ...terrain import Table
     from ..output.console import Row
-    from ..output.facts import Facts
-
-__all__ = ["volume"]
 
 _SHOWN = 12
 _CUBIC_YARD = 27.0
@@ -54,38 +49,48 @@ _LEAST_AREA = 0.005
 @number_option("--interval", "LENGTH", "Interval of the levels of the table.")
 @click.option("--title", metavar="TEXT", help="Title of the map; default the names of the files.")
 @surface_options()
-def volume(
-    files: tuple[Path, ...],
-    regions: Path | None,
-    job: Job,
-    **asked: Any,
-) -> None:
+def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any) -> None:
     """Compute cut and fill from the TIN in GROUND to that in DESIGN, or to a level.
 
     Both triangulations are overlaid exactly; either file may hold points, from which the TIN is
     built. Fill is where the design, or the level, is above the ground, cut where it is below.
 
-    \b
     Example:
       tinsmith volume sample_data/site_survey.csv sample_data/design_pad.csv --codes -o pad.csv
       tinsmith volume sample_data/site_survey.csv --crs EPSG:32616 --base 325 -o cut.gpkg
       tinsmith volume sample_data/site_survey.csv --stage-storage --interval 0.5 -o stages.csv
-    """  # noqa: D301 - click reads the control character
+    """
+    from ...terrain import difference, earthwork_map, stage_storage
+    from ...terrain import volume as measure
+
     _require_one_base(files, asked)
     inputs = job.list_inputs(*files, more=name_features(regions, "the file of --regions"))
     kinds = ["Table"] if asked["stage_storage"] else ["Table", "Features", "picture"]
-    planned = job.plan_products(inputs, *kinds)
+    planned = job.plan(inputs, *kinds)
     surfaces = job.read_tins(files)
+    chosen = None if regions is None else job.read_features(regions, surfaces[0])
+    base = asked["base"] if len(surfaces) == 1 else None
     with job.step("Measuring") as progress:
-        if planned.holds("Features") or planned.holds("picture"):
-            found = _overlay(surfaces, regions, asked, progress)
-            table = found.volumes
+        if asked["stage_storage"]:
+            levels, interval = asked["levels"] or None, asked["interval"]
+            table = stage_storage(surfaces[0], levels=levels, interval=interval, region=chosen)
+        elif planned.holds("Features") or planned.holds("picture"):
+            found = difference(*surfaces, base=base, regions=chosen, progress=progress)
+            table = found.volumes  # of the same overlay
         else:
-            table = _measure(surfaces, regions, asked, progress)
+            table = measure(*surfaces, base=base, regions=chosen, progress=progress)
     planned.write("Table", table)
     planned.write("Features", lambda: found.zones)
-    planned.draw(lambda: _draw_map(found, surfaces[0], files, asked["title"]))
-    job.finish(planned, _list_facts(files, table, surfaces))
+    title = asked["title"] or f"Cut and fill: {' to '.join(make_title(file) for file in files)}"
+    planned.draw(lambda: earthwork_map(found, ground=surfaces[0], title=title))
+    facts = Facts(inputs=[str(file) for file in files])
+    facts.record(rows=list_rows(table.columns), units=name_units(table.units))
+    facts.extend(zip(("Ground", "Design"), map(mesh_counts, surfaces)))  # noqa: B905 - one or both
+    facts.extend(_list_stages(table) if "level" in table.columns else _list_volumes(table))
+    if len(table) > _SHOWN:
+        facts.add("", f"... {len(table) - _SHOWN} more")
+    facts.note(table.notes)
+    job.finish(planned, facts)
 
 
 # ---------------------------------------------------------------- what is given
@@ -107,59 +112,7 @@ def _require_one_base(files: Sequence[Path], asked: dict[str, Any]) -> None:
         raise click.UsageError("--level and --interval are both given: choose one.")
 
 
-# ---------------------------------------------------------------- what is made
-
-
-def _measure(
-    surfaces: Sequence[TIN], regions: Path | None, asked: dict[str, Any], progress: Tell
-) -> Table:
-    from ...terrain import stage_storage
-    from ...terrain import volume as measure
-
-    tin = surfaces[0]
-    chosen = None if regions is None else read_features(regions, tin)
-    if not asked["stage_storage"]:
-        base = asked["base"] if len(surfaces) == 1 else None
-        return measure(tin, *surfaces[1:], base=base, regions=chosen, progress=progress)
-    return stage_storage(
-        tin, levels=asked["levels"] or None, interval=asked["interval"], region=chosen
-    )
-
-
-def _overlay(
-    surfaces: Sequence[TIN], regions: Path | None, asked: dict[str, Any], progress: Tell
-) -> Difference:
-    """Subtract the ground from the design or a level; its volumes are of the same overlay."""
-    from ...terrain import difference
-
-    chosen = None if regions is None else read_features(regions, surfaces[0])
-    base = asked["base"] if len(surfaces) == 1 else None
-    return difference(*surfaces, base=base, regions=chosen, progress=progress)
-
-
-def _draw_map(found: Difference, ground: TIN, files: Sequence[Path], title: str | None) -> Any:
-    from ...terrain import earthwork_map
-
-    title = title or f"Cut and fill: {' to '.join(make_title(file) for file in files)}"
-    return earthwork_map(found, ground=ground, title=title)
-
-
 # ---------------------------------------------------------------- for people
-
-
-def _list_facts(files: Sequence[Path], table: Table, surfaces: Sequence[TIN]) -> Facts:
-    from ..output.facts import Facts, list_rows, name_units
-    from ..output.line_summaries import mesh_counts
-
-    facts = Facts()
-    facts.record(inputs=[str(file) for file in files])
-    facts.record(rows=list_rows(table.columns), units=name_units(table.units))
-    facts.extend(zip(("Ground", "Design"), map(mesh_counts, surfaces)))  # noqa: B905 - one or both
-    facts.extend(_list_stages(table) if "level" in table.columns else _list_volumes(table))
-    if len(table) > _SHOWN:
-        facts.add("", f"... {len(table) - _SHOWN} more")
-    facts.note(table.notes)
-    return facts
 
 
 def _list_volumes(table: Table) -> list[Row]:

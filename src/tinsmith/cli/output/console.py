@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..flags import name_flags
+from ..command import name_flags
 from .events import send_event
 from .failures import Failure, note_answer
 from .progress import Steps
@@ -21,6 +21,8 @@ from .streams import escape_unprintable, silence, write_error
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
     from pathlib import Path
+
+    from .facts import Facts
 
 __all__ = ["Console", "Row", "emit_file", "emit_text", "format_json"]
 
@@ -72,12 +74,12 @@ class Console:
         for label, text in rows:
             send_event("summary", label=label, text=name_flags(text))
 
-    def answer(self, rows: Iterable[Row], record: Mapping[str, Any]) -> None:
-        """Write the result to stdout: rows for people, or a record as JSON; with the notes."""
+    def answer(self, facts: Facts) -> None:
+        """Write the result to stdout: lines for people, or a record as JSON; with the notes."""
         if self.as_json:
-            self.emit_record(record)
+            self.emit_record(facts.values)
         else:
-            self.emit(_format_rows(self._add_notes(rows)))
+            self.emit(_format_rows(self._add_notes(facts.lines)))
 
     def emit_record(self, record: Mapping[str, Any]) -> None:
         """Write a record to stdout as JSON, with the notes among its own."""
@@ -96,53 +98,34 @@ class Console:
         return [*shown[:end], *lacking, *shown[end:]]
 
     def emit(self, text: str) -> None:
-        """Write to stdout, to the last byte.
-
-        Raises
-        ------
-        Failure
-            If it cannot be written, for example to a full disk.
-        """
-        if sys.stdout is None:
-            raise Failure("Cannot write to standard output: it is closed.")
-        note_answer()
-        emit_text(text)
+        """Write to stdout, to the last byte; fails where it cannot, such as on a full disk."""
+        with _writing():
+            note_answer()
+            click.echo(text)
+            sys.stdout.flush()
 
 
 def emit_text(text: str) -> None:
-    """Write to stdout, to the last byte.
-
-    Raises
-    ------
-    Failure
-        As :meth:`Console.emit`.
-    """
-    if sys.stdout is None:
-        raise Failure("Cannot write to standard output: it is closed.")
-    try:
+    """Write to stdout, to the last byte, what is no result; fails as :meth:`Console.emit`."""
+    with _writing():
         click.echo(text)
         sys.stdout.flush()
-    except BrokenPipeError:
-        raise
-    except OSError as error:
-        silence(sys.stdout)
-        raise Failure(f"Cannot write to standard output: {error.strerror}.") from error
 
 
 def emit_file(path: Path) -> None:
-    """Copy a file to stdout, to the last byte.
+    """Copy a file to stdout, to the last byte; fails as :meth:`Console.emit`."""
+    with _writing(), path.open("rb") as file:
+        shutil.copyfileobj(file, sys.stdout.buffer)
+        sys.stdout.buffer.flush()
 
-    Raises
-    ------
-    Failure
-        As :meth:`Console.emit`.
-    """
+
+@contextmanager
+def _writing() -> Iterator[None]:
+    """Let a block write to stdout, to the last byte."""
     if sys.stdout is None:
         raise Failure("Cannot write to standard output: it is closed.")
     try:
-        with path.open("rb") as file:
-            shutil.copyfileobj(file, sys.stdout.buffer)
-        sys.stdout.buffer.flush()
+        yield
     except BrokenPipeError:
         raise
     except OSError as error:

@@ -17,7 +17,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from ..flags import find_flag, find_given_flag, name_flags
+from ..command import find_flag, find_given_flag, name_flags
 from .events import has_flag, send_event, wants_events
 from .streams import Terminated, escape_unprintable, silence, write_error
 
@@ -89,7 +89,13 @@ def note_answer() -> None:
 
 def show_failure(error: click.ClickException, arguments: Sequence[str]) -> int:
     """Tell a failure on stderr, and on stdout if JSON is wanted there; return the exit code."""
-    _report_failure(error, arguments)
+    try:
+        if has_flag("--events", arguments):
+            send_event("error", text=error.format_message(), exit_code=error.exit_code)
+        else:
+            error.show()
+    except OSError:
+        silence(sys.stderr)
     if has_flag("--json", arguments) and not getattr(error, "is_answered", False):
         record = {"error": error.format_message(), "exit_code": error.exit_code}
         try:
@@ -101,27 +107,13 @@ def show_failure(error: click.ClickException, arguments: Sequence[str]) -> int:
     return error.exit_code
 
 
-def _report_failure(error: click.ClickException, arguments: Sequence[str]) -> None:
-    if has_flag("--events", arguments):
-        send_event("error", text=error.format_message(), exit_code=error.exit_code)
-        return
-    try:
-        error.show()
-    except OSError:
-        silence(sys.stderr)
-
-
 @contextmanager
 def translate_failures(
     ctx: click.Context, find_owner: Callable[[], str] = lambda: "tinsmith"
 ) -> Iterator[None]:
     """Turn exceptions into :class:`Failure`, and warnings into one line each.
 
-    Parameters
-    ----------
-    ctx : click.Context
-    find_owner : callable
-        Whose fault an exception is that nobody expected.
+    ``find_owner`` tells whose fault an exception is that nobody expected.
     """
     if os.environ.get(DEBUG):
         yield
@@ -134,10 +126,12 @@ def translate_failures(
             raise _translate(error, ctx) from error.__cause__
         except (click.exceptions.Exit, click.Abort, BrokenPipeError):
             raise
-        except KeyboardInterrupt:
-            raise _translate(_make_interruption(ctx, signal.SIGINT), ctx) from None
-        except Terminated as ended:
-            raise _translate(_make_interruption(ctx, ended.number), ctx) from None
+        except (KeyboardInterrupt, Terminated) as ended:
+            written = ctx.find_root().meta.get(_WRITTEN, [])
+            outcome = f"already written: {', '.join(written)}" if written else "nothing was written"
+            number = getattr(ended, "number", signal.SIGINT)
+            failure = Interruption(f"Interrupted; {outcome}.", number)
+            raise _translate(failure, ctx) from None
         except Exception as error:
             raise _translate(_make_failure(error, find_owner()), ctx) from error
 
@@ -148,12 +142,6 @@ def _translate(error: click.ClickException, ctx: click.Context) -> click.ClickEx
         error.translated = name_flags(error.message)
     error.is_answered = _ANSWERED in ctx.find_root().meta  # type: ignore[attr-defined]
     return error
-
-
-def _make_interruption(ctx: click.Context, number: int) -> Interruption:
-    written = ctx.find_root().meta.get(_WRITTEN, [])
-    outcome = f"already written: {', '.join(written)}" if written else "nothing was written"
-    return Interruption(f"Interrupted; {outcome}.", number)
 
 
 def _make_failure(error: Exception, owner: str) -> click.ClickException:
@@ -182,11 +170,7 @@ def _make_failure(error: Exception, owner: str) -> click.ClickException:
 def refuse_option(error: OptionError, **renamed: str) -> click.ClickException:
     """Return wrong usage, if the value was given on the command line, else a failure.
 
-    Parameters
-    ----------
-    error : OptionError
-    **renamed : str
-        Parameters of the command for options that the library calls by another name.
+    ``renamed`` has parameters of the command for options that the library calls by another name.
     """
     found = find_given_flag(renamed.get(error.option, error.option))
     if found is None:

@@ -11,24 +11,15 @@ from ...tin.report import LEFT_OUT, word_reason
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from pathlib import Path
 
-    from ...base.results.columns import Units
-    from ...terrain import Features
     from ...tin import TIN, Report, Survey
     from .console import Row
-    from .facts import Facts
 
 __all__ = [
-    "count_constrained_edges",
     "count_given_lines",
     "count_lines",
-    "describe_counts",
-    "describe_features",
     "describe_given_lines",
     "find_elevation_symbol",
-    "mesh_counts",
-    "name_unit",
     "summarise_lines",
     "summarise_news",
 ]
@@ -42,22 +33,9 @@ _NOUNS = {
 }
 
 
-def count_constrained_edges(tin: TIN) -> int:
-    """Count the constrained edges, each once."""
-    on_rim = tin.constrained & (tin.neighbors < 0)
-    return int((tin.constrained.sum() + on_rim.sum()) // 2)
-
-
 def find_elevation_symbol(found: Survey | TIN) -> str:
     """Return what stands behind an elevation, with the space before it; "" if not known."""
     return "" if found.elevation_unit is None else f" {found.elevation_unit.symbol}"
-
-
-def name_unit(units: Units, column: str) -> str:
-    """Return the symbol of a column's unit for a sentence; "" for none, and if it is not known."""
-    from ...base.results.columns import unit_text
-
-    return "" if units.get(column, "") is None else unit_text(units, column)
 
 
 def count_given_lines(survey: Survey) -> dict[str, int]:
@@ -72,19 +50,6 @@ def describe_given_lines(survey: Survey) -> str:
         for name, number in count_given_lines(survey).items()
         if number
     )
-
-
-def describe_counts(tin: TIN) -> str:
-    """Count vertices and triangles, and constrained edges if there are any, in words."""
-    fixed = count_constrained_edges(tin)
-    lines = f", {counted(fixed, 'constrained edge')}" if fixed else ""
-    return f"{mesh_counts(tin)}{lines}"
-
-
-def mesh_counts(tin: TIN) -> str:
-    """Count vertices and triangles, in words."""
-    vertices = counted(len(tin.points), "vertex", "vertices")
-    return f"{vertices}, {counted(len(tin.triangles), 'triangle')}"
 
 
 def summarise_news(made: TIN, known: Iterable[str]) -> list[Row]:
@@ -155,14 +120,3 @@ def _describe_overruled(report: Report, survey: Survey) -> str:
     most = float(np.abs(overruled.elevations - overruled.vertex_elevations).max())
     number, up = len(overruled.vertices), find_elevation_symbol(survey)
     return f"{number:,} overruled by lines of higher priority, the most by {most:.3f}{up}"
-
-
-def describe_features(file: Path, tin: TIN, found: Features) -> Facts:
-    """Return what there is to tell of features of a TIN: a record each, without geometry."""
-    from .facts import Facts, list_rows, name_units
-
-    facts = Facts(file)
-    facts.add("TIN", describe_counts(tin))
-    facts.record(found=lambda: list_rows(found.columns), units=name_units(found.units))
-    facts.note(found.notes)
-    return facts

@@ -33,12 +33,7 @@ _FINENESS = 0.01
 class Steps:
     """A context in which steps follow each other; what they showed vanishes with it.
 
-    Parameters
-    ----------
-    quiet : bool
-        Show nothing.
-    events : bool
-        Send events instead of drawing.
+    Nothing is shown if it is ``quiet``; ``events`` are sent in place of drawings.
     """
 
     def __init__(self, *, quiet: bool = False, events: bool = False) -> None:

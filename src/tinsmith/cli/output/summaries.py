@@ -15,13 +15,8 @@ from ...terrain import slope
 from ...terrain.relief.gradients import measure_areas
 from ...tin import TIN, Bounds, Survey, quality
 from ...tin.report import describe_skipped
-from .line_summaries import (
-    count_constrained_edges,
-    count_given_lines,
-    describe_counts,
-    describe_given_lines,
-    find_elevation_symbol,
-)
+from .counts import count_constrained_edges, describe_counts
+from .line_summaries import count_given_lines, describe_given_lines, find_elevation_symbol
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -104,46 +99,28 @@ def describe_report(report: Report, survey: Survey, notes: Sequence[str] = ()) -
     numbers = survey.attributes.get("number")
     if numbers is not None:
         for merge in record["merges"]:
-            merge["numbers"] = [_convert_to_python(numbers[row]) for row in merge["rows"]]
+            merge["numbers"] = np.asarray(numbers)[list(merge["rows"])].tolist()
     return record
 
 
-def _convert_to_python(value: Any) -> Any:
-    return value.item() if isinstance(value, np.generic) else value
-
-
 def _describe_place(found: Survey | TIN) -> dict[str, Any]:
-    crs, is_empty = found.crs, len(found.points) == 0
+    crs, unit = found.crs, found.elevation_unit
+    bounds = elevation = None
+    if len(found.points):
+        bounds, z = asdict(Bounds.of(found.points)), found.points[:, 2]
+        usual = assume_elevation_unit(crs, None) if unit is None else None
+        elevation = {"min": float(z.min()), "max": float(z.max()), "mean": float(z.mean())}
+        elevation["unit_assumed"] = None if usual is None else usual.name
     return {
-        "bounds": None if is_empty else asdict(Bounds.of(found.points)),
-        "elevation": None if is_empty else _describe_elevations(found),
+        "bounds": bounds,
+        "elevation": elevation,
         "crs": None if crs is None else str(crs),
         "crs_name": None if crs is None else crs.name,
-        "units": _name_units(found),
+        "units": {
+            "horizontal": "unknown" if crs is None else crs.horizontal_unit.name,
+            "vertical": "unknown" if unit is None else unit.name,
+        },
     }
-
-
-def _describe_elevations(found: Survey | TIN) -> dict[str, Any]:
-    z = found.points[:, 2]
-    return {
-        "min": float(z.min()),
-        "max": float(z.max()),
-        "mean": float(z.mean()),
-        "unit_assumed": _name_assumed_unit(found),
-    }
-
-
-def _name_units(found: Survey | TIN) -> dict[str, str]:
-    return {
-        "horizontal": "unknown" if found.crs is None else found.crs.horizontal_unit.name,
-        "vertical": "unknown" if found.elevation_unit is None else found.elevation_unit.name,
-    }
-
-
-def _name_assumed_unit(found: Survey | TIN) -> str | None:
-    """Name what elevations are taken to be measured in where that is not known."""
-    usual = assume_elevation_unit(found.crs, None)
-    return usual.name if found.elevation_unit is None and usual is not None else None
 
 
 def _describe_ground(tin: TIN) -> dict[str, Any]:
@@ -276,7 +253,18 @@ def summarise_merges(report: Report, survey: Survey) -> list[Row]:
     worst = int(spread.argmax())
     if spread[worst] == 0:
         return [("Merged", f"{text}, with equal elevations")]
-    merge = next(_iterate_merges(report, worst))
+    begin = report.merged_offsets[worst]
+    merge = next(
+        replace(
+            report,
+            merged_vertices=report.merged_vertices[worst:],
+            merged_offsets=report.merged_offsets[worst:] - begin,
+            merged_rows=report.merged_rows[begin:],
+            merged_elevations=report.merged_elevations[begin:],
+            merged_shifts=report.merged_shifts[begin:],
+            vertex_elevations=report.vertex_elevations[worst:],
+        ).merges()
+    )
     up = find_elevation_symbol(survey)
     differing = int(np.count_nonzero(spread))
     return [
@@ -287,20 +275,6 @@ def summarise_merges(report: Report, survey: Survey) -> list[Row]:
             f"{_describe_rows(merge, survey)}",
         ),
     ]
-
-
-def _iterate_merges(report: Report, index: int) -> Any:
-    """Walk the merges from the one at ``index``."""
-    begin = report.merged_offsets[index]
-    return replace(
-        report,
-        merged_vertices=report.merged_vertices[index:],
-        merged_offsets=report.merged_offsets[index:] - begin,
-        merged_rows=report.merged_rows[begin:],
-        merged_elevations=report.merged_elevations[begin:],
-        merged_shifts=report.merged_shifts[begin:],
-        vertex_elevations=report.vertex_elevations[index:],
-    ).merges()
 
 
 def _describe_rows(merge: Merge, survey: Survey) -> str:

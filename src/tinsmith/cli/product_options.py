@@ -1,0 +1,126 @@
+"""Options of commands that are those of a product, made of its signature and docstring.
+
+The source is read, since loading a product takes longer than all else that a help needs.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from functools import cache
+from importlib.util import find_spec
+from inspect import cleandoc
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..base.sentences import name_options
+from .format_options import find_parameters
+from .parameters import Decorator, parse_numbers
+
+if TYPE_CHECKING:
+    from ..io.registry.options import FormatOption
+
+__all__ = ["list_product_options", "product_options"]
+
+_MOST_LETTERS = 300
+_REQUIRED = object()
+_METAVARS = {
+    r"\bdegrees": "DEGREES",
+    r"\bmetres": "METRES",
+    r"CRS units squared|square of CRS units": "AREA",
+    r"CRS units": "LENGTH",
+    r"unit of (the )?(elevations|ground)": "HEIGHT",
+    r"\b[Ff]actor\b": "FACTOR",
+}
+"""What stands for a number, by words of its documentation."""
+
+
+def product_options(function: str, names: str, **words: str) -> Decorator:
+    """Return a decorator that adds options of a product, as :func:`list_product_options`."""
+
+    def decorate(command: Any) -> Any:
+        for option in reversed(list_product_options(function, names, **words)):
+            command = option(command)
+        return command
+
+    return decorate
+
+
+def list_product_options(function: str, names: str, **words: str) -> list[Decorator]:
+    """Return decorators that each add an option of a product to a command.
+
+    Parameters
+    ----------
+    function : str
+        Such as ``"terrain.relief.shading.hillshade"``.
+    names : str
+        The options, with blanks between them.
+    **words : str
+        Help of those for which the docstring does not say enough at a command line.
+    """
+    known = _read_parameters(function)
+    return [_make_option(known[name], words.get(name, "")) for name in names.split()]
+
+
+@cache
+def _read_parameters(function: str) -> dict[str, FormatOption]:
+    """Return what the source of a function says of its parameters."""
+    from ..io.registry.options import FormatOption, describe_parameters
+
+    package, *modules, name = function.split(".")
+    spec: Any = find_spec(f"tinsmith.{package}")
+    path = Path(spec.origin).parent.joinpath(*modules).with_suffix(".py")
+    text = spec.loader.get_data(str(path)).decode()
+    start = text.index(f"\ndef {name}(")
+    end = text.index('"""', text.index('"""', start) + 3) + 3
+    node: Any = ast.parse(text[start:end]).body[0]
+    documented = describe_parameters(cleandoc(ast.get_docstring(node) or ""))
+    given = [*node.args.args, *node.args.kwonlyargs]
+    least = len(node.args.args) - len(node.args.defaults)
+    defaults = [*[None] * least, *node.args.defaults, *node.args.kw_defaults]
+    return {
+        one.arg: FormatOption(
+            one.arg,
+            ast.unparse(one.annotation),
+            _REQUIRED if default is None else ast.literal_eval(default),
+            *documented.get(one.arg, ("", "")),
+        )
+        for one, default in zip(given, defaults, strict=True)
+        if default is None or isinstance(default, ast.Constant)
+    }
+
+
+def _make_option(one: FormatOption, words: str) -> Decorator:
+    flag = f"--{one.name.replace('_', '-')}"
+    how = _find_how(one, f"{one.kind} {one.text}")
+    if one.default is _REQUIRED:
+        how["required"] = True
+    elif one.default is not None and not how.get("is_flag"):
+        how |= {"default": one.default, "show_default": True}
+    elif how.get("is_flag") and one.default is None:
+        flag, how["default"] = f"{flag}/--no-{flag[2:]}", None
+        del how["is_flag"]
+    return click.option(flag, one.name, help=words or _shorten(one.text), **how)
+
+
+def _find_how(one: FormatOption, said: str) -> dict[str, Any]:
+    """Return what click needs to know of a value."""
+    if "ArrayLike" in one.annotation:
+        return {"callback": parse_numbers, "metavar": "NUMBER,..."}
+    how = find_parameters(one)
+    if how.get("metavar") == "NUMBER":
+        found = (word for pattern, word in _METAVARS.items() if re.search(pattern, said))
+        how["metavar"] = next(found, "NUMBER")
+    return how
+
+
+def _shorten(text: str) -> str:
+    """Return as many whole sentences as fit, and flags in place of the options that they name."""
+    plain = re.sub(r":\w+:`\.?(.*?)`", r"\1", text).replace("``", "`")
+    flagged = name_options(plain, lambda name: f"--{name.replace('_', '-')}").replace("`", "")
+    first, *more = re.split(r"(?<=\.) (?=[A-Z])", flagged)
+    while more and len(first) + len(more[0]) < _MOST_LETTERS:
+        first = f"{first} {more.pop(0)}"
+    return first
