@@ -16,19 +16,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from contextlib import AbstractContextManager
 
-__all__ = [
-    "as_path",
-    "find_dead_scratch",
-    "find_leftovers",
-    "folder_beside",
-    "replacing",
-    "replacing_files",
-    "replacing_folder",
-    "replacing_path",
-    "require_writable",
-    "scratch_folder",
-]
-
 _SCRATCH = "tinsmith-"
 _FULL = 1 << 20
 """Bytes below which a disk is full: libraries write blocks of some hundred thousand."""

@@ -15,20 +15,6 @@ if TYPE_CHECKING:
 
     from .arrays import Float64Array
 
-__all__ = [
-    "as_flag",
-    "as_length",
-    "as_number",
-    "as_percentages",
-    "is_finite_number",
-    "is_whole_number",
-    "require_count",
-    "require_distance",
-    "require_positive",
-    "require_tin",
-    "require_type",
-]
-
 
 def is_whole_number(value: Any) -> bool:
     """Tell whether a value is a whole number; True and False are none."""

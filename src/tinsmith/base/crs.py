@@ -26,21 +26,6 @@ if TYPE_CHECKING:
     CrsLike: TypeAlias = "CRS | str | int | pyproj.CRS"
     UnitLike: TypeAlias = "Unit | str"
 
-__all__ = [
-    "CRS",
-    "FOOT",
-    "METRE",
-    "US_SURVEY_FOOT",
-    "Unit",
-    "assume_elevation_unit",
-    "measure_angular_unit",
-    "require_lengths",
-    "require_one_unit",
-    "require_same_unit",
-    "scale_elevations",
-    "shorten_crs",
-]
-
 _SHOWN_LETTERS = 60
 _LABEL_LETTERS = 24
 _SAME_LENGTH = 1e-10

@@ -10,24 +10,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
     from pathlib import Path
 
-__all__ = [
-    "CheckError",
-    "CrsError",
-    "FormatError",
-    "LinesError",
-    "LossWarning",
-    "MissingExtraError",
-    "OptionError",
-    "PlugInWarning",
-    "PointsError",
-    "ReadError",
-    "RenderError",
-    "TinsmithError",
-    "UnknownOptionError",
-    "WriteError",
-    "choice",
-]
-
 Value = TypeVar("Value")
 
 

@@ -7,8 +7,6 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-__all__ = ["hold_interrupts"]
-
 
 @contextmanager
 def hold_interrupts() -> Iterator[None]:

@@ -13,8 +13,6 @@ from .optional import describe_missing
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-__all__ = ["call_method", "lazy_names", "make_html_repr", "register_methods"]
-
 _FUNCTIONS: dict[str, str] = {}
 """The function behind each method whose work is done by a package above the one of its class."""
 

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-__all__ = ["as_notes", "join_notes", "naming_file", "warn"]
-
 _PACKAGE = __name__.partition(".")[0]
 
 _FILE: ContextVar[Path | None] = ContextVar("file", default=None)

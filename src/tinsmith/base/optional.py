@@ -9,8 +9,6 @@ from typing import Any
 
 from .errors import MissingExtraError
 
-__all__ = ["describe_missing", "find_loaded", "is_installed", "load", "require"]
-
 _INCLUDED = ("numpy", "pyproj", "pyvista", "rasterio", "shapely")
 """What every ordinary installation has; one without dependencies may lack what it does not use."""
 

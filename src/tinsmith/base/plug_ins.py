@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
     from importlib.metadata import EntryPoint
 
-__all__ = ["PlugIn", "describe_failure", "find_plug_ins", "name_distribution", "warn_of_plug_in"]
-
 
 class PlugIn(NamedTuple):
     """An entry point of another distribution, not loaded yet."""

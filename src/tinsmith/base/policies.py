@@ -7,43 +7,6 @@ from __future__ import annotations
 
 from typing import Literal, TypeAlias
 
-__all__ = [
-    "BreaklineKind",
-    "CodeKind",
-    "CodeStyle",
-    "ContourLabeling",
-    "CrossingPolicy",
-    "CurvatureKind",
-    "DistanceRule",
-    "DrawingContent",
-    "DrawingVersion",
-    "DuplicatePolicy",
-    "EmptyCircleRule",
-    "Extrapolation",
-    "FacePolicy",
-    "FeatureKind",
-    "FlowProduct",
-    "GridStyle",
-    "GroundReturns",
-    "InterpolationMethod",
-    "LineKind",
-    "LineReading",
-    "LineRole",
-    "OutsidePolicy",
-    "OverviewMethod",
-    "PaperOrientation",
-    "PointMarking",
-    "RasterCompression",
-    "RasterSample",
-    "RasterValue",
-    "SheetLayout",
-    "ShotOrder",
-    "SlopeUnit",
-    "SurfacePart",
-    "Tint",
-    "TrimPolicy",
-]
-
 DuplicatePolicy: TypeAlias = Literal["mean", "first", "last", "lowest", "highest", "error"]
 """Which elevation several points at one place get."""
 

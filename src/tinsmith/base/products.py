@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar, cast
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["is_product", "notes_of_surfaces", "product"]
-
 F = TypeVar("F", bound="Callable[..., Any]")
 
 

@@ -8,8 +8,6 @@ from typing import TypeAlias
 
 from .errors import OptionError
 
-__all__ = ["Progress", "Tell"]
-
 Tell: TypeAlias = Callable[[float], None]
 """Takes a fraction from 0 to 1."""
 

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from .arrays import AnyArray
     from .crs import CRS
 
-__all__ = ["describe_span", "require_degrees"]
-
 _LONGITUDES = (-180.0, 360.0)
 """Degrees: from the antimeridian, or from Greenwich eastwards."""
 

@@ -16,14 +16,6 @@ import numpy as np
 from . import arrays, policies, types
 from .errors import PointsError
 
-__all__ = [
-    "require",
-    "require_fields",
-    "require_finite",
-    "require_indices",
-    "require_offsets",
-]
-
 _NAMES = {**vars(types), **vars(arrays), **vars(policies)}
 """What annotations name everywhere."""
 

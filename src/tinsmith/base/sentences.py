@@ -8,19 +8,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-__all__ = [
-    "FILE",
-    "coordinate",
-    "counted",
-    "height",
-    "inflect",
-    "name_file",
-    "name_options",
-    "printable",
-    "shown",
-    "suggest",
-]
-
 FILE = "⟨file⟩"
 """Mark of the file that is read or written, where a sentence is made that does not know it."""
 

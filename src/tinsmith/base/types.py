@@ -16,18 +16,6 @@ if TYPE_CHECKING:
 
     from .arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
-__all__ = [
-    "Bounds",
-    "Finding",
-    "Frozen",
-    "GeometriesLike",
-    "Grid",
-    "PointsLike",
-    "RowSources",
-    "SupportsGeoInterface",
-    "seal",
-]
-
 
 class SupportsGeoInterface(Protocol):
     """What has geometries as mappings: those of shapely, GeoPandas, and many others."""

@@ -16,17 +16,6 @@ from .parameters import input_file, output_files
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = [
-    "OF_BUILDING",
-    "Command",
-    "command",
-    "file_command",
-    "find_flag",
-    "find_given_flag",
-    "name_flags",
-    "note_given",
-]
-
 _OWN = "Options"
 _BUILDER = "build"
 OF_BUILDING = ("Triangulation", "Lines and areas", "Codes of points")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["SECTIONS", "SUMMARIES"]
-
 SECTIONS = {
     "Surfaces": {
         "build": "Build a TIN from elevation points.",

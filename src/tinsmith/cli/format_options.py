@@ -22,15 +22,6 @@ if TYPE_CHECKING:
     from ..io import Format
     from ..io.registry.options import FormatOption
 
-__all__ = [
-    "find_format_flag",
-    "find_parameters",
-    "list_flags_of",
-    "list_format_options",
-    "make_flag",
-    "take_options",
-]
-
 _PREFIXES = {"read": "read__", "write": "write__"}
 """What the names of their values begin with, by what a format does."""
 

@@ -28,8 +28,6 @@ from .plug_in_commands import describe_faults, find_commands, find_owner, load_c
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["main"]
-
 _BUILT_IN = tuple(SUMMARIES)
 
 

@@ -41,8 +41,6 @@ if TYPE_CHECKING:
     from .outputs import Output, Products
     from .parameters import Decorator
 
-__all__ = ["Job", "name_features", "open_standard_input", "surface_options"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Job:

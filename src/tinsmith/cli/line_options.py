@@ -10,8 +10,6 @@ from .parameters import LibraryOption, under
 from .paths import LINES
 from .product_options import list_product_options
 
-__all__ = ["CODE_OPTIONS", "LINE_OPTIONS"]
-
 _TRIANGULATE = "tin.construction.triangulate"
 
 

@@ -20,21 +20,6 @@ from .parameters import (
 )
 from .product_options import list_product_options
 
-__all__ = [
-    "CODE_FLAGS",
-    "CODING",
-    "CONSOLE",
-    "READING",
-    "TRIANGULATING",
-    "WRITING",
-    "Coding",
-    "Group",
-    "Reading",
-    "Triangulating",
-    "Writing",
-    "make_reading",
-]
-
 _OF_FORMATS = ("options", "fallbacks")
 _METHOD = ("duplicates", "snap", "threads", "crossing", "conforming", "max_edge", "trim")
 CODE_FLAGS = ("codes", "code_table", "code_style")

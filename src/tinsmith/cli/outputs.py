@@ -31,17 +31,6 @@ if TYPE_CHECKING:
 
     Product = TIN | Survey | Features | Raster | Table
 
-__all__ = [
-    "Output",
-    "Products",
-    "describe_file",
-    "plan_products",
-    "require_format",
-    "require_picture",
-    "write_figure",
-    "write_text",
-]
-
 _DOTS = 150
 _WAYS = {
     "TIN": ": 'tinsmith build' makes a TIN of points.",

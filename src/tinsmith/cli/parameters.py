@@ -10,30 +10,6 @@ import click
 from ..base.sentences import suggest
 from .paths import INPUT, LINES, OUTPUT, STANDARD
 
-__all__ = [
-    "Decorator",
-    "FormatName",
-    "LibraryOption",
-    "Words",
-    "choice_option",
-    "crs_option",
-    "file_option",
-    "input_file",
-    "input_files",
-    "number_option",
-    "numbers_option",
-    "output_files",
-    "output_option",
-    "parse_columns",
-    "parse_crs",
-    "parse_numbers",
-    "picture_option",
-    "position_option",
-    "refuse_value",
-    "report_option",
-    "under",
-]
-
 if TYPE_CHECKING:
     from pathlib import Path
 

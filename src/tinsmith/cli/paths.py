@@ -15,21 +15,6 @@ if TYPE_CHECKING:
 
     from click.shell_completion import CompletionItem
 
-__all__ = [
-    "INPUT",
-    "LINES",
-    "OUTPUT",
-    "STANDARD",
-    "Named",
-    "describe_inputs",
-    "describe_leftovers",
-    "make_title",
-    "name_file",
-    "name_files",
-    "require_separate",
-    "split_output",
-]
-
 _SHOWN = 5
 STANDARD = Path("-")
 """Standard input or output; a file of that name is ``./-``."""

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from ..base.plug_ins import PlugIn
 
-__all__ = ["describe_faults", "find_commands", "find_owner", "load_command"]
-
 _GROUP = "tinsmith.commands"
 
 

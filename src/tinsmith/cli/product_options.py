@@ -22,8 +22,6 @@ from .parameters import Decorator, parse_numbers
 if TYPE_CHECKING:
     from ..io.registry.options import FormatOption
 
-__all__ = ["list_product_options", "product_options"]
-
 _MOST_LETTERS = 300
 _REQUIRED = object()
 _METAVARS = {

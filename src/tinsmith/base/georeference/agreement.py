@@ -15,16 +15,6 @@ from ..errors import CrsError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = [
-    "Agreement",
-    "PlaneUnits",
-    "Referenced",
-    "agree",
-    "describe_unknown",
-    "find_plane_units",
-    "require_same_crs",
-]
-
 
 class Referenced(Protocol):
     """Whatever has a CRS and a unit of elevations: a TIN, a Survey."""

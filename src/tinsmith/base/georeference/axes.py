@@ -12,17 +12,6 @@ from ..crs import CRS
 if TYPE_CHECKING:
     from ..arrays import Float64Array
 
-__all__ = [
-    "Axes",
-    "DrawnCRS",
-    "Label",
-    "find_axes",
-    "gives_northing_first",
-    "label_axes",
-    "turn_into_drawing",
-    "undo_north_up",
-]
-
 _VECTORS = {"east": (1.0, 0.0), "west": (-1.0, 0.0), "north": (0.0, 1.0), "south": (0.0, -1.0)}
 
 

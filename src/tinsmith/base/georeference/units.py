@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from ..crs import CRS
     from ..types import Bounds
 
-__all__ = ["Ellipsoid", "Ground", "Scales", "find_ellipsoid", "find_ground", "find_scales"]
-
 NOT_KNOWN = Unit("unit", "", None)
 
 

@@ -19,8 +19,6 @@ from .columns import UNKNOWN_UNIT, unit_text
 if TYPE_CHECKING:
     from .features import Features
 
-__all__ = ["build_table"]
-
 _GEOMETRY = "geometry"
 _NESTING = {
     "Point": (),

@@ -20,18 +20,6 @@ if TYPE_CHECKING:
 
     from ..arrays import AnyArray
 
-__all__ = [
-    "FrozenMapping",
-    "Noted",
-    "Units",
-    "as_columns",
-    "as_name",
-    "as_units",
-    "frozen_copy",
-    "named_items",
-    "unit_text",
-]
-
 Units: TypeAlias = "Mapping[str, Unit | str | None]"
 Value = TypeVar("Value")
 

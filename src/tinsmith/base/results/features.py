@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ..crs import CrsLike, UnitLike
     from .columns import Units
 
-__all__ = ["Features", "Kind"]
-
 Kind: TypeAlias = Literal["points", "lines", "polygons"]
 _LEVELS: dict[Kind, int] = {"points": 0, "lines": 1, "polygons": 2}
 _NAMES = {"points": "Point", "lines": "LineString", "polygons": "Polygon"}

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ..arrays import AnyArray, ObjectArray
     from .features import Features
 
-__all__ = ["build_collection", "build_frame", "build_geometries"]
-
 
 def build_geometries(features: Features) -> ObjectArray:
     """Return the geometries of shapely, one a feature."""

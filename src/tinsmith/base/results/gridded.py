@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ..types import Grid
     from .raster import Raster
 
-__all__ = ["build_dataset", "locate_centers"]
-
 _MAPPING = "spatial_ref"
 
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from ..arrays import AnyArray
     from .columns import Units
 
-__all__ = ["Raster", "require_grid"]
-
 _FEWEST_ULPS = 8.0
 """Roundings that the far edge of a grid may be off its spacing times its cells."""
 

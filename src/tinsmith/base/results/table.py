@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from .columns import Units
     from .features import Features
 
-__all__ = ["Table", "tabulate_columns"]
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Table(Noted):

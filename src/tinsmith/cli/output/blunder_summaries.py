@@ -14,14 +14,6 @@ if TYPE_CHECKING:
     from ...terrain import Table
     from .console import Row
 
-__all__ = [
-    "Suspects",
-    "count_reasons",
-    "describe_suspects",
-    "list_findings",
-    "report_suspects",
-]
-
 _SHOWN = 5
 
 

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
     from .facts import Facts
 
-__all__ = ["Console", "Row", "emit_file", "emit_text", "format_json"]
-
 Row = tuple[str, str]
 """A label and what it says; further lines stand under the first."""
 

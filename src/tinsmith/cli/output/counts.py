@@ -9,8 +9,6 @@ from ...base.sentences import counted
 if TYPE_CHECKING:
     from ...tin import TIN
 
-__all__ = ["count_constrained_edges", "describe_counts", "mesh_counts"]
-
 
 def count_constrained_edges(tin: TIN) -> int:
     """Count the constrained edges, each once."""

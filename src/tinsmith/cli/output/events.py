@@ -22,8 +22,6 @@ from .streams import write_error
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["has_flag", "note_events", "send_event", "wants_events"]
-
 _WANTED = "tinsmith.events"
 
 

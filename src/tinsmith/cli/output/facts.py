@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .console import Row
 
-__all__ = ["Facts", "describe_features", "list_rows", "name_unit", "name_units"]
-
 
 class Facts:
     """Facts in their order, each with a line for people, values for programs, or both.

@@ -27,16 +27,6 @@ if TYPE_CHECKING:
 
     from ...base.errors import OptionError
 
-__all__ = [
-    "Failure",
-    "note_answer",
-    "note_written",
-    "refuse_option",
-    "report_warning",
-    "show_failure",
-    "translate_failures",
-]
-
 DEBUG = "TINSMITH_DEBUG"
 """Environment variable that, when set, lets every traceback through."""
 

@@ -15,15 +15,6 @@ if TYPE_CHECKING:
     from ...tin import TIN, Report, Survey
     from .console import Row
 
-__all__ = [
-    "count_given_lines",
-    "count_lines",
-    "describe_given_lines",
-    "find_elevation_symbol",
-    "summarise_lines",
-    "summarise_news",
-]
-
 _NOUNS = {
     "breaklines": ("breakline", "breaklines"),
     "boundary": ("boundary ring", "boundary rings"),

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
     from rich.progress import Progress
 
-__all__ = ["Steps"]
-
 PATIENCE = 0.5
 """Seconds before anything is shown, so that short work does not flicker."""
 

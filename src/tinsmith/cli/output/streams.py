@@ -17,16 +17,6 @@ import click
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = [
-    "Terminated",
-    "accept_any_text",
-    "escape_unprintable",
-    "raise_for_signals",
-    "reserve_standard_streams",
-    "silence",
-    "write_error",
-]
-
 _SIGNALS = ("SIGTERM", "SIGHUP")
 _RESENDING_DELAY = 0.05
 """Seconds until a signal is sent again whose exception Python dropped."""

@@ -27,24 +27,6 @@ if TYPE_CHECKING:
     from ...tin import Merge, Quality, Report
     from .console import Row
 
-__all__ = [
-    "describe_file_size",
-    "describe_raster_size",
-    "describe_report",
-    "describe_survey",
-    "describe_tin",
-    "find_symbols",
-    "measure_quality",
-    "note_assumed_unit",
-    "summarise_crs",
-    "summarise_extent",
-    "summarise_merges",
-    "summarise_quality",
-    "summarise_reading",
-    "summarise_survey",
-    "summarise_tin",
-]
-
 
 def describe_survey(survey: Survey) -> dict[str, Any]:
     """Describe points as plain values."""
