@@ -51,9 +51,9 @@ class Command(click.Command):
         )
         given = [] if ctx.resilient_parsing else self.make_parser(ctx).parse_args(list(args))[2]
         for one in {id(one): one for one in given}.values():
-            is_option = isinstance(one, click.Option)
-            is_single = is_option and not (one.multiple or one.is_flag or one.count)
-            if is_single and sum(other is one for other in given) > 1:
+            if not isinstance(one, click.Option) or one.multiple or one.is_flag or one.count:
+                continue
+            if sum(other is one for other in given) > 1:
                 flag = max(one.opts, key=len)
                 raise click.UsageError(f"{flag} is given several times: it takes one.")
         return super().parse_args(ctx, args)
@@ -165,8 +165,8 @@ def _rank_flags(options: list[click.Option], name: str) -> list[str]:
     ranked = []
     for one in options:
         plain = one.opts[0].removeprefix("--").replace("-", "_")
-        ways = (getattr(one, "instead", "") == name, plain == name, one.name == name)
-        ways = (*ways, name in getattr(one, "sets", ()))
+        sets = getattr(one, "sets", ())
+        ways = (getattr(one, "instead", "") == name, plain == name, one.name == name, name in sets)
         if any(ways):
             ranked.append((ways.index(True), one.opts[0]))
     return [flag for _, flag in sorted(ranked)]

@@ -7,6 +7,7 @@ hand, which its arguments name by suffix or by ``--format``, are listed in its h
 from __future__ import annotations
 
 import re
+from ast import literal_eval
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
@@ -200,7 +201,7 @@ def _find_words(one: FormatOption) -> tuple[str, ...]:
         if words:
             return words
     listed = re.match(r"(\{.*?\})(, optional)?$", one.kind)
-    return () if listed is None or "..." in one.kind else tuple(re.findall(r'"(.*?)"', listed[1]))
+    return () if listed is None or "..." in one.kind else tuple(sorted(literal_eval(listed[1])))
 
 
 def _word_help(one: FormatOption) -> str:

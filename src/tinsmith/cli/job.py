@@ -100,10 +100,9 @@ class Job:
 
     def finish(self, planned: Products, facts: Facts) -> None:
         """Tell what was done: a summary for people, and a record as JSON if it was asked for."""
-        if planned.paths:
-            facts.add("Written", planned.text)
-        facts.add("Time", f"{perf_counter() - self.started:.2f} s")
-        self.console.summarise(facts.lines)
+        written = [("Written", planned.text)] if planned.paths else []
+        seconds = ("Time", f"{perf_counter() - self.started:.2f} s")
+        self.console.summarise([*facts.lines, *written, seconds])
         if self.console.as_json:
             outputs = [str(path) for path in planned.paths]
             self.console.emit_record({"outputs": outputs} | facts.values)

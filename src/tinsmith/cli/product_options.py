@@ -17,7 +17,7 @@ import click
 
 from ..base.sentences import name_options
 from .format_options import find_parameters
-from .parameters import Decorator, parse_numbers
+from .parameters import Decorator, Words, parse_numbers
 
 if TYPE_CHECKING:
     from ..io.registry.options import FormatOption
@@ -107,6 +107,8 @@ def _find_how(one: FormatOption, said: str) -> dict[str, Any]:
     """Return what click needs to know of a value."""
     if "ArrayLike" in one.annotation:
         return {"callback": parse_numbers, "metavar": "NUMBER,..."}
+    if one.kind.startswith("{"):
+        return {"type": Words(re.findall(r'"(.*?)"', one.kind.partition("}")[0]))}
     how = find_parameters(one)
     if how.get("metavar") == "NUMBER":
         found = (word for pattern, word in _METAVARS.items() if re.search(pattern, said))

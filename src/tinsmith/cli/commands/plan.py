@@ -94,11 +94,12 @@ def plan(file: Path, job: Job, dpi: int, axis_file: Path | None, **asked: Any) -
         for one in sheets:
             note_written(one)
         written += sheets
-    facts = Facts(file, frames=made.frames.tolist(), outputs=[str(path) for path in written])
+    facts = Facts(file)
     facts.add("Scale", made.scale_text, scale=made.scale)
     text = f"{counted(len(made), 'sheet')}, {made.paper_name}"
     facts.add("Sheets", text, paper=list(made.paper), sheets=len(made))
     facts.add("Contours", f"every {made.interval:.12g}", interval=made.interval)
+    facts.record(frames=made.frames.tolist(), outputs=[str(path) for path in written])
     facts.note([*getattr(axis, "notes", ()), *made.notes])
     files = "\n".join(map(describe_file, written))
     job.console.summarise([*facts.lines, ("Written", files)])

@@ -87,7 +87,8 @@ def describe_report(report: Report, survey: Survey, notes: Sequence[str] = ()) -
 
 def _describe_place(found: Survey | TIN) -> dict[str, Any]:
     crs, unit = found.crs, found.elevation_unit
-    bounds = elevation = None
+    bounds = None
+    elevation: dict[str, Any] | None = None
     if len(found.points):
         bounds, z = asdict(Bounds.of(found.points)), found.points[:, 2]
         usual = assume_elevation_unit(crs, None) if unit is None else None
