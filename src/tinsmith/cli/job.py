@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
     from ..terrain import Features, Raster
+    from ..tiled.cloud import TiledPoints
     from ..tin import TIN, Survey
     from .options import Coding, Group
     from .output.console import Console
@@ -51,6 +52,8 @@ class Job:
     reading: Reading = field(default_factory=Reading)
     how: Coding = field(default_factory=Triangulating)
     writing: Writing = field(default_factory=Writing)
+    tiling: Any = None
+    """Whether and how tiles are computed, of a command that can."""
     started: float = field(default_factory=perf_counter)
     """When the command began."""
 
@@ -271,7 +274,9 @@ class Job:
 
     # ------------------------------------------------------------ features of a vector file
 
-    def read_features(self, given: Path, tin: TIN, kind: str = "", purpose: str = "") -> Features:
+    def read_features(
+        self, given: Path, tin: TIN | TiledPoints, kind: str = "", purpose: str = ""
+    ) -> Features:
         """Return the features of a vector file, ``FILE:LAYER``, in the CRS of a TIN.
 
         Where "points" are asked for nothing else is taken, where "lines" are no points, and of

@@ -9,16 +9,19 @@ import click
 
 from ...base.sentences import counted, height
 from ..command import file_command
-from ..job import Job, surface_options
+from ..job import Job
 from ..output.facts import Facts, list_rows, name_unit, name_units
 from ..parameters import LibraryOption, number_option
 from ..paths import make_title
 from ..product_options import product_options
+from ..tiling import choose_tiles, compute_tiles, tell_plan, tiled_options
 
 if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...terrain import Features
+    from ...tiled.cloud import TiledPoints
     from ...tin import TIN
+    from ..outputs import Products
 
 
 @file_command
@@ -47,7 +50,7 @@ if TYPE_CHECKING:
     cls=LibraryOption,
     sets=("spacing",),
 )
-@surface_options()
+@tiled_options()
 def contours(file: Path, job: Job, **options: Any) -> None:
     """Draw contours of the TIN in FILE, or built from the points in it.
 
@@ -62,11 +65,34 @@ def contours(file: Path, job: Job, **options: Any) -> None:
     """
     _require_one_product(options)
     planned = job.plan(job.list_inputs(file), "Features", "picture")
+    whole = ("smooth", "simplify", "labels")
+    asked = [f"--{name}" for name in whole if options[name]]
+    asked += ["a picture"] if planned.holds("picture") else []
+    cloud = choose_tiles(job, file, whole=next(iter(asked), ""))
+    if cloud is not None:
+        _contour_tiles(cloud, planned, options, file, job)
+        return
     tin = job.read_tin(file)
     with job.step("Tracing contours") as progress:
         made = _make_product(tin, options, progress)
     planned.write("Features", made)
     planned.draw(lambda: _draw(tin, made, options, make_title(file)))
+    job.finish(planned, _list_facts(file, made))
+
+
+def _contour_tiles(
+    cloud: TiledPoints, planned: Products, options: dict[str, Any], file: Path, job: Job
+) -> None:
+    """Write the contours or bands of tiles, or tell what would be done."""
+    if job.tiling.plan:
+        tell_plan(cloud, job, file)
+        return
+    given = {name: options[name] for name in ("interval", "levels", "base")}
+    if not options["bands"]:
+        given["index"] = options["index"] or None
+    product = "bands" if options["bands"] else "contours"
+    with compute_tiles(cloud, product, planned, job, **given) as made:
+        planned.write("Features", made)
     job.finish(planned, _list_facts(file, made))
 
 

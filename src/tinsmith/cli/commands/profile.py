@@ -9,18 +9,22 @@ import click
 
 from ...base.sentences import counted
 from ..command import command
-from ..job import Job, name_features, surface_options
+from ..job import Job, name_features
 from ..output.counts import mesh_counts
 from ..output.facts import Facts
 from ..parameters import LibraryOption, file_option, number_option, output_files, position_option
 from ..paths import INPUT, make_title
 from ..product_options import product_options
+from ..tiling import choose_tiles, compute_tiles, describe_points, tell_plan, tiled_options
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...terrain import Features, Table
+    from ...tiled.cloud import TiledPoints
     from ...tin import TIN
+    from ..output.console import Row
+    from ..outputs import Products
 
 Pair = tuple[float, float]
 
@@ -52,7 +56,7 @@ Pair = tuple[float, float]
 @click.option(
     "--title", metavar="TEXT", help="Title of the picture; default the name of the first file."
 )
-@surface_options()
+@tiled_options()
 def profile(
     files: tuple[Path, ...],
     line_file: Path | None,
@@ -79,6 +83,11 @@ def profile(
     inputs = job.list_inputs(*files, more=name_features(line_file, "the file of --line"))
     with_sections = () if asked["sections"] is None else ("Features",)
     planned = job.plan(inputs, "Table", *with_sections, "picture")
+    whole = "--sections" if with_sections else "a picture" if planned.holds("picture") else ""
+    cloud = choose_tiles(job, *files, whole=whole)
+    if cloud is not None:
+        _cut_tiles(cloud, planned, line_file or [begin, end], asked, job)
+        return
     surfaces = dict(zip(chosen, job.read_tins(files), strict=True))
     lines: Any = [begin, end]
     if line_file is not None:
@@ -90,13 +99,36 @@ def profile(
     planned.write("Table", table)
     planned.write("Features", sections)
     planned.draw(lambda: figure)
+    rows = [("Surface", f"{name}: {mesh_counts(tin)}") for name, tin in surfaces.items()]
+    job.finish(planned, _list_facts(files, table, rows, getattr(lines, "notes", ())))
+
+
+def _cut_tiles(
+    cloud: TiledPoints, planned: Products, line: Any, asked: dict[str, Any], job: Job
+) -> None:
+    """Write the profile of tiles, or tell what would be done."""
+    if job.tiling.plan:
+        tell_plan(cloud, job, cloud.files[0])
+        return
+    if isinstance(line, Path):
+        line = job.read_features(line, cloud, "lines", "a profile runs along lines")
+    given = {"line": line, "interval": asked["interval"], "start": asked["start"]}
+    with compute_tiles(cloud, "profile", planned, job, **given) as table:
+        planned.write("Table", table)
+    rows = [("Surface", describe_points(cloud))]
+    job.finish(planned, _list_facts(cloud.files, table, rows, getattr(line, "notes", ())))
+
+
+def _list_facts(
+    files: Sequence[Path], table: Table, rows: list[Row], notes: Sequence[str]
+) -> Facts:
     measured = [name for name, values in table.columns.items() if values.dtype.kind == "f"]
     facts = Facts(inputs=[str(file) for file in files])
-    facts.extend(("Surface", f"{name}: {mesh_counts(tin)}") for name, tin in surfaces.items())
+    facts.extend(rows)
     facts.add("Rows", f"{len(table):,}", rows=len(table), columns=list(table.columns))
     facts.record(ranges={name: _find_range(table[name]) for name in measured})
-    facts.note([*getattr(lines, "notes", ()), *table.notes])
-    job.finish(planned, facts)
+    facts.note([*notes, *table.notes])
+    return facts
 
 
 # ---------------------------------------------------------------- what is given

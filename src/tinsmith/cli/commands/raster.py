@@ -10,12 +10,13 @@ import click
 
 from ...base.sentences import coordinate
 from ..command import file_command
-from ..job import Job, surface_options
+from ..job import Job
 from ..output.counts import mesh_counts
 from ..output.facts import Facts
 from ..parameters import file_option
 from ..paths import Named
 from ..product_options import product_options
+from ..tiling import choose_tiles, compute_tiles, describe_points, tell_plan, tiled_options
 
 _RASTERIZE = "terrain.gridding.rasters.rasterize"
 
@@ -29,11 +30,12 @@ _RASTERIZE = "terrain.gridding.rasters.rasterize"
     value="Value of the cells; slope and aspect in degrees, hillshade from 1 to 255.",
     method="Interpolation between the vertices.",
 )
-@surface_options()
+@tiled_options()
 def raster(file: Path, spacing: float | None, like: Path | None, job: Job, **asked: Any) -> None:
     """Rasterize the TIN in FILE, or built from the points in it.
 
-    Cells outside the surface have no data. A raster may be larger than memory.
+    FILE may be a folder of tiles. Cells outside the surface have no data. Points and raster may be
+    larger than memory.
 
     Example:
       tinsmith raster sample_data/site_survey.csv --crs EPSG:32616 --codes
@@ -47,14 +49,22 @@ def raster(file: Path, spacing: float | None, like: Path | None, job: Job, **ask
         raise click.UsageError("One of --spacing and --like is needed.")
     more = [] if like is None else [Named(like, "the raster of --like")]
     planned = job.plan(job.list_inputs(file, more=more), "Raster")
-    cells = None if like is None else read_cells(like)
-    tin = job.read_tin(file)
-    threads = job.building.threads
-    made = rasterize(tin, spacing=spacing, like=cells, lazy=True, threads=threads, **asked)
-    planned.write("Raster", made)
-    box = made.grid.bounds
+    asked |= {"spacing": spacing, "like": None if like is None else read_cells(like)}
+    cloud = choose_tiles(job, file)
+    if cloud is not None and job.tiling.plan:
+        tell_plan(cloud, job, file)
+        return
     facts = Facts(file)
-    facts.add("Surface", mesh_counts(tin))
+    if cloud is not None:
+        with compute_tiles(cloud, "raster", planned, job, **asked) as made:
+            planned.write("Raster", made)
+        facts.add("Points", describe_points(cloud))
+    else:
+        tin = job.read_tin(file)
+        made = rasterize(tin, lazy=True, threads=job.building.threads, **asked)
+        planned.write("Raster", made)
+        facts.add("Surface", mesh_counts(tin))
+    box = made.grid.bounds
     facts.add(
         "Raster",
         describe_raster_size(made),

@@ -8,17 +8,20 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..command import command
-from ..job import Job, name_features, surface_options
+from ..job import Job, name_features
 from ..output.counts import mesh_counts
 from ..output.facts import Facts, list_rows, name_units
 from ..parameters import file_option, number_option, output_option
 from ..paths import INPUT, make_title
+from ..tiling import choose_tiles, compute_tiles, describe_points, tell_plan, tiled_options
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...terrain import Table
+    from ...tiled.cloud import TiledPoints
     from ..output.console import Row
+    from ..outputs import Products
 
 _SHOWN = 12
 _CUBIC_YARD = 27.0
@@ -48,7 +51,7 @@ _LEAST_AREA = 0.005
 @number_option("--level", "ELEVATION", "Level of the table.", name="levels", multiple=True)
 @number_option("--interval", "LENGTH", "Interval of the levels of the table.")
 @click.option("--title", metavar="TEXT", help="Title of the map; default the names of the files.")
-@surface_options()
+@tiled_options()
 def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any) -> None:
     """Compute cut and fill from the TIN in GROUND to that in DESIGN, or to a level.
 
@@ -67,6 +70,12 @@ def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any
     inputs = job.list_inputs(*files, more=name_features(regions, "the file of --regions"))
     kinds = ["Table"] if asked["stage_storage"] else ["Table", "Features", "picture"]
     planned = job.plan(inputs, *kinds)
+    held = [kind for kind in ("Features", "picture") if planned.holds(kind)]
+    whole = "--stage-storage" if asked["stage_storage"] else "a map" if held else ""
+    cloud = choose_tiles(job, *files, whole=whole)
+    if cloud is not None:
+        _measure_tiles(cloud, planned, regions, asked["base"], job)
+        return
     surfaces = job.read_tins(files)
     chosen = None if regions is None else job.read_features(regions, surfaces[0])
     base = asked["base"] if len(surfaces) == 1 else None
@@ -83,14 +92,34 @@ def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any
     planned.write("Features", lambda: found.zones)
     title = asked["title"] or f"Cut and fill: {' to '.join(make_title(file) for file in files)}"
     planned.draw(lambda: earthwork_map(found, ground=surfaces[0], title=title))
+    counts = map(mesh_counts, surfaces)
+    rows = list(zip(("Ground", "Design"), counts))  # noqa: B905 - one or both
+    job.finish(planned, _list_facts(files, table, rows))
+
+
+def _measure_tiles(
+    cloud: TiledPoints, planned: Products, regions: Path | None, base: float, job: Job
+) -> None:
+    """Write the volumes of tiles to a level, or tell what would be done."""
+    if job.tiling.plan:
+        tell_plan(cloud, job, cloud.files[0])
+        return
+    chosen = None if regions is None else job.read_features(regions, cloud)
+    given = {"base": base, "regions": chosen, "crs": cloud.crs}
+    with compute_tiles(cloud, "volume", planned, job, **given) as table:
+        planned.write("Table", table)
+    job.finish(planned, _list_facts(cloud.files, table, [("Ground", describe_points(cloud))]))
+
+
+def _list_facts(files: Sequence[Path], table: Table, counts: list[Row]) -> Facts:
     facts = Facts(inputs=[str(file) for file in files])
     facts.record(rows=list_rows(table.columns), units=name_units(table.units))
-    facts.extend(zip(("Ground", "Design"), map(mesh_counts, surfaces)))  # noqa: B905 - one or both
+    facts.extend(counts)
     facts.extend(_list_stages(table) if "level" in table.columns else _list_volumes(table))
     if len(table) > _SHOWN:
         facts.add("", f"... {len(table) - _SHOWN} more")
     facts.note(table.notes)
-    job.finish(planned, facts)
+    return facts
 
 
 # ---------------------------------------------------------------- what is given
