@@ -2,33 +2,40 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
+from ...base import optional
 from ...base.errors import FormatError, choice
 from ...base.policies import FeatureKind
 from ...base.results import Features
-from ...terrain.drawing.linework import EDGE_KINDS
+from ...terrain.drawing.linework import EDGE_KINDS, find_line_edges
 from ...terrain.relief.gradients import aspect, measure_areas, measure_ring_area, slope
 from ...tin import TIN, Survey
+from ...tin.topology import edge_keys, edges_at, find_offsets
 from ..mesh.common import require_writable
-from .geojson.lines import (
-    find_edge_kinds,
-    gather_edge_flags,
-    group_rings,
-    list_line_vertices,
-    require_lines,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...base.arrays import AnyArray, Float64Array
+    from ...base.arrays import AnyArray, Int32Array
+    from ...base.results.features import Kind
 
-__all__ = ["Writable", "choose_kind", "make_features", "make_whole_surface"]
+__all__ = ["Parts", "Writable", "choose_kind", "list_parts", "make_features", "make_whole_surface"]
 
 Writable: TypeAlias = TIN | Survey | Features
+
+
+class Parts(NamedTuple):
+    """Features of the vertices of a surface."""
+
+    kind: Kind
+    vertices: AnyArray
+    """(k,), of the points, lines or rings, one after the other."""
+    offsets: tuple[AnyArray, ...]
+    """As :class:`Features` has them."""
+    columns: dict[str, AnyArray]
 
 
 def choose_kind(surface: Writable, kind: str | None) -> str:
@@ -76,60 +83,63 @@ def make_features(surface: Writable, kind: FeatureKind | None) -> Features:
     if isinstance(surface, Features):
         return surface
     if isinstance(surface, Survey):
-        return Features.of_points(
-            surface.points, columns=_list_columns(surface), **_describe_reference(surface, "points")
-        )
-    return _MAKERS[chosen](surface)
-
-
-def _describe_reference(surface: TIN | Survey, name: str) -> dict[str, Any]:
-    notes = surface.notes if isinstance(surface, Survey) else surface.report.notes
-    return {
-        "crs": surface.crs,
-        "elevation_unit": surface.elevation_unit,
-        "name": name,
-        "notes": tuple(notes),
-    }
-
-
-def _list_columns(surface: TIN | Survey) -> dict[str, AnyArray]:
-    return {str(name): _as_column(values) for name, values in surface.attributes.items()}
-
-
-def _as_column(values: AnyArray) -> AnyArray:
-    """Return an attribute as a column: numbers, truth values or texts."""
-    column = np.asarray(values)
-    if column.dtype.kind in "biufU":
-        return column
-    texts = [None if one is None or one != one else str(one) for one in column.tolist()]
-    return np.array(texts, object)
-
-
-def _make_points(tin: TIN) -> Features:
-    columns = {"id": np.arange(len(tin.points))} | _list_columns(tin)
-    return Features.of_points(tin.points, columns=columns, **_describe_reference(tin, "points"))
+        parts = Parts("points", np.arange(len(surface.points)), (), _list_columns(surface))
+    else:
+        parts = list_parts(surface, chosen)
+    return _gather(surface, parts, chosen)
 
 
 def make_whole_surface(tin: TIN) -> Features:
     """Return all triangles as the parts of one feature, with their number."""
     count = len(tin.triangles)
-    return Features.of_polygons(
-        _list_corners(tin),
-        np.arange(0, 4 * count + 1, 4),
-        np.arange(count + 1),
-        [0, count],
-        columns={"triangles": np.array([count])},
-        **_describe_reference(tin, "surface"),
+    offsets = (4 * np.arange(count + 1), np.arange(count + 1), np.array([0, count]))
+    columns = {"triangles": np.array([count])}
+    corners = tin.triangles[:, [0, 1, 2, 0]].ravel()
+    return _gather(tin, Parts("polygons", corners, offsets, columns), "surface")
+
+
+def _gather(surface: TIN | Survey, parts: Parts, name: str) -> Features:
+    return Features(
+        kind=parts.kind,
+        coordinates=surface.points[parts.vertices],
+        offsets=parts.offsets,
+        columns=parts.columns,
+        crs=surface.crs,
+        elevation_unit=surface.elevation_unit,
+        name=name,
+        notes=surface.notes if isinstance(surface, Survey) else surface.report.notes,
     )
 
 
-def _list_corners(tin: TIN) -> Float64Array:
-    """Return the rings of the triangles, one after the other."""
-    corners: Float64Array = tin.points[tin.triangles[:, [0, 1, 2, 0]].ravel()]
-    return corners
+def _list_columns(surface: TIN | Survey) -> dict[str, AnyArray]:
+    """Return attributes as columns: numbers, truth values or texts."""
+    columns = {}
+    for name, values in surface.attributes.items():
+        column = np.asarray(values)
+        if column.dtype.kind not in "biufU":
+            texts = [None if one is None or one != one else str(one) for one in column.tolist()]
+            column = np.array(texts, object)
+        columns[str(name)] = column
+    return columns
 
 
-def _make_triangles(tin: TIN) -> Features:
+def list_parts(tin: TIN, kind: str) -> Parts:
+    """Return the triangles, points, edges, lines or hull of a TIN.
+
+    Raises
+    ------
+    FormatError
+        If there are no lines.
+    """
+    return _LISTS[kind](tin)
+
+
+def _list_points(tin: TIN) -> Parts:
+    numbers = np.arange(len(tin.points))
+    return Parts("points", numbers, (), {"id": numbers} | _list_columns(tin))
+
+
+def _list_triangles(tin: TIN) -> Parts:
     """Return triangles as rings with slope and aspect in degrees, and area in the plane."""
     count = len(tin.triangles)
     columns = {
@@ -138,39 +148,51 @@ def _make_triangles(tin: TIN) -> Features:
         "aspect": aspect(tin),
         "area": measure_areas(tin),
     }
-    return Features.of_polygons(
-        _list_corners(tin),
-        np.arange(0, 4 * count + 1, 4),
-        np.arange(count + 1),
-        columns=columns,
-        **_describe_reference(tin, "triangles"),
-    )
+    corners = tin.triangles[:, [0, 1, 2, 0]].ravel()
+    return Parts("polygons", corners, (4 * np.arange(count + 1), np.arange(count + 1)), columns)
 
 
-def _make_edges(tin: TIN) -> Features:
-    """Return each edge once, with whether it is constrained, and the kind of its line."""
-    flags = gather_edge_flags(tin)
+def _list_edges(tin: TIN) -> Parts:
+    """Return each edge once, with whether it is constrained, and the kind of its line.
+
+    One is constrained if either of its triangles says so.
+    """
+    flags = tin.constrained.copy()
+    triangle, corner = np.nonzero(tin.constrained & (tin.neighbors >= 0))
+    other = tin.neighbors[triangle, corner]
+    row, back = np.nonzero(tin.neighbors[other] == triangle[:, None])
+    flags[other[row], back] = True
+    kinds = np.full(flags.shape, len(EDGE_KINDS), np.int64)
+    if len(tin.lines):
+        known = find_line_edges(tin, guess=False)
+        keys = edge_keys(known.pairs, len(tin.points))
+        order = np.argsort(keys)
+        wanted = edge_keys(edges_at(tin.triangles, flags), len(tin.points))
+        found = order[np.minimum(np.searchsorted(keys[order], wanted), len(keys) - 1)]
+        kinds[flags] = np.where(keys[found] == wanted, known.kinds[found], len(EDGE_KINDS))
     across = np.arange(len(tin.triangles), dtype=np.int32)[:, None]
     once = (tin.neighbors < 0) | (tin.neighbors > across)
-    starts, ends = tin.triangles[:, [1, 2, 0]][once], tin.triangles[:, [2, 0, 1]][once]
-    kinds = find_edge_kinds(tin, flags)[once]
-    words = np.array([*EDGE_KINDS, None], object)
+    ends = (tin.triangles[:, [1, 2, 0]][once], tin.triangles[:, [2, 0, 1]][once])
     columns = {
-        "id": np.arange(len(starts)),
+        "id": np.arange(len(ends[0])),
         "constrained": flags[once],
-        "kind": words[np.where(kinds >= 0, kinds, len(EDGE_KINDS))],
+        "kind": np.array([*EDGE_KINDS, None], object)[kinds[once]],
     }
-    coordinates = tin.points[np.stack([starts, ends], axis=1).ravel()]
-    offsets = np.arange(0, 2 * len(starts) + 1, 2)
-    return Features.of_lines(
-        coordinates, offsets, columns=columns, **_describe_reference(tin, "edges")
-    )
+    return Parts("lines", np.stack(ends, 1).ravel(), (2 * np.arange(len(ends[0]) + 1),), columns)
 
 
-def _make_lines(tin: TIN) -> Features:
-    """Return breaklines, boundary, holes and water, with kind, name and number in the input."""
-    require_lines(tin)
-    chains = list_line_vertices(tin)
+def _list_lines(tin: TIN) -> Parts:
+    """Return breaklines, boundary, holes and water, with kind, name and number in the input.
+
+    Where none are known they are the constrained edges one by one, without these columns.
+    """
+    if not (len(tin.lines) or tin.constrained.any()):
+        raise FormatError(
+            "This TIN has no lines: breaklines, boundary, holes and water are given when it is "
+            "built.",
+            known=("triangles", "points", "edges", "hull"),
+        )
+    chains = list(tin.lines.chains()) if len(tin.lines) else list(find_line_edges(tin).pairs)
     columns: dict[str, AnyArray] = {"id": np.arange(len(chains))}
     if len(tin.lines):
         columns |= {
@@ -178,31 +200,39 @@ def _make_lines(tin: TIN) -> Features:
             "name": np.array(tin.lines.names, object),
             "source": np.asarray(tin.lines.sources),
         }
-    offsets = np.concatenate([[0], np.cumsum([len(chain) for chain in chains])])
-    coordinates = tin.points[np.concatenate(chains)]
-    return Features.of_lines(
-        coordinates, offsets, columns=columns, **_describe_reference(tin, "lines")
-    )
+    return Parts("lines", np.concatenate(chains), (find_offsets(map(len, chains)),), columns)
 
 
-def _make_hull(tin: TIN) -> Features:
-    """Return the outline, holes included, with its area."""
-    groups = group_rings(tin)
-    rings = [np.append(ring, ring[0]) for group in groups for ring in group]
+def _list_hull(tin: TIN) -> Parts:
+    """Return the outline, an outer ring followed by its holes, with its area."""
+    outer = [ring for ring in tin.rings if _measure_signed_area(tin, ring) > 0]
+    holes = [ring for ring in tin.rings if _measure_signed_area(tin, ring) <= 0]
+    outer.sort(key=lambda ring: _measure_signed_area(tin, ring))
+    groups = [[ring] for ring in outer]
+    Polygon = optional.load("shapely").Polygon
+    shapes = [Polygon(tin.points[ring, :2]) for ring in outer] if holes else []
+    for hole in holes:
+        shape = Polygon(tin.points[hole, :2])
+        home = next((i for i, around in enumerate(shapes) if around.covers(shape)), -1)
+        groups[home].append(hole)
+    groups.reverse()
     areas = [sum(measure_ring_area(tin.crs, tin.points[one]) for one in group) for group in groups]
-    return Features.of_polygons(
-        tin.points[np.concatenate(rings)],
-        np.concatenate([[0], np.cumsum([len(ring) for ring in rings])]),
-        np.concatenate([[0], np.cumsum([len(group) for group in groups])]),
-        columns={"id": np.arange(len(groups)), "area": np.array(areas)},
-        **_describe_reference(tin, "hull"),
-    )
+    rings = [np.append(ring, ring[0]) for group in groups for ring in group]
+    offsets = (find_offsets(map(len, rings)), find_offsets(map(len, groups)))
+    columns = {"id": np.arange(len(groups)), "area": np.array(areas)}
+    return Parts("polygons", np.concatenate(rings), offsets, columns)
 
 
-_MAKERS: dict[str, Callable[[TIN], Features]] = {
-    "triangles": _make_triangles,
-    "points": _make_points,
-    "edges": _make_edges,
-    "lines": _make_lines,
-    "hull": _make_hull,
+def _measure_signed_area(tin: TIN, ring: Int32Array) -> float:
+    """Area in the plane, positive counter-clockwise."""
+    x, y = (tin.points[ring, :2] - tin.points[ring[0], :2]).T
+    return float(np.dot(x, np.roll(y, -1)) - np.dot(np.roll(x, -1), y)) / 2
+
+
+_LISTS: dict[str, Callable[[TIN], Parts]] = {
+    "triangles": _list_triangles,
+    "points": _list_points,
+    "edges": _list_edges,
+    "lines": _list_lines,
+    "hull": _list_hull,
 }

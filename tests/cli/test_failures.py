@@ -517,15 +517,15 @@ def test_wrong_usage_exits_with_two(folder, arguments):
 SIGNALLED_WHILE_WRITING = """
 import os, sys
 from tinsmith.cli import main
-from tinsmith.io.vector.geojson import writing
+from tinsmith.io.vector.geojson import features
 
-def write_long(tin, places):
+def write_long(texts):
     for batch in range(100_000):
         if batch == 10 and len(os.listdir()) == 2:  # the input, and what is written
             os.kill(os.getpid(), int(sys.argv.pop()))
-        yield 0, "{}"
+        yield 0.0, ["{}"]
 
-writing._SURFACE_FEATURES["triangles"] = write_long
+features.Texts.iterate = write_long
 main(["build", "in.csv", "--crs", "EPSG:32616", "-o", "out.geojson"])
 """
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ....base.crs import CRS, METRE
 from ....base.errors import CrsError, WriteError
-from ....base.sentences import FILE, coordinate, counted
+from ....base.sentences import FILE, coordinate, counted, inflect
 from ...reprojection.transformation import reproject
 
 if TYPE_CHECKING:
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from ....base.crs import Unit
 
 __all__ = [
-    "Located",
     "Places",
     "format_positions",
     "keep_in_crs",
@@ -31,22 +30,6 @@ _HALF_TURN = 180.0
 _BATCH = 65_536
 
 
-class Located(Protocol):
-    """Points with what they are measured in: a TIN, a survey, coordinates of features."""
-
-    @property
-    def points(self) -> Float64Array:
-        """Coordinates, (n, 3)."""
-
-    @property
-    def crs(self) -> CRS | None:
-        """CRS of the points."""
-
-    @property
-    def elevation_unit(self) -> Unit | None:
-        """Unit of their elevations."""
-
-
 class Places(NamedTuple):
     """Coordinates as they are written."""
 
@@ -58,8 +41,8 @@ class Places(NamedTuple):
     """Further members of the file, which tell the unit of elevations."""
 
 
-def project_to_wgs84(surface: Located) -> Places:
-    """Move points to WGS 84 longitude, latitude and elevation in metres, rounded.
+def project_to_wgs84(points: Float64Array, crs: CRS | None, elevation_unit: Unit | None) -> Places:
+    """Move points, (n, 3), to WGS 84 longitude, latitude and elevation in metres, rounded.
 
     Raises
     ------
@@ -72,7 +55,6 @@ def project_to_wgs84(surface: Located) -> Places:
     as PROJ finds the geoid grid; otherwise the elevation keeps its datum and only its unit
     becomes the metre.
     """
-    crs, points = surface.crs, surface.points
     if crs is None:
         raise CrsError(
             "The CRS of these points is not known, and GeoJSON is in WGS 84: declare it, for "
@@ -80,42 +62,41 @@ def project_to_wgs84(surface: Located) -> Places:
         )
     has_datum = crs.vertical_unit is not None
     target = CRS.of("EPSG:4979" if has_datum else "OGC:CRS84")
-    found = reproject(
-        points, crs, target, unit=surface.elevation_unit, wanted=METRE, needs_datum=False
-    )
+    found = reproject(points, crs, target, unit=elevation_unit, wanted=METRE, needs_datum=False)
     moved = found.points
-    _require_on_earth(moved, points, crs)
+    outside = (np.abs(moved[:, :2]) > (180.0, 90.0)).any(axis=1)
+    if outside.any():
+        row = int(np.argmax(outside))
+        x, y = points[row, :2]
+        count = int(outside.sum())
+        raise CrsError(
+            f"{counted(count, 'point')} {'is no place' if count == 1 else 'are no places'} on "
+            f"Earth in this CRS (first: point {row} at {coordinate(x)}, {coordinate(y)}): "
+            "longitudes of -180 to "
+            "180 and latitudes of -90 to 90 are allowed; check that the CRS is the right one.",
+            crs=crs,
+        )
     moved[:, :2] = np.round(moved[:, :2], DEGREE_DECIMALS)
     moved[:, 2] = np.round(moved[:, 2], ELEVATION_DECIMALS)
-    members = _note_assumed_unit(surface)
+    members: tuple[tuple[str, str], ...] = ()
+    usual = crs.usual_elevation_unit
+    if elevation_unit is None and usual is not None and usual != METRE:
+        text = f"metres; their unit was not known and taken to be the {usual.name}, that of the CRS"
+        members = (("elevations", text),)
     if found.quality.keeps_datum:
         text = f"metres; their datum is that of {crs.name}, as PROJ has no grid to the ellipsoid"
         members = (("elevations", text),)
     return Places(moved + 0.0, members=members)
 
 
-def _note_assumed_unit(surface: Located) -> tuple[tuple[str, str], ...]:
-    """Tell which unit elevations were taken to have, where they were converted from it."""
-    usual = None if surface.crs is None else surface.crs.usual_elevation_unit
-    if surface.elevation_unit is not None or usual is None or usual == METRE:
-        return ()
-    text = f"metres; their unit was not known and taken to be the {usual.name}, that of the CRS"
-    return (("elevations", text),)
-
-
-def keep_in_crs(surface: Located) -> Places:
+def keep_in_crs(points: Float64Array, crs: CRS | None, elevation_unit: Unit | None) -> Places:
     """Keep points as they are, and name their CRS by the rule of 2008 (``null``: unknown)."""
-    unit = surface.elevation_unit
-    members = () if unit is None else (("elevation_unit", unit.name),)
-    if surface.crs is None:
-        return Places(surface.points, "null", members)
-    authority = surface.crs.to_authority()
-    name = str(surface.crs)
-    if authority:
-        name = f"urn:ogc:def:crs:{authority[0]}::{authority[1]}"
-    return Places(
-        surface.points, json.dumps({"type": "name", "properties": {"name": name}}), members
-    )
+    members = () if elevation_unit is None else (("elevation_unit", elevation_unit.name),)
+    if crs is None:
+        return Places(points, "null", members)
+    authority = crs.to_authority()
+    name = f"urn:ogc:def:crs:{authority[0]}::{authority[1]}" if authority else str(crs)
+    return Places(points, json.dumps({"type": "name", "properties": {"name": name}}), members)
 
 
 def format_positions(xyz: Float64Array) -> ObjectArray:
@@ -149,29 +130,11 @@ def require_one_piece(longitudes: Float64Array) -> None:
         If two corners of a feature are more than half a turn apart.
     """
     wide = np.ptp(longitudes, axis=1) > _HALF_TURN
-    if wide.any():
+    count = int(wide.sum())
+    if count:
+        crossing = inflect("[crosses|cross] the antimeridian or [holds|hold]", count)
         raise WriteError(
-            f"Cannot write {FILE}: {_describe_crossing(int(wide.sum()))} a pole, "
+            f"Cannot write {FILE}: {counted(count, 'triangle')} {crossing} a pole, "
             "which longitude and latitude cannot show in one piece; keep the coordinates "
             "of the CRS with `projected=True`."
         )
-
-
-def _require_on_earth(moved: Float64Array, points: Float64Array, crs: CRS) -> None:
-    outside = (np.abs(moved[:, :2]) > (180.0, 90.0)).any(axis=1)
-    if outside.any():
-        row = int(np.argmax(outside))
-        x, y = points[row, :2]
-        count = int(outside.sum())
-        raise CrsError(
-            f"{counted(count, 'point')} {'is no place' if count == 1 else 'are no places'} on "
-            f"Earth in this CRS (first: point {row} at {coordinate(x)}, {coordinate(y)}): "
-            "longitudes of -180 to "
-            "180 and latitudes of -90 to 90 are allowed; check that the CRS is the right one.",
-            crs=crs,
-        )
-
-
-def _describe_crossing(count: int) -> str:
-    cross, hold = ("crosses", "holds") if count == 1 else ("cross", "hold")
-    return f"{counted(count, 'triangle')} {cross} the antimeridian or {hold}"

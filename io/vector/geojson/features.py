@@ -1,10 +1,10 @@
-"""GeoJSON of products: features with their columns as properties."""
+"""Features with their columns as properties, as text of GeoJSON."""
 
 from __future__ import annotations
 
 import json
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -17,10 +17,10 @@ from .coordinates import format_positions, keep_in_crs, project_to_wgs84
 from .values import json_texts, properties_template
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
     from pathlib import Path
 
-    from ....base.arrays import Float64Array, Int64Array, ObjectArray
+    from ....base.arrays import AnyArray, Float64Array, Int64Array, ObjectArray
     from ....base.crs import CRS, Unit
     from ....base.policies import FeatureKind
     from ....base.progress import Tell
@@ -28,18 +28,70 @@ if TYPE_CHECKING:
     from ..surface_features import Writable
     from .coordinates import Places
 
-__all__ = ["write_feature_lines", "write_features"]
+__all__ = ["Texts", "turn_rings", "write_collection", "write_feature_lines", "write_features"]
 
 _BATCH = 16_384
 _HALF_TURN = 180.0
 
 
-class _Located(NamedTuple):
-    """Coordinates with what they are measured in, as :func:`project_to_wgs84` takes them."""
+class Texts(NamedTuple):
+    """Features of which positions and properties are written."""
 
-    points: Float64Array
-    crs: CRS | None
-    elevation_unit: Unit | None
+    geometry: str
+    """Their type."""
+    positions: ObjectArray
+    """(n,), each as JSON."""
+    vertices: AnyArray
+    """(k,), positions of the points, lines or rings, one after the other."""
+    offsets: Sequence[AnyArray]
+    """As :class:`Features` has them."""
+    format_properties: Callable[[slice], Iterable[str]]
+
+    def iterate(self) -> Iterator[tuple[float, list[str]]]:
+        """Yield the texts of some features after others, with the fraction done."""
+        count = len(self.offsets[-1]) - 1 if self.offsets else len(self.vertices)
+        for start in range(0, count, _BATCH):
+            stop = min(start + _BATCH, count)
+            first, last = start, stop
+            levels: list[AnyArray] = []
+            for offsets in reversed(self.offsets):
+                levels.insert(0, offsets[first : last + 1] - offsets[first])
+                first, last = int(offsets[first]), int(offsets[last])
+            pieces: list[str] = self.positions[self.vertices[first:last]].tolist()
+            form, width = "%s", 1
+            for level in levels:
+                lengths = np.diff(level)
+                if lengths[0] and (lengths == lengths[0]).all():  # all of one form
+                    form = f"[{','.join([form] * int(lengths[0]))}]"
+                    width *= int(lengths[0])
+                    continue
+                if form != "%s":
+                    pieces = list(map(form.__mod__, zip(*[iter(pieces)] * width, strict=True)))
+                pieces = [f"[{','.join(pieces[a:b])}]" for a, b in pairwise(level.tolist())]
+                form, width = "%s", 1
+            form = (
+                '{"type":"Feature","properties":%s,"geometry":{"type":"'
+                f'{self.geometry}","coordinates":{form}}}}}'
+            )
+            properties = self.format_properties(slice(start, stop))
+            rows = zip(properties, *[iter(pieces)] * width, strict=True)
+            yield stop / count, list(map(form.__mod__, rows))
+
+
+def write_collection(
+    path: Path, members: Iterable[tuple[str, str]], features: Texts, progress: Tell | None
+) -> None:
+    """Write features behind members, whose values are JSON."""
+    with replacing(path, binary=False) as file:
+        lines = ['"type":"FeatureCollection"', *(f"{json.dumps(k)}:{text}" for k, text in members)]
+        file.write("{" + ",\n".join(lines) + ',\n"features":[')
+        separator = "\n"
+        for done, written in features.iterate():
+            file.write(separator + ",\n".join(written))
+            separator = ",\n"
+            if progress is not None:
+                progress(done)
+        file.write("\n]}\n")
 
 
 def write_features(
@@ -52,19 +104,23 @@ def write_features(
     the member ``units`` names (``"unknown"`` if they are not known); exterior rings run
     counter-clockwise.
     """
-    located = _locate(features)
-    places = (keep_in_crs if projected else project_to_wgs84)(located)
+    places = (keep_in_crs if projected else project_to_wgs84)(*_locate(features))
     if places.crs_member is None:
         _require_one_side(places.xyz, features)
-    with replacing(path, binary=False) as file:
-        file.write(_format_head(features, places))
-        separator = "\n"
-        for done, written in _iterate_batches(features, places):
-            file.write(separator + ",\n".join(written))
-            separator = ",\n"
-            if progress is not None:
-                progress(done / len(features))
-        file.write("\n]}\n")
+    members: list[tuple[str, Any]] = list(places.members) if features.has_elevations else []
+    if features.units:
+        members.append(("units", {k: unit_text(features.units, k) for k in features.units}))
+    if features.notes:
+        members.append(("notes", list(features.notes)))
+    if len(places.xyz) and not (features.has_elevations and np.isnan(features.coordinates).any()):
+        corners = places.xyz[:, : features.coordinates.shape[1]]
+        members.append(("bbox", [*corners.min(axis=0).tolist(), *corners.max(axis=0).tolist()]))
+    first = [("name", json.dumps(features.name))] if features.name else []
+    if places.crs_member is not None:
+        first.append(("crs", places.crs_member))
+    texts = _format_features(features, places)
+    rest = ((name, json.dumps(value)) for name, value in members)
+    write_collection(path, [*first, *rest], texts, progress)
 
 
 def write_feature_lines(
@@ -81,114 +137,76 @@ def write_feature_lines(
         Of a TIN; default triangles.
     """
     features = make_features(surface, kind)
-    places = project_to_wgs84(_locate(features))
+    places = project_to_wgs84(*_locate(features))
     _require_one_side(places.xyz, features)
     with replacing(path, binary=False) as file:
-        for done, written in _iterate_batches(features, places):
+        for done, written in _format_features(features, places).iterate():
             file.writelines(f"{line}\n" for line in written)
             if progress is not None:
-                progress(done / len(features))
+                progress(done)
 
 
-def _iterate_batches(features: Features, places: Places) -> Iterator[tuple[int, list[str]]]:
-    """Yield the texts of some features after others, with the number done."""
-    geometries = _format_geometries(features, places)
-    template = properties_template(list(features.columns))
-    for start in range(0, len(features), _BATCH):
-        part = slice(start, min(start + _BATCH, len(features)))
-        columns = [json_texts(column[part]) for column in features.columns.values()]
-        rows = zip(*columns, strict=True) if columns else [()] * (part.stop - start)
-        yield part.stop, list(map(_format_feature, map(template.__mod__, rows), geometries[part]))
-
-
-def _locate(features: Features) -> _Located:
+def _locate(features: Features) -> tuple[Float64Array, CRS | None, Unit | None]:
     """Return coordinates with elevations; 0 stands for those that are not known or not there."""
     points = np.zeros((len(features.coordinates), 3))
     points[:, : features.coordinates.shape[1]] = features.coordinates
-    has_gaps = bool(np.isnan(points[:, 2]).any())
-    if has_gaps:
-        points[:, 2] = np.nan_to_num(points[:, 2])
+    points[:, 2] = np.nan_to_num(points[:, 2])
     crs = features.crs
     if crs is not None and not features.has_elevations:
         crs = crs.horizontal
-    return _Located(points, crs, features.elevation_unit)
+    return points, crs, features.elevation_unit
 
 
-def _format_head(features: Features, places: Places) -> str:
-    lines = ['"type":"FeatureCollection"']
-    if features.name:
-        lines.append(f'"name":{json.dumps(features.name)}')
-    if places.crs_member is not None:
-        lines.append(f'"crs":{places.crs_member}')
+def _format_features(features: Features, places: Places) -> Texts:
+    """Return features as texts; a position of unknown elevation has two numbers."""
     if features.has_elevations:
-        lines += [f"{json.dumps(name)}:{json.dumps(text)}" for name, text in places.members]
-    units = {name: unit_text(features.units, name) for name in features.units}
-    if units:
-        lines.append(f'"units":{json.dumps(units)}')
-    if features.notes:
-        lines.append(f'"notes":{json.dumps(list(features.notes))}')
-    if len(places.xyz) and not (features.has_elevations and np.isnan(features.coordinates).any()):
-        corners = places.xyz[:, : features.coordinates.shape[1]]
-        box = [*corners.min(axis=0).tolist(), *corners.max(axis=0).tolist()]
-        lines.append(f'"bbox":{json.dumps(box)}')
-    return "{" + ",\n".join(lines) + ',\n"features":['
-
-
-def _format_feature(properties: str, geometry: str) -> str:
-    return f'{{"type":"Feature","properties":{properties},"geometry":{geometry}}}'
-
-
-# ------------------------------------------------------------------------- geometries
-
-
-def _format_positions(features: Features, places: Places) -> ObjectArray:
-    """Return each position, with two numbers where its elevation is not known."""
-    if not features.has_elevations:
-        return format_positions(places.xyz[:, :2])
-    written = format_positions(places.xyz)
-    gaps = np.isnan(features.coordinates[:, 2])
-    written[gaps] = format_positions(places.xyz[gaps, :2])
-    return written
-
-
-def _format_geometries(features: Features, places: Places) -> list[str]:
-    """Return the geometry of each feature."""
-    positions = _format_positions(features, places)
+        positions = format_positions(places.xyz)
+        gaps = np.isnan(features.coordinates[:, 2])
+        positions[gaps] = format_positions(places.xyz[gaps, :2])
+    else:
+        positions = format_positions(places.xyz[:, :2])
+    vertices = np.arange(len(positions))
     if features.kind == "polygons" and places.crs_member is None:
-        positions = positions[_turned(features, places.xyz)]
-    pieces: list[str] = positions.tolist()
-    for offsets in features.offsets:
-        pieces = [f"[{','.join(pieces[a:b])}]" for a, b in pairwise(offsets.tolist())]
-    kind = features.geometry_type
-    return [f'{{"type":"{kind}","coordinates":{piece}}}' for piece in pieces]
+        vertices = turn_rings(vertices, features.offsets, places.xyz)
+    template = properties_template(list(features.columns))
+
+    def format_properties(part: slice) -> Iterable[str]:
+        columns = [json_texts(column[part]) for column in features.columns.values()]
+        rows = zip(*columns, strict=True) if columns else [()] * (part.stop - part.start)
+        return map(template.__mod__, rows)
+
+    return Texts(features.geometry_type, positions, vertices, features.offsets, format_properties)
 
 
-def _turned(features: Features, xyz: Float64Array) -> Int64Array:
-    """Return the order of points in which exterior rings run counter-clockwise, holes clockwise.
+def turn_rings(vertices: AnyArray, levels: Sequence[AnyArray], xyz: Float64Array) -> Int64Array:
+    """Return the vertices of closed rings, exterior ones counter-clockwise and holes clockwise.
 
     A map may be mirrored (westings), or a ring turn by rounding.
+
+    Parameters
+    ----------
+    vertices : (k,) int array
+        Rows of ``xyz``, one ring after the other.
+    levels : sequence of int arrays
+        Where rings and polygons begin.
+    xyz : (n, 3) float64 array
     """
-    offsets, polygons = features.offsets[:2]
-    order = np.arange(len(xyz))
+    offsets, polygons = levels[:2]
+    turned = np.array(vertices, np.int64)
     if len(offsets) == 1:
-        return order
+        return turned
     is_exterior = np.zeros(len(offsets) - 1, np.bool_)
     is_exterior[polygons[:-1]] = True
-    areas = _measure_rings(xyz[:, :2], offsets)
-    for ring in np.flatnonzero((areas != 0) & ((areas > 0) != is_exterior)):
-        part = slice(offsets[ring], offsets[ring + 1])
-        order[part] = order[part][::-1]
-    return order
-
-
-def _measure_rings(xy: Float64Array, offsets: Int64Array) -> Float64Array:
-    """Return twice the signed area of each closed ring, positive counter-clockwise."""
+    xy = xyz[vertices, :2]
     near = xy - np.repeat(xy[offsets[:-1]], np.diff(offsets), axis=0)
     steps = np.zeros(len(xy))
     steps[:-1] = near[:-1, 0] * near[1:, 1] - near[1:, 0] * near[:-1, 1]
     steps[offsets[1:] - 1] = 0.0  # from the end of one ring to the start of the next
-    sums: Float64Array = np.add.reduceat(steps, offsets[:-1])
-    return sums
+    areas = np.add.reduceat(steps, offsets[:-1])
+    for ring in np.flatnonzero((areas != 0) & ((areas > 0) != is_exterior)):
+        part = slice(offsets[ring], offsets[ring + 1])
+        turned[part] = turned[part][::-1]
+    return turned
 
 
 def _require_one_side(xyz: Float64Array, features: Features) -> None:

@@ -259,7 +259,7 @@ def test_a_failed_write_leaves_the_old_file(tmp_path, suffix, monkeypatch):
     monkeypatch.setattr("tinsmith.base.results.geometries.build_geometries", fail)
     monkeypatch.setattr("tinsmith.io.vector.ogr.build_geometries", fail)
     monkeypatch.setattr("tinsmith.io.vector.ogr.encode_equal_shapes", fail)
-    monkeypatch.setattr("tinsmith.io.vector.geojson.features._format_geometries", fail)
+    monkeypatch.setattr("tinsmith.io.vector.geojson.features._format_features", fail)
     with pytest.raises((WriteError, RuntimeError), match="no space"):
         quietly(ts.write, features("lines"), path)
     assert path.read_text() == "old"

@@ -15,6 +15,7 @@ import shapely
 
 import tinsmith as ts
 from tinsmith.base.errors import CrsError, FormatError, OptionError, WriteError
+from tinsmith.io.vector.geojson import features
 from tinsmith.io.vector.geojson import writing as geojson
 
 UTM16 = "EPSG:32616"
@@ -203,7 +204,7 @@ def test_many_batches_give_every_triangle_once(tmp_path, monkeypatch):
     for kind in ("triangles", "points", "edges"):
         geojson.write(tin, whole, kind=kind)
         with monkeypatch.context() as patch:
-            patch.setattr(geojson, "_BATCH", 7)
+            patch.setattr(features, "_BATCH", 7)
             geojson.write(tin, pieces, kind=kind)
         assert whole.read_bytes() == pieces.read_bytes()
 
@@ -360,7 +361,7 @@ def test_an_empty_survey_is_an_empty_collection(tmp_path):
 
 
 def test_progress_rises_to_one(tmp_path, monkeypatch):
-    monkeypatch.setattr(geojson, "_BATCH", 100)
+    monkeypatch.setattr(features, "_BATCH", 100)
     for kind in ("triangles", "points", "edges", "hull"):
         seen = []
         geojson.write(hills(), tmp_path / "a.geojson", kind=kind, progress=seen.append)
