@@ -10,7 +10,7 @@ from .mesh.libraries import from_mesh as from_mesh
 from .mesh.libraries import to_meshio as to_meshio
 from .mesh.libraries import to_pyvista as to_pyvista
 from .mesh.libraries import to_trimesh as to_trimesh
-from .mesh.ugrid_dataset import to_ugrid as to_ugrid
+from .mesh.ugrid import to_ugrid as to_ugrid
 from .raster.elevations import read_raster as read_raster
 from .raster.libraries import from_raster as from_raster
 from .raster.libraries import to_rasterio as to_rasterio

@@ -136,7 +136,10 @@ def choose_reference(
     declared, own = CRS.of(crs), _find_crs(found_crs, crs is not None)
     require_own_crs(own, declared)
     system = declared if own is None else own
-    known = _find_unit(found_unit)
+    try:
+        known = Unit.of(found_unit or None)
+    except OptionError:
+        raise ReadError(f"'{found_unit}' is no unit of elevations.") from None
     vertical = None if system is None else system.vertical_unit
     unit = settle_unit(Unit.of(elevation_unit), known or vertical)
     return Reference(system, unit, is_declared=own is None and system is not None)
@@ -172,13 +175,6 @@ def _find_crs(text: str | None, is_declared: bool) -> CRS | None:
 def format_unit(surface: TIN | Survey) -> str:
     """Return the name of the unit of elevations for a file; "" if it is not known."""
     return "" if surface.elevation_unit is None else surface.elevation_unit.text
-
-
-def _find_unit(text: str | None) -> Unit | None:
-    try:
-        return Unit.of(text or None)
-    except OptionError:
-        raise ReadError(f"'{text}' is no unit of elevations.") from None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -307,7 +303,14 @@ def make_tin(
         raise ReadError(f"{FILE} holds no TIN. {error}") from error
     placed = _look_at_crs(tin.points, reference) if looks_at_crs else ()
     noted = [*notes, *noted, *placed, *describe_oddities(tin)]
-    noted += _describe_suspects(tin.points[:, 2])
+    noted += [
+        f"{counted(one.count, 'vertex', 'vertices')} {'has' if one.count == 1 else 'have'} the "
+        f"elevation {one.value:g}, far from the others ({height(one.lowest)} to "
+        f"{height(one.highest)}): it may "
+        "stand for no data."
+        for one in find_suspect_elevations(tin.points[:, 2])
+        if abs(one.value) >= _LEAST_MARK  # a flat mesh may well have one tower
+    ]
     return add_notes(tin, noted) if noted else tin
 
 
@@ -347,18 +350,6 @@ def describe_single_precision(points: Float64Array, dtype: Any) -> list[str]:
     return [
         f"Coordinates of the file are numbers of 32 bits: those about {largest:,.10g} are rounded "
         f"to multiples of {step:g}."
-    ]
-
-
-def _describe_suspects(z: Float64Array) -> list[str]:
-    """Tell of elevations that may stand for no data; a mesh is read with all its vertices."""
-    return [
-        f"{counted(one.count, 'vertex', 'vertices')} {'has' if one.count == 1 else 'have'} the "
-        f"elevation {one.value:g}, far from the others ({height(one.lowest)} to "
-        f"{height(one.highest)}): it may "
-        "stand for no data."
-        for one in find_suspect_elevations(z)
-        if abs(one.value) >= _LEAST_MARK  # a flat mesh may well have one tower
     ]
 
 
@@ -420,7 +411,15 @@ def cut_into_fans(corners: Int64Array, offsets: Int64Array, points: Float64Array
     lengths = np.diff(offsets)
     if (lengths == 3).all():
         return Fans(corners.reshape(-1, 3), np.arange(len(lengths)))
-    corners = _turn_to_inner_diagonal(corners, offsets, points)
+    # Begin a quadrilateral one corner later where its first diagonal runs outside of it.
+    starts = offsets[:-1][np.diff(offsets) == 4]
+    slots = starts[:, None] + np.arange(4)
+    quads = corners[slots]
+    a, b, c, d = (points[quads[:, k], :2] for k in range(4))
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused later
+        outside = _cross_in_plane(b - a, c - a) * _cross_in_plane(c - a, d - a) < 0
+    corners = corners.copy()
+    corners[slots[outside]] = np.roll(quads[outside], -1, axis=1)
     polygon = np.repeat(np.arange(len(lengths)), lengths - 2)
     within = np.arange(len(polygon)) - np.repeat(
         np.cumsum(lengths - 2) - (lengths - 2), lengths - 2
@@ -473,21 +472,6 @@ def flag_edges(triangles: AnyArray, edges: AnyArray, n_vertices: int) -> BoolArr
     """Return which edges of triangles, each opposite a corner, are among some, (m, 3) flags."""
     sides = np.stack([np.roll(triangles, -1, axis=1), np.roll(triangles, -2, axis=1)], axis=2)
     return np.isin(edge_keys(sides, n_vertices), edge_keys(edges, n_vertices))
-
-
-def _turn_to_inner_diagonal(
-    corners: Int64Array, offsets: Int64Array, points: Float64Array
-) -> Int64Array:
-    """Begin a quadrilateral one corner later where its first diagonal runs outside of it."""
-    starts = offsets[:-1][np.diff(offsets) == 4]
-    slots = starts[:, None] + np.arange(4)
-    quads = corners[slots]
-    a, b, c, d = (points[quads[:, k], :2] for k in range(4))
-    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused later
-        outside = _cross_in_plane(b - a, c - a) * _cross_in_plane(c - a, d - a) < 0
-    corners = corners.copy()
-    corners[slots[outside]] = np.roll(quads[outside], -1, axis=1)
-    return corners
 
 
 def _cross_in_plane(u: Float64Array, v: Float64Array) -> Float64Array:

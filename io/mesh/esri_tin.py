@@ -65,7 +65,16 @@ def read(path: Path) -> Mesh:
     and soft lines; one along the boundary of the surface becomes a line of the boundary.
     """
     folder = path if path.is_dir() else path.parent
-    tables = _read_tables(folder)
+    found = {name: _read_numbers(folder / name, *how) for name, how in _FILES.items()
+             if name != "teval.adf" or (folder / name).is_file()}  # fmt: skip
+    enforced = found.get("teval.adf", np.empty((0, 4), np.int64))
+    tables = _Tables(
+        found["tnxy.adf"],
+        found["tnz.adf"].ravel(),
+        found["tnod.adf"],
+        found["tedg.adf"],
+        enforced,
+    )
     _require_sound(tables)
     triangles = tables.corners - 1
     wanted = ~_read_mask(folder, len(triangles))
@@ -92,19 +101,6 @@ def read(path: Path) -> Mesh:
         np.arange(0, len(corners) + 1, 3),
         crs=_read_crs(folder),
         add_lines=add,
-    )
-
-
-def _read_tables(folder: Path) -> _Tables:
-    found = {name: _read_numbers(folder / name, *how) for name, how in _FILES.items()
-             if name != "teval.adf" or (folder / name).is_file()}  # fmt: skip
-    enforced = found.get("teval.adf", np.empty((0, 4), np.int64))
-    return _Tables(
-        found["tnxy.adf"],
-        found["tnz.adf"].ravel(),
-        found["tnod.adf"],
-        found["tedg.adf"],
-        enforced,
     )
 
 

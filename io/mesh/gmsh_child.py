@@ -40,7 +40,19 @@ def read_mesh(path: str) -> Answer:
 
     The value counts the cells that are neither by their kinds.
     """
-    found = _read_with_meshio(path)
+    meshio = import_module("meshio")
+    said = StringIO()
+    try:
+        with redirect_stderr(said), redirect_stdout(said):
+            found = meshio.gmsh.read(path)
+    except MemoryError:
+        raise
+    except Exception as error:  # meshio lets through whatever a damaged file leads to
+        stated = str(error).strip().rstrip(".") if isinstance(error, meshio.ReadError) else ""
+        reason = stated or "it ends early, or holds something else than the format asks for"
+        raise Refusal(f"{FILE} is a damaged Gmsh file: {reason}.") from error
+    if "not closed" in said.getvalue():
+        raise Refusal(f"{FILE} is a Gmsh file that was cut short.")
     points = np.asarray(found.points, np.float64)
     if points.ndim != 2 or points.shape[1] != 3:
         raise Refusal(f"{FILE} is a damaged Gmsh file: its points have not three coordinates.")
@@ -63,23 +75,6 @@ def read_mesh(path: str) -> Answer:
     offsets = np.concatenate([[0], np.cumsum(lengths)])
     arrays = {"points": points, "lines": edges, "corners": corners, "offsets": offsets}
     return Answer(dict(others), arrays)
-
-
-def _read_with_meshio(path: str) -> Any:
-    meshio = import_module("meshio")
-    said = StringIO()
-    try:
-        with redirect_stderr(said), redirect_stdout(said):
-            found = meshio.gmsh.read(path)
-    except MemoryError:
-        raise
-    except Exception as error:  # meshio lets through whatever a damaged file leads to
-        stated = str(error).strip().rstrip(".") if isinstance(error, meshio.ReadError) else ""
-        reason = stated or "it ends early, or holds something else than the format asks for"
-        raise Refusal(f"{FILE} is a damaged Gmsh file: {reason}.") from error
-    if "not closed" in said.getvalue():
-        raise Refusal(f"{FILE} is a Gmsh file that was cut short.")
-    return found
 
 
 def _gather_faces(found: Any) -> tuple[Int64Array, Int64Array]:

@@ -380,21 +380,18 @@ def _read_meshio(mesh: Any) -> _Found:
     is_flagged = bool(flags) and all(
         flags[k].shape == (len(one), 3) for k, one in zip(blocks, faces, strict=True)
     )
+    count = len(points)
+    arrays = {str(name): np.asarray(values) for name, values in mesh.point_data.items()}
     return _Found(
         points.astype(np.float64),
         np.concatenate([one.ravel() for one in faces]),
         np.concatenate([[0], np.cumsum(sizes)]),
         getattr(mesh, "info", None) or {},
         np.concatenate([flags[k] for k in blocks]) != 0 if is_flagged else None,
-        _choose_attributes(mesh.point_data, len(points)),
+        {
+            name: values
+            for name, values in arrays.items()
+            if values.shape == (count,) and values.dtype.kind in "biuf"
+        },
         points.dtype,
     )
-
-
-def _choose_attributes(data: Mapping[str, Any], count: int) -> dict[str, AnyArray]:
-    arrays = {str(name): np.asarray(values) for name, values in data.items()}
-    return {
-        name: values
-        for name, values in arrays.items()
-        if values.shape == (count,) and values.dtype.kind in "biuf"
-    }

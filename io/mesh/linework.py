@@ -13,7 +13,7 @@ from ...tin.topology import NO_NEIGHBOR, edge_keys, ends
 from .common import add_notes, flag_edges
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
@@ -113,13 +113,9 @@ def chain_edges(edges: NDArray[np.integer], n_vertices: int) -> list[Int64Array]
             at.setdefault(vertex, []).append(number)
     used = np.zeros(len(pairs), np.bool_)
     knots = sorted(vertex for vertex, around in at.items() if len(around) != 2)
-    chains = [_walk(pairs, at, used, start) for start in _repeat_starts(knots, at)]
+    chains = [_walk(pairs, at, used, start) for start in [knot for knot in knots for _ in at[knot]]]
     chains += [_walk(pairs, at, used, start) for start in sorted(at)]  # rings are left
     return [np.array(chain, np.int64) for chain in chains if len(chain) > 1]
-
-
-def _repeat_starts(knots: Iterable[int], at: dict[int, list[int]]) -> list[int]:
-    return [knot for knot in knots for _ in at[knot]]
 
 
 def _walk(pairs: Int64Array, at: dict[int, list[int]], used: BoolArray, start: int) -> list[int]:

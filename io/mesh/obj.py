@@ -32,7 +32,6 @@ from .texture import load_texture
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Sequence
     from pathlib import Path
     from typing import IO
 
@@ -81,24 +80,21 @@ def _parse_faces(vertices: TextRows, faces: TextRows) -> tuple[Int64Array, Int64
     before = np.searchsorted(vertices.lines, faces.lines).tolist()
     for row, (text, n_before) in enumerate(zip(faces.texts, before, strict=True)):
         for word in text.split()[1:]:
-            corners.append(_parse_vertex_number(word, n_before, faces, row))
+            # Turn ``7``, ``7/1``, ``7//2`` or ``-1`` (the vertex just before) into a number
+            # from 0 on.
+            shown = word if len(word) <= _SHOWN_LETTERS else f"{word[:_SHOWN_LETTERS]}..."
+            found = _VERTEX_NUMBER.match(word)
+            if found is None:
+                raise faces.describe_fault(row, f"'{shown}' names no vertex")
+            digits = found[2].lstrip("0")
+            if len(digits) > _MOST_DIGITS:
+                raise faces.describe_fault(row, f"'{shown}' names no vertex: the file has fewer")
+            number = int(digits or "0")
+            if number == 0 or (found[1] == "-" and number > n_before):
+                raise faces.describe_fault(row, f"'{shown}' names no vertex: they count from 1")
+            corners.append(n_before - number if found[1] == "-" else number - 1)
         offsets.append(len(corners))
     return np.array(corners, np.int64), np.array(offsets, np.int64)
-
-
-def _parse_vertex_number(word: str, n_before: int, faces: TextRows, row: int) -> int:
-    """Turn ``7``, ``7/1``, ``7//2`` or ``-1`` (the vertex just before) into a number from 0 on."""
-    shown = word if len(word) <= _SHOWN_LETTERS else f"{word[:_SHOWN_LETTERS]}..."
-    found = _VERTEX_NUMBER.match(word)
-    if found is None:
-        raise faces.describe_fault(row, f"'{shown}' names no vertex")
-    digits = found[2].lstrip("0")
-    if len(digits) > _MOST_DIGITS:
-        raise faces.describe_fault(row, f"'{shown}' names no vertex: the file has fewer")
-    number = int(digits or "0")
-    if number == 0 or (found[1] == "-" and number > n_before):
-        raise faces.describe_fault(row, f"'{shown}' names no vertex: they count from 1")
-    return n_before - number if found[1] == "-" else number - 1
 
 
 def write(
@@ -130,23 +126,18 @@ def write(
         return
     draped = load_texture(ortho, tin)
     picture = path.with_name(f"{path.stem}{_PICTURE}{draped.suffix}")
-    _require_other_file(ortho, (picture, path, path.with_suffix(".mtl")))
+    for target in (picture, path, path.with_suffix(".mtl")):
+        if target.exists() and target.samefile(ortho):
+            raise WriteError(
+                f"Cannot write '{target}': it is the texture itself; name the output otherwise.",
+                path=target,
+            )
     with replacing_data_set(path, "obj") as beside:
         beside.with_name(picture.name).write_bytes(draped.content)
         material = f"newmtl {_MATERIAL}\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nmap_Kd {picture.name}\n"
         beside.with_suffix(".mtl").write_text(material, encoding="utf-8")
         with beside.open("w", encoding="utf-8", newline="") as file:
             _write_body(file, tin, draped, progress)
-
-
-def _require_other_file(texture: str | os.PathLike[str], targets: Sequence[Path]) -> None:
-    """Refuse to write over the picture that is read."""
-    for target in targets:
-        if target.exists() and target.samefile(texture):
-            raise WriteError(
-                f"Cannot write '{target}': it is the texture itself; name the output otherwise.",
-                path=target,
-            )
 
 
 def _write_body(file: IO[str], tin: TIN, texture: Texture | None, progress: Tell | None) -> None:

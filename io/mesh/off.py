@@ -55,7 +55,20 @@ def read(path: Path) -> Mesh:
     """
     content = common.read_content(path)
     rows = _skip_keyword(split_rows(content))
-    counts = _parse_counts(rows)
+    if not rows.texts:
+        raise ReadError(f"{FILE} ends before the numbers of its vertices and faces.")
+    first = rows.texts[0].split()
+    if len(first) < 2:
+        raise rows.describe_fault(0, "the numbers of vertices and of faces are needed")
+    counts = _Counts(*parse_integers(first[:2], rows.lines[0]))
+    if min(counts) < 0:
+        raise rows.describe_fault(0, "a count is negative")
+    if sum(counts) > len(rows) - 1:
+        promised = counted(counts.vertices, "vertex", "vertices")
+        raise ReadError(
+            f"{FILE} ends too early: it promises {promised} and "
+            f"{counted(counts.faces, 'face')}, and has {counted(len(rows) - 1, 'row')} for them."
+        )
     vertices, polygons = rows.cut(1, counts.vertices + 1), rows.cut(counts.vertices + 1)
     points = vertices.parse_floats(slice(0, 3), "a vertex needs x, y and z")
     crs, unit = find_reference(content)
@@ -87,25 +100,6 @@ def _skip_keyword(rows: TextRows) -> TextRows:
     if len(first) > 1:
         return TextRows([" ".join(first[1:]), *rows.texts[1:]], rows.lines)
     return rows.cut(1)
-
-
-def _parse_counts(rows: TextRows) -> _Counts:
-    """Return the numbers of vertices and faces, once the file is long enough for them."""
-    if not rows.texts:
-        raise ReadError(f"{FILE} ends before the numbers of its vertices and faces.")
-    first = rows.texts[0].split()
-    if len(first) < 2:
-        raise rows.describe_fault(0, "the numbers of vertices and of faces are needed")
-    counts = _Counts(*parse_integers(first[:2], rows.lines[0]))
-    if min(counts) < 0:
-        raise rows.describe_fault(0, "a count is negative")
-    if sum(counts) > len(rows) - 1:
-        promised = counted(counts.vertices, "vertex", "vertices")
-        raise ReadError(
-            f"{FILE} ends too early: it promises {promised} and "
-            f"{counted(counts.faces, 'face')}, and has {counted(len(rows) - 1, 'row')} for them."
-        )
-    return counts
 
 
 def _parse_faces(rows: TextRows) -> tuple[Int64Array, Int64Array]:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ...base.arrays import Float64Array, Int64Array
+    from ...base.arrays import Int64Array
     from ...base.progress import Tell
     from ...tin import TIN
 
@@ -61,22 +61,7 @@ def read(path: Path) -> Mesh:
     if not rows.texts or not rows.texts[0].startswith("MESH2D"):
         raise ReadError(f"{FILE} is no 2DM mesh: it must begin with 'MESH2D'.")
     cards = rows.sort_by_keyword()
-    numbers, points = _parse_nodes(cards.get("ND", TextRows()))
-    found = [_parse_elements(card, cards[card], numbers) for card in _FACES if card in cards]
-    if not found:
-        return Mesh(points)
-    strings = _parse_strings(cards.get("NS", TextRows()), numbers)
-    return Mesh(
-        points,
-        np.concatenate([corners for corners, _ in found]),
-        find_offsets(np.concatenate([lengths for _, lengths in found])),
-        notes=_describe_losses(cards),
-        add_lines=lambda tin: add_lines(tin, strings, "segment"),
-    )
-
-
-def _parse_nodes(rows: TextRows) -> tuple[Int64Array, Float64Array]:
-    """Return the numbers of the nodes as the file calls them, and their coordinates."""
+    rows = cards.get("ND", TextRows())
     what = "a node needs its number, x, y and z"
     points = rows.parse_floats(slice(2, 5), what)
     numbers = rows.parse_integers(slice(1, 2), what).ravel()
@@ -85,7 +70,32 @@ def _parse_nodes(rows: TextRows) -> tuple[Int64Array, Float64Array]:
     if len(again):
         row = int(order[again[0] + 1])
         raise rows.describe_fault(row, f"there is a node {numbers[row]} already")
-    return numbers, points
+    found = [_parse_elements(card, cards[card], numbers) for card in _FACES if card in cards]
+    if not found:
+        return Mesh(points)
+    rows = cards.get("NS", TextRows())
+    strings: list[Chain] = []
+    open_nodes: list[int] = []
+    for i, (text, line) in enumerate(zip(rows.texts, rows.lines, strict=True)):
+        row = text.split()
+        for at, word in enumerate(row[1:], start=1):
+            node = parse_integers([word], line)[0]
+            called = np.array([[abs(node)]], np.int64)
+            open_nodes.append(int(_find_nodes(called, numbers, rows.cut(i, i + 1))[0, 0]))
+            if node < 0:
+                name = row[at + 1] if at + 1 < len(row) else ""
+                strings.append(Chain(np.array(open_nodes), None, name))
+                open_nodes = []
+                break
+    if open_nodes:
+        strings.append(Chain(np.array(open_nodes)))
+    return Mesh(
+        points,
+        np.concatenate([corners for corners, _ in found]),
+        find_offsets(np.concatenate([lengths for _, lengths in found])),
+        notes=_describe_losses(cards),
+        add_lines=lambda tin: add_lines(tin, strings, "segment"),
+    )
 
 
 def _parse_elements(
@@ -110,26 +120,6 @@ def _find_nodes(named: Int64Array, numbers: Int64Array, rows: TextRows) -> Int64
         first = int(named[row].ravel()[np.argmax(wrong[row])])
         raise rows.describe_fault(row, f"there is no node {first}")
     return np.asarray(found, np.int64)
-
-
-def _parse_strings(rows: TextRows, numbers: Int64Array) -> list[Chain]:
-    """Return the node strings: a negative number ends one, and the string's own may follow it."""
-    chains: list[Chain] = []
-    open_nodes: list[int] = []
-    for i, (text, line) in enumerate(zip(rows.texts, rows.lines, strict=True)):
-        row = text.split()
-        for at, word in enumerate(row[1:], start=1):
-            node = parse_integers([word], line)[0]
-            called = np.array([[abs(node)]], np.int64)
-            open_nodes.append(int(_find_nodes(called, numbers, rows.cut(i, i + 1))[0, 0]))
-            if node < 0:
-                name = row[at + 1] if at + 1 < len(row) else ""
-                chains.append(Chain(np.array(open_nodes), None, name))
-                open_nodes = []
-                break
-    if open_nodes:
-        chains.append(Chain(np.array(open_nodes)))
-    return chains
 
 
 def _describe_losses(cards: dict[str, TextRows]) -> list[str]:

@@ -15,7 +15,7 @@ by a base and walls.
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -23,7 +23,8 @@ from ...base.atomic import replacing
 from ...base.checks import as_flag, as_number
 from ...base.crs import scale_elevations
 from ...base.errors import CrsError, OptionError, ReadError, WriteError
-from ...base.sentences import FILE
+from ...base.sentences import FILE, counted
+from ...tin.topology import NO_NEIGHBOR, ends
 from .common import (
     Mesh,
     describe_single_precision,
@@ -33,16 +34,15 @@ from .common import (
     read_content,
     require_tin,
 )
-from .solid import build_solid
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...base.arrays import AnyArray, Float32Array, Float64Array, Int64Array
+    from ...base.arrays import Float32Array, Float64Array, Int32Array, Int64Array
     from ...base.progress import Tell
     from ...tin import TIN
 
-__all__ = ["read", "write"]
+__all__ = ["build_solid", "read", "write"]
 
 _HEADER_BYTES = 80
 _FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -62,7 +62,23 @@ def read(path: Path) -> Mesh:
     one; a text STL is refused.
     """
     content = read_content(path)
-    facets = _find_facets(content)
+    body = _HEADER_BYTES + 4
+    count = int.from_bytes(content[_HEADER_BYTES:body], "little")
+    room = (len(content) - body) // _FACET.itemsize
+    if room == count > 0:
+        facets = np.frombuffer(content, _FACET, count, body)
+    else:
+        if content.lstrip()[:5].lower() == b"solid" and b"facet" in content[:_HEAD].lower():
+            raise ReadError(f"{FILE} is a text STL, and only binary STL is read: save it as that.")
+        if len(content) < body:
+            raise ReadError(f"{FILE} is no STL file: it is shorter than a header.")
+        if count == 0:
+            raise ReadError(f"{FILE} holds no facets.")
+        fault = "ends too early" if room < count else "goes on behind its last facet"
+        raise ReadError(
+            f"{FILE} {fault}: its header promises {count} "
+            f"facet{'' if count == 1 else 's'}, and there is room for {room}."
+        )
     origin, found_crs, found_unit = _read_record(content[:_HEADER_BYTES])
     if not np.isfinite(origin).all():
         raise ReadError(
@@ -82,25 +98,6 @@ def read(path: Path) -> Mesh:
         elevation_unit=found_unit,
         notes=notes,
         rounding=own,
-    )
-
-
-def _find_facets(content: bytes) -> AnyArray:
-    body = _HEADER_BYTES + 4
-    count = int.from_bytes(content[_HEADER_BYTES:body], "little")
-    room = (len(content) - body) // _FACET.itemsize
-    if room == count > 0:
-        return np.frombuffer(content, _FACET, count, body)
-    if content.lstrip()[:5].lower() == b"solid" and b"facet" in content[:_HEAD].lower():
-        raise ReadError(f"{FILE} is a text STL, and only binary STL is read: save it as that.")
-    if len(content) < body:
-        raise ReadError(f"{FILE} is no STL file: it is shorter than a header.")
-    if count == 0:
-        raise ReadError(f"{FILE} holds no facets.")
-    fault = "ends too early" if room < count else "goes on behind its last facet"
-    raise ReadError(
-        f"{FILE} {fault}: its header promises {count} "
-        f"facet{'' if count == 1 else 's'}, and there is room for {room}."
     )
 
 
@@ -173,7 +170,14 @@ def write(
     """
     tin = require_tin(surface, format_name="STL")
     is_solid = as_flag("solid", solid)
-    _require_model_options(is_solid, thickness, scale, size, exaggeration)
+    for name, value in (("thickness", thickness), ("scale", scale), ("size", size)):
+        if value is not None:
+            as_number(name, value, above=0, or_none=True)
+    as_number("exaggeration", exaggeration, above=0)
+    if scale is not None and size is not None:
+        raise OptionError("size", size, "left out where a scale is given, which sets the size")
+    if thickness is not None and not is_solid:
+        raise OptionError("thickness", thickness, "left out where no solid is asked for")
     if is_solid or scale is not None or size is not None or exaggeration != 1.0:
         points, record = _make_model(tin, scale, size, exaggeration)
         triangles = tin.triangles.astype(np.int64)
@@ -192,26 +196,17 @@ def write(
         file.write(len(triangles).to_bytes(4, "little"))
         for start in range(0, len(triangles), _BATCH):
             part = triangles[start : start + _BATCH]
-            file.write(_pack_facets(points[part]).data)
+            corners = points[part]
+            rows = np.zeros(len(corners), _FACET)
+            normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+            rows["normal"] = np.divide(
+                normals, lengths, out=np.zeros_like(normals), where=lengths > 0
+            )
+            rows["corners"] = corners
+            file.write(rows.data)
             if progress is not None:
                 progress(min(1.0, (start + len(part)) / len(triangles)))
-
-
-def _require_model_options(
-    is_solid: bool,
-    thickness: float | None,
-    scale: float | None,
-    size: float | None,
-    exaggeration: float,
-) -> None:
-    for name, value in (("thickness", thickness), ("scale", scale), ("size", size)):
-        if value is not None:
-            as_number(name, value, above=0, or_none=True)
-    as_number("exaggeration", exaggeration, above=0)
-    if scale is not None and size is not None:
-        raise OptionError("size", size, "left out where a scale is given, which sets the size")
-    if thickness is not None and not is_solid:
-        raise OptionError("thickness", thickness, "left out where no solid is asked for")
 
 
 def _make_model(
@@ -249,11 +244,92 @@ def _format_record(origin: Float64Array, tin: TIN) -> bytes:
     return record.encode().ljust(_HEADER_BYTES, b" ")
 
 
-def _pack_facets(corners: Float64Array) -> AnyArray:
-    """Return STL rows for (m, 3 corners, 3) coordinates."""
-    rows = np.zeros(len(corners), _FACET)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    rows["normal"] = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
-    rows["corners"] = corners
-    return rows
+class Solid(NamedTuple):
+    """A mesh without holes, its triangles counter-clockwise seen from outside."""
+
+    points: Float64Array
+    """(n, 3)."""
+    triangles: Int64Array
+    """(m, 3)."""
+
+    @property
+    def volume(self) -> float:
+        """Volume within, units of the points cubed."""
+        a, b, c = (self.points[self.triangles[:, k]] for k in range(3))
+        return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
+
+
+def build_solid(tin: TIN, points: Float64Array, thickness: float) -> Solid:
+    """Close a surface with a flat base and upright walls.
+
+    Parameters
+    ----------
+    tin : TIN
+    points : (n, 3) float64 array
+        Its vertices as they are to be printed.
+    thickness : float
+        From the base to the lowest vertex, units of ``points``.
+
+    Returns
+    -------
+    Solid
+        The base has the triangles of the surface, turned over, so that every wall stands on edges.
+        Where parts of the surface touch in one vertex, the solid is cut apart there.
+
+    Raises
+    ------
+    WriteError
+        If the surface has no triangle.
+    """
+    triangles, neighbors = tin.triangles.astype(np.int64), tin.neighbors
+    if len(triangles) == 0:
+        raise WriteError(f"Cannot write {FILE}: {counted(0, 'triangle')} make no solid.")
+    corners, number = _split_touching(triangles, neighbors)
+    tops = points[corners]
+    base = np.array(tops)
+    base[:, 2] = tops[:, 2].min() - thickness
+    count = len(corners)
+    triangle, corner = np.nonzero(neighbors == NO_NEIGHBOR)
+    first, last = ends(number.astype(np.int32), triangle, corner)
+    walls = [np.column_stack([last, first, first + count]),
+             np.column_stack([last, first + count, last + count])]  # fmt: skip
+    return Solid(
+        np.concatenate([tops, base]),
+        np.concatenate([number, number[:, ::-1] + count, *walls]).astype(np.int64),
+    )
+
+
+def _split_touching(triangles: Int64Array, neighbors: Int32Array) -> tuple[Int64Array, Int64Array]:
+    """Give each fan of triangles about a vertex a corner of its own.
+
+    Returns
+    -------
+    corners : (k,) int64 array
+        The vertex that each corner stands for.
+    number : (m, 3) int64 array
+        Corners of the triangles.
+    """
+    used, number = np.unique(triangles, return_inverse=True)
+    number = number.reshape(-1, 3).astype(np.int64)
+    corners = used.astype(np.int64).tolist()
+    triangle, corner = np.nonzero(neighbors == NO_NEIGHBOR)
+    starts = triangles[triangle, (corner + 1) % 3]
+    _, first = np.unique(starts, return_index=True)
+    further = np.setdiff1d(np.arange(len(starts)), first)  # parts of the surface touch in these
+    for at in further.tolist():
+        for slot in _walk_fan(triangles, neighbors, int(triangle[at]), int(starts[at])):
+            number[slot] = len(corners)
+        corners.append(int(starts[at]))
+    return np.array(corners, np.int64), number
+
+
+def _walk_fan(
+    triangles: Int64Array, neighbors: Int32Array, triangle: int, vertex: int
+) -> list[tuple[int, int]]:
+    """Return the corners at a vertex, from a triangle whose edge from there is of the boundary."""
+    slots = []
+    while triangle != NO_NEIGHBOR:
+        corner = int(np.argmax(triangles[triangle] == vertex))
+        slots.append((triangle, corner))
+        triangle = int(neighbors[triangle, (corner + 1) % 3])  # across the edge that ends there
+    return slots

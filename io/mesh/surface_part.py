@@ -202,28 +202,32 @@ def find_surface_part(points: Float64Array, triangles: Int32Array) -> SurfacePar
     turns = orientation(xy, *corners.T)
     corners = np.where(turns[:, None] < 0, corners[:, [0, 2, 1]], corners)
     kept: BoolArray = turns != 0
-    areas = _measure_areas(points, corners)
-    pairs = _find_overlaps(points, xy, corners, np.flatnonzero(kept))
-    heights = points[corners, 2].mean(axis=1)
-    kept[_choose_left_out(pairs, np.lexsort((-heights, -areas)))] = False
-    return SurfacePart(kept, turns == 0, areas, _measure_heights(points, corners, areas))
-
-
-def _measure_areas(points: Float64Array, corners: Int64Array) -> Float64Array:
-    """Return areas in the plane, the same for triangles of the same places."""
     places = points[corners, :2]
     order = np.lexsort((places[..., 1], places[..., 0]))
     a, b, c = np.take_along_axis(places, order[..., None], axis=1).transpose(1, 0, 2)
     u, v = b - a, c - a
-    return np.asarray(np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2)
-
-
-def _measure_heights(
-    points: Float64Array, corners: Int64Array, areas: Float64Array
-) -> Float64Array:
+    areas = np.asarray(np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2)
+    pairs = _find_overlaps(points, xy, corners, np.flatnonzero(kept))
+    heights = points[corners, 2].mean(axis=1)
+    order = np.lexsort((-heights, -areas))
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    first, second = np.sort(rank[pairs], axis=1).T
+    by_second = np.lexsort((first, second))
+    first, second = first[by_second], second[by_second]
+    ranks, counts = np.unique(second, return_counts=True)
+    offsets = find_offsets(counts.tolist()).tolist()
+    left_out: set[int] = set()
+    earlier = first.tolist()
+    for k, at in enumerate(ranks.tolist()):
+        if not left_out.issuperset(earlier[offsets[k] : offsets[k + 1]]):
+            left_out.add(at)
+    kept[[int(order[at]) for at in left_out]] = False
     places = points[corners, :2]
     longest = np.linalg.norm(places - np.roll(places, 1, axis=1), axis=2).max(axis=1)
-    return np.asarray(2 * areas / np.where(longest > 0, longest, 1.0))
+    return SurfacePart(
+        kept, turns == 0, areas, np.asarray(2 * areas / np.where(longest > 0, longest, 1.0))
+    )
 
 
 # -------------------------------------------------------------------------- overlaps
@@ -243,34 +247,14 @@ def _find_overlaps(
         first, second = tree.query(boxes[start : start + _BLOCK])
         pairs = np.stack([first + start, second], axis=1)
         pairs = wanted[pairs[pairs[:, 0] < pairs[:, 1]]]
-        found.append(pairs[_overlap(xy, corners[pairs[:, 0]], corners[pairs[:, 1]])])
+        ours = corners[pairs[:, 0]]
+        theirs = corners[pairs[:, 1]]
+        overlap = np.ones(len(ours), np.bool_)
+        for one, other in ((ours, theirs), (theirs, ours)):
+            for k in range(3):
+                open_ = np.flatnonzero(overlap)
+                a, b = one[open_, k], one[open_, (k + 1) % 3]
+                is_left = [orientation(xy, a, b, corner) > 0 for corner in other[open_].T]
+                overlap[open_] = np.any(is_left, axis=0)
+        found.append(pairs[overlap])
     return np.concatenate(found)
-
-
-def _overlap(xy: Columns, ours: Int64Array, theirs: Int64Array) -> BoolArray:
-    """Tell which pairs of counter-clockwise triangles have a place in common."""
-    overlap = np.ones(len(ours), np.bool_)
-    for one, other in ((ours, theirs), (theirs, ours)):
-        for k in range(3):
-            open_ = np.flatnonzero(overlap)
-            a, b = one[open_, k], one[open_, (k + 1) % 3]
-            is_left = [orientation(xy, a, b, corner) > 0 for corner in other[open_].T]
-            overlap[open_] = np.any(is_left, axis=0)
-    return overlap
-
-
-def _choose_left_out(pairs: Int64Array, order: Int64Array) -> list[int]:
-    """Return the triangles that overlap one that comes before them and stays."""
-    rank = np.empty(len(order), np.int64)
-    rank[order] = np.arange(len(order))
-    first, second = np.sort(rank[pairs], axis=1).T
-    by_second = np.lexsort((first, second))
-    first, second = first[by_second], second[by_second]
-    ranks, counts = np.unique(second, return_counts=True)
-    offsets = find_offsets(counts.tolist()).tolist()
-    left_out: set[int] = set()
-    earlier = first.tolist()
-    for k, at in enumerate(ranks.tolist()):
-        if not left_out.issuperset(earlier[offsets[k] : offsets[k + 1]]):
-            left_out.add(at)
-    return [int(order[at]) for at in left_out]

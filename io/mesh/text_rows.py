@@ -95,7 +95,10 @@ class TextRows:
             return np.array(picked, np.float64).reshape(-1, columns.stop - columns.start)
         except ValueError:
             for words, line in zip(picked, self.lines, strict=True):
-                _require_numbers(words, line)
+                try:
+                    np.array(words, np.float64)
+                except ValueError:
+                    raise _describe_fault(words, line, "a coordinate is no number") from None
             raise
 
     def parse_integers(self, columns: slice, what: str) -> Int64Array:
@@ -150,13 +153,6 @@ def split_rows(content: bytes) -> TextRows:
     lines = [number for number, line in enumerate(every, start=1) if line]
     texts = every if len(lines) == len(every) else [line for line in every if line]
     return TextRows(texts, lines)
-
-
-def _require_numbers(row: Sequence[str], line: int) -> None:
-    try:
-        np.array(row, np.float64)
-    except ValueError:
-        raise _describe_fault(row, line, "a coordinate is no number") from None
 
 
 def parse_integers(

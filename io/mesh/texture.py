@@ -18,7 +18,6 @@ from .common import read_content
 
 if TYPE_CHECKING:
     import os
-    from pathlib import Path
 
     from ...base.arrays import Float64Array
     from ...tin import TIN
@@ -59,42 +58,46 @@ def load_texture(source: str | os.PathLike[str], tin: TIN) -> Texture:
     Errors and warnings are those of :func:`.read_ortho`.
     """
     path = as_picture_path(source, "ortho")
-    kind = _find_kind(path)
+    with path.open("rb") as file:
+        head = file.read(16)
+    kind = next((kind for start, kind in _KINDS.items() if head.startswith(start)), None)
     if kind is None:
         ortho = read_ortho(path, [tin], most_pixels=MOST_PIXELS, beyond=_BEYOND)
     else:
-        ortho = _read_plain(path, kind)
+        content = read_content(path)
+        size = _find_png_size(content) if kind == "png" else _find_jpeg_size(content)
+        if size is None or min(size) < 1:
+            raise ReadError(
+                f"'{path}' is a damaged {kind.upper()} file: it tells no size.", path=path
+            )
+        world = next(
+            (one for suffix in _WORLD_SUFFIXES[kind]
+             for one in (path.with_suffix(suffix), path.with_suffix(suffix.upper()))
+             if one.is_file()),
+            None,
+        )  # fmt: skip
+        if world is None:
+            names = ", ".join(path.with_suffix(one).name for one in _WORLD_SUFFIXES[kind])
+            raise ReadError(
+                f"'{path}' has no place on the ground: there is no world file beside it ({names}).",
+                path=path,
+            )
+        width, height = size
+        words = read_content(world).decode("latin-1").replace(",", ".").split()
+        try:
+            a, d, b, e, x, y = (float(word) for word in words)
+        except ValueError:
+            raise ReadError(
+                f"'{world}' is no world file: six numbers are needed, and it has "
+                f"{' '.join(words)[:60]!r}.",
+                path=world,
+            ) from None
+        ortho = Ortho(
+            path, content, kind, (height, width), (a, b, x - (a + b) / 2, d, e, y - (d + e) / 2)
+        )
         if gap := ortho.measure_gap([tin]):
             warn(f"'{path}' does not reach over {gap:.1%} of the vertices: {_BEYOND}.")
     return Texture(ortho.content, ortho.kind, ortho.place(tin.points))
-
-
-def _find_kind(path: Path) -> str | None:
-    with path.open("rb") as file:
-        head = file.read(16)
-    return next((kind for start, kind in _KINDS.items() if head.startswith(start)), None)
-
-
-def _read_plain(path: Path, kind: str) -> Ortho:
-    """Return a PNG or JPEG file as it is, placed by its world file."""
-    content = read_content(path)
-    size = _find_png_size(content) if kind == "png" else _find_jpeg_size(content)
-    if size is None or min(size) < 1:
-        raise ReadError(f"'{path}' is a damaged {kind.upper()} file: it tells no size.", path=path)
-    world = next(
-        (one for suffix in _WORLD_SUFFIXES[kind]
-         for one in (path.with_suffix(suffix), path.with_suffix(suffix.upper()))
-         if one.is_file()),
-        None,
-    )  # fmt: skip
-    if world is None:
-        names = ", ".join(path.with_suffix(one).name for one in _WORLD_SUFFIXES[kind])
-        raise ReadError(
-            f"'{path}' has no place on the ground: there is no world file beside it ({names}).",
-            path=path,
-        )
-    width, height = size
-    return Ortho(path, content, kind, (height, width), _read_world_file(world))
 
 
 def _find_png_size(content: bytes) -> tuple[int, int] | None:
@@ -117,17 +120,3 @@ def _find_jpeg_size(content: bytes) -> tuple[int, int] | None:
         else:
             at += 2 + int.from_bytes(content[at + 2 : at + 4], "big")
     return None
-
-
-def _read_world_file(path: Path) -> tuple[float, ...]:
-    """Return the transform of a world file, which places the centre of the first pixel."""
-    words = read_content(path).decode("latin-1").replace(",", ".").split()
-    try:
-        a, d, b, e, x, y = (float(word) for word in words)
-    except ValueError:
-        raise ReadError(
-            f"'{path}' is no world file: six numbers are needed, and it has "
-            f"{' '.join(words)[:60]!r}.",
-            path=path,
-        ) from None
-    return a, b, x - (a + b) / 2, d, e, y - (d + e) / 2

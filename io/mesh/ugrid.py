@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base import optional
+from ...base import checks, optional
 from ...base.atomic import replacing_path
 from ...base.crs import CRS, METRE, Unit
 from ...base.errors import CrsError, OptionError, ReadError, WriteError
 from ...base.policies import LineKind
+from ...base.products import product
 from ...base.sentences import FILE, counted
 from ..isolated import run_isolated
 from .common import (
@@ -35,12 +36,11 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from ...base.arrays import AnyArray, Float64Array
+    from ...base.arrays import AnyArray
     from ...base.crs import CrsLike, UnitLike
     from ...base.policies import FacePolicy
     from ...base.progress import Tell
     from ...tin import TIN, Survey
-    from .common import Reference
 
 __all__ = ["read", "write", "write_content"]
 
@@ -87,8 +87,21 @@ def read(
     if value["depth"]:
         points[:, 2] *= -1.0
         notes.append(f"Depths '{value['variable']}' grow downwards: their sign was changed.")
-    _require_elevations(points, value["variable"])
-    reference = _choose_reference(crs, elevation_unit, value)
+    lost = np.isnan(points[:, 2]) & np.isfinite(points[:, :2]).all(axis=1)
+    if lost.any():
+        count = int(lost.sum())
+        raise ReadError(
+            f"{counted(count, 'node')} {'has' if count == 1 else 'have'} no elevation in "
+            f"'{value['variable']}' (first: node {int(np.argmax(lost))})."
+        )
+    unit = value["unit"] if _is_unit(value["unit"]) else None
+    stated = [text for text in value["crs"] if text not in _NO_CRS]
+    found = _find_known_crs(stated)
+    if found is None and stated and crs is None:
+        raise CrsError(
+            f"{FILE} names the CRS '{stated[0][:60]}', which is unknown: declare it.", crs=stated[0]
+        )
+    reference = choose_reference(crs, elevation_unit, found_crs=found, found_unit=unit)
     notes += describe_single_precision(points, value["dtype"])
     notes += _require_units(value["xy_units"], reference.crs)
     mesh = Mesh(
@@ -99,29 +112,6 @@ def read(
         add_lines=lambda tin: _add_edge_types(tin, arrays),
     )
     return build_mesh(mesh, path, reference=reference, faces=faces)
-
-
-def _require_elevations(points: Float64Array, variable: str) -> None:
-    lost = np.isnan(points[:, 2]) & np.isfinite(points[:, :2]).all(axis=1)
-    if lost.any():
-        count = int(lost.sum())
-        raise ReadError(
-            f"{counted(count, 'node')} {'has' if count == 1 else 'have'} no elevation in "
-            f"'{variable}' (first: node {int(np.argmax(lost))})."
-        )
-
-
-def _choose_reference(
-    crs: CrsLike | None, elevation_unit: UnitLike | None, value: Mapping[str, Any]
-) -> Reference:
-    unit = value["unit"] if _is_unit(value["unit"]) else None
-    stated = [text for text in value["crs"] if text not in _NO_CRS]
-    found = _find_known_crs(stated)
-    if found is None and stated and crs is None:
-        raise CrsError(
-            f"{FILE} names the CRS '{stated[0][:60]}', which is unknown: declare it.", crs=stated[0]
-        )
-    return choose_reference(crs, elevation_unit, found_crs=found, found_unit=unit)
 
 
 def _require_units(units: Sequence[str], crs: CRS | None) -> list[str]:
@@ -200,8 +190,31 @@ def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:
 def write_content(data: Any, tin: TIN) -> None:
     """Write a TIN into a data set of netCDF4 that is open and empty."""
     _write_topology(data, tin)
-    _write_nodes(data, tin)
-    _write_faces(data, tin)
+    is_geographic = tin.crs is not None and tin.crs.is_geographic
+    unit = "" if tin.crs is None else _format_cf_unit(tin.crs.horizontal_unit)
+    names = ("longitude", "latitude") if is_geographic else (
+        "projection_x_coordinate", "projection_y_coordinate")  # fmt: skip
+    units = ("degrees_east", "degrees_north") if is_geographic else (unit, unit)
+    own = {"mesh": _MESH, "location": "node"}
+    mapping = {} if tin.crs is None else {"grid_mapping": _CRS_VARIABLE}
+    for axis, column, name, unit in zip("xy", tin.points.T[:2], names, units, strict=True):
+        variable = data.createVariable(f"{_MESH}_node_{axis}", "f8", (f"{_MESH}_nNodes",))
+        variable.setncatts({"standard_name": name, **own, **mapping})
+        if unit:
+            variable.setncattr("units", unit)
+        variable[:] = column
+    level = data.createVariable(f"{_MESH}_node_z", "f8", (f"{_MESH}_nNodes",))
+    level.setncatts({"standard_name": "altitude", "long_name": "elevation", "positive": "up"})
+    level.setncatts({**own, "coordinates": f"{_MESH}_node_x {_MESH}_node_y", **mapping})
+    if tin.elevation_unit is not None and format_unit(tin):
+        level.setncattr("units", _format_cf_unit(tin.elevation_unit))
+    level[:] = tin.points[:, 2]
+    shape = (f"{_MESH}_nFaces", f"{_MESH}_nMax_face_nodes")
+    faces = data.createVariable(f"{_MESH}_face_nodes", "i4", shape, fill_value=np.int32(-999))
+    faces.setncatts({"cf_role": "face_node_connectivity", "mesh": _MESH, "location": "face",
+                     "long_name": "nodes of each face, counter-clockwise",
+                     "start_index": np.int32(0)})  # fmt: skip
+    faces[:] = tin.triangles
     if tin.constrained.any():
         _write_edges(data, tin)
 
@@ -226,22 +239,20 @@ def _write_topology(data: Any, tin: TIN) -> None:
     )
     if tin.crs is not None:
         grid = data.createVariable(_CRS_VARIABLE, "i4")
-        grid.setncatts(_describe_crs(tin.crs))
-
-
-def _describe_crs(crs: CRS) -> dict[str, Any]:
-    """Return the attributes by which CF, GDAL, Delft3D and QGIS know a CRS."""
-    wkt = crs.to_wkt()
-    attributes: dict[str, Any] = {
-        name: value
-        for name, value in crs.to_pyproj().to_cf().items()
-        if value is not None and isinstance(value, str | float | int | list | tuple)
-    }
-    attributes |= {"crs_wkt": wkt, "name": crs.name}
-    epsg = crs.to_epsg()
-    if epsg is None:
-        return attributes | {"wkt": crs.to_wkt("WKT1_GDAL") if _has_wkt1(crs) else wkt}
-    return attributes | {"epsg": np.int32(epsg), "EPSG_code": f"EPSG:{epsg}"}
+        crs = tin.crs
+        wkt = crs.to_wkt()
+        attributes: dict[str, Any] = {
+            name: value
+            for name, value in crs.to_pyproj().to_cf().items()
+            if value is not None and isinstance(value, str | float | int | list | tuple)
+        }
+        attributes |= {"crs_wkt": wkt, "name": crs.name}
+        epsg = crs.to_epsg()
+        if epsg is None:
+            attributes = attributes | {"wkt": crs.to_wkt("WKT1_GDAL") if _has_wkt1(crs) else wkt}
+        else:
+            attributes = attributes | {"epsg": np.int32(epsg), "EPSG_code": f"EPSG:{epsg}"}
+        grid.setncatts(attributes)
 
 
 def _has_wkt1(crs: CRS) -> bool:
@@ -253,41 +264,10 @@ def _has_wkt1(crs: CRS) -> bool:
         return False
 
 
-def _write_nodes(data: Any, tin: TIN) -> None:
-    is_geographic = tin.crs is not None and tin.crs.is_geographic
-    unit = "" if tin.crs is None else _format_cf_unit(tin.crs.horizontal_unit)
-    names = ("longitude", "latitude") if is_geographic else (
-        "projection_x_coordinate", "projection_y_coordinate")  # fmt: skip
-    units = ("degrees_east", "degrees_north") if is_geographic else (unit, unit)
-    own = {"mesh": _MESH, "location": "node"}
-    mapping = {} if tin.crs is None else {"grid_mapping": _CRS_VARIABLE}
-    for axis, column, name, unit in zip("xy", tin.points.T[:2], names, units, strict=True):
-        variable = data.createVariable(f"{_MESH}_node_{axis}", "f8", (f"{_MESH}_nNodes",))
-        variable.setncatts({"standard_name": name, **own, **mapping})
-        if unit:
-            variable.setncattr("units", unit)
-        variable[:] = column
-    level = data.createVariable(f"{_MESH}_node_z", "f8", (f"{_MESH}_nNodes",))
-    level.setncatts({"standard_name": "altitude", "long_name": "elevation", "positive": "up"})
-    level.setncatts({**own, "coordinates": f"{_MESH}_node_x {_MESH}_node_y", **mapping})
-    if tin.elevation_unit is not None and format_unit(tin):
-        level.setncattr("units", _format_cf_unit(tin.elevation_unit))
-    level[:] = tin.points[:, 2]
-
-
 def _format_cf_unit(unit: Unit) -> str:
     """Return a unit as CF's programs know it; the name where it has no such symbol."""
     known = {"metre": "m", "foot": "ft", "US survey foot": "US_survey_foot"}
     return known.get(unit.name, unit.name)
-
-
-def _write_faces(data: Any, tin: TIN) -> None:
-    shape = (f"{_MESH}_nFaces", f"{_MESH}_nMax_face_nodes")
-    faces = data.createVariable(f"{_MESH}_face_nodes", "i4", shape, fill_value=np.int32(-999))
-    faces.setncatts({"cf_role": "face_node_connectivity", "mesh": _MESH, "location": "face",
-                     "long_name": "nodes of each face, counter-clockwise",
-                     "start_index": np.int32(0)})  # fmt: skip
-    faces[:] = tin.triangles
 
 
 def _write_edges(data: Any, tin: TIN) -> None:
@@ -317,3 +297,51 @@ def _write_edges(data: Any, tin: TIN) -> None:
                      "flag_values": np.arange(len(_TYPES), dtype=np.int8),
                      "flag_meanings": " ".join(_TYPES)})  # fmt: skip
     flags[:] = types
+
+
+@product
+def to_ugrid(tin: TIN) -> Any:
+    """Return a TIN as a data set of xarray by the conventions of UGRID.
+
+    Parameters
+    ----------
+    tin : TIN
+
+    Returns
+    -------
+    xarray.Dataset
+        What a UGRID file of the TIN holds: the topology ``mesh2d``, ``mesh2d_node_x``,
+        ``mesh2d_node_y`` and ``mesh2d_node_z`` in double precision, ``mesh2d_face_nodes``, the CRS
+        in ``projected_coordinate_system``; where there are lines the edges with their type.
+        ``xugrid.UgridDataset`` takes it.
+
+    Raises
+    ------
+    MissingExtraError
+        If xarray or netCDF4 is not installed.
+    PointsError
+        If ``tin`` is none.
+
+    Examples
+    --------
+    >>> import tinsmith as ts
+    >>> tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+    >>> ts.to_ugrid(tin)["mesh2d_node_z"].values
+    array([5., 6., 7., 8.])
+    """
+    xarray = optional.load("xarray", "Turning a TIN into a data set of UGRID")
+    netcdf = optional.load("netCDF4", "Turning a TIN into a data set of UGRID")
+    checks.require_tin(tin)
+    with netcdf.Dataset("tin.nc", "w", format="NETCDF4", diskless=True, persist=False) as data:
+        write_content(data, tin)
+        data.set_auto_mask(False)
+        variables = {
+            name: (one.dimensions, one[...], {key: one.getncattr(key) for key in one.ncattrs()})
+            for name, one in data.variables.items()
+        }
+        about = {key: data.getncattr(key) for key in data.ncattrs()}
+    made = xarray.Dataset(variables, attrs=about)
+    for one in made.variables.values():  # where xarray looks for it when it writes
+        if "_FillValue" in one.attrs:
+            one.encoding["_FillValue"] = one.attrs.pop("_FillValue")
+    return made.set_coords([name for name in made if str(name).endswith(("_node_x", "_node_y"))])

@@ -52,14 +52,30 @@ def read_mesh(path: str, *, surface: str | None, variable: str | None) -> Answer
     with import_module("netCDF4").Dataset(path) as data:
         mesh = _find_mesh(data, surface)
         places = _find_coordinates(data, mesh)
-        x, y = _read_coordinates(data, mesh)
+        x, y = (_read_numbers(one) for one in _find_coordinates(data, mesh))
+        if len(x) != len(y):
+            raise Refusal(
+                f"{FILE} is a damaged UGRID file: {counted(len(x), 'easting')} and "
+                f"{counted(len(y), 'northing')}."
+            )
         level = _find_elevations(data, mesh, len(x), variable)
         z = _read_numbers(level)
-        corners, offsets = _read_faces(data, mesh)
+        name = _get_text(mesh, "face_node_connectivity")
+        table = _read_table(_get_variable(data, name, mesh, "faces"))
+        dimension = _get_text(mesh, "face_dimension")
+        if bool(dimension) and data.variables[name].dimensions[1] == dimension:
+            table = table.T
+        held = table >= 0
+        first_gap = np.where(held.all(axis=1), table.shape[1], np.argmin(held, axis=1))
+        corner = np.arange(table.shape[1]) < first_gap[:, None]
+        corners, offsets = table[corner], np.concatenate([[0], np.cumsum(first_gap)])
+        candidates = _get_text(level, "positive").lower()
         value = {
             "mesh": mesh.name,
             "variable": level.name,
-            "depth": _is_depth(level),
+            "depth": (
+                candidates == "down" if candidates else _get_text(level, "standard_name") in _DEPTHS
+            ),
             "unit": _get_text(level, "units"),
             "crs": _find_crs(data, (level, *places)),
             "xy_units": [_get_text(one, "units") for one in places],
@@ -152,16 +168,6 @@ def _read_numbers(variable: Any) -> Float64Array:
     return np.ma.filled(np.ma.asarray(variable[:]).astype(np.float64), np.nan)
 
 
-def _read_coordinates(data: Any, mesh: Any) -> tuple[Float64Array, Float64Array]:
-    x, y = (_read_numbers(one) for one in _find_coordinates(data, mesh))
-    if len(x) != len(y):
-        raise Refusal(
-            f"{FILE} is a damaged UGRID file: {counted(len(x), 'easting')} and "
-            f"{counted(len(y), 'northing')}."
-        )
-    return x, y
-
-
 def _find_elevations(data: Any, mesh: Any, count: int, wanted: str | None) -> Any:
     """Return the variable of the nodes' elevations."""
     if wanted is not None:
@@ -202,37 +208,16 @@ def _is_at_nodes(variable: Any, data: Any, mesh: Any) -> bool:
     )
 
 
-def _is_depth(variable: Any) -> bool:
-    """Whether the numbers grow downwards."""
-    candidates = _get_text(variable, "positive").lower()
-    return candidates == "down" if candidates else _get_text(variable, "standard_name") in _DEPTHS
-
-
-def _read_faces(data: Any, mesh: Any) -> tuple[Int64Array, Int64Array]:
-    """Return the corners of all faces, from 0 on, and the offsets of each."""
-    name = _get_text(mesh, "face_node_connectivity")
-    table = _read_table(_get_variable(data, name, mesh, "faces"))
-    if _is_transposed(data, mesh, name):
-        table = table.T
-    held = table >= 0
-    first_gap = np.where(held.all(axis=1), table.shape[1], np.argmin(held, axis=1))
-    corner = np.arange(table.shape[1]) < first_gap[:, None]
-    return table[corner], np.concatenate([[0], np.cumsum(first_gap)])
-
-
-def _is_transposed(data: Any, mesh: Any, name: str) -> bool:
-    """Whether the table of faces has a column for each face, as the mesh tells."""
-    dimension = _get_text(mesh, "face_dimension")
-    return bool(dimension) and data.variables[name].dimensions[1] == dimension
-
-
 def _read_table(variable: Any) -> Int64Array:
     """Return a table of node numbers from 0 on; -1 where there is none."""
     if variable.ndim != 2 or np.dtype(variable.dtype).kind not in "iuf":
         raise Refusal(
             f"{FILE} is a damaged UGRID file: '{variable.name}' is no table of node numbers."
         )
-    start = _find_start(variable)
+    if "start_index" not in variable.ncattrs():
+        start = 0
+    else:
+        start = int(np.asarray(variable.getncattr("start_index")).ravel()[0])
     found = np.ma.filled(np.ma.asarray(variable[:]).astype(np.float64), -np.inf)
     found = np.where(np.isnan(found), -np.inf, found)
     beyond = np.isfinite(found) & (
@@ -246,12 +231,6 @@ def _read_table(variable: Any) -> Int64Array:
             f"they are whole numbers from {start} on."
         )
     return np.where(fills, -1, np.where(fills, 0, found) - start).astype(np.int64)
-
-
-def _find_start(variable: Any) -> int:
-    if "start_index" not in variable.ncattrs():
-        return 0
-    return int(np.asarray(variable.getncattr("start_index")).ravel()[0])
 
 
 def _read_edges(data: Any, mesh: Any, n_nodes: int) -> dict[str, Int64Array]:

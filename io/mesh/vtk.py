@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array
     from ...base.progress import Tell
     from ...tin import TIN
-    from ..isolated import Answer
 
 __all__ = ["read", "write"]
 
@@ -49,7 +48,27 @@ def read(path: Path) -> Mesh:
     coordinates, and ``exaggeration`` and ``elevation_scale`` taken out of the elevations first. A
     file without faces gives a survey, with its one-column numeric point data as attributes.
     """
-    value, arrays = _read_in_child(path)
+    # Let a child read the file, once its beginning and end are those of a whole one.
+    optional.require("pyvista", "Reading VTK files")
+    content = common.read_content(path)
+    if b"</VTKFile>" not in content[-200:]:
+        raise ReadError(f"{FILE} is no whole VTK XML file: '</VTKFile>' is missing.")
+    most = len(content) * _CLOSEST_PACKING
+    for found in _COUNTS.finditer(content):
+        digits = found[1].lstrip(b"0")
+        if len(digits) > len(str(most)) or int(digits or b"0") > most:
+            said = found[0].decode()
+            shown = said if len(said) <= _SHOWN_LETTERS else f"{said[:_SHOWN_LETTERS]}..."
+            raise ReadError(f"{FILE} is a damaged VTK XML file: it cannot hold {shown}.")
+    kind = re.search(rb'<VTKFile\b[^>]*\btype="(\w+)"', content[:2000])
+    if kind is None or kind[1].decode() not in _KINDS:
+        found = "of no type" if kind is None else f"of type {kind[1].decode()}"
+        raise ReadError(f"{FILE} is a VTK file {found}: PolyData and UnstructuredGrid can be read.")
+    value, arrays = run_isolated(
+        f"{__package__}.vtk_child:read_mesh",
+        {"path": str(path.absolute()), "kind": kind[1].decode()},
+        path=path,
+    )
     notes = common.describe_single_precision(arrays["points"], value["dtype"])
     points = _restore_points(arrays)
     about = {"crs": value["crs"], "elevation_unit": value["elevation_unit"], "notes": notes}
@@ -72,35 +91,6 @@ def _restore_points(arrays: Mapping[str, AnyArray]) -> Float64Array:
             if factor is not None and factor[0] > 0:
                 points[:, 2] /= factor[0]
         return points if origin is None else points + origin
-
-
-def _read_in_child(path: Path) -> Answer:
-    """Let a child read the file, once its beginning and end are those of a whole one."""
-    optional.require("pyvista", "Reading VTK files")
-    content = common.read_content(path)
-    if b"</VTKFile>" not in content[-200:]:
-        raise ReadError(f"{FILE} is no whole VTK XML file: '</VTKFile>' is missing.")
-    _require_likely_counts(content)
-    kind = re.search(rb'<VTKFile\b[^>]*\btype="(\w+)"', content[:2000])
-    if kind is None or kind[1].decode() not in _KINDS:
-        found = "of no type" if kind is None else f"of type {kind[1].decode()}"
-        raise ReadError(f"{FILE} is a VTK file {found}: PolyData and UnstructuredGrid can be read.")
-    return run_isolated(
-        f"{__package__}.vtk_child:read_mesh",
-        {"path": str(path.absolute()), "kind": kind[1].decode()},
-        path=path,
-    )
-
-
-def _require_likely_counts(content: bytes) -> None:
-    """Refuse counts that no file of this size can hold, before memory is asked for."""
-    most = len(content) * _CLOSEST_PACKING
-    for found in _COUNTS.finditer(content):
-        digits = found[1].lstrip(b"0")
-        if len(digits) > len(str(most)) or int(digits or b"0") > most:
-            said = found[0].decode()
-            shown = said if len(said) <= _SHOWN_LETTERS else f"{said[:_SHOWN_LETTERS]}..."
-            raise ReadError(f"{FILE} is a damaged VTK XML file: it cannot hold {shown}.")
 
 
 def write(surface: TIN, path: Path, *, progress: Tell | None = None) -> None:

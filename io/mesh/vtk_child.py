@@ -53,7 +53,8 @@ def read_dataset(found: Any) -> Answer:
     if not (is_poly_data or hasattr(found, "celltypes")):
         raise Refusal(f"{FILE} is neither a PolyData nor an UnstructuredGrid.")
     faces = _read_poly_data(found) if is_poly_data else _read_faces(found)
-    attributes = _read_point_attributes(found)
+    arrays = {str(name): np.array(values) for name, values in found.point_data.items()}
+    attributes = {name: a for name, a in arrays.items() if a.ndim == 1 and a.dtype.kind in "biuf"}
     arrays: dict[str, AnyArray] = {
         "points": np.array(found.points, np.float64).reshape(-1, 3),
         **faces,
@@ -152,8 +153,3 @@ def _read_edge_flags(found: Any, cells: Int64Array) -> dict[str, UInt8Array]:
     if flags.ndim != 2 or flags.shape[1] != 3:
         return {}
     return {"flags": (flags[cells] != 0).astype(np.uint8)}
-
-
-def _read_point_attributes(found: Any) -> dict[str, AnyArray]:
-    arrays = {str(name): np.array(values) for name, values in found.point_data.items()}
-    return {name: a for name, a in arrays.items() if a.ndim == 1 and a.dtype.kind in "biuf"}

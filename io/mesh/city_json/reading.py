@@ -1,7 +1,15 @@
-"""Read the TINRelief of CityJSON, of the versions 1.0 to 2.0, and of CityJSONSeq."""
+"""Read the TINRelief of CityJSON, of the versions 1.0 to 2.0, and of CityJSONSeq.
+
+A sequence has a CityJSON object on the first line, and a feature with vertices on each other.
+
+References
+----------
+https://www.cityjson.org/cityjsonseq/
+"""
 
 from __future__ import annotations
 
+import json
 import re
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -10,11 +18,10 @@ import numpy as np
 from ....base.errors import ReadError
 from ....base.sentences import FILE
 from ..common import Mesh, join_places, mesh_reader, read_content, require_vertices
-from .decimals import DecimalGrid
-from .sequence import City, SequenceError, parse_city
+from .writing import DecimalGrid
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator
     from pathlib import Path
 
     from ....base.arrays import Float64Array, Int64Array
@@ -66,8 +73,18 @@ def read(path: Path, *, surface: str | None = None, join: bool = False) -> Mesh:
     if len(lengths) == 0:
         raise ReadError(f"{FILE} holds a TINRelief without any triangle.")
     require_vertices(corners, offsets, len(points))
-    points, corners = _merge_vertices(points, corners)
-    found_crs, found_unit = _find_reference(city, reliefs)
+    used = np.unique(corners)
+    places, number = join_places(points[used])
+    place = np.zeros(len(points), np.int64)
+    place[used] = number
+    points, corners = places, place[corners]
+    metadata = city.get("metadata")
+    stated = str(metadata.get("referenceSystem", "")) if isinstance(metadata, dict) else ""
+    found = _URL.search(stated)
+    crs = f"{found[1]}:{found[2]}" if found else stated.strip() or None
+    own = reliefs[0].attributes
+    kept = {name: own[name] for name in ("crs", "elevationUnit") if isinstance(own.get(name), str)}
+    found_crs, found_unit = crs or kept.get("crs"), kept.get("elevationUnit")
     return Mesh(points, corners, offsets, crs=found_crs, elevation_unit=found_unit, notes=notes)
 
 
@@ -136,19 +153,7 @@ def _collect(
             f"TINRelief '{name[:40]}' has {len(fitting)} levels of detail: "
             f"{str(fitting[-1].get('lod'))[:20]} was read."
         )
-    corners, lengths = _flatten(fitting[-1].get("boundaries"), name)
-    if vertices is not None:
-        first, end = vertices
-        if (corners >= end - first).any():
-            raise _describe_damage(
-                f"a surface of '{name[:40]}' names a vertex that its feature does not have"
-            )
-        corners = corners + first
-    return _Relief(corners, np.concatenate([[0], np.cumsum(lengths)]), attributes)
-
-
-def _flatten(boundaries: Any, name: str) -> tuple[Int64Array, Int64Array]:
-    """Return the corners of all polygons, and how many each has."""
+    boundaries = fitting[-1].get("boundaries")
     try:
         rings = [ring for (ring,) in boundaries]
         lengths = np.array([len(ring) for ring in rings], np.int64)
@@ -161,7 +166,15 @@ def _flatten(boundaries: Any, name: str) -> tuple[Int64Array, Int64Array]:
         raise _describe_damage(
             f"a surface of '{name[:40]}' names a vertex that is no number from 0 on"
         )
-    return np.array(flat, np.int64), lengths
+    corners, lengths = np.array(flat, np.int64), lengths
+    if vertices is not None:
+        first, end = vertices
+        if (corners >= end - first).any():
+            raise _describe_damage(
+                f"a surface of '{name[:40]}' names a vertex that its feature does not have"
+            )
+        corners = corners + first
+    return _Relief(corners, np.concatenate([[0], np.cumsum(lengths)]), attributes)
 
 
 def _restore_vertices(city: dict[str, Any]) -> Float64Array:
@@ -198,23 +211,82 @@ def _scale(values: Float64Array, scale: float, translate: float) -> Float64Array
     return DecimalGrid(digits, int(translate)).restore(values.astype(np.int64))
 
 
-def _merge_vertices(points: Float64Array, corners: Int64Array) -> tuple[Float64Array, Int64Array]:
-    """Return the vertices that polygons have, each place once, in the order of the file."""
-    used = np.unique(corners)
-    places, number = join_places(points[used])
-    place = np.zeros(len(points), np.int64)
-    place[used] = number
-    return places, place[corners]
+class SequenceError(Exception):
+    """What is wrong with the text of a file, for the end of a sentence."""
 
 
-def _find_reference(
-    city: dict[str, Any], reliefs: Sequence[_Relief]
-) -> tuple[str | None, str | None]:
-    """Return CRS and unit of elevations as the file tells them."""
-    metadata = city.get("metadata")
-    stated = str(metadata.get("referenceSystem", "")) if isinstance(metadata, dict) else ""
-    found = _URL.search(stated)
-    crs = f"{found[1]}:{found[2]}" if found else stated.strip() or None
-    own = reliefs[0].attributes
-    kept = {name: own[name] for name in ("crs", "elevationUnit") if isinstance(own.get(name), str)}
-    return crs or kept.get("crs"), kept.get("elevationUnit")
+class City(NamedTuple):
+    """A city: the object of a file, with the objects and vertices of its features."""
+
+    document: dict[str, Any]
+    ranges: dict[str, tuple[int, int]]
+    """Of each object of a feature, the vertices of that feature: the first, and behind the last."""
+
+
+def parse_city(content: bytes) -> City:
+    """Return the city of CityJSON, or of a sequence.
+
+    Raises
+    ------
+    SequenceError
+        If the text is no JSON, or a line behind the first is no feature.
+    """
+    try:
+        return City(json.loads(content), {})
+    except json.JSONDecodeError as error:
+        lines = list(_split(content))
+        if len(lines) < 2 or not _is_object(lines[0][1]):
+            raise SequenceError(f"line {error.lineno} is no JSON") from error
+        return _join_features(lines)
+    except (ValueError, RecursionError) as error:  # no UTF-8, endless numbers, endless brackets
+        raise SequenceError("its text is no JSON") from error
+
+
+def _split(content: bytes) -> Iterator[tuple[int, bytes]]:
+    """Yield the lines that are not empty, with their numbers from 1."""
+    for number, line in enumerate(content.split(b"\n"), start=1):
+        text = line.strip(b" \t\r\x1e")  # the last is the separator of RFC 8142
+        if text:
+            yield number, text
+
+
+def _is_object(line: bytes) -> bool:
+    try:
+        return isinstance(json.loads(line), dict)
+    except (ValueError, RecursionError):
+        return False
+
+
+def _join_features(lines: list[tuple[int, bytes]]) -> City:
+    city = _parse_line(*lines[0])
+    objects, vertices = dict(_require(city, "CityObjects", dict, 1)), []
+    vertices += _require(city, "vertices", list, 1)
+    ranges = dict.fromkeys(objects, (0, len(vertices)))
+    for number, line in lines[1:]:
+        feature = _parse_line(number, line)
+        if feature.get("type") != "CityJSONFeature":
+            raise SequenceError(f"line {number} is no CityJSONFeature")
+        first = len(vertices)
+        vertices += _require(feature, "vertices", list, number)
+        for name, one in _require(feature, "CityObjects", dict, number).items():
+            if name in objects:
+                raise SequenceError(f"line {number} has the object '{name[:40]}', which is there")
+            objects[name], ranges[name] = one, (first, len(vertices))
+    return City({**city, "CityObjects": objects, "vertices": vertices}, ranges)
+
+
+def _parse_line(number: int, line: bytes) -> dict[str, Any]:
+    try:
+        found = json.loads(line)
+    except (ValueError, RecursionError) as error:
+        raise SequenceError(f"line {number} is no JSON") from error
+    if not isinstance(found, dict):
+        raise SequenceError(f"line {number} is no JSON object")
+    return found
+
+
+def _require(found: dict[str, Any], name: str, kind: type, number: int) -> Any:
+    value = found.get(name)
+    if not isinstance(value, kind):
+        raise SequenceError(f"line {number} has no {name}")
+    return value

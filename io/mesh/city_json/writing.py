@@ -8,6 +8,7 @@ unit of elevations and a CRS without a number.
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +19,6 @@ from ....base.notes import warn
 from ....base.sentences import FILE, counted
 from ....tin.topology import mark_corners
 from ..common import format_crs, format_unit, require_tin
-from .decimals import DecimalGrid, choose_digits
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -28,11 +28,55 @@ if TYPE_CHECKING:
     from ....base.progress import Tell
     from ....tin import TIN
 
-__all__ = ["write"]
+__all__ = ["DecimalGrid", "write"]
 
 _BATCH = 65_536
 _NAME = "terrain"
+
+
 _MOST_DIGITS = 15
+_LARGEST_EXACT = 2.0**53
+
+
+@dataclass(frozen=True)
+class DecimalGrid:
+    """Places at a whole number of steps from an origin."""
+
+    digits: int
+    """Decimals: the step is 10 to the power of minus this."""
+    origin: int
+    """In whole units."""
+
+    @property
+    def step(self) -> float:
+        """Distance of two neighbours."""
+        return float(f"1e-{self.digits}")
+
+    def count(self, values: Float64Array) -> Int64Array:
+        """Return the nearest place of each value."""
+        return np.asarray(np.rint((values - self.origin) * 10.0**self.digits), np.int64)
+
+    def restore(self, counts: Int64Array) -> Float64Array:
+        """Return the decimals, each rounded once to the nearest float64."""
+        whole = counts.astype(np.float64) + self.origin * 10.0**self.digits
+        return np.asarray(whole / 10.0**self.digits)
+
+
+def choose_digits(values: Float64Array) -> int:
+    """Return the fewest decimals that hold every value; else those at which float64 ends.
+
+    Examples
+    --------
+    >>> choose_digits(np.array([745000.25, 1.5]))
+    2
+    """
+    largest = float(np.abs(values).max(initial=1.0))
+    most = int(np.clip(np.floor(np.log10(_LARGEST_EXACT / max(largest, 1.0))), 0, _MOST_DIGITS))
+    for digits in range(most):
+        factor = 10.0**digits
+        if (np.rint(values * factor) / factor == values).all():
+            return digits
+    return most
 
 
 def write(
@@ -117,7 +161,11 @@ def _format_head(tin: TIN, grids: list[DecimalGrid], counts: Int64Array) -> str:
         "scale": [grid.step for grid in grids],
         "translate": [float(grid.origin) for grid in grids],
     }
-    attributes = _describe_attributes(tin)
+    attributes = {}
+    if unit := format_unit(tin):
+        attributes["elevationUnit"] = unit
+    if tin.crs is not None and tin.crs.to_epsg() is None:
+        attributes["crs"] = format_crs(tin.crs)
     relief = '"type":"TINRelief",' + (
         f'"attributes":{json.dumps(attributes)},' if attributes else ""
     )
@@ -140,15 +188,6 @@ def _find_reference(tin: TIN) -> str | None:
         )
         return None
     return f"https://www.opengis.net/def/crs/EPSG/0/{epsg}"
-
-
-def _describe_attributes(tin: TIN) -> dict[str, str]:
-    attributes = {}
-    if unit := format_unit(tin):
-        attributes["elevationUnit"] = unit
-    if tin.crs is not None and tin.crs.to_epsg() is None:
-        attributes["crs"] = format_crs(tin.crs)
-    return attributes
 
 
 def _iterate_rows(rows: Int64Array, row: str) -> Iterator[tuple[int, str]]:

@@ -13,9 +13,7 @@ import numpy as np
 
 from ....base.sentences import FILE
 from ...isolated import Answer, Refusal
-from .digests import digest_lines
-from .geometries import POINT
-from .schema import RECORD
+from .schema import POINT, RECORD, digest_lines
 
 if TYPE_CHECKING:
     from ....base.arrays import AnyArray, Float64Array
@@ -38,7 +36,20 @@ def read_tables(path: str) -> Answer:
     try:
         with closing(_open(path)) as file:
             _require_plain_tables(file)
-            return _read(file, Path(path).stat().st_size)
+            size = Path(path).stat().st_size
+            texts, arrays = _read_record(file)
+            lines = file.execute("SELECT geom, kind, name FROM lines ORDER BY fid")
+            rows = [row for row in lines if [type(one) for one in row] == [bytes, str, str]]
+            triangles = _read_triangles(file, size)
+            return Answer(
+                {**texts, "lines": digest_lines(rows)},
+                {
+                    "points": _read_points(file),
+                    "triangles": triangles["corners"].copy(),
+                    "flags": triangles["flags"].copy(),
+                    **{f" {name}": array for name, array in arrays.items()},
+                },
+            )
     except (sqlite3.Error, OverflowError, UnicodeError) as error:
         raise Refusal(f"{FILE} is a damaged GeoPackage ({error}).") from error
 
@@ -63,22 +74,6 @@ def _require_plain_tables(file: sqlite3.Connection) -> None:
         raise Refusal(f"{FILE} is no GeoPackage of a TIN: it has no table '{min(missing)}'.")
     file.set_authorizer(
         lambda action, *_: sqlite3.SQLITE_OK if action in _READ_ONLY else sqlite3.SQLITE_DENY
-    )
-
-
-def _read(file: sqlite3.Connection, size: int) -> Answer:
-    texts, arrays = _read_record(file)
-    lines = file.execute("SELECT geom, kind, name FROM lines ORDER BY fid")
-    rows = [row for row in lines if [type(one) for one in row] == [bytes, str, str]]
-    triangles = _read_triangles(file, size)
-    return Answer(
-        {**texts, "lines": digest_lines(rows)},
-        {
-            "points": _read_points(file),
-            "triangles": triangles["corners"].copy(),
-            "flags": triangles["flags"].copy(),
-            **{f" {name}": array for name, array in arrays.items()},
-        },
     )
 
 

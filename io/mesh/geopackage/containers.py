@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ....base.atomic import folder_beside, replacing_path
 from ....base.errors import WriteError
 from ....base.sentences import FILE
-from .digests import digest_lines
-from .schema import LAYERS, NO_CLOCK, RECORD
+from .schema import LAYERS, NO_CLOCK, RECORD, digest_lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -122,7 +121,10 @@ def _require_free(
             continue
         if not _is_ours(old, found):
             raise _refuse(path, found, "was not written by tinsmith")
-        if _is_changed(old, found):
+        row = old.execute(
+            "SELECT last_change FROM gpkg_contents WHERE lower(table_name) = lower(?)", (found,)
+        ).fetchone()
+        if row is not None and row[0] != NO_CLOCK:
             raise _refuse(path, found, "was changed by another program since tinsmith wrote it")
 
 
@@ -137,7 +139,10 @@ def _is_ours(file: sqlite3.Connection, layer: str) -> bool:
     """Whether tinsmith wrote a layer: one of a TIN, or one that is marked."""
     if layer in _OF_TIN:
         return RECORD in _list_tables(file)
-    if not _has_table(file, "gpkg_metadata_reference"):
+    found = file.execute(
+        "SELECT 1 FROM sqlite_master WHERE name = ?", ("gpkg_metadata_reference",)
+    ).fetchone()
+    if found is None:
         return False
     (count,) = file.execute(
         "SELECT count(*) FROM gpkg_metadata JOIN gpkg_metadata_reference ON id = md_file_id "
@@ -145,19 +150,6 @@ def _is_ours(file: sqlite3.Connection, layer: str) -> bool:
         (layer, _MARKED),
     ).fetchone()
     return bool(count)
-
-
-def _is_changed(file: sqlite3.Connection, layer: str) -> bool:
-    """Whether another program edited a layer, which GDAL and QGIS note with the time."""
-    row = file.execute(
-        "SELECT last_change FROM gpkg_contents WHERE lower(table_name) = lower(?)", (layer,)
-    ).fetchone()
-    return row is not None and row[0] != NO_CLOCK
-
-
-def _has_table(file: sqlite3.Connection, name: str) -> bool:
-    found = file.execute("SELECT 1 FROM sqlite_master WHERE name = ?", (name,)).fetchone()
-    return found is not None
 
 
 # ------------------------------------------------------------------- putting layers in
@@ -177,7 +169,12 @@ def _merge(path: Path, made: Path, beside: Path, placing: Placing) -> None:
         if RECORD in layers:
             layers = [*(name for name in layers if name != RECORD), RECORD]
         for layer in layers:
-            there = _find_table(file, layer)
+            row = file.execute(
+                "SELECT name FROM main.sqlite_master WHERE type IN ('table', 'view') "
+                "AND lower(name) = lower(?)",
+                (layer,),
+            ).fetchone()
+            there = None if row is None else str(row[0])
             if there is not None and placing.append:
                 _append(file, layer, there, numbers)
                 continue
@@ -200,15 +197,6 @@ def _renew_digest(file: sqlite3.Connection) -> None:
     )
 
 
-def _find_table(file: sqlite3.Connection, layer: str) -> str | None:
-    row = file.execute(
-        "SELECT name FROM main.sqlite_master WHERE type IN ('table', 'view') "
-        "AND lower(name) = lower(?)",
-        (layer,),
-    ).fetchone()
-    return None if row is None else str(row[0])
-
-
 def _add_references(file: sqlite3.Connection) -> dict[int, int]:
     """Add the CRS that the file lacks; return its number of each CRS of the new file."""
     columns = [
@@ -223,7 +211,10 @@ def _add_references(file: sqlite3.Connection) -> dict[int, int]:
         number = int(values["srs_id"])
         numbers[number] = _find_reference(file, values)
         if numbers[number] is None:
-            numbers[number] = values["srs_id"] = _choose_number(file, number)
+            taken = {srs for (srs,) in file.execute("SELECT srs_id FROM main.gpkg_spatial_ref_sys")}
+            numbers[number] = values["srs_id"] = (
+                number if number not in taken else max(*taken, 100_000) + 1
+            )
             marks = ", ".join("?" * len(columns))
             file.execute(
                 f"INSERT INTO main.gpkg_spatial_ref_sys ({listed}) VALUES ({marks})",
@@ -248,11 +239,6 @@ def _find_reference(file: sqlite3.Connection, values: dict[str, Any]) -> Any:
             (values["definition"],),
         ).fetchone()
     return None if row is None else row[0]
-
-
-def _choose_number(file: sqlite3.Connection, number: int) -> int:
-    taken = {srs for (srs,) in file.execute("SELECT srs_id FROM main.gpkg_spatial_ref_sys")}
-    return number if number not in taken else max(*taken, 100_000) + 1
 
 
 def _add(file: sqlite3.Connection, layer: str, numbers: dict[int, int]) -> None:
@@ -329,12 +315,7 @@ def _register(file: sqlite3.Connection, layer: str, numbers: dict[int, int]) -> 
                 f"INSERT OR REPLACE INTO main.{register} ({listed}) VALUES ({marks})",
                 list(values.values()),
             )
-    _copy_general_extensions(file)
-    _copy_metadata(file, layer)
-
-
-def _copy_general_extensions(file: sqlite3.Connection) -> None:
-    """Copy the extensions of the system tables that are there now."""
+    # Copy the extensions of the system tables that are there now.
     for row in file.execute(
         "SELECT * FROM made.gpkg_extensions WHERE table_name LIKE 'gpkg_%'"
         if _has_table_in(file, "made", "gpkg_extensions")
@@ -346,6 +327,7 @@ def _copy_general_extensions(file: sqlite3.Connection) -> None:
         ).fetchone()
         if known is None and row[0] != "gpkg_spatial_ref_sys":
             file.execute("INSERT INTO main.gpkg_extensions VALUES (?, ?, ?, ?, ?)", row)
+    _copy_metadata(file, layer)
 
 
 def _copy_metadata(file: sqlite3.Connection, layer: str) -> None:

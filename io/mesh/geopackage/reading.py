@@ -14,13 +14,13 @@ from ....tin import TIN
 from ...isolated import run_isolated
 from ...reprojection.contradictions import look_at_crs
 from ..common import add_notes, choose_reference, make_tin
-from .digests import digest_arrays
 from .records import Record, unpack_tin
+from .schema import digest_arrays
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....base.arrays import AnyArray, BoolArray, Float64Array, Int32Array
+    from ....base.arrays import BoolArray, Float64Array, Int32Array
     from ....base.crs import CrsLike, UnitLike
     from ...isolated import Answer
     from ..common import Reference
@@ -73,16 +73,26 @@ def read(path: Path, *, crs: CrsLike | None = None, elevation_unit: UnitLike | N
         f"{__package__}.child:read_tables", {"path": str(path.absolute())}, path=path
     )
     points, triangles, constrained = _take_mesh(answer)
-    record = Record(_load_json(answer, "document"), _take_arrays(answer))
+    found = {name[1:]: array for name, array in answer.arrays.items() if name[0] == " "}
+    record = Record(
+        _load_json(answer, "document"),
+        dict(sorted(found.items(), key=lambda item: int(item[0]) if item[0].isdecimal() else -1)),
+    )
     digests = _load_json(answer, "digests")
     text = answer.value["document"]
     if digest_arrays(*record.arrays.values(), text=text) != digests.get("record"):
         raise ReadError(f"{FILE} is damaged: its record of the TIN is not as written.")
-    reference = _choose_reference(record, crs, elevation_unit)
+    found = {}
+    for name, key in (("crs", "crs"), ("elevation_unit", "unit")):
+        tree = record.document.get(name)
+        found[key] = tree.get(key) if isinstance(tree, dict) else None
+    reference = choose_reference(
+        crs, elevation_unit, found_crs=found["crs"], found_unit=found["unit"]
+    )
     mesh = digest_arrays(points, triangles, constrained)
     if (mesh, answer.value["lines"]) != (digests.get("mesh"), digests.get("lines")):
         tin = make_tin(points, triangles, constrained=constrained, reference=reference)
-        return _add_note(tin)
+        return tin.replace(report=replace(tin.report, notes=[*tin.report.notes, _CHANGED]))
     declared = _declare(record, reference)
     noted = look_at_crs(points, reference.crs, is_declared=True) if reference.is_declared else ()
     try:
@@ -104,11 +114,6 @@ def _take_mesh(answer: Answer) -> tuple[Float64Array, Int32Array, BoolArray]:
     return points, triangles.astype(np.int32), constrained
 
 
-def _take_arrays(answer: Answer) -> dict[str, AnyArray]:
-    found = {name[1:]: array for name, array in answer.arrays.items() if name[0] == " "}
-    return dict(sorted(found.items(), key=lambda item: int(item[0]) if item[0].isdecimal() else -1))
-
-
 def _load_json(answer: Answer, name: str) -> dict[str, Any]:
     try:
         found = json.loads(answer.value[name])
@@ -119,16 +124,6 @@ def _load_json(answer: Answer, name: str) -> dict[str, Any]:
     return found
 
 
-def _choose_reference(
-    record: Record, crs: CrsLike | None, elevation_unit: UnitLike | None
-) -> Reference:
-    found = {}
-    for name, key in (("crs", "crs"), ("elevation_unit", "unit")):
-        tree = record.document.get(name)
-        found[key] = tree.get(key) if isinstance(tree, dict) else None
-    return choose_reference(crs, elevation_unit, found_crs=found["crs"], found_unit=found["unit"])
-
-
 def _declare(record: Record, reference: Reference) -> Record:
     """Return the record with the reference that the file or else a caller names."""
     crs, unit = reference.crs, reference.elevation_unit
@@ -137,7 +132,3 @@ def _declare(record: Record, reference: Reference) -> Record:
         "elevation_unit": None if unit is None else {"unit": unit.text},
     }
     return record._replace(document=record.document | named)
-
-
-def _add_note(tin: TIN) -> TIN:
-    return tin.replace(report=replace(tin.report, notes=[*tin.report.notes, _CHANGED]))

@@ -16,10 +16,7 @@ from ....base.sentences import FILE
 from ....terrain.relief.gradients import aspect, slope
 from ..common import format_unit, require_tin
 from .containers import Placing, adding_layers
-from .digests import digest_arrays, digest_lines
-from .geometries import make_chain_blobs, make_point_blobs, make_triangle_blobs
-from .records import pack_tin
-from .records.columns import describe_layer_columns
+from .records import describe_layer_columns, pack_tin
 from .schema import (
     APPLICATION_ID,
     LAYERS,
@@ -28,12 +25,16 @@ from .schema import (
     TABLES,
     USER_VERSION,
     describe_crs,
+    digest_arrays,
+    digest_lines,
+    make_chain_blobs,
+    make_point_blobs,
+    make_triangle_blobs,
 )
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....base.arrays import Float64Array
     from ....base.progress import Tell
     from ....tin import TIN
 
@@ -92,7 +93,20 @@ def _write_content(file: sqlite3.Connection, tin: TIN, progress: Tell) -> None:
     srs = _write_contents(file, tin)
     _write_lines(file, tin, srs)
     _write_record(file, tin)
-    _write_vertices(file, tin, srs)
+    columns = describe_layer_columns(tin.attributes, ("fid", "geom", "vertex"))
+    for declaration, _ in columns:
+        file.execute(f"ALTER TABLE vertices ADD COLUMN {declaration}")
+    values = [iter(column) for _, column in columns]
+    marks = ", ".join("?" * (3 + len(columns)))
+    for start in range(0, len(tin.points), _CHUNK):
+        points = tin.points[start : start + _CHUNK]
+        numbers = range(start, start + len(points))
+        blobs = make_point_blobs(points, srs)
+        parts = [islice(column, len(points)) for column in values]
+        file.executemany(
+            f"INSERT INTO vertices VALUES ({marks})",
+            zip(range(start + 1, start + len(points) + 1), blobs, numbers, *parts, strict=True),
+        )
     progress(0.2)
     _write_triangles(file, tin, srs, progress)
     file.execute("COMMIT")
@@ -177,26 +191,12 @@ def _write_record(file: sqlite3.Connection, tin: TIN) -> None:
     file.executemany(f"INSERT INTO {RECORD} (name, type, shape, data) VALUES (?, ?, ?, ?)", rows)
 
 
-def _write_vertices(file: sqlite3.Connection, tin: TIN, srs: int) -> None:
-    """Write the vertices, with a column for each attribute."""
-    columns = describe_layer_columns(tin.attributes, ("fid", "geom", "vertex"))
-    for declaration, _ in columns:
-        file.execute(f"ALTER TABLE vertices ADD COLUMN {declaration}")
-    values = [iter(column) for _, column in columns]
-    marks = ", ".join("?" * (3 + len(columns)))
-    for start in range(0, len(tin.points), _CHUNK):
-        points = tin.points[start : start + _CHUNK]
-        numbers = range(start, start + len(points))
-        blobs = make_point_blobs(points, srs)
-        parts = [islice(column, len(points)) for column in values]
-        file.executemany(
-            f"INSERT INTO vertices VALUES ({marks})",
-            zip(range(start + 1, start + len(points) + 1), blobs, numbers, *parts, strict=True),
-        )
-
-
 def _write_triangles(file: sqlite3.Connection, tin: TIN, srs: int, progress: Tell) -> None:
-    slopes, aspects = _measure(tin)
+    try:
+        slopes, aspects = slope(tin), aspect(tin)
+    except CrsError:
+        unknown = np.full(len(tin.triangles), np.nan)
+        slopes, aspects = unknown, unknown
     flags = tin.constrained @ np.array([1, 2, 4], np.uint8)
     for start in range(0, len(tin.triangles), _CHUNK):
         part = slice(start, start + _CHUNK)
@@ -212,12 +212,3 @@ def _write_triangles(file: sqlite3.Connection, tin: TIN, srs: int, progress: Tel
             ),
         )
         progress(0.2 + 0.8 * (start + len(corners)) / len(tin.triangles))
-
-
-def _measure(tin: TIN) -> tuple[Float64Array, Float64Array]:
-    """Return slope and aspect of the triangles, degrees; NaN, which SQLite takes for NULL."""
-    try:
-        return slope(tin), aspect(tin)
-    except CrsError:
-        unknown = np.full(len(tin.triangles), np.nan)
-        return unknown, unknown

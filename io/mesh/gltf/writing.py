@@ -33,8 +33,6 @@ if TYPE_CHECKING:
         BoolArray,
         Float32Array,
         Float64Array,
-        Int32Array,
-        Int64Array,
         UInt16Array,
     )
     from ....base.progress import Tell
@@ -148,24 +146,8 @@ def _make_mesh(
     tin: TIN, origin: Float64Array, scale: Float64Array, texture: Texture | None
 ) -> _Mesh:
     every = (tin.points - origin) * scale
-    corners = tin.triangles[_find_areas(_turn_up(every).astype(np.float32), tin.triangles)]
-    used = np.unique(corners)
-    number = np.zeros(len(tin.points), np.int64)
-    number[used] = np.arange(len(used))
-    places, triangles = every[used], number[corners]
-    positions = _turn_up(places).astype(np.float32)
-    normals = _turn_up(_compute_normals(places, triangles)).astype(np.float32)
-    is_short = len(used) <= _MOST_SHORT_VERTICES
-    colors = _choose_colors(places[:, 2]) if texture is None else None
-    if texture is not None:
-        texture = type(texture)(texture.content, texture.kind, texture.places[used])
-    return _Mesh(
-        positions, normals, triangles.astype(np.uint16 if is_short else np.uint32), colors, texture
-    )
-
-
-def _find_areas(positions: Float32Array, triangles: Int32Array) -> BoolArray:
-    """Return which triangles have an area in float32; warn of others, refuse where none has."""
+    positions = _turn_up(every).astype(np.float32)
+    triangles = tin.triangles
     if not np.isfinite(positions[triangles]).all():
         raise WriteError(f"Cannot write {FILE}: the TIN is too large for float32.")
     a, b, c = (positions[triangles[:, k]].astype(np.float64) for k in range(3))
@@ -179,17 +161,27 @@ def _find_areas(positions: Float32Array, triangles: Int32Array) -> BoolArray:
         raise WriteError(f"Cannot write {FILE}: it has nothing but {flat}.")
     if count:
         warn(f"{FILE} does not hold {flat}.")
-    return has_area
-
-
-def _compute_normals(places: Float64Array, triangles: Int64Array) -> Float64Array:
-    """Return the unit normal of each vertex, the mean of its triangles by their areas."""
+    corners = tin.triangles[has_area]
+    used = np.unique(corners)
+    number = np.zeros(len(tin.points), np.int64)
+    number[used] = np.arange(len(used))
+    places, triangles = every[used], number[corners]
+    positions = _turn_up(places).astype(np.float32)
     a, b, c = (places[triangles[:, k]] for k in range(3))
     faces = np.cross(b - a, c - a)
     sums = np.column_stack(
         [np.bincount(triangles.ravel(), np.repeat(axis, 3), len(places)) for axis in faces.T]
     )
-    return np.asarray(sums / np.linalg.norm(sums, axis=1, keepdims=True))
+    normals = _turn_up(np.asarray(sums / np.linalg.norm(sums, axis=1, keepdims=True))).astype(
+        np.float32
+    )
+    is_short = len(used) <= _MOST_SHORT_VERTICES
+    colors = _choose_colors(places[:, 2]) if texture is None else None
+    if texture is not None:
+        texture = type(texture)(texture.content, texture.kind, texture.places[used])
+    return _Mesh(
+        positions, normals, triangles.astype(np.uint16 if is_short else np.uint32), colors, texture
+    )
 
 
 def _choose_colors(elevations: Float64Array) -> UInt16Array:
@@ -270,7 +262,19 @@ def _pack(mesh: _Mesh, node: dict[str, Any]) -> list[tuple[int, bytes]]:
         places = mesh.texture.places.astype(np.float32)
         attributes["TEXCOORD_0"] = buffer.add_array(places, target=_ARRAY_BUFFER)
         surface["baseColorTexture"] = {"index": 0}
-        document |= _add_texture(buffer, mesh.texture)
+        texture = mesh.texture
+        view = buffer.add_bytes(texture.content)
+        sampler = {
+            "magFilter": _LINEAR,
+            "minFilter": _LINEAR_MIPMAP_LINEAR,
+            "wrapS": _CLAMP_TO_EDGE,
+            "wrapT": _CLAMP_TO_EDGE,
+        }
+        document |= {
+            "images": [{"bufferView": view, "mimeType": f"image/{texture.kind}"}],
+            "samplers": [sampler],
+            "textures": [{"sampler": 0, "source": 0}],
+        }
     indices = buffer.add_array(mesh.triangles.ravel(), target=_ELEMENT_ARRAY_BUFFER)
     primitive = {"attributes": attributes, "indices": indices, "material": 0, "mode": _TRIANGLES}
     buffer.content += bytes(-len(buffer.content) % 4)
@@ -287,18 +291,3 @@ def _pack(mesh: _Mesh, node: dict[str, Any]) -> list[tuple[int, bytes]]:
     text = json.dumps(document, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 4)
     return [(_JSON_CHUNK, text), (_BINARY_CHUNK, bytes(buffer.content))]
-
-
-def _add_texture(buffer: _Buffer, texture: Texture) -> dict[str, Any]:
-    view = buffer.add_bytes(texture.content)
-    sampler = {
-        "magFilter": _LINEAR,
-        "minFilter": _LINEAR_MIPMAP_LINEAR,
-        "wrapS": _CLAMP_TO_EDGE,
-        "wrapT": _CLAMP_TO_EDGE,
-    }
-    return {
-        "images": [{"bufferView": view, "mimeType": f"image/{texture.kind}"}],
-        "samplers": [sampler],
-        "textures": [{"sampler": 0, "source": 0}],
-    }

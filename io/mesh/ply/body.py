@@ -97,7 +97,9 @@ class _Body:
 
     def read_table(self, element: Element) -> Table:
         """Read an element's rows and move the cursor behind them."""
-        self._require_room(element)
+        room = len(self.cells) - self.cursor
+        if element.count * max(_measure_shortest_row(element, self), 1) > room:
+            raise self._describe_truncation(element)
         table = self._read_even_table(element) if element.count else None
         return self._read_uneven_table(element) if table is None else table
 
@@ -110,12 +112,6 @@ class _Body:
                 f"{_count_rows(element)}, and more follow."
             )
 
-    def _require_room(self, element: Element) -> None:
-        """Refuse a count that the file cannot hold before anything is allocated for it."""
-        room = len(self.cells) - self.cursor
-        if element.count * max(_measure_shortest_row(element, self), 1) > room:
-            raise self._describe_truncation(element)
-
     def _describe_truncation(self, element: Element) -> ReadError:
         return ReadError(
             f"{FILE} ends too early: its header promises {_count_rows(element)}, more than "
@@ -127,7 +123,13 @@ class _Body:
         lengths = []
         for prop in element.properties:
             if prop.count_type is not None:
-                lengths.append(self._list_length(element, prop.count_type, start))
+                count_type = prop.count_type
+                if start + self.measure_width(count_type) > len(self.cells):
+                    raise self._describe_truncation(element)
+                length = self.view_block(start, 1, (1, 1), count_type)[0, 0]
+                if not (0 <= length < len(self.cells) and length == int(length)):
+                    raise ReadError(f"a list of '{element.name}' has the length {length}.")
+                lengths.append(int(length))
                 start += self.measure_width(prop.count_type) + lengths[-1] * self.measure_width(
                     prop.type
                 )
@@ -136,14 +138,6 @@ class _Body:
         if start > len(self.cells):
             raise self._describe_truncation(element)
         return lengths, start
-
-    def _list_length(self, element: Element, count_type: str, start: int) -> int:
-        if start + self.measure_width(count_type) > len(self.cells):
-            raise self._describe_truncation(element)
-        length = self.view_block(start, 1, (1, 1), count_type)[0, 0]
-        if not (0 <= length < len(self.cells) and length == int(length)):
-            raise ReadError(f"a list of '{element.name}' has the length {length}.")
-        return int(length)
 
     def _read_even_table(self, element: Element) -> Table | None:
         """Read all rows at once if each is as long as the first; otherwise return None."""
@@ -172,7 +166,14 @@ class _Body:
         return table
 
     def _read_uneven_table(self, element: Element) -> Table:
-        starts, sizes = self._walk_uneven_rows(element)
+        # Walk the rows one by one: their start cells, and per list property the lengths.
+        n_lists = sum(prop.count_type is not None for prop in element.properties)
+        starts = np.empty(element.count, np.int64)
+        counts = np.empty((element.count, n_lists), np.int64)
+        for row in range(element.count):
+            starts[row] = self.cursor
+            counts[row], self.cursor = self._list_lengths(element, self.cursor)
+        starts, sizes = starts, counts.T
         table, following = Table({}, {}), iter(sizes)
         for prop in element.properties:
             if prop.count_type is None:
@@ -181,26 +182,14 @@ class _Body:
             else:
                 lengths = next(following)
                 starts = starts + self.measure_width(prop.count_type)
-                table.lists[prop.name] = self._gather(starts, lengths, prop.type)
+                type_name = prop.type
+                offsets = np.zeros(len(lengths) + 1, np.int64)
+                np.cumsum(lengths, out=offsets[1:])
+                within = np.arange(offsets[-1]) - np.repeat(offsets[:-1], lengths)
+                cells = np.repeat(starts, lengths) + within * self.measure_width(type_name)
+                table.lists[prop.name] = Ragged(self.pick(cells, type_name), offsets)
                 starts = starts + lengths * self.measure_width(prop.type)
         return table
-
-    def _walk_uneven_rows(self, element: Element) -> tuple[Int64Array, Int64Array]:
-        """Walk the rows one by one: their start cells, and per list property the lengths."""
-        n_lists = sum(prop.count_type is not None for prop in element.properties)
-        starts = np.empty(element.count, np.int64)
-        sizes = np.empty((element.count, n_lists), np.int64)
-        for row in range(element.count):
-            starts[row] = self.cursor
-            sizes[row], self.cursor = self._list_lengths(element, self.cursor)
-        return starts, sizes.T
-
-    def _gather(self, starts: Int64Array, lengths: Int64Array, type_name: str) -> Ragged:
-        offsets = np.zeros(len(lengths) + 1, np.int64)
-        np.cumsum(lengths, out=offsets[1:])
-        within = np.arange(offsets[-1]) - np.repeat(offsets[:-1], lengths)
-        cells = np.repeat(starts, lengths) + within * self.measure_width(type_name)
-        return Ragged(self.pick(cells, type_name), offsets)
 
 
 def _count_rows(element: Element) -> str:

@@ -23,8 +23,7 @@ from ....tin import TIN, Surface, Survey
 from ...registry.losses import warn_of_lost_attributes
 from .. import common
 from ..common import Mesh, flag_edges, mesh_reader
-from .body import Table, read_tables
-from .faces import STRIPS, find_faces
+from .body import Ragged, read_tables
 from .header import parse_header
 from .lines import (
     ENDS,
@@ -35,11 +34,13 @@ from .lines import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
-    from ....base.arrays import AnyArray, BoolArray, Float64Array
+    from ....base.arrays import AnyArray, Float64Array
     from ....base.progress import Tell
     from ....tin.constraints.breaklines import Lines
+    from .body import Table
     from .header import Header
 
 __all__ = ["read", "write"]
@@ -72,12 +73,20 @@ def read(path: Path) -> Mesh:
     header = parse_header(content)
     names = {"vertex", "face", *STRIPS, *(("edge",) if header.lines is not None else ())}
     tables = read_tables(content, header, names)
-    vertices = _require_vertices(tables)
-    points = _stack_coordinates(vertices)
+    vertices = tables.get("vertex")
+    if vertices is None or not set(_COORDINATES) <= vertices.columns.keys():
+        raise ReadError(f"{FILE} has no element 'vertex' with x, y and z.")
+    columns = [vertices.columns[name] for name in _COORDINATES]
+    with np.errstate(invalid="ignore"):
+        points = np.stack(columns, axis=1).astype(np.float64)
     notes = common.describe_single_precision(points, vertices.columns["x"].dtype)
     mesh = Mesh(
         points,
-        attributes=_find_vertex_attributes(vertices),
+        attributes={
+            name: np.array(column, column.dtype.newbyteorder("="))
+            for name, column in vertices.columns.items()
+            if name not in _COORDINATES
+        },
         crs=header.crs,
         elevation_unit=header.elevation_unit,
         notes=notes,
@@ -85,7 +94,10 @@ def read(path: Path) -> Mesh:
     found = find_faces(tables)
     if found is None:
         return replace(mesh, notes=[*notes, *_describe_skipped(header)])
-    flags = _find_edge_flags(tables.get("face"))
+    faces = tables.get("face")
+    own = {} if faces is None else faces.columns
+    flagged = [own[name] for name in _FLAGS if name in own]
+    flags = np.stack(flagged, axis=1) != 0 if len(flagged) == len(_FLAGS) else None
     mesh = replace(mesh, corners=found.items, offsets=found.offsets, constrained=flags)
     if header.lines is None or "edge" not in tables:
         return mesh
@@ -106,19 +118,6 @@ def _add_lines(tin: TIN, lines: Lines) -> TIN:
     return tin.replace(lines=lines)
 
 
-def _stack_coordinates(vertices: Table) -> Float64Array:
-    columns = [vertices.columns[name] for name in _COORDINATES]
-    with np.errstate(invalid="ignore"):  # what is not finite is refused
-        return np.stack(columns, axis=1).astype(np.float64)
-
-
-def _require_vertices(tables: dict[str, Table]) -> Table:
-    vertices = tables.get("vertex")
-    if vertices is None or not set(_COORDINATES) <= vertices.columns.keys():
-        raise ReadError(f"{FILE} has no element 'vertex' with x, y and z.")
-    return vertices
-
-
 def _describe_skipped(header: Header) -> list[str]:
     """Tell what other elements a file without faces has."""
     return [
@@ -128,19 +127,77 @@ def _describe_skipped(header: Header) -> list[str]:
     ]
 
 
-def _find_edge_flags(faces: Table | None) -> BoolArray | None:
-    """Return the edge flags if the file has them."""
-    found = {} if faces is None else faces.columns
-    columns = [found[name] for name in _FLAGS if name in found]
-    return np.stack(columns, axis=1) != 0 if len(columns) == len(_FLAGS) else None
+STRIPS = ("tristrips", "tristrip")
+"""Elements whose rows are strips of triangles."""
+
+_LISTS = ("vertex_indices", "vertex_index")
+_RESTART = -1
+"""What stands between two strips of one row."""
 
 
-def _find_vertex_attributes(vertices: Table) -> dict[str, AnyArray]:
-    return {
-        name: np.array(column, column.dtype.newbyteorder("="))
-        for name, column in vertices.columns.items()
-        if name not in _COORDINATES
-    }
+def find_faces(tables: Mapping[str, Table]) -> Ragged | None:
+    """Return the vertices of the faces, whole numbers, those of strips behind the others.
+
+    Returns
+    -------
+    Ragged
+        None if there are no faces.
+
+    Raises
+    ------
+    ReadError
+        If faces name their vertices under another name, or by no whole numbers.
+    """
+    parts = []
+    for name in ("face", *STRIPS):
+        found = _find_list(tables.get(name), name)
+        if found is not None:
+            items = found.items
+            if items.dtype.kind == "f" and not (np.abs(items) < 2.0**53).all():
+                raise ReadError("a face names a vertex that is no number.")
+            whole = items.astype(np.int64)
+            if (whole != items).any():
+                raise ReadError("a face names a vertex that is no whole number.")
+            found = found._replace(items=whole)
+            parts.append(found if name == "face" else _cut_strips(found))
+    if not parts:
+        return None
+    lengths = np.concatenate([np.diff(one.offsets) for one in parts])
+    offsets = np.concatenate([[0], np.cumsum(lengths)])
+    return Ragged(np.concatenate([one.items for one in parts]), offsets)
+
+
+def _find_list(table: Table | None, element: str) -> Ragged | None:
+    """Return the list of vertices of an element; None if it has no rows."""
+    if table is None:
+        return None
+    found = next((table.lists[name] for name in _LISTS if name in table.lists), None)
+    if found is None and _has_rows(table):
+        others = ", ".join(f"'{name[:40]}'" for name in (*table.lists, *table.columns))
+        raise ReadError(
+            f"the rows of '{element}' have the properties {others}, and their vertices "
+            f"must be a list {' or '.join(_LISTS)}."
+        )
+    return None if found is None or len(found.offsets) == 1 else found
+
+
+def _has_rows(table: Table) -> bool:
+    lengths = [len(one.offsets) - 1 for one in table.lists.values()]
+    return any([*lengths, *(len(one) for one in table.columns.values())])
+
+
+def _cut_strips(strips: Ragged) -> Ragged:
+    """Return the triangles of strips; those that only lead from one to the next have no area."""
+    items = np.asarray(strips.items)
+    row = np.repeat(np.arange(len(strips.offsets) - 1), np.diff(strips.offsets))
+    part = row + np.cumsum(items == _RESTART)  # a number for each strip
+    _, first, owner = np.unique(part, return_index=True, return_inverse=True)
+    place = np.arange(len(items)) - (first + (items[first] == _RESTART))[owner]
+    a, b, c = items[:-2], items[1:-1], items[2:]
+    whole = (place[2:] >= 2) & (a != b) & (b != c) & (a != c)
+    turned = place[2:] % 2 == 1
+    triangles = np.stack([np.where(turned, b, a), np.where(turned, a, b), c], axis=1)[whole]
+    return Ragged(triangles.ravel(), 3 * np.arange(len(triangles) + 1))
 
 
 def write(surface: TIN | Survey, path: Path, *, progress: Tell | None = None) -> None:
@@ -162,34 +219,26 @@ def write(surface: TIN | Survey, path: Path, *, progress: Tell | None = None) ->
             comments = format_line_comments(surface)
             body["edge"] = np.ascontiguousarray(edges, "<i4").view([(name, "<i4") for name in ENDS])
     with replacing(path) as file:
-        file.write(_format_header(surface, comments, body))
+        lines = ["ply", "format binary_little_endian 1.0"]
+        if surface.crs is not None:
+            lines.append(f"comment crs: {common.format_crs(surface.crs)}")
+        if unit := common.format_unit(surface):
+            lines.append(f"comment elevation unit: {unit}")
+        lines += comments
+        for name, rows in body.items():
+            lines.append(f"element {name} {len(rows)}")
+            if name == "face":
+                lines.append("property list uchar int vertex_indices")
+            lines += [
+                f"property {_TYPE_NAMES.get(rows.dtype[column].str[1:], 'double')} {column}"
+                for column in rows.dtype.names or ()
+                if name != "face" or column not in _LIST
+            ]
+        file.write(("\n".join([*lines, "end_header"]) + "\n").encode())
         for number, rows in enumerate(body.values(), start=1):
             file.write(rows.data)
             if progress is not None:
                 progress(number / len(body))
-
-
-def _format_header(surface: TIN | Survey, comments: list[str], body: dict[str, AnyArray]) -> bytes:
-    lines = ["ply", "format binary_little_endian 1.0"]
-    if surface.crs is not None:
-        lines.append(f"comment crs: {common.format_crs(surface.crs)}")
-    if unit := common.format_unit(surface):
-        lines.append(f"comment elevation unit: {unit}")
-    lines += comments
-    for name, rows in body.items():
-        lines.append(f"element {name} {len(rows)}")
-        if name == "face":
-            lines.append("property list uchar int vertex_indices")
-        lines += [
-            f"property {_name_type(rows.dtype[column])} {column}"
-            for column in rows.dtype.names or ()
-            if name != "face" or column not in _LIST
-        ]
-    return ("\n".join([*lines, "end_header"]) + "\n").encode()
-
-
-def _name_type(dtype: np.dtype[Any]) -> str:
-    return _TYPE_NAMES.get(dtype.str[1:], "double")
 
 
 def _pack_vertices(points: Float64Array, columns: dict[str, AnyArray]) -> AnyArray:
@@ -211,20 +260,16 @@ def _select_number_columns(attributes: Any) -> tuple[dict[str, AnyArray], list[s
         column = np.asarray(values)
         name = "_".join(str(given).split())
         is_free = name.isascii() and name not in (*_COORDINATES, *columns)
-        if column.dtype.kind not in "biuf" or not is_free or not _fits_double(column):
+        fits = column.dtype.kind not in "iu" or bool(
+            ((column >= -_LARGEST_INTEGER) & (column <= _LARGEST_INTEGER)).all()
+        )
+        if column.dtype.kind not in "biuf" or not is_free or not fits:
             lost.append(str(given))
             continue
         if column.dtype.kind == "b":
             column = column.astype(np.uint8)
         columns[name] = column if column.dtype.str[1:] in _TYPE_NAMES else column.astype(np.float64)
     return columns, lost
-
-
-def _fits_double(column: AnyArray) -> bool:
-    """Whether doubles hold all numbers, as they do whole numbers of up to 53 bits."""
-    return column.dtype.kind not in "iu" or bool(
-        ((column >= -_LARGEST_INTEGER) & (column <= _LARGEST_INTEGER)).all()
-    )
 
 
 def _pack_faces(tin: TIN, edges: AnyArray) -> AnyArray:

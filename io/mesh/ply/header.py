@@ -91,7 +91,14 @@ def parse_header(content: bytes) -> Header:
     ReadError
         If it is not the header of a PLY file.
     """
-    lines, size = _split_header(content)
+    if not is_ply(content[:_LONGEST_FIRST_LINE]):
+        raise ReadError(f"{FILE} is no PLY file: it does not begin with 'ply'.")
+    mark = content.find(b"\nend_header", 0, LONGEST_HEADER)
+    line_end = content.find(b"\n", mark + 1) if mark >= 0 else -1
+    if line_end < 0:
+        raise ReadError("the PLY header does not end with 'end_header'.")
+    text = content[:line_end].decode("utf-8", errors="replace")
+    lines, size = [line.rstrip() for line in text.split("\n")], line_end + 1
     byte_order: str | None = None
     elements: list[Element] = []
     for number, line in enumerate(lines, start=1):
@@ -99,7 +106,9 @@ def parse_header(content: bytes) -> Header:
         match words:
             case ["format", encoding, _] if encoding in _BYTE_ORDERS and byte_order is None:
                 byte_order = _BYTE_ORDERS[encoding]
-            case ["element", name, count] if _is_new(name, elements) and _COUNT.fullmatch(count):
+            case ["element", name, count] if (
+                name not in [element.name for element in elements]
+            ) and _COUNT.fullmatch(count):
                 elements.append(Element(name, int(count)))
             case ["property", *rest] if elements and (found := _parse_property(rest)) is not None:
                 _require_new(found, elements[-1], number)
@@ -131,32 +140,14 @@ def _read_comments(lines: list[str]) -> tuple[str | None, str | None, list[LineC
             case ["comment", "edges:", "constrained"]:
                 stated = []
             case ["comment", "line:", *_] if stated is not None:
-                stated.append(_require_line_comment(line, number))
+                found = parse_line_comment(line.split("line:", 1)[1].strip())
+                if found is None:
+                    raise ReadError(
+                        f"{FILE}, line {number}: '{line[:60]}' tells no line of a TIN.",
+                        lines=[number],
+                    )
+                stated.append(found)
     return crs, unit, stated
-
-
-def _require_line_comment(line: str, number: int) -> LineComment:
-    found = parse_line_comment(line.split("line:", 1)[1].strip())
-    if found is None:
-        raise ReadError(
-            f"{FILE}, line {number}: '{line[:60]}' tells no line of a TIN.", lines=[number]
-        )
-    return found
-
-
-def _split_header(content: bytes) -> tuple[list[str], int]:
-    if not is_ply(content[:_LONGEST_FIRST_LINE]):
-        raise ReadError(f"{FILE} is no PLY file: it does not begin with 'ply'.")
-    mark = content.find(b"\nend_header", 0, LONGEST_HEADER)
-    line_end = content.find(b"\n", mark + 1) if mark >= 0 else -1
-    if line_end < 0:
-        raise ReadError("the PLY header does not end with 'end_header'.")
-    text = content[:line_end].decode("utf-8", errors="replace")
-    return [line.rstrip() for line in text.split("\n")], line_end + 1
-
-
-def _is_new(name: str, elements: list[Element]) -> bool:
-    return name not in [element.name for element in elements]
 
 
 def _require_new(added: Property, element: Element, number: int) -> None:

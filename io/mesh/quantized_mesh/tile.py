@@ -13,16 +13,93 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-
-from .globe import bound_by_sphere, find_horizon_point, to_cartesian
 
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array, Int64Array
 
-__all__ = ["STEPS", "BrokenTileError", "Tile", "TileName", "decode_tile", "encode_tile"]
+__all__ = [
+    "STEPS",
+    "BrokenTileError",
+    "Tile",
+    "TileName",
+    "decode_tile",
+    "encode_tile",
+    "find_horizon_point",
+    "to_cartesian",
+]
+
+_RADIUS = 6_378_137.0
+_FLATTENING = 1 / 298.257223563
+_POLAR_RADIUS = _RADIUS * (1 - _FLATTENING)
+_FARTHEST = 1000.0
+"""Of the horizon point, in radii, where a tile is so large that there is none: half the globe."""
+
+
+class Sphere(NamedTuple):
+    """A sphere in space, metres."""
+
+    center: Float64Array
+    radius: float
+
+
+def to_cartesian(places: Float64Array) -> Float64Array:
+    """Return X, Y, Z (metres from the centre of the Earth) of longitude, latitude, height.
+
+    Parameters
+    ----------
+    places : (n, 3) float64 array
+        Degrees, degrees, metres above the ellipsoid.
+    """
+    longitude, latitude = np.radians(places[:, 0]), np.radians(places[:, 1])
+    squeeze = _FLATTENING * (2 - _FLATTENING)
+    normal = _RADIUS / np.sqrt(1 - squeeze * np.sin(latitude) ** 2)
+    across = (normal + places[:, 2]) * np.cos(latitude)
+    up = (normal * (1 - squeeze) + places[:, 2]) * np.sin(latitude)
+    return np.column_stack([across * np.cos(longitude), across * np.sin(longitude), up])
+
+
+def bound_by_sphere(points: Float64Array) -> Sphere:
+    """Return a sphere about points: about the middle of their bounds."""
+    center = (points.min(axis=0) + points.max(axis=0)) / 2
+    return Sphere(center, float(np.linalg.norm(points - center, axis=1).max()))
+
+
+def find_horizon_point(points: Float64Array, center: Float64Array) -> Float64Array:
+    """Return the point that is below the horizon only where all points are.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+        In space, metres.
+    center : (3,) float64 array
+        Gives the direction of the point from the centre of the Earth.
+
+    Returns
+    -------
+    (3,) float64 array
+        In radii of the ellipsoid.
+
+    References
+    ----------
+    K. Ring, "Computing the horizon occlusion point", Cesium blog, 2013.
+    """
+    radii = np.array([_RADIUS, _RADIUS, _POLAR_RADIUS])
+    scaled = points / radii
+    direction = center / radii
+    direction = direction / np.linalg.norm(direction)
+    length = np.maximum(np.linalg.norm(scaled, axis=1), 1.0)
+    aside = scaled / np.linalg.norm(scaled, axis=1, keepdims=True)
+    cos_a = aside @ direction
+    sin_a = np.linalg.norm(np.cross(aside, direction), axis=1)
+    cos_b = 1.0 / length
+    sin_b = np.sqrt(np.maximum(length**2 - 1.0, 0.0)) * cos_b
+    below = cos_a * cos_b - sin_a * sin_b
+    nearest = float(below.min())
+    return np.asarray(direction * (1.0 / nearest if nearest > 1.0 / _FARTHEST else _FARTHEST))
+
 
 STEPS = 32_767
 """Whole numbers from one edge of a tile to the other."""
@@ -96,23 +173,36 @@ def encode_tile(tile: Tile, name: TileName) -> bytes:
     Vertices are put in the order in which triangles first use them, which the encoding of indices
     asks for.
     """
-    first_use = _order_by_first_use(tile.triangles)
+    used, first = np.unique(tile.triangles, return_index=True)
+    first_use = np.asarray(used[np.argsort(first)])
     number = np.empty(len(tile.steps), np.int64)
     number[first_use] = np.arange(len(first_use))
     steps, triangles = tile.steps[first_use], number[tile.triangles]
     west, south, _, _ = name.bounds
     places = Tile(steps, triangles, tile.lowest, tile.highest).place(west, south, name.width)
     is_long = len(steps) > _MOST_SHORT_VERTICES
+    west, south, east, north = name.bounds
+    middle = (float(places[:, 2].min()) + float(places[:, 2].max())) / 2
+    center = to_cartesian(np.array([[(west + east) / 2, (south + north) / 2, middle]]))[0]
+    cartesian = to_cartesian(places)
+    sphere = bound_by_sphere(cartesian)
+    horizon = find_horizon_point(cartesian, sphere.center)
     parts = [
-        _pack_header(places, tile, name),
+        _HEADER.pack(*center, tile.lowest, tile.highest, *sphere.center, sphere.radius, *horizon),
         struct.pack("<I", len(steps)),
         *(_encode_steps(axis) for axis in steps.T),
     ]
     if is_long:
         parts.append(bytes(-sum(len(part) for part in parts) % 4))
     dtype = "<u4" if is_long else "<u2"
-    parts += [struct.pack("<I", len(triangles)), _encode_indices(triangles).astype(dtype).tobytes()]
-    for edge in _find_edges(steps):
+    flat = triangles.ravel()
+    seen = np.maximum.accumulate(np.concatenate([[-1], flat[:-1]])) + 1
+    parts += [struct.pack("<I", len(triangles)), np.asarray(seen - flat).astype(dtype).tobytes()]
+    edges = []
+    for axis, value in ((0, 0), (1, 0), (0, STEPS), (1, STEPS)):
+        on = np.flatnonzero(steps[:, axis] == value)
+        edges.append(on[np.argsort(steps[on, 1 - axis], kind="stable")])
+    for edge in edges:
         parts += [struct.pack("<I", len(edge)), edge.astype(dtype).tobytes()]
     if tile.normals is not None:
         normals = _encode_normals(tile.normals[first_use])
@@ -120,41 +210,10 @@ def encode_tile(tile: Tile, name: TileName) -> bytes:
     return b"".join(parts)
 
 
-def _order_by_first_use(triangles: Int64Array) -> Int64Array:
-    used, first = np.unique(triangles, return_index=True)
-    return np.asarray(used[np.argsort(first)])
-
-
-def _pack_header(places: Float64Array, tile: Tile, name: TileName) -> bytes:
-    west, south, east, north = name.bounds
-    middle = (float(places[:, 2].min()) + float(places[:, 2].max())) / 2
-    center = to_cartesian(np.array([[(west + east) / 2, (south + north) / 2, middle]]))[0]
-    cartesian = to_cartesian(places)
-    sphere = bound_by_sphere(cartesian)
-    horizon = find_horizon_point(cartesian, sphere.center)
-    return _HEADER.pack(*center, tile.lowest, tile.highest, *sphere.center, sphere.radius, *horizon)
-
-
 def _encode_steps(values: Int64Array) -> bytes:
     """Return differences, small ones near 0 whatever their sign (zig-zag)."""
     change = np.diff(values, prepend=0)
     return ((change << 1) ^ (change >> 63)).astype("<u2").tobytes()
-
-
-def _encode_indices(triangles: Int64Array) -> Int64Array:
-    """Return, for each index, how far it lies below the next one that is new (high-water mark)."""
-    flat = triangles.ravel()
-    seen = np.maximum.accumulate(np.concatenate([[-1], flat[:-1]])) + 1
-    return np.asarray(seen - flat)
-
-
-def _find_edges(steps: Int64Array) -> list[Int64Array]:
-    """Return the vertices on the west, south, east and north edge, along it."""
-    edges = []
-    for axis, value in ((0, 0), (1, 0), (0, STEPS), (1, STEPS)):
-        on = np.flatnonzero(steps[:, axis] == value)
-        edges.append(on[np.argsort(steps[on, 1 - axis], kind="stable")])
-    return edges
 
 
 def _encode_normals(normals: Float64Array) -> bytes:
@@ -194,7 +253,9 @@ def decode_tile(content: bytes) -> Tile:
     if dtype == "<u4":
         reader.at += -reader.at % 4
     n_triangles = reader.read_count("triangles", 3 * int(dtype[2]))
-    triangles = _decode_indices(reader.read(dtype, 3 * n_triangles))
+    codes = reader.read(dtype, 3 * n_triangles)
+    seen = np.cumsum(codes == 0) - (codes == 0)
+    triangles = np.asarray(seen - codes)
     steps = np.stack(axes, axis=1)
     if ((steps < 0) | (steps > STEPS)).any():
         raise BrokenTileError("a vertex lies outside of it")
@@ -228,9 +289,3 @@ class _Reader:
 
 def _decode_steps(values: Int64Array) -> Int64Array:
     return np.cumsum((values >> 1) ^ -(values & 1))
-
-
-def _decode_indices(codes: Int64Array) -> Int64Array:
-    """Return indices from how far each lies below the next new one, which a 0 is itself."""
-    seen = np.cumsum(codes == 0) - (codes == 0)
-    return np.asarray(seen - codes)

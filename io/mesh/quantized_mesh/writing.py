@@ -24,10 +24,8 @@ from ....base.sentences import FILE
 from ....tin import TIN
 from ...reprojection.transformation import reproject
 from ..common import require_tin
-from .cutting import GridMesh, cut_along_grid
-from .globe import to_cartesian
-from .simplification import simplify
-from .tile import STEPS, Tile, TileName, encode_tile
+from .levels import GridMesh, cut_along_grid, simplify
+from .tile import STEPS, Tile, TileName, encode_tile, to_cartesian
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -107,11 +105,23 @@ def write(
     require_count("max_level", max_level, least=0, most=_MOST_LEVEL, or_none=True)
     placed = _place(tin)
     finest = _choose_finest(placed) if max_level is None else int(max_level)
-    first = min(_choose_first(placed), finest)
+    extent = float(np.ptp(placed.points[:, :2], axis=0).max())
+    first = min(int(max(np.ceil(np.log2(180.0 * _SHARE_OF_A_TILE / extent)), 0)), finest)
     available: list[list[TileName]] = []
     with replacing_folder(path, marker="layer.json") as folder:
         for level in range(first):
-            names = _list_parents(placed, level)
+            width = 180.0 / 2**level
+            low = (placed.points[:, :2].min(axis=0) + _CORNER) // width
+            high = (placed.points[:, :2].max(axis=0) + _CORNER) // width
+            low = np.minimum(low, (2 ** (level + 1) - 1, 2**level - 1)).astype(int)
+            high = np.minimum(high, (2 ** (level + 1) - 1, 2**level - 1)).astype(int)
+            if level == 0:
+                low[0], high[0] = 0, 1
+            names = [
+                TileName(level, x, y)
+                for x in range(low[0], high[0] + 1)
+                for y in range(low[1], high[1] + 1)
+            ]
             _write_tiles(folder, ((name, _make_bare_tile(name)) for name in names), is_gzipped)
             available.append(names)
         for level, triangles in zip(
@@ -178,28 +188,6 @@ def _choose_finest(placed: TIN) -> int:
     return int(min(level, _MOST_LEVEL))
 
 
-def _choose_first(placed: TIN) -> int:
-    """Return the coarsest level that shows the surface."""
-    extent = float(np.ptp(placed.points[:, :2], axis=0).max())
-    return int(max(np.ceil(np.log2(180.0 * _SHARE_OF_A_TILE / extent)), 0))
-
-
-def _list_parents(placed: TIN, level: int) -> list[TileName]:
-    """Return the tiles that hold the surface, and of level 0 both."""
-    width = 180.0 / 2**level
-    low = (placed.points[:, :2].min(axis=0) + _CORNER) // width
-    high = (placed.points[:, :2].max(axis=0) + _CORNER) // width
-    low = np.minimum(low, (2 ** (level + 1) - 1, 2**level - 1)).astype(int)
-    high = np.minimum(high, (2 ** (level + 1) - 1, 2**level - 1)).astype(int)
-    if level == 0:
-        low[0], high[0] = 0, 1
-    return [
-        TileName(level, x, y)
-        for x in range(low[0], high[0] + 1)
-        for y in range(low[1], high[1] + 1)
-    ]
-
-
 # ----------------------------------------------------------------------- levels and tiles
 
 
@@ -223,19 +211,6 @@ def _cut_into_tiles(
             f"Cannot write {FILE}: on level {level} no triangle is as large as a step of a tile; "
             "choose a finer one."
         )
-    normals = _compute_normals(mesh, scale)
-    tiles = mesh.steps[mesh.triangles].min(axis=1) // STEPS
-    order = np.lexsort((tiles[:, 1], tiles[:, 0]))
-    starts = np.flatnonzero(np.diff(tiles[order], axis=0, prepend=-1).any(axis=1))
-    groups = np.split(order, starts[1:])
-    step = _choose_height_step(mesh, groups)
-    for rows in groups:
-        x, y = tiles[rows[0]].tolist()
-        yield TileName(level, x, y), _gather_tile(mesh, normals, rows, (x, y), step)
-
-
-def _compute_normals(mesh: GridMesh, scale: float) -> Float64Array:
-    """Return unit normals of all vertices in the axes of the globe, the same in every tile."""
     plane = mesh.steps / scale - _CORNER
     points = to_cartesian(np.column_stack([plane, mesh.heights]))
     a, b, c = (points[mesh.triangles[:, k]] for k in range(3))
@@ -245,11 +220,11 @@ def _compute_normals(mesh: GridMesh, scale: float) -> Float64Array:
         [np.bincount(corners, np.repeat(axis, 3), len(points)) for axis in faces.T]
     )
     lengths = np.linalg.norm(sums, axis=1, keepdims=True)
-    return np.asarray(np.divide(sums, lengths, out=np.zeros_like(sums), where=lengths > 0))
-
-
-def _choose_height_step(mesh: GridMesh, groups: list[Int64Array]) -> float:
-    """Return the step of heights of a level: a power of two with which every tile gets by."""
+    normals = np.asarray(np.divide(sums, lengths, out=np.zeros_like(sums), where=lengths > 0))
+    tiles = mesh.steps[mesh.triangles].min(axis=1) // STEPS
+    order = np.lexsort((tiles[:, 1], tiles[:, 0]))
+    starts = np.flatnonzero(np.diff(tiles[order], axis=0, prepend=-1).any(axis=1))
+    groups = np.split(order, starts[1:])
     heights = mesh.heights[mesh.triangles]
     low = np.array([heights[rows].min() for rows in groups])
     high = np.array([heights[rows].max() for rows in groups])
@@ -257,7 +232,9 @@ def _choose_height_step(mesh: GridMesh, groups: list[Int64Array]) -> float:
     step = float(2.0 ** np.ceil(np.log2(least)))
     while (np.rint(high / step) - np.rint(low / step) > STEPS).any():
         step *= 2
-    return step
+    for rows in groups:
+        x, y = tiles[rows[0]].tolist()
+        yield TileName(level, x, y), _gather_tile(mesh, normals, rows, (x, y), step)
 
 
 def _gather_tile(

@@ -11,7 +11,7 @@ import pytest
 from support.same_tins import find_differences
 
 import tinsmith as ts
-from tinsmith.io.mesh.geopackage.digests import digest_arrays
+from tinsmith.io.mesh.geopackage.schema import digest_arrays
 
 CRSES = [
     "EPSG:32616",

@@ -56,7 +56,7 @@ def test_strips_are_triangles(tmp_path, case, element):
 
 def test_the_directions_of_strips_turn_in_turn(tmp_path):
     from tinsmith.io.mesh.ply.body import Ragged
-    from tinsmith.io.mesh.ply.faces import _cut_strips
+    from tinsmith.io.mesh.ply.file import _cut_strips
 
     found = _cut_strips(Ragged(np.array(BAND), np.array([0, len(BAND)])))
     corners = np.array(POINTS)[found.items.reshape(-1, 3)][..., :2]

@@ -13,8 +13,8 @@ import pytest
 from support.surfaces import hills, punched
 
 import tinsmith as ts
-from tinsmith.io.mesh.quantized_mesh.cutting import GridMesh, cut_along_grid
-from tinsmith.io.mesh.quantized_mesh.globe import find_horizon_point, to_cartesian
+from tinsmith.io.mesh.quantized_mesh.levels import GridMesh, cut_along_grid
+from tinsmith.io.mesh.quantized_mesh.tile import find_horizon_point, to_cartesian
 
 DATA = Path(__file__).parents[2] / "data" / "meshes"
 pytestmark = pytest.mark.filterwarnings("ignore::tinsmith.LossWarning")

@@ -7,7 +7,7 @@ import pytest
 from support.surfaces import hills, punched
 
 import tinsmith as ts
-from tinsmith.io.mesh.solid import build_solid
+from tinsmith.io.mesh.stl import build_solid
 
 trimesh = pytest.importorskip("trimesh")
 

@@ -1,8 +1,12 @@
-"""A mesh cut along the lines of a grid, so that no triangle reaches over one.
+"""The meshes of levels: simplified to a tolerance, and cut along the edges of tiles.
 
-Coordinates are whole numbers, and so are the lines. A line cuts each edge once, at a point that is
-computed from the edge's own ends and is the same for the triangles on both of its sides. So parts
-of the mesh on two sides of a line have the same vertices on it.
+Coordinates are whole numbers, and so are the lines of the grid. A line cuts each edge once, at a
+point that is computed from the edge's own ends and is the same for the triangles on both of its
+sides. So parts of the mesh on two sides of a line have the same vertices on it.
+
+Vertices are inserted greedily (Garland and Heckbert, "Fast polygonal approximation of terrains and
+height fields", 1995), in rounds: in every triangle the one farthest from the surface so far. All
+vertices of the boundary are kept, and its edges.
 """
 
 from __future__ import annotations
@@ -11,12 +15,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ....tin.topology import edge_keys
+from ....tin import TIN, Breakline, Survey, triangulate
+from ....tin.topology import edge_keys, mark_corners
 
 if TYPE_CHECKING:
-    from ....base.arrays import Float64Array, Int64Array
+    from collections.abc import Iterator, Sequence
 
-__all__ = ["GridMesh", "cut_along_grid"]
+    from ....base.arrays import BoolArray, Float64Array, Int64Array
+
+__all__ = ["GridMesh", "cut_along_grid", "simplify"]
 
 
 class GridMesh(NamedTuple):
@@ -41,7 +48,10 @@ def cut_along_grid(mesh: GridMesh, spacing: int) -> GridMesh:
         triangles on both sides of it.
     """
     for axis in (0, 1):
-        mesh = _merge(_cut(mesh, axis, spacing))
+        mesh = _cut(mesh, axis, spacing)
+        steps, first, number = np.unique(mesh.steps, axis=0, return_index=True, return_inverse=True)
+        triangles = number.ravel()[mesh.triangles]
+        mesh = GridMesh(steps, mesh.heights[first], triangles[_measure(steps, triangles) > 0])
     for axis in (0, 1):
         mesh = _match(mesh, axis, spacing)
     return mesh
@@ -82,10 +92,17 @@ def _cut(mesh: GridMesh, axis: int, spacing: int) -> GridMesh:
     within = np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)
     low = (first[is_cut][rows] + within) * spacing
     rings = _clip(parts[rows], _Strips(along, low, spacing, cuts))
+    held = rings >= 0
+    order = np.argsort(~held, axis=1, kind="stable")
+    packed = np.take_along_axis(rings, order, axis=1)
+    counts = held.sum(axis=1)
+    fans = [
+        packed[counts > corner][:, [0, corner - 1, corner]] for corner in range(2, rings.shape[1])
+    ]
     return GridMesh(
         np.concatenate([mesh.steps, steps]),
         np.concatenate([mesh.heights, heights]),
-        np.concatenate([whole, _cut_rings_into_fans(rings)]),
+        np.concatenate([whole, np.concatenate(fans)]),
     )
 
 
@@ -124,7 +141,14 @@ def _clip(triangles: Int64Array, strips: _Strips) -> Int64Array:
         a, b = triangles[:, corner], triangles[:, (corner + 1) % 3]
         edge = np.searchsorted(keys, edge_keys(np.stack([a, b], axis=1), n_vertices))
         for near, far in ((a, b), (b, a)):
-            slots.append(_find_end(near, far, edge, strips))
+            along, low, spacing, cuts = strips
+            at, other = along[near], along[far]
+            line = np.where(at < low, low, low + spacing)
+            number = len(along) + cuts.first_point[edge] + line // spacing - cuts.first_line[edge]
+            inside = (at >= low) & (at <= low + spacing)
+            found = np.where(inside, near, np.where(other == line, far, number))
+            absent = (np.maximum(at, other) < low) | (np.minimum(at, other) > low + spacing)
+            slots.append(np.where(absent, -1, found))
     ring = np.stack(slots, axis=1)
     last = ring.max(axis=1) * 0 - 1
     for slot in range(6):  # what repeats the one before it is left out
@@ -137,36 +161,6 @@ def _clip(triangles: Int64Array, strips: _Strips) -> Int64Array:
     final = 5 - np.argmax(ring[:, ::-1] >= 0, axis=1)
     ring[rows[closes], final[closes]] = -1
     return ring
-
-
-def _find_end(near: Int64Array, far: Int64Array, edge: Int64Array, strips: _Strips) -> Int64Array:
-    """Return the vertex at which edges end in their strips, towards ``near``; -1 outside."""
-    along, low, spacing, cuts = strips
-    at, other = along[near], along[far]
-    line = np.where(at < low, low, low + spacing)
-    number = len(along) + cuts.first_point[edge] + line // spacing - cuts.first_line[edge]
-    inside = (at >= low) & (at <= low + spacing)
-    found = np.where(inside, near, np.where(other == line, far, number))
-    absent = (np.maximum(at, other) < low) | (np.minimum(at, other) > low + spacing)
-    return np.where(absent, -1, found)
-
-
-def _cut_rings_into_fans(rings: Int64Array) -> Int64Array:
-    held = rings >= 0
-    order = np.argsort(~held, axis=1, kind="stable")
-    packed = np.take_along_axis(rings, order, axis=1)
-    counts = held.sum(axis=1)
-    fans = [
-        packed[counts > corner][:, [0, corner - 1, corner]] for corner in range(2, rings.shape[1])
-    ]
-    return np.concatenate(fans)
-
-
-def _merge(mesh: GridMesh) -> GridMesh:
-    """Give each place one vertex, and leave triangles out that have no area."""
-    steps, first, number = np.unique(mesh.steps, axis=0, return_index=True, return_inverse=True)
-    triangles = number.ravel()[mesh.triangles]
-    return GridMesh(steps, mesh.heights[first], triangles[_measure(steps, triangles) > 0])
 
 
 def _measure(steps: Int64Array, triangles: Int64Array) -> Int64Array:
@@ -184,7 +178,17 @@ def _match(mesh: GridMesh, axis: int, spacing: int) -> GridMesh:
         order = np.lexsort((mesh.steps[on_line, 1 - axis], mesh.steps[on_line, axis]))
         rank = np.full(len(mesh.steps), -1, np.int64)
         rank[on_line[order]] = np.arange(len(on_line))
-        triangle, corner, between = _find_split_edge(mesh, rank, axis)
+        begins, ends = mesh.triangles, np.roll(mesh.triangles, -1, axis=1)
+        same = (
+            (rank[begins] >= 0)
+            & (rank[ends] >= 0)
+            & (mesh.steps[begins, axis] == mesh.steps[ends, axis])
+        )
+        gap = same & (np.abs(rank[begins] - rank[ends]) > 1)
+        triangle = np.flatnonzero(gap.any(axis=1))
+        corner = np.argmax(gap[triangle], axis=1)
+        low = np.minimum(rank[begins[triangle, corner]], rank[ends[triangle, corner]])
+        triangle, corner, between = triangle, corner, low + 1
         if len(triangle) == 0:
             return mesh
         ring = mesh.triangles[triangle]
@@ -197,14 +201,57 @@ def _match(mesh: GridMesh, axis: int, spacing: int) -> GridMesh:
         mesh = mesh._replace(triangles=np.concatenate([left, *halves]))
 
 
-def _find_split_edge(
-    mesh: GridMesh, rank: Int64Array, axis: int
-) -> tuple[Int64Array, Int64Array, Int64Array]:
-    """Return triangles, the corner at which an edge of each begins, and a vertex within that."""
-    a, b = mesh.triangles, np.roll(mesh.triangles, -1, axis=1)
-    same = (rank[a] >= 0) & (rank[b] >= 0) & (mesh.steps[a, axis] == mesh.steps[b, axis])
-    gap = same & (np.abs(rank[a] - rank[b]) > 1)
-    triangle = np.flatnonzero(gap.any(axis=1))
-    corner = np.argmax(gap[triangle], axis=1)
-    low = np.minimum(rank[a[triangle, corner]], rank[b[triangle, corner]])
-    return triangle, corner, low + 1
+def simplify(surface: TIN, tolerances: Sequence[float]) -> Iterator[Int64Array]:
+    """Yield triangles of ever more vertices of a surface.
+
+    Parameters
+    ----------
+    surface : TIN
+    tolerances : sequence of float
+        Falling: the largest difference of elevation at any vertex.
+
+    Yields
+    ------
+    (m, 3) int64 array
+        Vertices of the surface, counter-clockwise, for each tolerance.
+    """
+    chosen = np.zeros(len(surface.points), np.bool_)
+    rings = [ring for ring in surface.boundary if len(ring) > 2]
+    chosen[np.concatenate(rings)] = True
+    lines = [Breakline(surface.points[np.append(ring, ring[0])]) for ring in rings]
+    wanted = mark_corners(surface.triangles, len(surface.points))
+    for tolerance in tolerances:
+        while True:
+            # Triangulate some vertices within the boundary.
+            rows = np.flatnonzero(chosen)
+            built = triangulate(
+                Survey(points=surface.points[rows], breaklines=lines), duplicates="first"
+            )
+            row_of = np.full(len(built.points), -1, np.int64)
+            row_of[built.vertex_of[: len(rows)]] = rows
+            triangles = row_of[built.triangles]
+            triangles = triangles[(triangles >= 0).all(axis=1)]
+            middles = surface.points[triangles, :2].mean(axis=1)
+            triangles = triangles[surface.locate(middles) >= 0]
+            worst = _find_worst(surface, triangles, wanted & ~chosen, tolerance)
+            if len(worst) == 0:
+                break
+            chosen[worst] = True
+        yield triangles
+
+
+def _find_worst(
+    surface: TIN, triangles: Int64Array, left: BoolArray, tolerance: float
+) -> Int64Array:
+    """Return the vertex of each triangle that lies farthest from it, beyond the tolerance."""
+    rows = np.flatnonzero(left)
+    if len(rows) == 0:
+        return rows
+    rough = TIN.from_triangles(surface.points, triangles)
+    xy = surface.points[rows, :2]
+    error = np.abs(rough.interpolate(xy) - surface.points[rows, 2])
+    far = np.flatnonzero(error > tolerance)
+    home = rough.locate(xy[far])
+    order = np.lexsort((-error[far], home))
+    _, first = np.unique(home[order], return_index=True)
+    return rows[far[order[first]]]
