@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base import optional
-from ...base.errors import LinesError, ReadError
+from ...base.crs import Unit
+from ...base.errors import CrsError, LinesError, OptionError, ReadError, WriteError
+from ...base.notes import warn
 from ...base.policies import BreaklineKind
 from ...base.sentences import FILE, counted
 from ...tin import Breakline, Surface, Survey, Water
@@ -22,16 +24,17 @@ from ..reprojection.placement import Placed, place
 from .surfaces import Line, Mesh, make_tin_with_lines, merge_equal_points
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
     from pathlib import Path
 
     from ...base.arrays import AnyArray, Float64Array
+    from ...base.crs import UnitLike
     from ...base.policies import FacePolicy
     from ...base.results import Features
-    from ...tin import TIN
+    from ...tin import TIN, Survey
     from .reference import Declared, Measures
 
-__all__ = ["Drawing", "list_lines", "scale_elevations"]
+__all__ = ["Drawing", "choose_length_unit", "list_lines", "scale_elevations"]
 
 _POLYGONS = ("boundary", "hole", "erase", "island")
 
@@ -143,7 +146,21 @@ def _gather_lines(
     found: dict[str, list[list[Float64Array]]] = {kind: [] for kind in _POLYGONS}
     for kind, rings in polygons.values():
         found[kind].append(rings)
-    left = _put_islands([rings[0] for rings in found["island"]], found["hole"])
+    islands = [rings[0] for rings in found["island"]]
+    holes = found["hole"]
+    if not islands:
+        left = 0
+    else:
+        shapely = optional.load("shapely")
+        areas = [shapely.Polygon(rings[0][:, :2]) for rings in holes]
+        left = 0
+        for island in islands:
+            place = shapely.Point(island[0, :2])
+            holder = next((k for k, area in enumerate(areas) if area.intersects(place)), None)
+            if holder is None:
+                left += 1
+            else:
+                holes[holder].append(island)
     if left:
         what = counted(left, "boundary", "boundaries")
         notes.append(f"{what} of type island in no void left out.")
@@ -158,23 +175,6 @@ def _gather_lines(
         "erase": unwrapped["erase"],
         "water": water,
     }
-
-
-def _put_islands(islands: list[Float64Array], holes: list[list[Float64Array]]) -> int:
-    """Add each island to the hole that it lies in; return the number of those in none."""
-    if not islands:
-        return 0
-    shapely = optional.load("shapely")
-    areas = [shapely.Polygon(rings[0][:, :2]) for rings in holes]
-    left = 0
-    for island in islands:
-        place = shapely.Point(island[0, :2])
-        holder = next((k for k, area in enumerate(areas) if area.intersects(place)), None)
-        if holder is None:
-            left += 1
-        else:
-            holes[holder].append(island)
-    return left
 
 
 # ------------------------------------------------------------------ what is written
@@ -237,3 +237,71 @@ def _iterate_parts(features: Features) -> Iterator[tuple[int, int, int]]:
         owners = np.repeat(owners, np.diff(level))
     offsets = features.offsets[0].tolist()
     return zip(owners.tolist(), offsets[:-1], offsets[1:], strict=True)
+
+
+def choose_length_unit(
+    obj: TIN | Survey | Features,
+    unit: UnitLike | None,
+    *,
+    is_known: Callable[[Unit], bool],
+    format_name: str,
+) -> tuple[Unit | None, float]:
+    """Return the unit of all lengths in a file, and the factor that brings elevations to it.
+
+    Parameters
+    ----------
+    obj : TIN, Survey or Features
+    unit : Unit or str, optional
+        Declared by the caller, where the CRS does not tell.
+    is_known : callable
+        Whether the format has a unit.
+    format_name : str
+
+    Raises
+    ------
+    CrsError
+        If coordinates are angles.
+    OptionError
+        If the unit declared is not that of the CRS.
+    WriteError
+        If the format does not have the unit.
+
+    Warns
+    -----
+    LossWarning
+        If the unit is not known, or elevations are converted.
+    """
+    declared = Unit.of(unit)
+    chosen = declared or obj.elevation_unit
+    if obj.crs is not None:
+        if obj.crs.is_geographic:
+            raise CrsError(
+                f"Cannot write {FILE}: {format_name} holds lengths, and {obj.crs.label} measures "
+                "in degrees: reproject first.",
+                crs=obj.crs,
+            )
+        chosen = obj.crs.horizontal_unit
+        if declared is not None and declared != chosen:
+            raise OptionError("unit", declared.name, f"{chosen.name}, the unit of {obj.crs.label}")
+    if chosen is not None and not is_known(chosen):
+        raise WriteError(
+            f"Cannot write {FILE}: {format_name} has no unit {chosen.name}; it has metre, foot, "
+            "US survey foot and their like."
+        )
+    return chosen, _find_factor(obj.elevation_unit, chosen, format_name)
+
+
+def _find_factor(known: Unit | None, unit: Unit | None, format_name: str) -> float:
+    if unit is None:
+        warn(
+            f"{FILE} has no units, since none are known: programs that read it will guess; the "
+            "option `unit` names one."
+        )
+        return 1.0
+    if known is None or known == unit or known.metres is None or unit.metres is None:
+        return 1.0
+    warn(
+        f"{FILE}: elevations were converted from {known.name} to {unit.name}, as {format_name} "
+        "has one unit for all lengths."
+    )
+    return known.metres / unit.metres

@@ -123,7 +123,20 @@ def choose_measures(stated: Stated, declared: Declared, *, sample: Float64Array)
             measures, vertical, "the unit of the vertical axis of the CRS"
         )
         measures = replace(measures, elevation_unit=vertical)
-    return _look_at_area(measures, declared.crs, sample)
+    # Compare coordinates with the area of use; swap them if they only fit so.
+    area = AreaOfUse.of(measures.source, declared.crs)
+    rows = sample[np.isfinite(sample).all(axis=1)] * measures.scale
+    if area is None or len(rows) == 0 or area.covers_most(rows):
+        return measures
+    if area.covers_most(rows[:, ::-1]):
+        return measures.noting(
+            "Easting and northing were taken in the other order than the format says: only so do "
+            f"they lie in the area of {area.label}.",
+            is_swapped=True,
+        )
+    if area.is_local(rows):
+        return measures
+    return measures.noting(f"Most points lie outside the area of {area.label}.")
 
 
 def _choose_elevation_unit(stated: Stated, declared: Declared, unit: Unit | None) -> Unit | None:
@@ -171,20 +184,3 @@ def _convert_elevations(measures: Measures, unit: Unit, what: str) -> Measures:
         elevation_scale=known.metres / unit.metres,
         elevation_unit=unit,
     )
-
-
-def _look_at_area(measures: Measures, target: CRS | None, sample: Float64Array) -> Measures:
-    """Compare coordinates with the area of use; swap them if they only fit so."""
-    area = AreaOfUse.of(measures.source, target)
-    rows = sample[np.isfinite(sample).all(axis=1)] * measures.scale
-    if area is None or len(rows) == 0 or area.covers_most(rows):
-        return measures
-    if area.covers_most(rows[:, ::-1]):
-        return measures.noting(
-            "Easting and northing were taken in the other order than the format says: only so do "
-            f"they lie in the area of {area.label}.",
-            is_swapped=True,
-        )
-    if area.is_local(rows):
-        return measures
-    return measures.noting(f"Most points lie outside the area of {area.label}.")

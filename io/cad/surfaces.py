@@ -92,15 +92,6 @@ def make_tin_with_lines(
     )
     if not lines:
         return tin
-    tin, noted = _add_lines(tin, lines)
-    return add_notes(tin, noted) if noted else tin
-
-
-# ------------------------------------------------------------------ lines along edges
-
-
-def _add_lines(tin: TIN, lines: Sequence[Line]) -> tuple[TIN, list[str]]:
-    """Return the TIN with the parts of lines that are chains of its edges."""
     edges = np.stack(directed_edges(tin.triangles), axis=-1)
     keys = edge_keys(edges, len(tin.points))
     known = np.unique(keys)
@@ -110,18 +101,23 @@ def _add_lines(tin: TIN, lines: Sequence[Line]) -> tuple[TIN, list[str]]:
     n_partly = 0
     for number, line in enumerate(lines):
         found = _fill_in(tin, vertex_at.find(line.coordinates), known)
-        runs = _split_into_runs(found, known, len(tin.points))
+        is_edge = _find_edges(found, known, len(tin.points))
+        steps = np.diff(np.concatenate([[0], is_edge.astype(np.int8), [0]]))
+        starts, ends = np.flatnonzero(steps == 1), np.flatnonzero(steps == -1)
+        runs = [found[a : b + 1] for a, b in zip(starts.tolist(), ends.tolist(), strict=True)]
         chains += runs
         owners += [number] * len(runs)
         n_partly += sum(map(len, runs)) - len(runs) < len(found) - 1
-    notes = []
+    noted = []
     if n_partly:
         runs_not = "does not run" if n_partly == 1 else "do not run"
-        notes.append(
+        noted.append(
             f"{counted(n_partly, 'line')} of {len(lines):,} {runs_not} along edges of the "
             "triangles all the way: what does not is left out."
         )
-    return (tin if not chains else _with_chains(tin, lines, chains, owners, keys)), notes
+    if chains:
+        tin = _with_chains(tin, lines, chains, owners, keys)
+    return add_notes(tin, noted) if noted else tin
 
 
 def _with_chains(
@@ -133,7 +129,14 @@ def _with_chains(
 ) -> TIN:
     segments = np.concatenate([np.stack([one[:-1], one[1:]], axis=1) for one in chains])
     flags = tin.constrained | np.isin(keys, edge_keys(segments, len(tin.points)))
-    sources = _count_within_kinds(lines)
+    # Count lines within breaklines, boundary rings, holes and water, as a TIN does.
+    counts: dict[str, int] = {}
+    sources = []
+    for line in lines:
+        kind = "breakline" if line.kind in ("hard", "soft") else line.kind
+        count = counts.get(kind, 0)
+        sources.append(count if line.source is None else line.source)
+        counts[kind] = count + 1
     kept = [(k, chain) for k, chain in zip(owners, chains, strict=True) if lines[k].kind in _KINDS]
     held = Lines(
         vertices=np.concatenate([[], *(chain for _, chain in kept)]).astype(np.int32),
@@ -143,18 +146,6 @@ def _with_chains(
         names=tuple(lines[k].name for k, _ in kept),
     )
     return tin.replace(constrained=flags, lines=held)
-
-
-def _count_within_kinds(lines: Sequence[Line]) -> list[int]:
-    """Count lines within breaklines, boundary rings, holes and water, as a TIN does."""
-    counts: dict[str, int] = {}
-    numbers = []
-    for line in lines:
-        kind = "breakline" if line.kind in ("hard", "soft") else line.kind
-        count = counts.get(kind, 0)
-        numbers.append(count if line.source is None else line.source)
-        counts[kind] = count + 1
-    return numbers
 
 
 class _Vertices:
@@ -224,14 +215,6 @@ def _walk_along(tin: TIN, a: int, b: int) -> list[int]:
         here, reached = int(near[step]), float(along[step])
         passed.append(here)
     return passed[:-1]
-
-
-def _split_into_runs(vertices: Int64Array, known: Int64Array, n_points: int) -> list[Int64Array]:
-    """Return the longest parts of a line all of whose segments are edges."""
-    is_edge = _find_edges(vertices, known, n_points)
-    steps = np.diff(np.concatenate([[0], is_edge.astype(np.int8), [0]]))
-    starts, ends = np.flatnonzero(steps == 1), np.flatnonzero(steps == -1)
-    return [vertices[a : b + 1] for a, b in zip(starts.tolist(), ends.tolist(), strict=True)]
 
 
 def _find_edges(vertices: Int64Array, known: Int64Array, n_points: int) -> BoolArray:

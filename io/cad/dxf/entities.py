@@ -38,8 +38,8 @@ class EntityWriter:
         self.parts: list[str] = []
 
     def _begin(self, kind: str, layer: str, *subclasses: str, owner: str = "") -> str:
-        """Return the head of an entity with the next handle."""
-        handle = self._take_handle()
+        self.next_handle += 1
+        handle = f"{self.next_handle - 1:X}"
         if self._is_r12:
             return f"0\n{kind}\n5\n{handle}\n8\n{layer}\n"
         marks = "".join(f"100\n{name}\n" for name in subclasses)
@@ -47,10 +47,6 @@ class EntityWriter:
             f"0\n{kind}\n5\n{handle}\n330\n{owner or self._owner}\n100\nAcDbEntity\n8\n{layer}\n"
             f"{marks}"
         )
-
-    def _take_handle(self) -> str:
-        self.next_handle += 1
-        return f"{self.next_handle - 1:X}"
 
     # ------------------------------------------------------------------ entities
 

@@ -110,7 +110,10 @@ def read_model_space(
         If there is no such layer, or the tolerance is no length above 0.
     """
     optional.require("ezdxf", "Reading DXF drawings")
-    _require_options(layer, tolerance)
+    if layer is not None and not (isinstance(layer, str) and layer.strip(", ")):
+        raise OptionError("layer", layer, "names or patterns of layers with commas between")
+    if tolerance is not None:
+        as_length("tolerance", tolerance, or_none=True)
     with translate_system_errors(path):
         size = path.stat().st_size
     usual = choose_limits(size)
@@ -121,30 +124,15 @@ def read_model_space(
         limits=Limits(usual.seconds + (_SLOWNESS - 1) * size / 1e6, usual.memory),
     )
     drawing = ModelSpace(path, answer.value, answer.arrays)
-    _require_layer(drawing, layer)
-    _require_finite(drawing)
-    return drawing
-
-
-def _require_options(layer: object, tolerance: object) -> None:
-    if layer is not None and not (isinstance(layer, str) and layer.strip(", ")):
-        raise OptionError("layer", layer, "names or patterns of layers with commas between")
-    if tolerance is not None:
-        as_length("tolerance", tolerance, or_none=True)
-
-
-def _require_layer(drawing: ModelSpace, layer: str | None) -> None:
     if layer is not None and not drawing.value["layers"]:
         names = drawing.value["all_layers"]
         shown = ", ".join(f"'{name[:60]}'" for name in names[:20])
         more = ", ..." if len(names) > 20 else ""
         raise OptionError("layer", layer, f"a layer with something in it; {FILE} has {shown}{more}")
-
-
-def _require_finite(drawing: ModelSpace) -> None:
     for name in ("points", "faces", "lines", "text_places"):
         rows = drawing.arrays[name].reshape(-1, 3)
         wrong = ~np.isfinite(rows).all(axis=1)
         if wrong.any():
             row = rows[int(np.argmax(wrong))].tolist()
             raise ReadError(f"{FILE} has coordinates that are not finite (first: {row}).")
+    return drawing

@@ -1,4 +1,7 @@
-"""Read a drawing: a surface of faces with its own triangles, or points and lines."""
+"""Read a drawing: a surface of faces with its own triangles, or points and lines.
+
+Equal corners of faces are joined, and quadrilaterals cut in two.
+"""
 
 from __future__ import annotations
 
@@ -11,17 +14,18 @@ import numpy as np
 from ....base.errors import ReadError, choice
 from ....base.policies import DrawingContent, FacePolicy, LineKind
 from ....base.sentences import FILE, counted
+from ....tin.topology import find_offsets
+from ...mesh.common import cut_into_fans, join_places
 from ..drawing import Drawing
 from ..reference import Declared, Measures, choose_measures
-from ..surfaces import Line
-from .faces import make_mesh
+from ..surfaces import Line, Mesh
 from .model_space import ModelSpace, read_model_space
 from .names import CONSTRAINED
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....base.arrays import AnyArray, Float64Array
+    from ....base.arrays import AnyArray, BoolArray, Float64Array
     from ....base.crs import CrsLike, UnitLike
     from ....tin import TIN, Survey
 
@@ -94,7 +98,29 @@ def read(
     )
     if kind == "surface":
         return _gather_surface(found, frame).to_tin(faces)
-    return _gather_source(found, frame, with_lines=kind == "source").to_survey()
+    with_lines = kind == "source"
+    points, attributes, notes = _gather_points(found)
+    lines = _name_lines(found) if with_lines else []
+    if not len(points) and not lines:
+        raise ReadError(
+            f"{FILE} has {'neither points nor lines' if with_lines else 'no points'} in "
+            "the layers read."
+        )
+    n_draped = sum(
+        one.coordinates.shape[1] == 2 and one.kind not in ("boundary", "hole", "erase")
+        for one in lines
+    )
+    if n_draped:
+        notes.append(
+            f"{counted(n_draped, 'line')} of plane entities without elevation will be draped on "
+            "the surface."
+        )
+    if len(found.arrays["faces"]):
+        notes.append(f"Not read: {counted(len(found.arrays['faces']), 'face')}.")
+    notes += found.describe_left_out()
+    return replace(
+        frame, points=points, attributes=attributes, lines=lines, notes=notes
+    ).to_survey()
 
 
 def _choose_content(found: ModelSpace) -> str:
@@ -161,32 +187,6 @@ def _name_lines(found: ModelSpace) -> list[Line]:
     return lines
 
 
-# ------------------------------------------------------------------ points and lines
-
-
-def _gather_source(found: ModelSpace, frame: Drawing, *, with_lines: bool) -> Drawing:
-    points, attributes, notes = _gather_points(found)
-    lines = _name_lines(found) if with_lines else []
-    if not len(points) and not lines:
-        raise ReadError(
-            f"{FILE} has {'neither points nor lines' if with_lines else 'no points'} in "
-            "the layers read."
-        )
-    n_draped = sum(
-        one.coordinates.shape[1] == 2 and one.kind not in ("boundary", "hole", "erase")
-        for one in lines
-    )
-    if n_draped:
-        notes.append(
-            f"{counted(n_draped, 'line')} of plane entities without elevation will be draped on "
-            "the surface."
-        )
-    if len(found.arrays["faces"]):
-        notes.append(f"Not read: {counted(len(found.arrays['faces']), 'face')}.")
-    notes += found.describe_left_out()
-    return replace(frame, points=points, attributes=attributes, lines=lines, notes=notes)
-
-
 def _gather_points(
     found: ModelSpace,
 ) -> tuple[Float64Array, dict[str, AnyArray], list[str]]:
@@ -215,3 +215,62 @@ def _gather_points(
     if len(points):
         attributes["layer"] = np.array(layers, object)
     return points, attributes, notes
+
+
+_NO_AREA = 1e-12
+"""Share of the squared length of a triangle that is no area, but the rounding of its corners."""
+
+
+def make_mesh(faces: Float64Array) -> Mesh:
+    """Return points in the order in which faces name them, and triangles.
+
+    Parameters
+    ----------
+    faces : (m, 4, 3) float64 array
+        Corners; a triangle repeats one.
+
+    Raises
+    ------
+    ReadError
+        If no face has three corners.
+    """
+    points, numbers = join_places(faces.reshape(-1, 3))
+    corners = numbers.reshape(-1, 4)
+    is_new = corners != np.roll(corners, 1, axis=1)
+    is_new[:, 2] &= corners[:, 2] != corners[:, 0]
+    is_new[:, 3] &= corners[:, 3] != corners[:, 1]
+    counts = is_new.sum(axis=1)
+    kept = counts > 2
+    if not kept.any():
+        raise ReadError("none of its faces has three corners.")
+    notes: list[str] = []
+    if not kept.all():
+        lines = counted(int((~kept).sum()), "face")
+        notes.append(f"Left out: {lines} with fewer than three different corners.")
+    used = corners[kept][is_new[kept]]
+    quads = corners[kept & (counts == 4)]
+    triangles = cut_into_fans(used, find_offsets(counts[kept]), points).triangles
+    with np.errstate(over="ignore", invalid="ignore"):  # what is too large is refused later
+        if len(quads):
+            notes.append(_describe_quads(points[quads]))
+        corners = points[triangles]
+        u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        area = np.linalg.norm(np.cross(u, v), axis=1)
+        longest = np.maximum((u * u).sum(axis=1), (v * v).sum(axis=1))
+        is_line: BoolArray = area <= _NO_AREA * longest
+    if is_line.any() and not is_line.all():
+        notes.append(f"Left out: {counted(int(is_line.sum()), 'triangle')} without any area.")
+        triangles = triangles[~is_line]
+    return Mesh(points, triangles, None, notes)
+
+
+def _describe_quads(corners: Float64Array) -> str:
+    """Tell how many quadrilaterals were cut, and of how many the cut shapes the surface."""
+    a, b, c, d = (corners[:, k] for k in range(4))
+    normal = np.cross(b - a, c - a)
+    apart = np.abs(((d - a) * normal).sum(axis=1))
+    size = np.linalg.norm(normal, axis=1) * np.linalg.norm(c - a, axis=1)
+    n_bent = int((apart > 1e-9 * size).sum())
+    text = f"{counted(len(corners), 'face')} of four corners cut in two along an inner diagonal"
+    bent = counted(n_bent, "face")
+    return f"{text}." if not n_bent else f"{text}: {bent} of them not plane, so the cut matters."

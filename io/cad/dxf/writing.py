@@ -23,19 +23,28 @@ from ....base.policies import DrawingVersion
 from ....base.results import Features
 from ....base.sentences import FILE
 from ....tin import TIN, Surface, Survey
-from ...registry.losses import warn_of_unknown_elevations
-from ..lengths import choose_length_unit
-from .content import add_features, add_survey, add_tin, select_texts
+from ....tin.topology import directed_edges, edge_keys
+from ...registry.losses import select_attributes, warn_of_unknown_elevations
+from ..drawing import choose_length_unit, list_lines, scale_elevations
 from .entities import EntityWriter
-from .names import APPLICATION, CRS_PROPERTY, ELEVATION_PROPERTY, LAYERS, UNKNOWN, find_code
+from .names import (
+    APPLICATION,
+    CONSTRAINED,
+    CRS_PROPERTY,
+    ELEVATION_PROPERTY,
+    LAYERS,
+    UNKNOWN,
+    find_code,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from ....base.arrays import AnyArray
+    from ....base.arrays import AnyArray, Float64Array, Int64Array
     from ....base.crs import Unit, UnitLike
     from ....base.progress import Tell
+    from .entities import EntityWriter
 
 __all__ = ["write"]
 
@@ -95,8 +104,23 @@ def write(
         warn(f"{FILE} keeps no CRS and no unit: R12 has no place for them.")
     with _fix_dates():
         document = _make_document(ezdxf, obj, version, along, factor)
-        head, tail, encoding, writer = _split(document, version)
-    _add_content(writer, obj, select_texts(obj), factor, labels=labels)
+        stream = io.StringIO(newline="\n")
+        document.write(stream)
+        text = stream.getvalue().replace("\r\n", "\n")
+        start = text.index("ENTITIES\n") + len("ENTITIES\n")
+        end = text.index("  0\nENDSEC\n", start)
+        owner = document.modelspace().layout_key
+        first = int(str(document.entitydb.handles), 16)
+        writer = EntityWriter(is_r12=version == "R12", owner=owner, first_handle=first)
+        encoding = "utf-8" if version != "R12" else str(document.output_encoding)
+        head, tail = text[:start], text[end:]
+    texts = select_texts(obj)
+    if isinstance(obj, Surface):
+        add_tin(writer, obj, factor)
+    elif isinstance(obj, Survey):
+        add_survey(writer, obj, texts, factor, labels=labels)
+    else:
+        add_features(writer, obj, texts, factor, labels=labels)
     warn_of_unknown_elevations(obj)
     with replacing(path) as file:
         file.write(_encode(_count_handles(head, writer), encoding))
@@ -111,22 +135,6 @@ def write(
 
 def _encode(text: str, encoding: str) -> bytes:
     return text.encode(encoding, "dxfreplace" if encoding != "utf-8" else "replace")
-
-
-def _add_content(
-    writer: EntityWriter,
-    obj: TIN | Survey | Features,
-    texts: dict[str, AnyArray],
-    factor: float,
-    *,
-    labels: bool,
-) -> None:
-    if isinstance(obj, Surface):
-        add_tin(writer, obj, factor)
-    elif isinstance(obj, Survey):
-        add_survey(writer, obj, texts, factor, labels=labels)
-    else:
-        add_features(writer, obj, texts, factor, labels=labels)
 
 
 # ------------------------------------------------------------------ the file around it
@@ -168,20 +176,6 @@ def _set_view(document: Any, obj: TIN | Survey | Features, factor: float) -> Non
     document.set_modelspace_vport(height or 1.0, center=tuple(middle.tolist()))
 
 
-def _split(document: Any, version: str) -> tuple[str, str, str, EntityWriter]:
-    """Return the text before and after the entities, its encoding, and their writer."""
-    stream = io.StringIO(newline="\n")
-    document.write(stream)
-    text = stream.getvalue().replace("\r\n", "\n")
-    start = text.index("ENTITIES\n") + len("ENTITIES\n")
-    end = text.index("  0\nENDSEC\n", start)
-    owner = document.modelspace().layout_key
-    first = int(str(document.entitydb.handles), 16)
-    writer = EntityWriter(is_r12=version == "R12", owner=owner, first_handle=first)
-    encoding = "utf-8" if version != "R12" else str(document.output_encoding)
-    return text[:start], text[end:], encoding, writer
-
-
 @contextmanager
 def _fix_dates() -> Iterator[None]:
     """Let ezdxf write the same dates and identifiers at any time."""
@@ -202,3 +196,122 @@ def _count_handles(head: str, writer: EntityWriter) -> str:
     code, _, rest = after.partition("\n")
     _, _, rest = rest.partition("\n")
     return f"{before}{mark}{code}\n{writer.next_handle + 1:X}\n{rest}"
+
+
+_LAYER_OF_KIND = {
+    "hard": "BREAKLINES",
+    "soft": "SOFT_BREAKLINES",
+    "boundary": "BOUNDARY",
+    "hole": "HOLES",
+    "erase": "ERASE",
+    "water": "WATER",
+}
+_SHARE = 0.2
+"""Height of labels as a share of the mean distance of points."""
+
+
+def add_tin(writer: EntityWriter, tin: TIN, factor: float) -> None:
+    """Add triangles and lines."""
+    points = scale_elevations(tin.points, factor)
+    writer.add_faces("TIN", points[tin.triangles])
+    for line in list_lines(tin, factor):
+        stated = (line.kind, line.name, str(line.source))
+        writer.add_line(_LAYER_OF_KIND[line.kind], line.coordinates, stated)
+    pairs = np.stack(directed_edges(tin.triangles), axis=-1)[tin.constrained]
+    keys, first = np.unique(edge_keys(pairs, len(tin.points)), return_index=True)
+    known = edge_keys(tin.lines.segments(), len(tin.points))
+    others: Int64Array = pairs[np.sort(first[~np.isin(keys, known)])]
+    for edge in others:
+        writer.add_line("CONSTRAINED_EDGES", points[edge], (CONSTRAINED, "", ""))
+
+
+def select_texts(obj: TIN | Survey | Features) -> dict[str, AnyArray]:
+    """Return the texts of points that a drawing holds, and tell of other attributes."""
+    if isinstance(obj, Surface) or (isinstance(obj, Features) and obj.kind != "points"):
+        return {}
+    attributes = obj.attributes if isinstance(obj, Survey) else obj.columns
+    reason = "a drawing has the number and the description of a point"
+    return select_attributes(attributes, ("number", "description"), reason)
+
+
+def add_survey(
+    writer: EntityWriter,
+    survey: Survey,
+    texts: dict[str, AnyArray],
+    factor: float,
+    *,
+    labels: bool,
+) -> None:
+    """Add points with their texts and labels, and lines."""
+    _add_points(writer, scale_elevations(survey.points, factor), texts, labels=labels)
+    for line in list_lines(survey, factor):
+        stated = (line.kind, line.name, line.polygon or "", str(line.priority))
+        writer.add_line(_LAYER_OF_KIND[line.kind], line.coordinates, stated)
+
+
+def add_features(
+    writer: EntityWriter,
+    features: Features,
+    texts: dict[str, AnyArray],
+    factor: float,
+    *,
+    labels: bool,
+) -> None:
+    """Add points, lines or the rings of polygons; contours on layers of their own."""
+    if features.kind == "points":
+        rows = features.coordinates
+        if not features.has_elevations:
+            rows = np.column_stack([rows, np.zeros(len(rows))])
+        points = scale_elevations(np.nan_to_num(rows, nan=0.0), factor)
+        _add_points(writer, points, texts, labels=labels)
+        return
+    names = _choose_layers(features)
+    for line in list_lines(features, factor):
+        rows, layer = line.coordinates, names[line.source or 0]
+        if rows.shape[1] == 3 and np.ptp(rows[:, 2]) == 0 and rows[0, 2] != 0:
+            writer.add_contour(layer, rows)
+        else:
+            writer.add_line(layer, rows)
+
+
+def _choose_layers(features: Features) -> list[str]:
+    count = len(features)
+    if features.kind == "polygons":
+        return ["POLYGONS"] * count
+    if features.name != "contours":
+        return ["LINES"] * count
+    index = features.columns.get("is_index")
+    if index is None:
+        return ["CONTOURS"] * count
+    return ["INDEX_CONTOURS" if one else "CONTOURS" for one in np.asarray(index).tolist()]
+
+
+# ------------------------------------------------------------------ points
+
+
+def _add_points(
+    writer: EntityWriter, points: Float64Array, texts: dict[str, AnyArray], *, labels: bool
+) -> None:
+    if len(points) == 0:
+        return
+    numbers, descriptions = (
+        _find_texts(texts, name, len(points)) for name in ("number", "description")
+    )
+    writer.add_points("POINTS", points, list(zip(numbers, descriptions, strict=True)))
+    if not labels:
+        return
+    width, depth = np.ptp(points[:, :2], axis=0).tolist()
+    distance = max(width, depth) / max(len(points), 1) ** 0.5 if max(width, depth) > 0 else 5.0
+    height = float(f"{distance * _SHARE:.2g}")
+    elevations = [f"{z:.2f}" for z in points[:, 2].tolist()]
+    columns = (("NUMBERS", numbers), ("ELEVATIONS", elevations), ("DESCRIPTIONS", descriptions))
+    for k, (name, shown) in enumerate(columns):
+        beside = np.array([height * 0.5, height * (0.5 - 1.5 * k), 0.0])
+        writer.add_texts(f"POINT_{name}", points + beside, shown, height)
+
+
+def _find_texts(texts: dict[str, AnyArray], name: str, count: int) -> list[str]:
+    if name not in texts:
+        return [""] * count
+    values = texts[name].tolist()
+    return ["" if one is None or one != one else str(one) for one in values]

@@ -64,7 +64,13 @@ def parse_rows(
         if found is not None and found.size == width * len(texts) and _is_in_range(found):
             return found.reshape(-1, width)
     for text, line in zip(texts, lines, strict=True):
-        _require_row(text, line, width, letter, what)
+        words = text.split()
+        for word in words:
+            _require_word(word, line, letter, what)
+        if len(words) != width:
+            shown = _shorten(" ".join(words))
+            has = counted(len(words), "number")
+            raise fault(line, f"{what} has {has} ('{shown}'), not {width}")
     raise fault(lines[0], f"{what} cannot be read as {_NAMES[letter]}")
 
 
@@ -121,16 +127,6 @@ def _parse_plain(text: str, kind: type[np.generic]) -> AnyArray | None:
 def _is_in_range(found: AnyArray) -> bool:
     """Whether whole numbers are none that NumPy has clamped."""
     return found.dtype.kind == "f" or not len(found) or int(np.abs(found).max()) <= LARGEST_ID
-
-
-def _require_row(text: str, line: int, width: int, letter: str, what: str) -> None:
-    words = text.split()
-    for word in words:
-        _require_word(word, line, letter, what)
-    if len(words) != width:
-        shown = _shorten(" ".join(words))
-        has = counted(len(words), "number")
-        raise fault(line, f"{what} has {has} ('{shown}'), not {width}")
 
 
 def _require_word(word: str, line: int, letter: str, what: str) -> None:

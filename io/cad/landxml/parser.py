@@ -20,7 +20,6 @@ from .content import Content, Line, Surface
 from .numbers import fault, parse_list, parse_rows, parse_words
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
 __all__ = ["parse"]
@@ -81,12 +80,7 @@ class _Parser:
         self._groups: list[str] = []
         self._fed = 0
         self._batches = {"P": _Batch(), "F": _Batch()}
-        self._starts = self._list_starts()
-        self._ends = self._list_ends()
-        self._expat = self._make_parser()
-
-    def _list_starts(self) -> dict[str, Callable[[dict[str, str]], None]]:
-        return {
+        self._starts = {
             "P": self._start_point,
             "F": self._start_face,
             **dict.fromkeys(_LIST_WIDTHS, self._start_list),
@@ -104,13 +98,7 @@ class _Parser:
             "RetWall": self._start_wall,
             **{name: partial(self._count_other, what) for name, what in _OTHERS.items()},
         }
-
-    def _count_other(self, what: str, _: dict[str, str]) -> None:
-        """Count a thing that may have lines, and is not read."""
-        self.content.others[what] = self.content.others.get(what, 0) + 1
-
-    def _list_ends(self) -> dict[str, Callable[[], None]]:
-        return {
+        self._ends = {
             "P": self._end_point,
             "F": self._end_face,
             **dict.fromkeys(_LIST_WIDTHS, self._end_list),
@@ -120,6 +108,11 @@ class _Parser:
             "Chain": self._end_chain,
             "Surface": self._end_surface,
         }
+        self._expat = self._make_parser()
+
+    def _count_other(self, what: str, _: dict[str, str]) -> None:
+        """Count a thing that may have lines, and is not read."""
+        self.content.others[what] = self.content.others.get(what, 0) + 1
 
     def _make_parser(self) -> Any:
         parser = expat.ParserCreate()
@@ -171,29 +164,22 @@ class _Parser:
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         name = self._locals.get(tag)
         if name is None:
-            name = self._add_name(tag)
+            name = tag.rpartition(":")[2]
+            if name == "include" and tag != name:
+                raise fault(self._now, "it includes another file, and none is followed")
+            if len(self._locals) < _BATCH:
+                self._locals[tag] = name
         stack = self._stack
         stack.append(name)
         if len(stack) == 1:
-            self._require_root(name, attributes)
+            if name != "LandXML":
+                raise ReadError(f"{FILE} is no LandXML: its root element is '{name[:60]}'.")
+            self.content.version = attributes.get("version", "")
         elif len(stack) > _DEEPEST:
             raise fault(self._now, f"elements are nested more than {_DEEPEST} deep")
         handler = self._starts.get(name)
         if handler is not None:
             handler(attributes)
-
-    def _add_name(self, tag: str) -> str:
-        name = tag.rpartition(":")[2]
-        if name == "include" and tag != name:
-            raise fault(self._now, "it includes another file, and none is followed")
-        if len(self._locals) < _BATCH:
-            self._locals[tag] = name
-        return name
-
-    def _require_root(self, name: str, attributes: dict[str, str]) -> None:
-        if name != "LandXML":
-            raise ReadError(f"{FILE} is no LandXML: its root element is '{name[:60]}'.")
-        self.content.version = attributes.get("version", "")
 
     def _end(self, _: str) -> None:
         handler = self._ends.get(self._stack[-1])
@@ -282,7 +268,9 @@ class _Parser:
         if attributes:
             state = attributes.get("i", "0").strip()
             if state not in ("0", ""):
-                self._count_hidden(surface, state)
+                if state not in ("1", "true"):
+                    raise fault(self._now, f"a face has i='{state[:60]}', and 0 or 1 is allowed")
+                surface.n_hidden += 1
                 return
         surface.n_visible += 1
         if not surface.is_kept or surface.kind.lower() == "grid":
@@ -291,11 +279,6 @@ class _Parser:
         batch.lines.append(self._expat.CurrentLineNumber)
         surface.sides.append(self._parse_sides(attributes["b"]) if "b" in attributes else 0)
         self._open_text()
-
-    def _count_hidden(self, surface: Surface, state: str) -> None:
-        if state not in ("1", "true"):
-            raise fault(self._now, f"a face has i='{state[:60]}', and 0 or 1 is allowed")
-        surface.n_hidden += 1
 
     def _parse_sides(self, text: str) -> int:
         if text.strip() not in {str(k) for k in range(8)}:
@@ -390,7 +373,13 @@ class _Parser:
             return
         text, attributes, points = self._close_text(), self._attributes, self.content.points
         row = len(points)
-        points.coordinates.extend(self._parse_survey_point(text))
+        numbers = parse_words(text, self._now, what="a survey point")
+        if len(numbers) not in (0, 2, 3):
+            has = counted(len(numbers), "number")
+            raise fault(self._now, f"a survey point has {has}, not 2 or 3")
+        if not all(map(math.isfinite, numbers)):
+            raise fault(self._now, "a survey point has a number that is not finite")
+        points.coordinates.extend(numbers + [math.nan] * (3 - len(numbers)))
         points.names.append(attributes.get("name", "").strip())
         points.descriptions.append(attributes.get("desc", "").strip())
         points.codes.append(attributes.get("code", "").strip())
@@ -400,16 +389,6 @@ class _Parser:
             points.references[row] = attributes["pntRef"].strip()
         if attributes.get("DTMAttribute", "").strip().lower() in _NOT_FOR_SURFACE:
             points.excluded.add(row)
-
-    def _parse_survey_point(self, text: str) -> list[float]:
-        """Return northing, easting, elevation; NaN for an elevation, or all, that is not there."""
-        row = parse_words(text, self._now, what="a survey point")
-        if len(row) not in (0, 2, 3):
-            has = counted(len(row), "number")
-            raise fault(self._now, f"a survey point has {has}, not 2 or 3")
-        if not all(map(math.isfinite, row)):
-            raise fault(self._now, "a survey point has a number that is not finite")
-        return row + [math.nan] * (3 - len(row))
 
     # ------------------------------------------------------------------ reference
 

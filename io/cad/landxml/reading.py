@@ -11,7 +11,7 @@ from ....base.errors import OptionError, ReadError, choice
 from ....base.policies import DrawingContent, FacePolicy
 from ....base.sentences import FILE, counted, shown
 from ..drawing import Drawing
-from ..reference import Declared, Measures, choose_measures
+from ..reference import Declared, choose_measures
 from .content import Content, Surface
 from .parser import parse
 from .source import gather_points, gather_source
@@ -21,7 +21,6 @@ from .units import find_stated
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ....base.arrays import Float64Array
     from ....base.crs import CrsLike, UnitLike
     from ....tin import TIN, Survey
 
@@ -71,7 +70,12 @@ def read(
     """
     if content is not None:
         choice("content", content, DrawingContent)
-    wanted = _as_wanted(surface)
+    if surface is None or (isinstance(surface, int) and not isinstance(surface, bool)):
+        wanted = surface
+    elif isinstance(surface, str) and surface.strip():
+        wanted = surface.strip()
+    else:
+        raise OptionError("surface", surface, "the name of a surface, or its number from 1")
     declared = Declared.of(crs, unit, elevation_unit)
     found = parse(path, surface=wanted, points_only=content == "points")
     chosen = None if content == "points" else _choose_surface(found, wanted, content)
@@ -80,7 +84,32 @@ def read(
     if kind != "points" and chosen is None:
         has = "source data" if kind == "source" else "visible faces"
         raise ReadError(f"{FILE} has no surface with {has}.")
-    measures = _choose_measures(found, chosen, declared).noting(*notes, first=True)
+    if chosen is None:
+        rows = found.points.rows
+    else:
+        rows = np.concatenate(
+            [np.empty((0, 2))]
+            + [one[:, :2] for one in chosen.points]
+            + [part[:, :2] for line in chosen.lines for part in line.coordinates]
+        )
+        if not len(rows):
+            rows = found.points.rows
+    rows = rows[np.isfinite(rows[:, :2]).all(axis=1)]
+    sample = rows[:: max(1, len(rows) // _SAMPLE), [1, 0]]
+    stated, said = find_stated(found, sample=sample, is_crs_declared=declared.crs is not None)
+    system = stated.crs or declared.crs
+    units = (stated.unit, declared.unit, declared.elevation_unit)
+    if all(one is None for one in units) and (system is None or system.vertical_unit is None):
+        raise ReadError(
+            f"{FILE} does not say its units: declare that of the elevations, such as "
+            "`elevation_unit='m'` or `elevation_unit='US survey foot'`, or that of all lengths, "
+            "`unit='ft'`."
+        )
+    measures = (
+        choose_measures(stated, declared, sample=sample)
+        .noting(*said, first=True)
+        .noting(*notes, first=True)
+    )
     frame = Drawing(path=path, measures=measures, declared=declared, names_axes=True)
     if chosen is None:
         return gather_points(found.points, frame).to_survey()
@@ -88,14 +117,6 @@ def read(
         return gather_source(found, chosen, frame).to_survey()
     drawing = replace(frame, mesh=make_mesh(found, chosen), lines=list_edge_lines(chosen))
     return drawing.to_tin(faces).with_name(chosen.name)
-
-
-def _as_wanted(surface: str | int | None) -> str | int | None:
-    if surface is None or (isinstance(surface, int) and not isinstance(surface, bool)):
-        return surface
-    if isinstance(surface, str) and surface.strip():
-        return surface.strip()
-    raise OptionError("surface", surface, "the name of a surface, or its number from 1")
 
 
 # ------------------------------------------------------------------ what is read
@@ -165,7 +186,6 @@ def _has_own_points(surface: Surface) -> bool:
 
 
 def _describe_rest(found: Content, chosen: Surface | None, kind: str) -> list[str]:
-    """Tell what else there is, and is not read."""
     notes = []
     others = [one for one in found.surfaces if one is not chosen]
     if kind != "points" and others:
@@ -183,36 +203,3 @@ def _describe_rest(found: Content, chosen: Surface | None, kind: str) -> list[st
     if kind == "source" and chosen is not None and not chosen.n_visible:
         notes.append("There are no visible faces: the source data were read.")
     return notes
-
-
-# ------------------------------------------------------------------ reference
-
-
-def _choose_measures(found: Content, chosen: Surface | None, declared: Declared) -> Measures:
-    sample = _take_sample(found, chosen)
-    stated, notes = find_stated(found, sample=sample, is_crs_declared=declared.crs is not None)
-    system = stated.crs or declared.crs
-    units = (stated.unit, declared.unit, declared.elevation_unit)
-    if all(one is None for one in units) and (system is None or system.vertical_unit is None):
-        raise ReadError(
-            f"{FILE} does not say its units: declare that of the elevations, such as "
-            "`elevation_unit='m'` or `elevation_unit='US survey foot'`, or that of all lengths, "
-            "`unit='ft'`."
-        )
-    return choose_measures(stated, declared, sample=sample).noting(*notes, first=True)
-
-
-def _take_sample(found: Content, chosen: Surface | None) -> Float64Array:
-    """Return easting and northing of some points, spread over all."""
-    if chosen is None:
-        rows = found.points.rows
-    else:
-        rows = np.concatenate(
-            [np.empty((0, 2))]
-            + [one[:, :2] for one in chosen.points]
-            + [part[:, :2] for line in chosen.lines for part in line.coordinates]
-        )
-        if not len(rows):
-            rows = found.points.rows
-    rows = rows[np.isfinite(rows[:, :2]).all(axis=1)]
-    return rows[:: max(1, len(rows) // _SAMPLE), [1, 0]]

@@ -71,7 +71,6 @@ def _describe_states(points: Points, kept: Int64Array) -> list[str]:
 
 
 def _select_points(points: Points) -> tuple[Int64Array, dict[str, int]]:
-    """Return the rows of points for a surface, and how many others there are."""
     is_kept = np.asarray(np.isfinite(points.rows).all(axis=1))
     counts = {"references to other points": len(points.references)}
     counts["points without elevation"] = int((~is_kept).sum()) - len(points.references)
@@ -107,7 +106,28 @@ def gather_source(found: Content, surface: Surface, frame: Drawing) -> Drawing:
     if not surface.has_source:
         raise ReadError(f"surface {surface.label} has no source data.")
     own = [part for one in surface.lines if one.element == "DataPoints" for part in one.coordinates]
-    notes = _describe_parts_left_out(surface)
+    notes = []
+    if surface.point_files:
+        notes.append(f"{describe_point_files(surface)} Their points are missing.")
+    if surface.n_walls:
+        notes.append(f"{counted(surface.n_walls, 'retaining wall')} left out.")
+    soft = sum(line.attributes.get("brkType") in NO_ELEVATIONS for line in surface.lines)
+    if soft:
+        notes.append(
+            f"{counted(soft, 'breakline')} of type proximity or nondestructive draped on the "
+            "surface: their own elevations do not count."
+        )
+    notes += _describe_foreign_boundaries(surface)
+    trimmed = sum(
+        line.attributes.get("edgeTrim", "true").strip().lower() in ("false", "0")
+        for line in surface.lines
+        if line.element == "Boundary" and find_boundary_kind(line)
+    )
+    if trimmed:
+        notes.append(
+            f"{counted(trimmed, 'boundary', 'boundaries')} without edgeTrim taken as exact edges "
+            "of the surface."
+        )
     points = [_turn(part, one="DataPoints") for part in own]
     attributes: dict[str, AnyArray] = {}
     if not points and not any(one.element == "Contour" for one in surface.lines):
@@ -128,7 +148,6 @@ def gather_source(found: Content, surface: Surface, frame: Drawing) -> Drawing:
 
 
 def _describe_line(line: content.Line, rows: Float64Array) -> Line:
-    """Return a line as every drawing has it."""
     kind, place = line.properties.get(KIND, ""), ""
     if line.element == "Boundary":
         kind, place = _RINGS[find_boundary_kind(line)], f"the boundary of line {line.line}"
@@ -187,32 +206,6 @@ def _resolve_chains(found: Content, surface: Surface) -> list[tuple[content.Line
         rows = rows if np.isfinite(rows).all() else rows[:, :2]
         lines.append((content.Line("Breakline", attributes, number), rows))
     return lines
-
-
-def _describe_parts_left_out(surface: Surface) -> list[str]:
-    notes = []
-    if surface.point_files:
-        notes.append(f"{describe_point_files(surface)} Their points are missing.")
-    if surface.n_walls:
-        notes.append(f"{counted(surface.n_walls, 'retaining wall')} left out.")
-    soft = sum(line.attributes.get("brkType") in NO_ELEVATIONS for line in surface.lines)
-    if soft:
-        notes.append(
-            f"{counted(soft, 'breakline')} of type proximity or nondestructive draped on the "
-            "surface: their own elevations do not count."
-        )
-    notes += _describe_foreign_boundaries(surface)
-    trimmed = sum(
-        line.attributes.get("edgeTrim", "true").strip().lower() in ("false", "0")
-        for line in surface.lines
-        if line.element == "Boundary" and find_boundary_kind(line)
-    )
-    if trimmed:
-        notes.append(
-            f"{counted(trimmed, 'boundary', 'boundaries')} without edgeTrim taken as exact edges "
-            "of the surface."
-        )
-    return notes
 
 
 def _describe_foreign_boundaries(surface: Surface) -> list[str]:

@@ -13,7 +13,7 @@ from ..surfaces import Line, Mesh
 from .content import KIND, LINE, SOURCE
 
 if TYPE_CHECKING:
-    from ....base.arrays import BoolArray, Float64Array, Int64Array
+    from ....base.arrays import Float64Array, Int64Array
     from . import content
     from .content import Content, Surface
 
@@ -53,31 +53,11 @@ def make_mesh(found: Content, surface: Surface) -> Mesh:
     if not surface.faces:
         hidden = f", but {counted(surface.n_hidden, 'invisible one')}" if surface.n_hidden else ""
         raise ReadError(f"surface {surface.label} has no visible faces{hidden}.")
-    ids, points = np.concatenate(surface.ids or [np.empty(0, np.int64)]), _gather_points(surface)
+    ids = np.concatenate(surface.ids or [np.empty(0, np.int64)])
+    points = np.concatenate(surface.points or [np.empty((0, 3))])
     if surface.references:
         points = resolve_references(points, surface.references, found)
     faces = np.concatenate(surface.faces)
-    triangles = _find_points(ids, points, faces, surface)
-    notes = [f"Skipped: {counted(surface.n_hidden, 'invisible face')}."] * bool(surface.n_hidden)
-    if surface.point_files:
-        notes.append(describe_point_files(surface))
-    return Mesh(points[:, [1, 0, 2]], triangles, _find_flags(surface), notes)
-
-
-def _gather_points(surface: Surface) -> Float64Array:
-    return np.concatenate(surface.points) if surface.points else np.empty((0, 3))
-
-
-def describe_point_files(surface: Surface) -> str:
-    """Name the files that hold points of the source data."""
-    names = ", ".join(f"'{name[:60]}'" for name in surface.point_files[:5])
-    return f"Its source data name point files, which are not read: {names}."
-
-
-def _find_points(
-    ids: Int64Array, points: Float64Array, faces: Int64Array, surface: Surface
-) -> Int64Array:
-    """Return the row of each point that a face names."""
     order = np.argsort(ids, kind="stable")
     ordered = ids[order]
     _require_unique(ordered, points[order], surface)
@@ -91,7 +71,23 @@ def _find_points(
             f"{faces[row, corner]}, and there is no point with this id."
         )
     triangles: Int64Array = order[at]
-    return triangles
+    notes = [f"Skipped: {counted(surface.n_hidden, 'invisible face')}."] * bool(surface.n_hidden)
+    if surface.point_files:
+        notes.append(describe_point_files(surface))
+    sides = np.frombuffer(surface.sides, np.uint8)
+    if not sides.any():
+        flags = None
+    else:
+        flags = np.zeros((len(sides), 3), np.bool_)
+        for side, corner in enumerate(_OPPOSITE):
+            flags[:, corner] = sides >> side & 1 == 1
+    return Mesh(points[:, [1, 0, 2]], triangles, flags, notes)
+
+
+def describe_point_files(surface: Surface) -> str:
+    """Name the files that hold points of the source data."""
+    names = ", ".join(f"'{name[:60]}'" for name in surface.point_files[:5])
+    return f"Its source data name point files, which are not read: {names}."
 
 
 def _require_unique(ids: Int64Array, points: Float64Array, surface: Surface) -> None:
@@ -103,16 +99,6 @@ def _require_unique(ids: Int64Array, points: Float64Array, surface: Surface) -> 
         raise ReadError(
             f"in surface {surface.label} the id {ids[1:][np.argmax(differ)]} stands for two points."
         )
-
-
-def _find_flags(surface: Surface) -> BoolArray | None:
-    sides = np.frombuffer(surface.sides, np.uint8)
-    if not sides.any():
-        return None
-    flags = np.zeros((len(sides), 3), np.bool_)
-    for side, corner in enumerate(_OPPOSITE):
-        flags[:, corner] = sides >> side & 1 == 1
-    return flags
 
 
 def resolve_references(
@@ -140,7 +126,14 @@ def list_edge_lines(surface: Surface) -> list[Line]:
     """Return the breaklines and boundaries that may run along edges, in their order of old."""
     found = []
     for line in surface.lines:
-        kind = _find_kind(line)
+        own = line.properties.get(KIND, "")
+        if line.element == "Breakline":
+            if own in get_args(LineKind):
+                kind = next(kind for kind in get_args(LineKind) if kind == own)
+            else:
+                kind = None if line.attributes.get("brkType") in NO_ELEVATIONS else "hard"
+        else:
+            kind = _KINDS.get(find_boundary_kind(line)) if line.element == "Boundary" else None
         number, source = (_find_number(line, name) for name in (LINE, SOURCE))
         for part in line.coordinates:
             if kind is not None and len(part) > 1:
@@ -155,20 +148,8 @@ def _find_number(line: content.Line, name: str) -> int | None:
 
 
 def _close(line: content.Line, part: Float64Array) -> Float64Array:
-    """Return the ring of a boundary with its first point at the end too."""
     is_open = line.element == "Boundary" and (part[0, :2] != part[-1, :2]).any()
     return np.concatenate([part, part[:1]]) if is_open else part
-
-
-def _find_kind(line: content.Line) -> LineKind | None:
-    own = line.properties.get(KIND, "")
-    if line.element == "Breakline":
-        if own in get_args(LineKind):
-            return next(kind for kind in get_args(LineKind) if kind == own)
-        return None if line.attributes.get("brkType") in NO_ELEVATIONS else "hard"
-    if line.element == "Boundary":
-        return _KINDS.get(find_boundary_kind(line))
-    return None
 
 
 def find_boundary_kind(line: content.Line) -> str:

@@ -106,7 +106,9 @@ def _find_crs(
 ) -> tuple[CRS | None, list[str]]:
     system = content.system
     code, wkt = system.get("epsgCode", "").strip(), system.get("ogcWktCode", "").strip()
-    by_code, by_wkt = _parse_code(code), _parse_crs(wkt)
+    digits = code.upper().removeprefix("EPSG").lstrip(": ")
+    is_code = digits.replace("+", "").isdecimal()
+    by_code, by_wkt = _parse_crs(f"EPSG:{digits}" if is_code else ""), _parse_crs(wkt)
     notes = [
         f"The {name} {shown(text)} of its CoordinateSystem is none that PROJ knows."
         for name, text, found in (("epsgCode", code, by_code), ("ogcWktCode", wkt, by_wkt))
@@ -124,11 +126,6 @@ def _find_crs(
     return found, notes
 
 
-def _parse_code(code: str) -> CRS | None:
-    digits = code.upper().removeprefix("EPSG").lstrip(": ")
-    return _parse_crs(f"EPSG:{digits}") if digits.replace("+", "").isdecimal() else None
-
-
 def _parse_crs(text: str) -> CRS | None:
     try:
         return CRS.of(text or None)
@@ -137,7 +134,6 @@ def _parse_crs(text: str) -> CRS | None:
 
 
 def _find_named(system: dict[str, str]) -> CRS | None:
-    """Return the CRS that has exactly the name given."""
     for name in _NAMES_OF_SYSTEMS:
         text = " ".join(system.get(name, "").split())
         found = _parse_crs(text) if 3 < len(text) < 200 else None

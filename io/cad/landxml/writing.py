@@ -8,6 +8,7 @@ that the unit of elevations is not known, stands in elements ``Feature``, as the
 from __future__ import annotations
 
 from typing import IO, TYPE_CHECKING
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -19,10 +20,8 @@ from ....base.results import Features
 from ....base.sentences import FILE
 from ....tin import TIN, Surface, Survey
 from ...registry.losses import select_attributes, warn_of_unknown_elevations
-from ..drawing import scale_elevations
-from ..lengths import choose_length_unit
-from .content import ELEVATION_UNIT, FEATURE, UNKNOWN
-from .lines import format_source, quote
+from ..drawing import choose_length_unit, list_lines, scale_elevations
+from .content import ELEVATION_UNIT, FEATURE, KIND, LINE, PRIORITY, SOURCE, UNKNOWN
 from .units import name_unit
 
 if TYPE_CHECKING:
@@ -31,6 +30,7 @@ if TYPE_CHECKING:
     from ....base.arrays import Float64Array
     from ....base.crs import Unit, UnitLike
     from ....base.progress import Tell
+    from ....tin import TIN, Survey
 
 __all__ = ["write"]
 
@@ -107,31 +107,23 @@ def write(
         file.write(_ROOT)
         _write_reference(file, obj, along)
         file.write('<Application name="tinsmith"/>\n')
-        _write_content(file, obj, name.strip(), texts, factor, progress)
+        surface = name.strip()
+        is_lines = isinstance(obj, Features) and obj.kind != "points"
+        points = scale_elevations(
+            obj.coordinates if isinstance(obj, Features) else obj.points, factor
+        )
+        if not isinstance(obj, Surface) and not is_lines:
+            _write_points(file, points, texts)
+        source = "" if isinstance(obj, Features) and not is_lines else format_source(obj, factor)
+        if source or isinstance(obj, Surface):
+            file.write(f"<Surfaces>\n<Surface name={quote(surface)}>\n{source}")
+            if isinstance(obj, Surface):
+                _write_definition(file, obj, points, progress)
+            file.write("</Surface>\n</Surfaces>\n")
         file.write("</LandXML>\n")
     if progress is not None:
         progress(1.0)
     warn_of_unknown_elevations(obj)
-
-
-def _write_content(
-    file: IO[str],
-    obj: TIN | Survey | Features,
-    surface: str,
-    texts: dict[str, list[str]],
-    factor: float,
-    progress: Tell | None,
-) -> None:
-    is_lines = isinstance(obj, Features) and obj.kind != "points"
-    points = scale_elevations(obj.coordinates if isinstance(obj, Features) else obj.points, factor)
-    if not isinstance(obj, Surface) and not is_lines:
-        _write_points(file, points, texts)
-    source = "" if isinstance(obj, Features) and not is_lines else format_source(obj, factor)
-    if source or isinstance(obj, Surface):
-        file.write(f"<Surfaces>\n<Surface name={quote(surface)}>\n{source}")
-        if isinstance(obj, Surface):
-            _write_definition(file, obj, points, progress)
-        file.write("</Surface>\n</Surfaces>\n")
 
 
 def _require_lines(obj: TIN | Survey | Features) -> None:
@@ -154,7 +146,13 @@ def _write_reference(file: IO[str], obj: TIN | Survey | Features, unit: Unit | N
         file.write(f"<Units>\n<{system} {units} {_ANGLES}/>\n</Units>\n")
     if obj.crs is None:
         return
-    file.write(f"<CoordinateSystem {_describe_crs(obj.crs)}")
+    crs = obj.crs
+    words = [f"name={quote(crs.name)} desc={quote(crs.name)}"]
+    code = crs.horizontal.to_epsg()
+    if code is not None:
+        words.append(f'epsgCode="{code}"')
+    words.append(f"ogcWktCode={quote(_choose_wkt(crs))}")
+    file.write(f"<CoordinateSystem {' '.join(words)}")
     if obj.elevation_unit is not None:
         file.write("/>\n")
         return
@@ -162,15 +160,6 @@ def _write_reference(file: IO[str], obj: TIN | Survey | Features, unit: Unit | N
         f'>\n<Feature name="{FEATURE}">\n<Property label="{ELEVATION_UNIT}" value="{UNKNOWN}"/>\n'
         "</Feature>\n</CoordinateSystem>\n"
     )
-
-
-def _describe_crs(crs: CRS) -> str:
-    words = [f"name={quote(crs.name)} desc={quote(crs.name)}"]
-    code = crs.horizontal.to_epsg()
-    if code is not None:
-        words.append(f'epsgCode="{code}"')
-    words.append(f"ogcWktCode={quote(_choose_wkt(crs))}")
-    return " ".join(words)
 
 
 def _choose_wkt(crs: CRS) -> str:
@@ -265,7 +254,10 @@ def _select_texts(obj: TIN | Survey | Features) -> dict[str, list[str]]:
         ("number", *_TEXTS.values()),
         "LandXML has the number, the description and the code of a point",
     )
-    texts = {name: [_as_text(one) for one in values.tolist()] for name, values in held.items()}
+    texts = {
+        name: [("" if one is None or one != one else str(one).strip()) for one in values.tolist()]
+        for name, values in held.items()
+    }
     numbers = texts.get("number", [])
     if not all(numbers) or len(set(numbers)) < len(numbers):
         warn(
@@ -276,5 +268,76 @@ def _select_texts(obj: TIN | Survey | Features) -> dict[str, list[str]]:
     return texts
 
 
-def _as_text(value: object) -> str:
-    return "" if value is None or value != value else str(value).strip()
+_BOUNDARIES = {"boundary": ("outer", "void"), "hole": ("void", "island")}
+"""Of the outer ring of a polygon, and of those in it."""
+
+
+def quote(text: str) -> str:
+    """Return a text as the value of an attribute, without letters that XML does not have."""
+    plain = "".join(one if one.isprintable() else " " for one in text)
+    return quoteattr(plain.encode("utf-8", "replace").decode("utf-8"))
+
+
+def format_source(obj: TIN | Survey | Features, factor: float) -> str:
+    """Return lines as the source data of a surface; empty if there are none.
+
+    Lines of features that have one elevation are contours. A feature of each line of a TIN tells
+    which it is, so that a reader that knows it restores their order.
+    """
+    found: dict[str, list[str]] = {"Boundaries": [], "Breaklines": [], "Contours": []}
+    seen = set()
+    for number, line in enumerate(list_lines(obj, factor)):
+        rows, extra = line.coordinates, {} if line.kind == "hard" else {KIND: line.kind}
+        if isinstance(obj, Surface):
+            extra |= {LINE: str(number), SOURCE: str(line.source)}
+        elif line.priority:
+            extra[PRIORITY] = str(line.priority)
+        if line.kind in _BOUNDARIES and (rows[0] == rows[-1]).all():
+            extra.pop(KIND)
+            kind = _BOUNDARIES[line.kind][line.polygon is not None and line[1:] in seen]
+            seen.add(line[1:])
+            found["Boundaries"].append(_format_boundary(rows, kind, line.name, extra))
+        elif isinstance(obj, Features) and rows.shape[1] == 3 and np.ptp(rows[:, 2]) == 0:
+            found["Contours"].append(_format_contour(rows))
+        elif line.kind != "erase":
+            found["Breaklines"].append(_format_breakline(rows, line.name, extra))
+    parts = [f"<{name}>\n{''.join(part)}</{name}>\n" for name, part in found.items() if part]
+    return f"<SourceData>\n{''.join(parts)}</SourceData>\n" if parts else ""
+
+
+def _format_breakline(rows: Float64Array, name: str, extra: dict[str, str]) -> str:
+    brk = "nondestructive" if rows.shape[1] == 2 else "standard"
+    named = f" name={quote(name)}" if name else ""
+    return (
+        f'<Breakline brkType="{brk}"{named}>\n{_format_list(rows)}{_format_feature(extra)}'
+        "</Breakline>\n"
+    )
+
+
+def _format_boundary(rows: Float64Array, kind: str, name: str, extra: dict[str, str]) -> str:
+    if (rows[0, :2] != rows[-1, :2]).any():
+        rows = np.concatenate([rows, rows[:1]])
+    named = f" name={quote(name)}" if name else ""
+    return (
+        f'<Boundary bndType="{kind}" edgeTrim="true"{named}>\n{_format_list(rows)}'
+        f"{_format_feature(extra)}</Boundary>\n"
+    )
+
+
+def _format_contour(rows: Float64Array) -> str:
+    return f'<Contour elev="{float(rows[0, 2])!r}">\n{_format_list(rows[:, :2])}</Contour>\n'
+
+
+def _format_list(rows: Float64Array) -> str:
+    ordered = rows[:, [1, 0, *range(2, rows.shape[1])]].ravel().tolist()
+    tag = f"PntList{rows.shape[1]}D"
+    return f"<{tag}>{' '.join(map(repr, ordered))}</{tag}>\n"
+
+
+def _format_feature(values: dict[str, str]) -> str:
+    if not values:
+        return ""
+    properties = "".join(
+        f'<Property label="{label}" value={quote(value)}/>\n' for label, value in values.items()
+    )
+    return f'<Feature name="{FEATURE}">\n{properties}</Feature>\n'
