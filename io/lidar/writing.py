@@ -17,7 +17,7 @@ from ...base.sentences import FILE, coordinate
 from ...tin import TIN, Survey
 from ..mesh.common import require_writable
 from ..registry.losses import warn_of_lost_attributes
-from ..reprojection.crs_kept import require_kept
+from ..reprojection.quality import require_kept
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

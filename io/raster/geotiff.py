@@ -17,7 +17,7 @@ from ...base.policies import OverviewMethod, RasterCompression
 from ...base.results.columns import UNKNOWN_UNIT, unit_text
 from ...base.sentences import FILE
 from ..registry.side_files import replacing_data_set
-from ..reprojection.crs_kept import require_kept
+from ..reprojection.quality import require_kept
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -107,7 +107,14 @@ def _find_fault_of_facts(one: Format) -> str:
     ):
         if not isinstance(words, tuple) or not {*map(str, words)} <= {*allowed}:
             return f"{what} is {words!r}, and each must be one of {', '.join(allowed)}"
-    if not _are_ends(one.side_files):
+    if not (
+        isinstance(one.side_files, Mapping)
+        and all(
+            isinstance(ends, tuple)
+            and all(isinstance(end, str) and end[:1] in (".", "*") for end in ends)
+            for ends in one.side_files.values()
+        )
+    ):
         return f"its side files {one.side_files!r} are no mapping of suffixes to ends of names"
     if one.find_sources is not None and not callable(one.find_sources):
         return f"{one.find_sources!r} finds no sources: it is no function"
@@ -118,20 +125,11 @@ def _find_fault_of_facts(one: Format) -> str:
     return ""
 
 
-def _are_ends(value: object) -> bool:
-    return isinstance(value, Mapping) and all(
-        isinstance(ends, tuple)
-        and all(isinstance(end, str) and end[:1] in (".", "*") for end in ends)
-        for ends in value.values()
-    )
-
-
 def _is_nonnegative(value: object) -> bool:
     return isinstance(value, int | float) and value >= 0
 
 
 def _find_clash(added: Format, known: Iterable[Format]) -> str:
-    """Return which format has the name already, as its own or as a suffix."""
     for one in known:
         if added.name == one.name:
             return f"the name '{added.name}' is that of a format of {one.distribution}"

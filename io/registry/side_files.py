@@ -109,7 +109,6 @@ def replacing_data_set(path: Path, name: str) -> Iterator[Path]:
 
 
 def _find_owner(there: Path, target: Path) -> Path | None:
-    """Return another file that a side file belongs to."""
     for other in sorted(there.parent.iterdir()):
         is_like = there.name.startswith(other.stem) and other not in (there, target)
         if is_like and other.is_file() and there in _list_beside(other, _list_readers(other)):

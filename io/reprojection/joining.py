@@ -65,6 +65,13 @@ def join_surveys(surveys: Sequence[Survey], names: Sequence[str]) -> Survey:
     for one in scaled:
         for what, count in one.skipped.items():
             skipped[what] = skipped.get(what, 0) + count
+    starts = np.cumsum([0, *counts]).tolist()
+    of_all = set(scaled[0].notes).intersection(*(one.notes for one in scaled))
+    own = [
+        note if note in of_all else f"'{name}': {note}"
+        for one, name in zip(scaled, names, strict=True)
+        for note in one.notes
+    ]
     return Survey(
         points=points,
         attributes=columns,
@@ -79,12 +86,16 @@ def join_surveys(surveys: Sequence[Survey], names: Sequence[str]) -> Survey:
             for what, lines in one.skipped_lines.items()
         },
         notes=[
-            *_join_notes(scaled, names),
+            *list(dict.fromkeys(own)),
             *notes,
             *_describe_shared_places(points, counts, names),
             *_describe_shared_numbers(scaled, names),
         ],
-        findings=_join_findings(scaled, counts),
+        findings=[
+            finding._replace(rows=tuple(row + start for row in finding.rows))
+            for one, start in zip(scaled, starts, strict=False)
+            for finding in one.findings
+        ],
         row_sources=RowSources.join([one.row_sources for one in scaled], names, counts),
         **{kind: [line for one in scaled for line in getattr(one, kind)] for kind in _LINES},
     )
@@ -137,30 +148,9 @@ def _name_crs(crs: CRS | None) -> str:
     return "none is known" if crs is None else crs.label
 
 
-def _join_notes(surveys: Sequence[Survey], names: Sequence[str]) -> list[str]:
-    """Return the notes of each, with its name unless all have them."""
-    of_all = set(surveys[0].notes).intersection(*(one.notes for one in surveys))
-    own = [
-        note if note in of_all else f"'{name}': {note}"
-        for one, name in zip(surveys, names, strict=True)
-        for note in one.notes
-    ]
-    return list(dict.fromkeys(own))
-
-
-def _join_findings(surveys: Sequence[Survey], counts: Sequence[int]) -> list[Any]:
-    starts = np.cumsum([0, *counts]).tolist()
-    return [
-        finding._replace(rows=tuple(row + start for row in finding.rows))
-        for one, start in zip(surveys, starts, strict=False)
-        for finding in one.findings
-    ]
-
-
 def _describe_shared_places(
     points: Float64Array, counts: Sequence[int], names: Sequence[str]
 ) -> list[str]:
-    """Tell of points that stand where a point of an earlier file does."""
     order = np.lexsort((points[:, 1], points[:, 0]))  # rows of one place in their own order
     sorted_xy = points[order, :2]
     is_new = np.append(True, (sorted_xy[1:] != sorted_xy[:-1]).any(axis=1))
@@ -184,7 +174,6 @@ def _describe_shared_places(
 
 
 def _describe_shared_numbers(surveys: Sequence[Survey], names: Sequence[str]) -> list[str]:
-    """Tell of point numbers that several files use."""
     seen: dict[Any, int] = {}
     shared: dict[Any, tuple[int, int]] = {}
     for place, one in enumerate(surveys):

@@ -1,4 +1,4 @@
-"""How good a transformation is that PROJ can do here, and whether a better one lacks its grids."""
+"""How good a transformation is that PROJ can do here, and whether a file kept its CRS."""
 
 from __future__ import annotations
 
@@ -6,10 +6,15 @@ import warnings
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ...base.crs import CRS
+from ...base.errors import CrsError, WriteError
+from ...base.notes import warn
+from ...base.sentences import FILE
+
 if TYPE_CHECKING:
     from ...base.crs import CRS
 
-__all__ = ["Quality", "describe_missing_grids", "judge"]
+__all__ = ["Quality", "describe_missing_grids", "judge", "require_kept"]
 
 _MOST_NAMES = 2
 
@@ -79,3 +84,45 @@ def _name_missing(source: CRS, target: CRS) -> str:
         if not grid.available
     )
     return f" ({', '.join(grids)})" if grids else ""
+
+
+def require_kept(crs: CRS | None, found: str | None) -> None:
+    """Compare a CRS with the one that was read back.
+
+    Parameters
+    ----------
+    crs : CRS or None
+        As it was written.
+    found : str or None
+        WKT as GDAL reads it back.
+
+    Raises
+    ------
+    WriteError
+        If a unit has changed, or nothing is left of the CRS.
+
+    Warns
+    -----
+    LossWarning
+        If it is another CRS with the same units.
+    """
+    if crs is None:
+        return
+    try:
+        kept = CRS.of(found or None)
+    except CrsError:
+        kept = None
+    if kept is None or _find_units(kept) != _find_units(crs):
+        raise WriteError(
+            f"Cannot write {FILE}: the format does not keep the CRS {crs.label}, it would be "
+            f"{'none' if kept is None else kept.name}; name its horizontal part alone.",
+        )
+    if not kept.to_pyproj().equals(crs.to_pyproj(), ignore_axis_order=True):
+        warn(
+            f"{FILE} has the CRS as the format can describe it, '{kept.name}', which PROJ does "
+            f"not take for the same as {crs.label}."
+        )
+
+
+def _find_units(crs: CRS) -> tuple[object, object]:
+    return crs.horizontal_unit, crs.vertical_unit

@@ -86,7 +86,16 @@ def reproject(
     if not isinstance(surface, Surface | Survey):
         raise OptionError("surface", surface, "a TIN or a Survey")
     source, target = surface.crs, CRS.of(crs)
-    unit = _settle_unit(surface, Unit.of(elevation_unit))
+    declared = Unit.of(elevation_unit)
+    own = surface.elevation_unit
+    if own is not None and declared is not None and own != declared:
+        raise OptionError(
+            "elevation_unit",
+            declared.name,
+            f"{own.name}, as the points have",
+            what="unit of elevations",
+        )
+    unit = own or declared
     if source is None or target is None:
         raise CrsError(
             "The CRS of these points is not known, so they cannot be reprojected: declare it first."
@@ -97,29 +106,13 @@ def reproject(
         raise CrsError(
             f"{target.label} measures in degrees, and a TIN needs a projected CRS.", crs=target
         )
-    return _move_tin(surface, source, target, unit)
-
-
-def _settle_unit(surface: TIN | Survey, declared: Unit | None) -> Unit | None:
-    own = surface.elevation_unit
-    if own is not None and declared is not None and own != declared:
-        raise OptionError(
-            "elevation_unit",
-            declared.name,
-            f"{own.name}, as the points have",
-            what="unit of elevations",
-        )
-    return own or declared
-
-
-def _move_tin(tin: TIN, source: CRS, target: CRS, unit: Unit | None) -> TIN:
-    placed = reproject_points(tin.points, source, target, unit=unit)
+    placed = reproject_points(surface.points, source, target, unit=unit)
     along, across = source.horizontal_unit, target.horizontal_unit
 
     def move(points: Float64Array) -> Float64Array:
         return reproject_points(points, source, target, unit=unit).points
 
-    moved = tin.transform(
+    moved = surface.transform(
         move, crs=target, elevation_unit=placed.unit, length=find_conversion_factor(along, across)
     )
     if not placed.notes:

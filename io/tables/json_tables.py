@@ -30,7 +30,13 @@ def write(table: Table, path: Path, *, progress: Tell | None = None) -> None:
     and a text that is missing, is ``null``.
     """
     with replacing(path, binary=False) as file:
-        file.write(_format_head(table))
+        members: dict[str, Any] = {
+            "name": table.name,
+            "notes": list(table.notes),
+            "units": {name: unit_text(table.units, name) for name in table.units},
+        }
+        lines = [f"{json.dumps(name)}:{json.dumps(value)}" for name, value in members.items()]
+        file.write("{" + ",\n".join(lines) + ',\n"rows":[')
         separator = "\n"
         row = properties_template(list(table.columns))
         for start in range(0, len(table), _CHUNK_ROWS):
@@ -41,13 +47,3 @@ def write(table: Table, path: Path, *, progress: Tell | None = None) -> None:
             if progress is not None:
                 progress(min(1.0, (start + _CHUNK_ROWS) / len(table)))
         file.write("\n]}\n")
-
-
-def _format_head(table: Table) -> str:
-    members: dict[str, Any] = {
-        "name": table.name,
-        "notes": list(table.notes),
-        "units": {name: unit_text(table.units, name) for name in table.units},
-    }
-    lines = [f"{json.dumps(name)}:{json.dumps(value)}" for name, value in members.items()]
-    return "{" + ",\n".join(lines) + ',\n"rows":['

@@ -184,7 +184,6 @@ def _require_all(
 
 
 def _find_columns(features: Layer) -> dict[str, Float64Array]:
-    """Return the columns that hold elevations, by their names."""
     found = {}
     for name, column in features.columns.items():
         is_named = name.lower() in _NAMES or find_role(name) == "elevation"
@@ -239,7 +238,6 @@ def _require_same(
     name: str,
     rows: Int64Array,
 ) -> None:
-    """Refuse a column of elevations that differs from the geometry."""
     with np.errstate(invalid="ignore"):
         differs = np.abs(values - z) > _SAME
     if differs.any():

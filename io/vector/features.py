@@ -1,9 +1,17 @@
-"""Features of a vector file through GDAL: geometries, columns and CRS, or one clear sentence."""
+"""Features of a vector file through GDAL: geometries, columns and CRS, or one clear sentence.
+
+Those of DXF drawings come through the reader of drawings: blocks, arcs and elevations too. Members
+of a GeoJSON file are read of which GDAL does not tell: a CRS of ``null``, a unit of elevations.
+"""
 
 from __future__ import annotations
 
+import json
+import re
+import sqlite3
 import struct
-from typing import TYPE_CHECKING, Any
+from contextlib import closing
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,12 +20,12 @@ from ...base.crs import CRS
 from ...base.errors import OptionError, ReadError
 from ...base.sentences import FILE, counted
 from ...tin import TIN
+from ..cad.dxf.model_space import ModelSpace, read_model_space
+from ..cad.dxf.names import ELEVATION_PROPERTY, UNKNOWN
 from ..cad.signatures import is_dxf, is_landxml
 from ..isolated import choose_limits, run_isolated
 from ..isolated.spooling import open_ordinary_file, require_local, translate_system_errors
 from ..registry.signatures import HEAD_BYTES, find_reference_kind
-from .drawings import read_drawing_layer
-from .geojson.members import read_json_members
 from .layers import Layer, name_apart, name_columns
 from .signatures import is_parquet
 from .well_known_binary import replace_surfaces
@@ -25,7 +33,7 @@ from .well_known_binary import replace_surfaces
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...base.arrays import AnyArray, ObjectArray
+    from ...base.arrays import AnyArray, Int64Array, ObjectArray
     from ...base.crs import CRS
 
 
@@ -84,22 +92,29 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
     optional.require(library, "Reading vector files")
     head = read_json_members(content, path)
     child = "parquet_child" if is_parquet(content) else "gdal_child"
+    parts = [one for one in path.iterdir() if one.is_file()] if path.is_dir() else [path]
+    size = sum(one.stat().st_size for one in parts)
     value, arrays = run_isolated(
         f"{__package__}.{child}:read_features",
         {"path": str(path.absolute()), "layer": layer, "where": where},
         path=path,
-        limits=choose_limits(_measure_folder(path)),
+        limits=choose_limits(size),
     )
     if len(arrays["numbers"]) == 0:
         raise ReadError(f"{FILE} has no features{_describe_part(value['layer'], where)}.")
     crs = None if head.names_no_crs else CRS.of(value["crs"])
     in_metres = head.is_json and crs is not None and crs.is_geographic  # by RFC 7946
     unit = value["elevation_unit"] or head.elevation_unit or ("metre" if in_metres else "")
+    columns = {}
+    for k, name in enumerate(name_columns(value["names"])):
+        texts = value["texts"].get(str(k))
+        column = arrays[f"column {k}"] if texts is None else np.array(texts, object)
+        columns[name] = column
     found = Layer(
         path,
         arrays["numbers"],
         _parse_shapes(arrays, has_surfaces=not lines_only),
-        _decode_columns(value, arrays),
+        columns,
         crs,
         tuple(value.get("notes", ())),
         tuple(name_apart(value["names"])),
@@ -109,7 +124,6 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
 
 
 def _read_design(path: Path, layer: str | None, where: str | None) -> Layer:
-    """Read the lines of a LandXML file: contours and breaklines."""
     from ..cad.landxml.reading import read
 
     if where is not None:
@@ -157,23 +171,6 @@ def _drop_heights_above_ground(features: Layer) -> Layer:
         f"no elevations, by their altitudeMode {' and '.join(named)}, and are left out."
     )
     return features._replace(geometries=shapes, notes=(*features.notes, note))
-
-
-def _decode_columns(value: dict[str, Any], arrays: dict[str, AnyArray]) -> dict[str, AnyArray]:
-    """Return the columns by their names in lower case, see :func:`name_columns`."""
-    columns = {}
-    for k, name in enumerate(name_columns(value["names"])):
-        texts = value["texts"].get(str(k))
-        column = arrays[f"column {k}"] if texts is None else np.array(texts, object)
-        columns[name] = column
-    return columns
-
-
-def _measure_folder(path: Path) -> int:
-    """Return the bytes of a file, or of all files of a format that is a folder."""
-    if not path.is_dir():
-        return path.stat().st_size
-    return sum(file.stat().st_size for file in path.iterdir() if file.is_file())
 
 
 def _require_whole_file(path: Path) -> bytes:
@@ -238,7 +235,6 @@ def _parse_shapes(arrays: dict[str, AnyArray], *, has_surfaces: bool) -> ObjectA
 
 
 def _drop_without_geometry(features: Layer) -> Layer:
-    """Leave out the features that have no geometry, and note them."""
     shapely = optional.load("shapely")
     is_empty = shapely.is_missing(features.geometries) | shapely.is_empty(features.geometries)
     if not is_empty.any():
@@ -256,3 +252,154 @@ def _drop_without_geometry(features: Layer) -> Layer:
             f"'{features.path.name}': {count} {have} no geometry (first: {first}).",
         ),
     )
+
+
+_TAIL = 4096
+_NO_CRS = re.compile(rb'"crs"\s*:\s*null')
+_UNIT = re.compile(rb'"elevation_unit"\s*:\s*("(?:[^"\\\\]|\\\\.){0,200}")')
+_FEATURES = re.compile(rb'"features"\s*:')
+
+
+class Members(NamedTuple):
+    """What a file says beside its features."""
+
+    names_no_crs: bool = False
+    """Whether it says that its CRS is not known, by the rule of 2008."""
+    elevation_unit: str = ""
+    """Empty if it names none."""
+    is_json: bool = False
+
+
+def read_json_members(head: bytes, path: Path) -> Members:
+    """Look for members before and behind the features.
+
+    Parameters
+    ----------
+    head : bytes
+        The first bytes of the file; nothing is looked for in a file that is no JSON.
+    path : Path
+    """
+    if not head.lstrip(b"\xef\xbb\xbf\x1e \t\r\n").startswith(b"{"):
+        return Members()
+    found = _FEATURES.search(head)
+    around = head[: found.start()] if found else head
+    with path.open("rb") as file:
+        size = file.seek(0, 2)
+        file.seek(max(0, size - _TAIL))
+        tail = file.read().rpartition(b"]")[2]
+    around += b"," + tail
+    unit = _UNIT.search(around)
+    stated = _decode(unit.group(1)) if unit else ""
+    return Members(_NO_CRS.search(around) is not None, stated, True)
+
+
+def _decode(text: bytes) -> str:
+    try:
+        return str(json.loads(text))
+    except ValueError:
+        return ""
+
+
+_WHOLE = "entities"
+"""What GDAL calls the one layer that it takes a drawing for."""
+
+_MOST_STEPS = 1_000_000
+
+
+def read_drawing_layer(
+    path: Path, *, layer: str | None, where: str | None, lines_only: bool
+) -> Layer:
+    """Read the lines of a drawing, and its points unless they are not wanted.
+
+    Parameters
+    ----------
+    path : Path
+    layer : str, optional
+        Names or patterns of layers, with commas between.
+    where : str, optional
+        Condition on the columns ``layer``, ``name`` and ``kind``, as in SQL.
+    lines_only : bool
+
+    Returns
+    -------
+    Layer
+        With these columns; lines of plane entities without elevation have none.
+
+    Raises
+    ------
+    MissingExtraError
+        If ezdxf is not installed.
+    ReadError
+        If the file is damaged, there is nothing in it, or the condition is none.
+    """
+    try:
+        drawing = read_model_space(path, layer=None if layer == _WHOLE else layer)
+    except OptionError as error:
+        raise ReadError(
+            f"{FILE} has no layer '{layer}' with lines: there must be {error.allowed}."
+        ) from error
+    shapely = optional.load("shapely")
+    shapes = [shapely.LineString(rows) for rows in drawing.lines]
+    layers = drawing.arrays["line_layers"].tolist()
+    stated = drawing.value["line_names"] or [[]] * len(shapes)
+    stated = [[*one, "", ""][:2] for one in stated]
+    if not lines_only:
+        points = drawing.arrays["points"]
+        shapes += list(shapely.points(points)) if len(points) else []
+        layers += drawing.arrays["point_layers"].tolist()
+        stated += [["", ""]] * len(points)
+    columns = {
+        "layer": [drawing.value["layers"][k] for k in layers],
+        "name": [name for _, name in stated],
+        "kind": [kind if kind in ("hard", "soft") else "" for kind, _ in stated],
+    }
+    packed = np.empty(len(shapes), object)
+    packed[:] = shapes
+    shapes, columns = packed, {name: np.array(column, object) for name, column in columns.items()}
+    called, arrays = drawing.path.name, drawing.arrays
+    rest = [counted(len(arrays["faces"]), "face")] if len(arrays["faces"]) else []
+    if lines_only and len(arrays["points"]):
+        rest.append(counted(len(arrays["points"]), "point"))
+    notes = [f"'{called}': not read: {' and '.join(rest)}."] if rest else []
+    notes += [f"'{called}': {note}" for note in drawing.describe_left_out()]
+    unit = drawing.stated.unit
+    if unit is not None:
+        notes.append(f"'{called}': coordinates are taken as they are, $INSUNITS says {unit.name}.")
+    kept = np.arange(len(shapes)) if where is None else _select_rows(columns, where)
+    if len(kept) == 0:
+        part = f" where {where}" if where is not None else " that are lines" * lines_only
+        raise ReadError(f"{FILE} has no features{part}.")
+    return Layer(
+        path,
+        kept,
+        shapes[kept],
+        {name: column[kept] for name, column in columns.items()},
+        drawing.stated.crs,
+        tuple(notes),
+        elevation_unit=_find_elevation_unit(drawing),
+    )
+
+
+def _find_elevation_unit(drawing: ModelSpace) -> str:
+    crs, unit = drawing.stated.crs, drawing.stated.unit
+    if crs is None or unit is None or crs.horizontal_unit != unit:
+        return ""
+    return "" if dict(drawing.value["properties"]).get(ELEVATION_PROPERTY) == UNKNOWN else unit.text
+
+
+def _select_rows(columns: dict[str, AnyArray], where: str) -> Int64Array:
+    """Return the rows that a condition chooses, by SQLite on a table in memory."""
+    names = ", ".join(columns)
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    with closing(sqlite3.connect(":memory:")) as base:
+        base.execute(f"CREATE TABLE drawing ({names})")
+        marks = ", ".join("?" * len(columns))
+        base.executemany(f"INSERT INTO drawing VALUES ({marks})", rows)
+        base.set_progress_handler(lambda: 1, _MOST_STEPS * 100)
+        try:
+            found = base.execute(f"SELECT rowid FROM drawing WHERE ({where}) ORDER BY rowid")
+            return np.array([row[0] - 1 for row in found], np.int64)
+        except (sqlite3.Error, sqlite3.Warning) as error:
+            raise ReadError(
+                f"the condition {where!r} is none on the columns {names}: {error}."
+            ) from error

@@ -89,7 +89,10 @@ def read_features(path: str, *, layer: str | None, where: str | None) -> Answer:
     except (RuntimeError, ValueError, IndexError) as error:
         if isinstance(error, DataSourceError) and "not recognized" in str(error):
             raise Refusal(f"{FILE} is no vector file that GDAL knows.") from error
-        raise RuntimeError(_shorten_reason(error)) from error
+        text = " ".join(str(error).split("; ")[-1].split())
+        raise RuntimeError(
+            _GDAL_SOURCE.sub("", text).rstrip(".") or type(error).__name__
+        ) from error
     arrays = {"numbers": np.asarray(numbers, np.int64), **pack_geometries(geometries)}
     arrays |= {f"column {k}": column for k, column in enumerate(values) if is_numeric(column)}
     texts = {
@@ -98,7 +101,11 @@ def read_features(path: str, *, layer: str | None, where: str | None) -> Answer:
         if not is_numeric(column)
     }
     names = [str(name) for name in meta["fields"]]
-    crs = _take_crs(meta["crs"])
+    # Return the CRS of a layer; None for what GDAL makes of "undefined" in a GeoPackage. It
+    # gives the undefined Cartesian CRS (srs_id -1) the unit metre, of which the file says
+    # nothing.
+    crs = meta["crs"]
+    crs = None if crs is not None and _UNDEFINED_CARTESIAN.match(crs) else crs
     notes += _describe_missing_crs(path, crs)
     value = {"layer": chosen, "crs": crs, "names": names, "texts": texts, "notes": notes}
     return Answer(value | {"elevation_unit": metadata.get("elevation_unit")}, arrays)
@@ -140,16 +147,7 @@ def _is_misread(text: str) -> bool:
     return True
 
 
-def _take_crs(crs: str | None) -> str | None:
-    """Return the CRS of a layer; None for what GDAL makes of "undefined" in a GeoPackage.
-
-    It gives the undefined Cartesian CRS (srs_id -1) the unit metre, of which the file says nothing.
-    """
-    return None if crs is not None and _UNDEFINED_CARTESIAN.match(crs) else crs
-
-
 def _describe_missing_crs(path: str, crs: str | None) -> list[str]:
-    """Tell of a CRS beside a shapefile that GDAL does not understand."""
     if crs is not None or not path.lower().endswith(".shp"):
         return []
     for suffix in (".prj", ".PRJ"):
@@ -174,11 +172,6 @@ def _choose_layer(path: str, layer: str | None) -> str:
     if layer is not None and layer not in layers:
         raise Refusal(f"{FILE} has no layer '{layer}' with geometry: there is {', '.join(layers)}.")
     return layers[0] if layer is None else layer
-
-
-def _shorten_reason(error: Exception) -> str:
-    text = " ".join(str(error).split("; ")[-1].split())
-    return _GDAL_SOURCE.sub("", text).rstrip(".") or type(error).__name__
 
 
 def pack_geometries(geometries: Any) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from .parts import Wanted, crs_notes, move_to_crs
 if TYPE_CHECKING:
     import os
 
-    from ...base.arrays import Float64Array, ObjectArray
+    from ...base.arrays import ObjectArray
     from ...base.crs import CrsLike
     from .layers import Layer
 
@@ -84,7 +84,16 @@ def read_geometries(
             shapes, rows = shapely.get_parts(shapes, return_index=True)
             columns = {name: column[rows] for name, column in columns.items()}
         _, coordinates, levels = shapely.to_ragged_array(shapes)
-        _require_finite(coordinates)
+        wrong = ~np.isfinite(coordinates).all(axis=1)
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            are = inflect(
+                f"{counted(int(wrong.sum()), 'coordinate')} that [is|are]", int(wrong.sum())
+            )
+            raise ReadError(
+                f"{FILE} has {are} not finite (first: "
+                f"{tuple(coordinates[row].tolist())}): every coordinate must be a finite number."
+            )
         notes = [*read.notes, *crs_notes(read, wanted)]
         return Features(
             kind=kind,
@@ -108,14 +117,3 @@ def _find_kind(shapes: ObjectArray, read: Layer) -> Any:
             "a layer of points, of lines or of polygons is needed."
         )
     return kinds[0]
-
-
-def _require_finite(coordinates: Float64Array) -> None:
-    wrong = ~np.isfinite(coordinates).all(axis=1)
-    if wrong.any():
-        row = int(np.argmax(wrong))
-        are = inflect(f"{counted(int(wrong.sum()), 'coordinate')} that [is|are]", int(wrong.sum()))
-        raise ReadError(
-            f"{FILE} has {are} not finite (first: "
-            f"{tuple(coordinates[row].tolist())}): every coordinate must be a finite number."
-        )

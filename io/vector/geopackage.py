@@ -63,7 +63,13 @@ def write(
     and missing texts are NULL.
     """
     features = make_features(surface, None)
-    _require_free(features)
+    names = [name.casefold() for name in features.columns]
+    for name in features.columns:
+        if name.casefold() in _OWN_COLUMNS or names.count(name.casefold()) > 1:
+            why = "GeoPackage's own" if name.casefold() in _OWN_COLUMNS else "there twice"
+            raise WriteError(
+                f"Cannot write {FILE}: a column '{name}' is {why}, capitals aside: rename it."
+            )
     placing = Placing(as_flag("overwrite", overwrite), as_flag("append", append))
     if placing.append and placing.overwrite:
         raise OptionError("append", append, "False where overwrite is True")
@@ -80,20 +86,8 @@ def write(
 
 
 def _as_layer(layer: Any) -> str:
-    """Return the name of a layer, or refuse what is none."""
     if not isinstance(layer, str) or not layer.strip() or _RESERVED.match(layer):
         raise OptionError(
             "layer", layer, "a name that does not begin with gpkg_, rtree_ or sqlite_"
         )
     return layer
-
-
-def _require_free(features: Features) -> None:
-    """Refuse names that are taken."""
-    names = [name.casefold() for name in features.columns]
-    for name in features.columns:
-        if name.casefold() in _OWN_COLUMNS or names.count(name.casefold()) > 1:
-            why = "GeoPackage's own" if name.casefold() in _OWN_COLUMNS else "there twice"
-            raise WriteError(
-                f"Cannot write {FILE}: a column '{name}' is {why}, capitals aside: rename it."
-            )

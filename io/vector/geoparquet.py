@@ -64,24 +64,20 @@ def write(surface: Writable, path: Path, *, kind: FeatureKind | None = None) -> 
             f"Cannot write {FILE}: a column '{_GEOMETRY}' is GeoParquet's own: rename it."
         )
     columns = {name: _make_column(pyarrow, values) for name, values in features.columns.items()}
-    columns[_GEOMETRY] = _encode_column(pyarrow, features)
+    equal = encode_equal_shapes(features)
+    if equal is None or equal.nbytes > _MOST_BYTES:
+        columns[_GEOMETRY] = pyarrow.array(encode_geometries(features), pyarrow.binary())
+    else:
+        size = equal.dtype.itemsize
+        offsets = np.arange(0, equal.nbytes + 1, size, dtype=np.int32)
+        buffers = [None, pyarrow.py_buffer(offsets), pyarrow.py_buffer(equal.view(np.uint8))]
+        columns[_GEOMETRY] = pyarrow.Array.from_buffers(pyarrow.binary(), len(equal), buffers)
     table = pyarrow.table(columns)
     metadata = {"geo": json.dumps(_describe_geometry(features)), **describe(features)}
     with replacing_path(path) as new:
         parquet.write_table(
             table.replace_schema_metadata(metadata), new, row_group_size=_GROUP_ROWS
         )
-
-
-def _encode_column(pyarrow: Any, features: Features) -> Any:
-    """Return the geometries as a column of Arrow; those of equal shape without a copy."""
-    equal = encode_equal_shapes(features)
-    if equal is None or equal.nbytes > _MOST_BYTES:
-        return pyarrow.array(encode_geometries(features), pyarrow.binary())
-    size = equal.dtype.itemsize
-    offsets = np.arange(0, equal.nbytes + 1, size, dtype=np.int32)
-    buffers = [None, pyarrow.py_buffer(offsets), pyarrow.py_buffer(equal.view(np.uint8))]
-    return pyarrow.Array.from_buffers(pyarrow.binary(), len(equal), buffers)
 
 
 def _make_column(pyarrow: Any, values: AnyArray) -> Any:

@@ -17,7 +17,7 @@ from ...tin.topology import find_offsets
 from .surface_features import make_features
 
 if TYPE_CHECKING:
-    from ...base.arrays import AnyArray, Float64Array, Int64Array
+    from ...base.arrays import AnyArray
     from ...base.policies import FeatureKind
 
 __all__ = ["build_collection", "build_frame", "build_stream", "to_features"]
@@ -67,7 +67,18 @@ def to_features(surface: TIN | Survey | Voronoi, kind: FeatureKind | None = None
     if not isinstance(surface, Surface | Survey):
         raise OptionError("surface", surface, "a TIN, a Survey or a Voronoi diagram")
     if kind == "lines" and isinstance(surface, Surface) and not _has_lines(surface):
-        return _make_no_lines(surface)
+        texts, numbers = np.empty(0, object), np.empty(0, np.int64)
+        columns: dict[str, AnyArray] = {
+            "id": numbers, "kind": texts, "name": texts, "source": numbers
+        }  # fmt: skip
+        return Features.of_lines(
+            np.empty((0, 3)),
+            [0],
+            columns=columns,
+            crs=surface.crs,
+            elevation_unit=surface.elevation_unit,
+            name="lines",
+        )
     return make_features(surface, kind)
 
 
@@ -75,55 +86,31 @@ def _has_lines(tin: TIN) -> bool:
     return bool(len(tin.lines) or tin.constrained.any())
 
 
-def _make_no_lines(tin: TIN) -> Features:
-    texts, numbers = np.empty(0, object), np.empty(0, np.int64)
-    columns: dict[str, AnyArray] = {
-        "id": numbers, "kind": texts, "name": texts, "source": numbers
-    }  # fmt: skip
-    return Features.of_lines(
-        np.empty((0, 3)),
-        [0],
-        columns=columns,
-        crs=tin.crs,
-        elevation_unit=tin.elevation_unit,
-        name="lines",
-    )
-
-
 def _make_cells(diagram: Voronoi) -> Features:
     """Return cells as polygons, each ring closed; several parts only where there are some."""
     sizes = np.diff(diagram.part_offsets)
     starts = diagram.part_offsets[:-1]
-    closed = np.repeat(starts, sizes + 1) + _count_within(sizes + 1) % np.repeat(sizes, sizes + 1)
-    rings = find_offsets(sizes + 1)
+    lengths = sizes + 1
+    rings = find_offsets(lengths)
+    within = np.arange(rings[-1]) - np.repeat(rings[:-1], lengths)
+    closed = np.repeat(starts, lengths) + within % np.repeat(sizes, lengths)
     parts = find_offsets(np.bincount(diagram.cell_of_part, minlength=len(diagram)))
     vertices = np.flatnonzero(np.diff(parts))
     has_parts = len(vertices) < len(sizes)
+    areas = diagram.areas
+    if measure_angular_unit(diagram.crs) is not None:
+        of_parts = measure_ring_areas(diagram.crs, diagram.coords[closed], rings)
+        areas = np.bincount(diagram.cell_of_part, of_parts, len(diagram)).astype(np.float64)
     return Features.of_polygons(
         diagram.coords[closed],
         rings,
         np.arange(len(sizes) + 1),
         np.append(parts[vertices], len(sizes)) if has_parts else None,
-        columns={"vertex": vertices, "area": _measure_cells(diagram, closed, rings)[vertices]},
+        columns={"vertex": vertices, "area": areas[vertices]},
         units={"area": find_plane_units(diagram.crs).area},
         crs=diagram.crs,
         name="cells",
     )
-
-
-def _measure_cells(diagram: Voronoi, closed: Int64Array, offsets: Int64Array) -> Float64Array:
-    """Return areas of cells in the units of products: of longitudes and latitudes square metres."""
-    if measure_angular_unit(diagram.crs) is None:
-        return diagram.areas
-    parts = measure_ring_areas(diagram.crs, diagram.coords[closed], offsets)
-    areas: Float64Array = np.bincount(diagram.cell_of_part, parts, len(diagram)).astype(np.float64)
-    return areas
-
-
-def _count_within(sizes: Int64Array) -> Int64Array:
-    """Return 0, 1, 2, ... for each group of a size."""
-    offsets = find_offsets(sizes)
-    return np.arange(offsets[-1]) - np.repeat(offsets[:-1], sizes)
 
 
 # ---------------------------------------------------------------- methods of a TIN

@@ -16,7 +16,7 @@ from ...base.results.columns import UNKNOWN_UNIT, unit_text
 from ...base.results.geometries import build_geometries
 from ...base.sentences import FILE
 from ...tin import Survey
-from ..reprojection.crs_kept import require_kept
+from ..reprojection.quality import require_kept
 from .surface_features import make_features
 from .well_known_binary import encode_equal_shapes
 
@@ -161,7 +161,6 @@ def encode_geometries(features: Features) -> ObjectArray:
 
 
 def _as_field(name: str, values: AnyArray) -> AnyArray:
-    """Return a column as a type that pyogrio writes."""
     require_int64(name, values)
     if values.dtype.kind == "U":
         return values.astype(object)
@@ -172,7 +171,6 @@ def _as_field(name: str, values: AnyArray) -> AnyArray:
 
 
 def _find_missing(values: AnyArray) -> BoolArray | None:
-    """Return which values are missing, None if none is."""
     if values.dtype.kind == "O":
         gaps = np.array([value is None for value in values], np.bool_)
         return gaps if gaps.any() else None

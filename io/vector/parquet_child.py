@@ -36,7 +36,14 @@ def read_features(path: str, *, layer: str | None, where: str | None) -> Answer:
         raise Refusal(f"{FILE} is GeoParquet, which the option `where` does not choose from.")
     file = parquet.ParquetFile(path, memory_map=False, pre_buffer=False)
     metadata = file.schema_arrow.metadata or {}
-    name, column = _find_geometry(metadata)
+    try:
+        geo = json.loads(metadata[b"geo"])
+        name = str(geo["primary_column"])
+        column = dict(geo["columns"][name])
+    except (KeyError, ValueError, TypeError) as error:
+        raise Refusal(
+            f"{FILE} is Parquet without a column of geometries that its metadata tell of."
+        ) from error
     if layer not in (None, name):
         raise Refusal(f"{FILE} has no layer '{layer}': there is {name}.")
     table = file.read(use_threads=False)
@@ -46,28 +53,12 @@ def read_features(path: str, *, layer: str | None, where: str | None) -> Answer:
     arrays = {"numbers": np.arange(len(geometries)), **pack_geometries(geometries)}
     arrays |= {f"column {k}": one for k, one in enumerate(values) if is_numeric(one)}
     texts = {str(k): convert_to_texts(one) for k, one in enumerate(values) if not is_numeric(one)}
-    value = {"layer": name, "crs": _find_crs(column), "names": names, "texts": texts}
+    crs = column.get("crs", _DEGREES)
+    if not (crs is None or isinstance(crs, str)):
+        crs = json.dumps(crs)
+    value = {"layer": name, "crs": crs, "names": names, "texts": texts}
     unit = metadata.get(b"elevation_unit", b"").decode("utf-8", "replace")
     return Answer(value | {"elevation_unit": unit or None}, arrays)
-
-
-def _find_geometry(metadata: dict[bytes, bytes]) -> tuple[str, dict[str, Any]]:
-    """Return the name of the column of geometries and what is said of it."""
-    try:
-        geo = json.loads(metadata[b"geo"])
-        name = str(geo["primary_column"])
-        return name, dict(geo["columns"][name])
-    except (KeyError, ValueError, TypeError) as error:
-        raise Refusal(
-            f"{FILE} is Parquet without a column of geometries that its metadata tell of."
-        ) from error
-
-
-def _find_crs(column: dict[str, Any]) -> str | None:
-    if "crs" not in column:
-        return _DEGREES
-    crs = column["crs"]
-    return None if crs is None else crs if isinstance(crs, str) else json.dumps(crs)
 
 
 def _encode(values: Any, column: dict[str, Any]) -> list[bytes | None]:
@@ -78,19 +69,18 @@ def _encode(values: Any, column: dict[str, Any]) -> list[bytes | None]:
         if all(one is None or isinstance(one, bytes) for one in found):
             return found
     if encoding == "point":
-        return _encode_points(values.combine_chunks())
+        merged = values.combine_chunks()
+        shapely = optional.load("shapely")
+        names = [axis for axis in "xyz" if merged.type.get_field_index(axis) >= 0]
+        xyz = np.stack([np.asarray(merged.field(axis), np.float64) for axis in names], axis=1)
+        points = shapely.to_wkb(shapely.points(xyz), flavor="iso")
+        gaps = np.asarray(merged.is_null())
+        return [
+            None if gap else one for one, gap in zip(points.tolist(), gaps.tolist(), strict=True)
+        ]
     raise Refusal(
         f"{FILE} has geometries of the encoding '{encoding[:_WIDEST]}': WKB and point are read."
     )
-
-
-def _encode_points(values: Any) -> list[bytes | None]:
-    shapely = optional.load("shapely")
-    names = [axis for axis in "xyz" if values.type.get_field_index(axis) >= 0]
-    xyz = np.stack([np.asarray(values.field(axis), np.float64) for axis in names], axis=1)
-    points = shapely.to_wkb(shapely.points(xyz), flavor="iso")
-    gaps = np.asarray(values.is_null())
-    return [None if gap else one for one, gap in zip(points.tolist(), gaps.tolist(), strict=True)]
 
 
 def _is_flat(table: Any, name: str) -> bool:

@@ -16,7 +16,7 @@ from ..reprojection.transformation import find_conversion_factor
 from .elevations import find_elevation_unit
 
 if TYPE_CHECKING:
-    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array, ObjectArray
+    from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...base.crs import CRS, Unit
     from .layers import Layer
 
@@ -55,14 +55,6 @@ class Wanted(NamedTuple):
     """Of the elevations in the file, if its CRS does not tell."""
 
 
-class _Lines(NamedTuple):
-    """Shapely lines and rings, the row of the feature of each, and its ring as in Part."""
-
-    shapes: ObjectArray
-    rows: Int64Array
-    rings: Int64Array
-
-
 def split_into_parts(
     features: Layer, wanted: Wanted, *, drape: bool, notes: list[str] | None
 ) -> list[Part]:
@@ -86,11 +78,30 @@ def split_into_parts(
         If the lines cannot be brought into the CRS.
     """
     shapely = optional.load("shapely")
-    lines = _split_geometries(features)
-    xyz = shapely.get_coordinates(lines.shapes, include_z=True)
-    bounds = find_offsets(shapely.get_num_coordinates(lines.shapes))
-    has_z = shapely.has_z(lines.shapes) & (not drape)
-    _require_finite_vertices(xyz, np.repeat(has_z, np.diff(bounds)), bounds, lines.rows, features)
+    shapes, rows = features.geometries, np.arange(len(features.geometries))
+    while (shapely.get_type_id(shapes) > _POLYGON).any():
+        shapes, index = shapely.get_parts(shapes, return_index=True)
+        rows = rows[index]
+    there = ~shapely.is_empty(shapes)
+    shapes, rows = shapes[there], rows[there]
+    types = shapely.get_type_id(shapes)
+    points = np.flatnonzero(types == 0)
+    if len(points):
+        raise ReadError(
+            f"{FILE} has {counted(len(points), 'point')} (first: feature "
+            f"{features.numbers[rows[points[0]]]}): lines or polygons are needed."
+        )
+    is_polygon = types == _POLYGON
+    ring_shapes, of_polygon = shapely.get_rings(shapes[is_polygon], return_index=True)
+    slots = np.concatenate([np.flatnonzero(~is_polygon), np.flatnonzero(is_polygon)[of_polygon]])
+    order = np.argsort(slots, kind="stable")
+    slots = slots[order]
+    numbers = np.arange(len(slots)) - np.searchsorted(slots, slots)
+    lines, rows = np.concatenate([shapes[~is_polygon], ring_shapes])[order], rows[slots]
+    xyz = shapely.get_coordinates(lines, include_z=True)
+    bounds = find_offsets(shapely.get_num_coordinates(lines))
+    has_z = shapely.has_z(lines) & (not drape)
+    _require_finite_vertices(xyz, np.repeat(has_z, np.diff(bounds)), bounds, rows, features)
     said = list(features.notes) + crs_notes(features, wanted)
     if has_z.any():
         xyz[:, 2] *= find_elevation_factor(features, wanted, notes=said)
@@ -103,41 +114,12 @@ def split_into_parts(
             bounds[:-1].tolist(),
             bounds[1:].tolist(),
             np.where(has_z, 3, 2).tolist(),
-            lines.rows.tolist(),
-            shapely.is_closed(lines.shapes).tolist(),
-            lines.rings.tolist(),
+            rows.tolist(),
+            shapely.is_closed(lines).tolist(),
+            numbers.tolist(),
             strict=True,
         )
     ]
-
-
-def _split_geometries(features: Layer) -> _Lines:
-    """Take collections and polygons apart."""
-    shapely = optional.load("shapely")
-    shapes, rows = features.geometries, np.arange(len(features.geometries))
-    while (shapely.get_type_id(shapes) > _POLYGON).any():
-        shapes, index = shapely.get_parts(shapes, return_index=True)
-        rows = rows[index]
-    there = ~shapely.is_empty(shapes)
-    shapes, rows = shapes[there], rows[there]
-    types = shapely.get_type_id(shapes)
-    _require_lines(types, rows, features)
-    is_polygon = types == _POLYGON
-    rings, of_polygon = shapely.get_rings(shapes[is_polygon], return_index=True)
-    slots = np.concatenate([np.flatnonzero(~is_polygon), np.flatnonzero(is_polygon)[of_polygon]])
-    order = np.argsort(slots, kind="stable")
-    slots = slots[order]
-    numbers = np.arange(len(slots)) - np.searchsorted(slots, slots)
-    return _Lines(np.concatenate([shapes[~is_polygon], rings])[order], rows[slots], numbers)
-
-
-def _require_lines(types: Int32Array, rows: Int64Array, features: Layer) -> None:
-    points = np.flatnonzero(types == 0)
-    if len(points):
-        raise ReadError(
-            f"{FILE} has {counted(len(points), 'point')} (first: feature "
-            f"{features.numbers[rows[points[0]]]}): lines or polygons are needed."
-        )
 
 
 def _require_finite_vertices(
@@ -232,23 +214,20 @@ def find_elevation_factor(features: Layer, wanted: Wanted, *, notes: list[str]) 
                 f"{ours.name}, and {from_unit.name} is usual in the CRS of the file; declare the "
                 "unit of the lines' elevations."
             )
-        notes.append(_describe_conversion(features, theirs, ours, (from_unit, to_unit)))
+        # Say which elevations were converted, and what was assumed for it.
+        units = (from_unit, to_unit)
+        text = f"'{features.path.name}': elevations were converted from {units[0].name} to "
+        text += f"{units[1].name}, the unit of the points"
+        guessed = []
+        if theirs is None:
+            guessed.append(f"of the lines {units[0].name}")
+        if ours is None:
+            guessed.append(f"of the points {units[1].name}")
+        reason = (
+            f"; not told and taken as usual in the CRS: {', '.join(guessed)}" if guessed else ""
+        )
+        notes.append(f"{text}{reason}.")
     return factor
-
-
-def _describe_conversion(
-    features: Layer, theirs: Unit | None, ours: Unit | None, units: tuple[Unit, Unit]
-) -> str:
-    """Say which elevations were converted, and what was assumed for it."""
-    text = f"'{features.path.name}': elevations were converted from {units[0].name} to "
-    text += f"{units[1].name}, the unit of the points"
-    guessed = []
-    if theirs is None:
-        guessed.append(f"of the lines {units[0].name}")
-    if ours is None:
-        guessed.append(f"of the points {units[1].name}")
-    reason = f"; not told and taken as usual in the CRS: {', '.join(guessed)}" if guessed else ""
-    return f"{text}{reason}."
 
 
 def _describe_not_finite(count: int) -> str:

@@ -350,15 +350,13 @@ def _find_texts(features: Layer, name: str) -> list[str]:
     column = features.find_column(name)
     if column is None:
         return [""] * len(features.numbers)
-    return ["" if _is_missing(value) else str(value).strip() for value in column.tolist()]
+    return [
+        "" if (value is None or value != value) else str(value).strip() for value in column.tolist()
+    ]
 
 
 def _shorten_text(text: str) -> str:
     return text if len(text) <= _SHOWN_LETTERS else f"{text[:_SHOWN_LETTERS]}..."
-
-
-def _is_missing(value: object) -> bool:
-    return value is None or value != value
 
 
 def _parse_finite(text: str) -> float | None:

@@ -83,7 +83,15 @@ def write(
             f"Cannot write {FILE}: a MultiPatch holds the triangles of a TIN, no "
             f"{'features' if isinstance(surface, Features) else kind}."
         )
-    _require_room(features)
+    size = features.coordinates.nbytes + 100 * len(features)
+    if size > _MOST_BYTES:
+        raise _describe_excess(f"{counted(len(features.coordinates), 'point')} take {size:,} bytes")
+    if len(features.columns) > _MOST_COLUMNS:
+        raise _describe_excess(f"{counted(len(features.columns), 'column')} are there")
+    if np.isnan(features.coordinates).any():
+        raise _describe_excess("some elevations are not known")
+    for name, values in features.columns.items():
+        _require_values(name, values)
     names = short_names(features.columns)
     _warn_of_losses(features, names)
     with replacing_data_set(path, "shapefile") as new:
@@ -140,19 +148,6 @@ def _warn_of_losses(features: Features, names: list[str]) -> None:
         lost.append("notes have no place")
     if lost:
         warn(f"{FILE} is a shapefile: {', and '.join(lost)}.")
-
-
-def _require_room(features: Features) -> None:
-    """Refuse what a shapefile would cut, round away or leave out."""
-    size = features.coordinates.nbytes + 100 * len(features)
-    if size > _MOST_BYTES:
-        raise _describe_excess(f"{counted(len(features.coordinates), 'point')} take {size:,} bytes")
-    if len(features.columns) > _MOST_COLUMNS:
-        raise _describe_excess(f"{counted(len(features.columns), 'column')} are there")
-    if np.isnan(features.coordinates).any():
-        raise _describe_excess("some elevations are not known")
-    for name, values in features.columns.items():
-        _require_values(name, values)
 
 
 def _require_values(name: str, values: AnyArray) -> None:

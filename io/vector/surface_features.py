@@ -112,7 +112,6 @@ def _gather(surface: TIN | Survey, parts: Parts, name: str) -> Features:
 
 
 def _list_columns(surface: TIN | Survey) -> dict[str, AnyArray]:
-    """Return attributes as columns: numbers, truth values or texts."""
     columns = {}
     for name, values in surface.attributes.items():
         column = np.asarray(values)
@@ -224,7 +223,6 @@ def _list_hull(tin: TIN) -> Parts:
 
 
 def _measure_signed_area(tin: TIN, ring: Int32Array) -> float:
-    """Area in the plane, positive counter-clockwise."""
     x, y = (tin.points[ring, :2] - tin.points[ring[0], :2]).T
     return float(np.dot(x, np.roll(y, -1)) - np.dot(np.roll(x, -1), y)) / 2
 

@@ -96,7 +96,9 @@ def with_lines(
 
     def read(reader: Callable[..., list[Any]], sources: Iterable[Source], **how: Any) -> list[Any]:
         found = []
-        for source in _as_sources(sources):
+        if isinstance(sources, str | bytes) or not isinstance(sources, Iterable):
+            raise OptionError("files of lines", sources, "a list of files")
+        for source in list(sources):
             path, layer = split_layer(source)
             with naming_file(path):
                 lines = reader(path, layer=layer, notes=notes, **units, **how)
@@ -119,13 +121,6 @@ def with_lines(
         water=[*survey.water, *read(read_water, water, z=water_z)],
         notes=notes,
     )
-
-
-def _as_sources(sources: Any) -> list[Any]:
-    """Return files, whose names are judged one by one."""
-    if isinstance(sources, str | bytes) or not isinstance(sources, Iterable):
-        raise OptionError("files of lines", sources, "a list of files")
-    return list(sources)
 
 
 def _unwrap_ring(
@@ -214,18 +209,15 @@ def note_nesting(polygons: Sequence[Sequence[Float64Array]], path: Path) -> list
             f"{pairs} (first: number {a} and {b}, counted from 0): unite "
             "them, or cut one along the other."
         )
-    return _describe_nesting(int(is_within.sum()), path)
-
-
-_ROUNDING = 1e-9
-"""Neighbours whose common border was rounded share slivers, of this part of their area at most."""
-
-
-def _describe_nesting(count: int, path: Path) -> list[str]:
+    count = int(is_within.sum())
     if count == 0:
         return []
     what = inflect(f"{counted(count, 'polygon')} [lies|lie]", count)
     return [f"'{path.name}': {what} within another of the boundary: the surface is cut out there."]
+
+
+_ROUNDING = 1e-9
+"""Neighbours whose common border was rounded share slivers, of this part of their area at most."""
 
 
 def _shape(rings: Sequence[Float64Array]) -> Any:

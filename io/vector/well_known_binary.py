@@ -101,36 +101,26 @@ def replace_surfaces(wkb: bytes) -> bytes:
     """
     changed = bytearray(wkb)
     try:
-        end = _walk(changed)
+        # Renumber geometry after geometry, those in a collection behind it; return their end.
+        end, left = 0, 1
+        while left:
+            left -= 1
+            form = "<I" if changed[end] == 1 else ">I"
+            (number,) = struct.unpack_from(form, changed, end + 1)
+            thousands, kind = divmod(number & 0xFFFF, 1000)
+            has_z = bool(number & _HAS_Z) or thousands in (1, 3)
+            has_m = bool(number & _HAS_M) or thousands in (2, 3)
+            kind, width = kind, 8 * (2 + has_z + has_m)
+            struct.pack_into(form, changed, end + 1, number - kind + _PLAIN_KIND.get(kind, kind))
+            end += 9 if number & _HAS_SRID else 5
+            if kind in _COLLECTIONS:
+                left += struct.unpack_from(form, changed, end)[0]
+                end += 4
+            else:
+                end = _skip_coordinates(changed, end, form, kind, width)
     except (struct.error, IndexError):
         return wkb
     return bytes(changed) if end == len(wkb) else wkb
-
-
-def _walk(wkb: bytearray) -> int:
-    """Renumber geometry after geometry, those in a collection behind it; return their end."""
-    place, left = 0, 1
-    while left:
-        left -= 1
-        form = "<I" if wkb[place] == 1 else ">I"
-        (number,) = struct.unpack_from(form, wkb, place + 1)
-        kind, width = _read_kind(number)
-        struct.pack_into(form, wkb, place + 1, number - kind + _PLAIN_KIND.get(kind, kind))
-        place += 9 if number & _HAS_SRID else 5
-        if kind in _COLLECTIONS:
-            left += struct.unpack_from(form, wkb, place)[0]
-            place += 4
-        else:
-            place = _skip_coordinates(wkb, place, form, kind, width)
-    return place
-
-
-def _read_kind(number: int) -> tuple[int, int]:
-    """Return the plain kind, and the bytes of a vertex."""
-    thousands, kind = divmod(number & 0xFFFF, 1000)
-    has_z = bool(number & _HAS_Z) or thousands in (1, 3)
-    has_m = bool(number & _HAS_M) or thousands in (2, 3)
-    return kind, 8 * (2 + has_z + has_m)
 
 
 def _skip_coordinates(wkb: bytearray, place: int, form: str, kind: int, width: int) -> int:

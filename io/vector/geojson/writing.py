@@ -13,8 +13,16 @@ from ....base.results import Features
 from ....base.sentences import FILE, counted
 from ....tin import Survey
 from ..surface_features import choose_kind, list_parts
-from .coordinates import format_positions, keep_in_crs, project_to_wgs84, require_one_piece
-from .features import Texts, turn_rings, write_collection, write_features
+from .features import (
+    Texts,
+    format_positions,
+    keep_in_crs,
+    project_to_wgs84,
+    require_one_piece,
+    turn_rings,
+    write_collection,
+    write_features,
+)
 from .values import json_texts
 
 if TYPE_CHECKING:
@@ -25,7 +33,7 @@ if TYPE_CHECKING:
     from ....base.progress import Tell
     from ....tin import TIN
     from ..surface_features import Parts
-    from .coordinates import Places
+    from .features import Places
 
 __all__ = ["write"]
 
