@@ -220,7 +220,7 @@ def mesh_reader(parse: Callable[..., Mesh]) -> Callable[..., TIN | Survey]:
         reference = choose_reference(
             crs, elevation_unit, found_crs=mesh.crs, found_unit=mesh.elevation_unit
         )
-        return build_mesh(mesh, path, reference=reference, faces=faces)
+        return build_mesh(mesh, path.name, reference=reference, faces=faces)
 
     usual = signature(read, follow_wrapped=False).parameters
     first, *own = signature(parse).parameters.values()
@@ -229,12 +229,12 @@ def mesh_reader(parse: Callable[..., Mesh]) -> Callable[..., TIN | Survey]:
     return read
 
 
-def build_mesh(mesh: Mesh, path: Path, *, reference: Reference, faces: FacePolicy) -> TIN | Survey:
+def build_mesh(mesh: Mesh, source: str, *, reference: Reference, faces: FacePolicy) -> TIN | Survey:
     """Make a TIN of what a file holds, or a survey of a file without polygons."""
     points, attributes = mesh.points, dict(mesh.attributes)
     if len(mesh.offsets) == 1:
         return make_survey(
-            points, path, attributes=attributes, reference=reference, notes=mesh.notes
+            points, source, attributes=attributes, reference=reference, notes=mesh.notes
         )
     fans = cut_into_fans(mesh.corners, mesh.offsets, points)
     flags = mesh.constrained
@@ -360,7 +360,7 @@ def add_notes(tin: TIN, notes: Sequence[str]) -> TIN:
 
 def make_survey(
     points: Float64Array,
-    path: Path,
+    source: str,
     *,
     attributes: dict[str, AnyArray] | None = None,
     reference: Reference,
@@ -387,7 +387,7 @@ def make_survey(
         attributes=attributes or {},
         crs=reference.crs,
         elevation_unit=reference.elevation_unit,
-        source=path.name,
+        source=source,
         notes=[*notes, *_look_at_crs(points, reference)],
     )
 

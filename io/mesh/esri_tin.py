@@ -118,7 +118,6 @@ def _read_numbers(path: Path, dtype: str, width: int) -> AnyArray:
 
 
 def _require_sound(tables: _Tables) -> None:
-    """Refuse files that do not fit together."""
     n_nodes, n_triangles = len(tables.places), len(tables.corners)
     if len(tables.elevations) != n_nodes:
         raise ReadError(

@@ -61,7 +61,6 @@ def add_lines(tin: TIN, chains: Sequence[Chain], what: str) -> TIN:
 
 
 def _cut_at_gaps(tin: TIN, chain: Chain) -> list[Chain]:
-    """Return the parts of a chain that run along edges."""
     nodes = chain.vertices
     if len(nodes) < 2:
         return []

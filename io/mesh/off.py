@@ -103,7 +103,6 @@ def _skip_keyword(rows: TextRows) -> TextRows:
 
 
 def _parse_faces(rows: TextRows) -> tuple[Int64Array, Int64Array]:
-    """Return the vertex numbers of all faces, and the offsets of each."""
     too_short = "a face has fewer corners than it promises"
     if all(text.startswith(("3 ", "3\t")) for text in rows.texts):
         corners = rows.parse_integers(slice(1, 4), too_short)

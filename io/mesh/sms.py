@@ -123,7 +123,6 @@ def _find_nodes(named: Int64Array, numbers: Int64Array, rows: TextRows) -> Int64
 
 
 def _describe_losses(cards: dict[str, TextRows]) -> list[str]:
-    """Tell what of the file the TIN does not hold."""
     notes = []
     n_edges = sum(len(cards[card]) for card in _EDGES if card in cards)
     if n_edges:

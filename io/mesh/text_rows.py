@@ -111,7 +111,6 @@ class TextRows:
         return np.array(numbers, np.int64).reshape(-1, columns.stop - columns.start)
 
     def _pick_words(self, columns: slice, what: str) -> list[list[str]]:
-        """Return the words in some columns; refuse a row that has fewer."""
         picked = [text.split()[columns] for text in self.texts]
         for row, words in enumerate(picked):
             if len(words) < columns.stop - columns.start:
@@ -170,7 +169,6 @@ def parse_integers(
 
 
 def _describe_fault(row: Sequence[str], line: int, what: str) -> ReadError:
-    """Return the error of a row, with its line and its first words."""
     shown = " ".join(row[:12])[:_SHOWN_LETTERS]
     return ReadError(f"{FILE}, line {line}: {what} ('{shown}').", lines=[line])
 

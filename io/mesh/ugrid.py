@@ -111,7 +111,7 @@ def read(
         notes=notes,
         add_lines=lambda tin: _add_edge_types(tin, arrays),
     )
-    return build_mesh(mesh, path, reference=reference, faces=faces)
+    return build_mesh(mesh, path.name, reference=reference, faces=faces)
 
 
 def _require_units(units: Sequence[str], crs: CRS | None) -> list[str]:
@@ -140,7 +140,6 @@ def _require_units(units: Sequence[str], crs: CRS | None) -> list[str]:
 
 
 def _find_known_crs(texts: Sequence[str]) -> str | None:
-    """Return the first text that names a CRS."""
     for text in texts:
         try:
             return str(CRS.of(text))
@@ -158,7 +157,6 @@ def _is_unit(text: str) -> bool:
 
 
 def _add_edge_types(tin: TIN, arrays: Mapping[str, AnyArray]) -> TIN:
-    """Return the TIN with the lines and constrained edges of the file."""
     if "edges" not in arrays:
         return tin
     edges, types = arrays["edges"], arrays["types"]
@@ -271,7 +269,6 @@ def _format_cf_unit(unit: Unit) -> str:
 
 
 def _write_edges(data: Any, tin: TIN) -> None:
-    """Write the edges, and the type of each."""
     from ...tin.topology import edge_keys, ends
 
     edges, count = tin.edges, len(tin.points)

@@ -86,7 +86,6 @@ def read_mesh(path: str, *, surface: str | None, variable: str | None) -> Answer
 
 
 def _get_text(variable: Any, name: str) -> str:
-    """Return an attribute as text; "" where there is none."""
     if name not in variable.ncattrs():
         return ""
     value = variable.getncattr(name)
@@ -98,7 +97,6 @@ def _list_names(names: Iterable[str]) -> str:
 
 
 def _find_mesh(data: Any, surface: str | None) -> Any:
-    """Return the variable of the topology of the mesh in two dimensions."""
     meshes = {
         name: one
         for name, one in data.variables.items()
@@ -131,7 +129,6 @@ def _get_variable(data: Any, name: str, mesh: Any, role: str) -> Any:
 
 
 def _find_coordinates(data: Any, mesh: Any) -> tuple[Any, Any]:
-    """Return the variables of eastings and northings of the nodes."""
     names = _get_text(mesh, "node_coordinates").split()
     if len(names) < 2:
         raise Refusal(
@@ -169,7 +166,6 @@ def _read_numbers(variable: Any) -> Float64Array:
 
 
 def _find_elevations(data: Any, mesh: Any, count: int, wanted: str | None) -> Any:
-    """Return the variable of the nodes' elevations."""
     if wanted is not None:
         if wanted in data.variables and data.variables[wanted].shape == (count,):
             return data.variables[wanted]

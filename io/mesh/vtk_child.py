@@ -88,7 +88,6 @@ def catch_errors(pv: Any) -> Iterator[list[Any]]:
 
 
 def _convert_to_integers(array: Any) -> Int64Array:
-    """Return a VTK array of numbers of points or cells."""
     numbers: Int64Array = import_module("pyvista").convert_array(array).astype(np.int64)
     return numbers
 
@@ -146,7 +145,6 @@ def _read_faces(found: Any) -> dict[str, Int64Array]:
 
 
 def _read_edge_flags(found: Any, cells: Int64Array) -> dict[str, UInt8Array]:
-    """Return the edge flags of the faces if the file has them."""
     if "constrained" not in found.cell_data:
         return {}
     flags = np.asarray(found.cell_data["constrained"])

@@ -111,7 +111,6 @@ def _parse(path: Path) -> City:
 def _choose_objects(
     city: dict[str, Any], surface: str | None, join: bool
 ) -> dict[str, dict[str, Any]]:
-    """Return the terrains to read by their names."""
     every = city.get("CityObjects")
     if not isinstance(every, dict):
         raise _describe_damage("it has no CityObjects")
@@ -178,7 +177,6 @@ def _collect(
 
 
 def _restore_vertices(city: dict[str, Any]) -> Float64Array:
-    """Return the coordinates of all vertices."""
     try:
         vertices = np.array(city["vertices"], np.float64).reshape(-1, 3)
     except (KeyError, TypeError, ValueError, OverflowError):

@@ -177,7 +177,6 @@ def _format_head(tin: TIN, grids: list[DecimalGrid], counts: Int64Array) -> str:
 
 
 def _find_reference(tin: TIN) -> str | None:
-    """Return the OGC address of the CRS."""
     if tin.crs is None:
         return None
     epsg = tin.crs.to_epsg()
@@ -191,7 +190,6 @@ def _find_reference(tin: TIN) -> str | None:
 
 
 def _iterate_rows(rows: Int64Array, row: str) -> Iterator[tuple[int, str]]:
-    """Yield rows of a JSON array, with the commas between them."""
     for start in range(0, len(rows), _BATCH):
         part = rows[start : start + _BATCH]
         text = ",\n".join([row] * len(part)) % tuple(part.ravel().tolist())

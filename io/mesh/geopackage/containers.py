@@ -79,7 +79,6 @@ def adding_layers(path: Path, placing: Placing) -> Iterator[Path]:
 
 
 def _open(path: Path) -> sqlite3.Connection:
-    """Open an existing GeoPackage for reading."""
     file = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)
     try:
         file.execute("SELECT count(*) FROM gpkg_contents").fetchone()
@@ -97,7 +96,6 @@ def _list_layers(file: sqlite3.Connection) -> list[str]:
 
 
 def _list_tables(file: sqlite3.Connection) -> set[str]:
-    """Return the tables and views that are contents, registered or not."""
     found = file.execute("SELECT name FROM sqlite_master WHERE type IN ('table', 'view')")
     return {name for (name,) in found if not _SYSTEM.match(name)}
 
@@ -108,7 +106,6 @@ def _list_tables(file: sqlite3.Connection) -> set[str]:
 def _require_free(
     old: sqlite3.Connection, layers: Sequence[str], placing: Placing, path: Path
 ) -> None:
-    """Refuse layers whose names are those of layers that may not be replaced."""
     there = {name.casefold(): name for name in _list_tables(old)}
     is_tin = RECORD in layers
     for name in layers:
@@ -136,7 +133,6 @@ def _refuse(path: Path, layer: str, why: str) -> WriteError:
 
 
 def _is_ours(file: sqlite3.Connection, layer: str) -> bool:
-    """Whether tinsmith wrote a layer: one of a TIN, or one that is marked."""
     if layer in _OF_TIN:
         return RECORD in _list_tables(file)
     found = file.execute(
@@ -367,7 +363,6 @@ def _make_register(file: sqlite3.Connection, register: str) -> None:
 
 
 def _append(file: sqlite3.Connection, layer: str, there: str, numbers: dict[int, int]) -> None:
-    """Add the features of a layer to one of the same kind."""
     kinds = [
         file.execute(
             f"SELECT geometry_type_name, z, srs_id, column_name FROM {schema}.gpkg_geometry_columns"
@@ -443,7 +438,6 @@ def _update_counts(file: sqlite3.Connection, layer: str, there: str) -> None:
 
 
 def _remove(file: sqlite3.Connection, layer: str) -> None:
-    """Remove a layer with its index and registration."""
     row = file.execute(
         "SELECT column_name FROM main.gpkg_geometry_columns WHERE lower(table_name) = lower(?)",
         (layer,),
@@ -498,7 +492,6 @@ def _list_columns(file: sqlite3.Connection, schema: str, table: str) -> list[str
 
 
 def _quote(name: str) -> str:
-    """Return a name of SQL."""
     return '"' + name.replace('"', '""') + '"'
 
 

@@ -226,7 +226,6 @@ def _find_free_name(name: str, taken: set[str]) -> str:
 
 
 def _as_text(value: Any) -> str | None:
-    """Return a value as text; None for none."""
     if value is None or value != value:
         return None
     return str(value).encode("utf-8", "replace").decode()

@@ -128,7 +128,6 @@ def write(
 
 
 def _choose_scale(tin: TIN) -> Float64Array:
-    """Return the factors from eastings, northings and elevations to metres."""
     if tin.crs is None:
         along, up = 1.0, tin.elevation_unit and tin.elevation_unit.metres
         return np.array([along, along, up or 1.0])
@@ -248,7 +247,6 @@ class _Buffer:
 
 
 def _pack(mesh: _Mesh, node: dict[str, Any]) -> list[tuple[int, bytes]]:
-    """Return the chunks of the file."""
     buffer = _Buffer()
     attributes = {
         "POSITION": buffer.add_array(mesh.positions, target=_ARRAY_BUFFER, has_bounds=True),

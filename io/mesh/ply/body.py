@@ -197,7 +197,6 @@ def _count_rows(element: Element) -> str:
 
 
 def _measure_shortest_row(element: Element, body: _Body) -> int:
-    """Return the cells of the shortest row that an element can have."""
     return sum(body.measure_width(prop.count_type or prop.type) for prop in element.properties)
 
 

@@ -119,7 +119,6 @@ def _add_lines(tin: TIN, lines: Lines) -> TIN:
 
 
 def _describe_skipped(header: Header) -> list[str]:
-    """Tell what other elements a file without faces has."""
     return [
         f"Not read: {counted(element.count, 'row')} of '{element.name[:40]}'."
         for element in header.elements
@@ -168,7 +167,6 @@ def find_faces(tables: Mapping[str, Table]) -> Ragged | None:
 
 
 def _find_list(table: Table | None, element: str) -> Ragged | None:
-    """Return the list of vertices of an element; None if it has no rows."""
     if table is None:
         return None
     found = next((table.lists[name] for name in _LISTS if name in table.lists), None)

@@ -127,7 +127,6 @@ def parse_header(content: bytes) -> Header:
 
 
 def _read_comments(lines: list[str]) -> tuple[str | None, str | None, list[LineComment] | None]:
-    """Return what comments say of the CRS, the unit of elevations, and lines."""
     crs: str | None = None
     unit: str | None = None
     stated: list[LineComment] | None = None

@@ -164,7 +164,6 @@ def _clip(triangles: Int64Array, strips: _Strips) -> Int64Array:
 
 
 def _measure(steps: Int64Array, triangles: Int64Array) -> Int64Array:
-    """Return twice the area of each triangle."""
     a, b, c = (steps[triangles[:, k]] for k in range(3))
     u, v = b - a, c - a
     return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])

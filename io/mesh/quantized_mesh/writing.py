@@ -192,7 +192,6 @@ def _choose_finest(placed: TIN) -> int:
 
 
 def _iterate_meshes(placed: TIN, first: int, finest: int) -> Iterator[Int64Array]:
-    """Yield the triangles of each level, the TIN's own for the last."""
     tolerances = [_SHARE_OF_ERROR * _COARSEST_ERROR / 2**level for level in range(first, finest)]
     yield from simplify(placed, tolerances)
     yield placed.triangles.astype(np.int64)
@@ -201,7 +200,6 @@ def _iterate_meshes(placed: TIN, first: int, finest: int) -> Iterator[Int64Array
 def _cut_into_tiles(
     placed: TIN, triangles: Int64Array, level: int
 ) -> Iterator[tuple[TileName, Tile]]:
-    """Yield the tiles of a level."""
     scale = STEPS * 2**level / 180.0
     steps = np.rint((placed.points[:, :2] + _CORNER) * scale).astype(np.int64)
     mesh = GridMesh(steps, placed.points[:, 2], triangles)
