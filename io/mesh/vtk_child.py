@@ -53,8 +53,8 @@ def read_dataset(found: Any) -> Answer:
     if not (is_poly_data or hasattr(found, "celltypes")):
         raise Refusal(f"{FILE} is neither a PolyData nor an UnstructuredGrid.")
     faces = _read_poly_data(found) if is_poly_data else _read_faces(found)
-    arrays = {str(name): np.array(values) for name, values in found.point_data.items()}
-    attributes = {name: a for name, a in arrays.items() if a.ndim == 1 and a.dtype.kind in "biuf"}
+    data = {str(name): np.array(values) for name, values in found.point_data.items()}
+    attributes = {name: a for name, a in data.items() if a.ndim == 1 and a.dtype.kind in "biuf"}
     arrays: dict[str, AnyArray] = {
         "points": np.array(found.points, np.float64).reshape(-1, 3),
         **faces,

@@ -348,14 +348,14 @@ def read_drawing_layer(
         shapes += list(shapely.points(points)) if len(points) else []
         layers += drawing.arrays["point_layers"].tolist()
         stated += [["", ""]] * len(points)
-    columns = {
+    texts = {
         "layer": [drawing.value["layers"][k] for k in layers],
         "name": [name for _, name in stated],
         "kind": [kind if kind in ("hard", "soft") else "" for kind, _ in stated],
     }
     packed = np.empty(len(shapes), object)
     packed[:] = shapes
-    shapes, columns = packed, {name: np.array(column, object) for name, column in columns.items()}
+    columns = {name: np.array(column, object) for name, column in texts.items()}
     called, arrays = drawing.path.name, drawing.arrays
     rest = [counted(len(arrays["faces"]), "face")] if len(arrays["faces"]) else []
     if lines_only and len(arrays["points"]):
@@ -365,14 +365,14 @@ def read_drawing_layer(
     unit = drawing.stated.unit
     if unit is not None:
         notes.append(f"'{called}': coordinates are taken as they are, $INSUNITS says {unit.name}.")
-    kept = np.arange(len(shapes)) if where is None else _select_rows(columns, where)
+    kept = np.arange(len(packed)) if where is None else _select_rows(columns, where)
     if len(kept) == 0:
         part = f" where {where}" if where is not None else " that are lines" * lines_only
         raise ReadError(f"{FILE} has no features{part}.")
     return Layer(
         path,
         kept,
-        shapes[kept],
+        packed[kept],
         {name: column[kept] for name, column in columns.items()},
         drawing.stated.crs,
         tuple(notes),

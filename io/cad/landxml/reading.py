@@ -70,11 +70,8 @@ def read(
     """
     if content is not None:
         choice("content", content, DrawingContent)
-    if surface is None or (isinstance(surface, int) and not isinstance(surface, bool)):
-        wanted = surface
-    elif isinstance(surface, str) and surface.strip():
-        wanted = surface.strip()
-    else:
+    wanted = surface.strip() if isinstance(surface, str) else surface
+    if wanted == "" or isinstance(wanted, bool) or not isinstance(wanted, str | int | None):
         raise OptionError("surface", surface, "the name of a surface, or its number from 1")
     declared = Declared.of(crs, unit, elevation_unit)
     found = parse(path, surface=wanted, points_only=content == "points")
