@@ -23,7 +23,7 @@ from .building.reference import require_crs
 from .building.version import Version
 from .constraints.breaklines import Lines
 from .editing.editable import Editable
-from .editing.origin import Origin
+from .editing.session import Origin
 from .report import LEFT_OUT, Report
 from .triangulation import Triangulation
 from .validation.points import as_pairs, as_places, as_points, as_xy

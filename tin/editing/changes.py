@@ -6,13 +6,13 @@ one leaves a gap. Lines are called by their place in the set.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...base.errors import LinesError
+from ...base.errors import LinesError, PointsError
 from ...base.types import Frozen
 from .. import _kernel
 from ..building.assembly import assemble
@@ -26,30 +26,26 @@ if TYPE_CHECKING:
     from ..building.version import Version
 
 __all__ = [
-    "NO_ROWS",
-    "NO_XYZ",
-    "AddLine",
+    "FLIP",
     "Change",
-    "DropLines",
-    "DropVertices",
-    "LineChange",
+    "Done",
     "NumberedInputs",
-    "PutVertices",
-    "SetElevations",
+    "add_line",
     "count_breaklines",
+    "drop_lines",
+    "drop_vertices",
     "has_own_elevations",
+    "make_flipped_edge",
+    "put_vertices",
+    "require_inner",
+    "set_elevations",
 ]
 
-NO_ROWS = np.empty(0, np.int64)
-NO_XYZ = np.empty((0, 3))
+FLIP = "flip"
+"""Name of the soft breakline that keeps a flipped edge."""
 
-
-class LineChange(Protocol):
-    """A change of a set of lines."""
-
-    def apply(self, lines: LineSet) -> LineSet:
-        """Return the changed lines."""
-        ...
+_NO_ROWS = np.empty(0, np.int64)
+_NO_XYZ = np.empty((0, 3))
 
 
 class Change(NamedTuple):
@@ -63,15 +59,24 @@ class Change(NamedTuple):
         Rows, and where they are now.
     added : (a, 3) float64 array
         New rows.
-    lines : sequence of LineChange
-        One after the other.
+    lines : tuple of callable
+        From the set of lines to a changed one, one after the other.
     """
 
-    removed: Int64Array = NO_ROWS
-    moved: Int64Array = NO_ROWS
-    points: Float64Array = NO_XYZ
-    added: Float64Array = NO_XYZ
-    lines: tuple[LineChange, ...] = ()
+    removed: Int64Array = _NO_ROWS
+    moved: Int64Array = _NO_ROWS
+    points: Float64Array = _NO_XYZ
+    added: Float64Array = _NO_XYZ
+    lines: tuple[Callable[[LineSet], LineSet], ...] = ()
+
+
+class Done(NamedTuple):
+    """What an edit did to the inputs, and where that led; None if the mesh tells."""
+
+    change: Change
+    version: Version | None = None
+    result: Any = None
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -123,7 +128,7 @@ class NumberedInputs(Frozen):
             points[change.moved] = change.points
             is_there[change.removed] = False
             for line_change in change.lines:
-                lines = line_change.apply(lines)
+                lines = line_change(lines)
         if not is_there.all():
             points, is_masked = points[is_there], is_masked[is_there]
         masked = is_masked if is_masked.any() else None
@@ -178,93 +183,83 @@ def has_own_elevations(lines: LineSet) -> BoolArray:
     return has_own
 
 
-class AddLine(NamedTuple):
-    """A breakline behind the others."""
-
-    breakline: Breakline
-
-    def apply(self, lines: LineSet) -> LineSet:
-        """Return the changed lines."""
-        is_breakline = np.arange(len(lines.kinds)) < count_breaklines(lines)
-        return _number_lines(
-            [lines.choose(is_breakline), gather_lines([self.breakline], (), (), ())],
-            lines.choose(~is_breakline),
-        )
+def add_line(lines: LineSet, *, breakline: Breakline) -> LineSet:
+    """Return the lines with a breakline behind the others."""
+    is_breakline = np.arange(len(lines.kinds)) < count_breaklines(lines)
+    breaklines = [lines.choose(is_breakline), gather_lines([breakline], (), (), ())]
+    return _number_lines(breaklines, lines.choose(~is_breakline))
 
 
-class DropLines(NamedTuple):
-    """Breaklines that go."""
-
-    numbers: tuple[int, ...]
-
-    def apply(self, lines: LineSet) -> LineSet:
-        """Return the changed lines."""
-        stays = ~np.isin(np.arange(len(lines.kinds)), self.numbers)
-        is_breakline = np.arange(len(lines.kinds)) < count_breaklines(lines)
-        return _number_lines([lines.choose(is_breakline & stays)], lines.choose(~is_breakline))
+def drop_lines(lines: LineSet, *, numbers: Sequence[int]) -> LineSet:
+    """Return the lines without some breaklines."""
+    stays = ~np.isin(np.arange(len(lines.kinds)), numbers)
+    is_breakline = np.arange(len(lines.kinds)) < count_breaklines(lines)
+    return _number_lines([lines.choose(is_breakline & stays)], lines.choose(~is_breakline))
 
 
-class PutVertices(NamedTuple):
-    """Vertices of lines, by their rows in the set, at another place."""
-
-    rows: Int64Array
-    point: Float64Array
-
-    def apply(self, lines: LineSet) -> LineSet:
-        """Return the changed lines."""
-        xy, elevations = lines.xy.copy(), lines.elevations.copy()
-        xy[self.rows] = self.point[:2]
-        elevations[self.rows[has_own_elevations(lines)[self.rows]]] = self.point[2]
-        return lines._replace(xy=xy, elevations=elevations)
-
-
-class SetElevations(NamedTuple):
-    """Vertices of lines, by their rows in the set, at other elevations."""
-
-    rows: Int64Array
-    elevations: Float64Array
-
-    def apply(self, lines: LineSet) -> LineSet:
-        """Return the changed lines."""
-        elevations = lines.elevations.copy()
-        elevations[self.rows] = self.elevations
-        return lines._replace(elevations=elevations)
-
-
-class DropVertices(NamedTuple):
-    """Vertices of lines, by their rows in the set, that go; the lines run straight on."""
-
-    rows: Int64Array
-
-    def apply(self, lines: LineSet) -> LineSet:
-        """Return the changed lines; a closed one stays closed."""
-        keep = np.ones(len(lines.xy), np.bool_)
-        keep[self.rows] = False
-        source = np.arange(len(lines.xy))
-        for line in np.unique(lines.line_of[self.rows]).tolist():
-            first, last = int(lines.offsets[line]), int(lines.offsets[line + 1]) - 1
-            is_closed = bool((lines.xy[first] == lines.xy[last]).all())
-            left = np.flatnonzero(keep[first:last]) + first
-            if len(left) + (not is_closed and bool(keep[last])) < (3 if is_closed else 2):
-                raise LinesError(
-                    f"{lines.title(line)} would vanish with the vertex: "
-                    "remove_breakline removes a line."
-                )
-            if is_closed and not keep[last]:
-                keep[last], source[last] = True, left[0]
-        counts = np.add.reduceat(keep, lines.offsets[:-1])
-        rows = source[keep]
-        return lines._replace(
-            xy=lines.xy[rows],
-            elevations=lines.elevations[rows],
-            offsets=find_offsets(counts),
-        )
-
-
-def _number_lines(breaklines: Iterable[LineSet], others: LineSet) -> LineSet:
+def _number_lines(breaklines: Sequence[LineSet], others: LineSet) -> LineSet:
     """Return all lines, the breaklines numbered from 0."""
     together = LineSet.join([*breaklines, others])
     sources = together.sources.copy()
     count = len(together.kinds) - len(others.kinds)
     sources[:count] = np.arange(count, dtype=np.int32)
     return together._replace(table=together.table._replace(sources=sources))
+
+
+def put_vertices(lines: LineSet, *, rows: Int64Array, point: Float64Array) -> LineSet:
+    """Return the lines with vertices, by their rows in the set, at another place."""
+    xy, elevations = lines.xy.copy(), lines.elevations.copy()
+    xy[rows] = point[:2]
+    elevations[rows[has_own_elevations(lines)[rows]]] = point[2]
+    return lines._replace(xy=xy, elevations=elevations)
+
+
+def set_elevations(lines: LineSet, *, rows: Int64Array, elevations: Float64Array) -> LineSet:
+    """Return the lines with vertices, by their rows in the set, at other elevations."""
+    changed = lines.elevations.copy()
+    changed[rows] = elevations
+    return lines._replace(elevations=changed)
+
+
+def drop_vertices(lines: LineSet, *, rows: Int64Array) -> LineSet:
+    """Return the lines straight on past vertices, by their rows; a closed one stays closed."""
+    keep = np.ones(len(lines.xy), np.bool_)
+    keep[rows] = False
+    source = np.arange(len(lines.xy))
+    for line in np.unique(lines.line_of[rows]).tolist():
+        first, last = int(lines.offsets[line]), int(lines.offsets[line + 1]) - 1
+        is_closed = bool((lines.xy[first] == lines.xy[last]).all())
+        left = np.flatnonzero(keep[first:last]) + first
+        if len(left) + (not is_closed and bool(keep[last])) < (3 if is_closed else 2):
+            raise LinesError(
+                f"{lines.title(line)} would vanish with the vertex: "
+                "remove_breakline removes a line."
+            )
+        if is_closed and not keep[last]:
+            keep[last], source[last] = True, left[0]
+    counts, rows = np.add.reduceat(keep, lines.offsets[:-1]), source[keep]
+    return lines._replace(
+        xy=lines.xy[rows], elevations=lines.elevations[rows], offsets=find_offsets(counts)
+    )
+
+
+def require_inner(beside: Sequence[int]) -> None:
+    """Refuse to flip an edge that has not two triangles, given what is beside it."""
+    if len(beside) != 2:
+        raise PointsError("Only an edge between two triangles can be flipped.")
+
+
+def make_flipped_edge(points: Float64Array) -> Breakline:
+    """Return the edge that comes in the place of another one; refuse what is not convex.
+
+    Parameters
+    ----------
+    points : (4, 3) float64 array
+        The ends of the edge, and the corners of the triangles left and right of it.
+    """
+    quad = np.ascontiguousarray(points[[0, 2, 1, 3], :2])
+    following = (np.ascontiguousarray(np.roll(quad, -k, axis=0)) for k in (1, 2))
+    turns = _kernel.orientation(quad, *following)
+    if not ((turns > 0).all() or (turns < 0).all()):
+        raise PointsError("The two triangles at the edge are no convex quadrilateral.")
+    return Breakline(points[2:], kind="soft", name=FLIP)

@@ -23,8 +23,7 @@ from ..building.reference import require_crs
 from ..validation.geometries import is_plain
 from ..validation.tables import as_table
 from .arguments import as_array
-from .origin import Origin
-from .single_edits import make_vertices
+from .session import Origin, Session
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -36,7 +35,6 @@ if TYPE_CHECKING:
     from ..building.inputs import BuildInputs
     from ..building.version import Version
     from ..report import Edit
-    from .session import Session
 
 __all__ = ["Editable"]
 
@@ -187,7 +185,7 @@ class Editable:
         if lent is not None:
             vertex = lent.insert_one(points, duplicates)
             if vertex >= 0:
-                return make_vertices(vertex)
+                return np.array([vertex], np.int32)
         made: Int32Array = self._edit("insert", points=points, duplicates=duplicates)
         return made
 
@@ -436,8 +434,6 @@ class Editable:
             self._lent.take_back()
             self._lent = None
         if self._session is None:
-            from .session import Session
-
             version = cast("Version", self._version)
             if self._origin is None:
                 self._session = Session(version, self._inputs)

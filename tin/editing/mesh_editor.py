@@ -7,6 +7,7 @@ a fresh build gives. An edit that fails, or that comes near a line, leaves the m
 from __future__ import annotations
 
 from array import array
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -18,20 +19,23 @@ from ..building.duplicates import merge_rows
 from ..building.version import Version
 from ..report import Edit, Report
 from ..triangulation import Triangulation
-from .changes import AddLine, Change
-from .flipping import are_uncut, make_flipped_edge, require_inner
-from .lazy_mesh import LiveMesh
-from .single_edits import INSERT, REMOVE, take_log
+from .changes import Change, Done, add_line, make_flipped_edge, require_inner
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator
 
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...base.policies import DuplicatePolicy
     from ..building.inputs import BuildInputs
     from .changes import NumberedInputs
 
-__all__ = ["Editor", "NotLocal", "explain_occupied", "is_local", "merge_elevations"]
+__all__ = ["Editor", "NotLocal", "explain_occupied", "is_local", "merge_elevations", "take_log"]
+
+_Mesh = tuple["Int32Array", "Int32Array", "BoolArray"]
+"""Triangles, neighbours and fixed edges, vertices called by their slots, in canonical order."""
+
+_INSERT, _REMOVE, _MOVE, _ = range(4)
+"""Kinds of edits, as the core numbers them."""
 
 _LARGE_BATCH = 10_000
 _LARGE_SHARE = 8
@@ -50,11 +54,22 @@ def is_local(build_inputs: BuildInputs) -> bool:
     """Tell whether an edit away from the lines changes the triangulation there alone."""
     lines, options = build_inputs.lines, build_inputs.options
     has_all_rows = not build_inputs.erase and build_inputs.is_masked is None
+    has_elevations = np.isfinite(lines.priorities).all() and np.isfinite(lines.elevations).all()
     is_simple = options.snap == 0.0 and has_all_rows and not options.conforming
-    has_own_elevations = bool(
-        np.isfinite(lines.priorities).all() and np.isfinite(lines.elevations).all()
+    return bool(is_simple and has_elevations and not build_inputs.is_clipped)
+
+
+def _are_uncut(version: Version, build_inputs: BuildInputs) -> bool:
+    """Tell whether all lines are breaklines, and run through their given vertices and no others.
+
+    Then a build fixes them as they are given, and a further one that meets none changes nothing.
+    """
+    given, lines = build_inputs.lines, version.lines
+    is_same = all(kind in ("hard", "soft") for kind in given.kinds) and np.array_equal(
+        given.offsets, lines.offsets
     )
-    return is_simple and has_own_elevations and not build_inputs.is_clipped
+    points = version.triangulation.points
+    return is_same and np.array_equal(given.xy, points[lines.vertices, :2])
 
 
 class Editor:
@@ -70,6 +85,11 @@ class Editor:
         Neither clipped nor with vertices that have been left out.
     inputs : NumberedInputs
         Of the version.
+
+    Attributes
+    ----------
+    edited : EditedMesh
+        The vertices as they are; it has no mesh of the triangles until these change.
     """
 
     def __init__(self, version: Version, inputs: NumberedInputs) -> None:
@@ -82,44 +102,33 @@ class Editor:
         self._n_base = len(surface.points)
         self._base_rows = _group_rows_by_vertex(version.vertex_of)
         self._n_rows = self._base_rows.n_vertices
-        self._live = LiveMesh(
-            surface.points,
-            surface.triangles,
-            surface.neighbors,
-            surface.constrained,
-            lines=(self._n_rows, self._n_base),
-        )
+        self.edited = _kernel.EditedMesh(surface.points, self._n_rows, self._n_base)
+        self._unchanged: _Mesh | None = surface.triangles, surface.neighbors, surface.constrained
         self._own_rows: list[int] = []  # of each slot that was made since
         self._more_rows: dict[int, list[int]] = {}
         self._new_slots = array("i")  # of each row that came since
         self._has_lines = False
         if self._n_rows < self._n_base or len(version.lines) > 0:
             self._keep_clear(surface.points)
-        self._has_uncut_lines = are_uncut(version, inputs.build_inputs)
+        self._has_uncut_lines = _are_uncut(version, inputs.build_inputs)
 
     # ------------------------------------------------------------------ numbers
-
-    @property
-    def edited(self) -> _kernel.EditedMesh:
-        """The vertices as they are."""
-        return self._live.edited
 
     @property
     def count(self) -> int:
         """Number of vertices."""
         return self.edited.count
 
+    def _open(self) -> _kernel.EditedMesh:
+        """Return the vertices, with a mesh of the triangles, to be changed."""
+        if self._unchanged is not None:
+            self.edited.open(*self._unchanged)
+            self._unchanged = None
+        return self.edited
+
     @property
     def _mesh(self) -> _kernel.Mesh:
-        return self._live.mesh
-
-    def slots(self, vertices: Int64Array) -> Int32Array:
-        """Return the slots of vertices, which must exist."""
-        return self.edited.slots_of(vertices)
-
-    def numbers(self, slots: Int32Array) -> Int32Array:
-        """Return the vertices that slots hold."""
-        return self.edited.numbers_of(slots)
+        return self._open().mesh
 
     def _find_rows_at(self, slot: int) -> list[int]:
         more = self._more_rows.get(slot, [])
@@ -129,60 +138,40 @@ class Editor:
 
     # -------------------------------------------------------------------- edits
 
-    def insert(self, xyz: Float64Array, policy: DuplicatePolicy) -> tuple[Int32Array, Change]:
-        """Insert rows of points; return their slots.
+    def insert(self, xyz: Float64Array, policy: DuplicatePolicy) -> Done:
+        """Insert rows of points.
 
         Raises
         ------
         PointsError
             If vertices are there, and the policy is "error".
         """
-        before = self._live
-        first = before.edited.slots
+        before = self.edited, self._unchanged
+        first = self.edited.slots
         is_large = self._is_large(len(xyz))
-        slots = self._grow_with(xyz) if is_large else before.open().insert(xyz)
-        is_new = slots == np.arange(first, first + len(xyz), dtype=np.int32)
+        slots = self._grow_with(xyz) if is_large else self._open().insert(xyz)
+        own = np.arange(first, first + len(xyz), dtype=np.int32)
+        is_new = slots == own
+        elevations: dict[int, float] = {}  # of vertices at which further rows come to stand
         try:
-            elevations: dict[int, float] = {}
             if not is_new.all():
-                self._require_in_order(slots, first)
-                old = np.flatnonzero(~is_new).tolist()
-                elevations = self._merge_all_elevations(xyz, slots, old, policy)
-            if self._has_lines:
-                self._require_clear(slots)
+                if self._is_strict or (slots > own).any():  # a build refuses, or keeps a later row
+                    raise NotLocal
+                for row in np.flatnonzero(~is_new).tolist():
+                    slot = int(slots[row])
+                    here = elevations.get(slot, self.edited.point(slot)[2])
+                    elevations[slot] = merge_elevations(here, float(xyz[row, 2]), policy)
+            self._require_free(slots)
         except (PointsError, NotLocal):
             if is_large:
-                self._live = before
+                self.edited, self._unchanged = before
             else:
                 self._take_back(slots[is_new])
                 self._own_rows.extend([-1] * len(xyz))
             raise
-        return slots, self._enter(xyz, slots, is_new, elevations)
-
-    def _require_in_order(self, slots: Int32Array, first: int) -> None:
-        """Leave rows at one place to a build if it refuses them, or if not the first is kept."""
-        is_late = slots > np.arange(first, first + len(slots))
-        if is_late.any() or self._is_strict:
-            raise NotLocal
-
-    def _merge_all_elevations(
-        self,
-        xyz: Float64Array,
-        slots: Int32Array,
-        old: list[int],
-        policy: DuplicatePolicy,
-    ) -> dict[int, float]:
-        """Return the elevations of vertices at which further rows come to stand."""
-        elevations: dict[int, float] = {}
-        for row in old:
-            slot = int(slots[row])
-            here = elevations.get(slot, self.edited.point(slot)[2])
-            elevations[slot] = merge_elevations(here, float(xyz[row, 2]), policy)
-        return elevations
-
-    def _require_clear(self, slots: Int32Array) -> None:
-        for slot in set(slots.tolist()):
-            self._require_free(slot)
+        return Done(
+            self._enter(xyz, slots, is_new, elevations), result=self.edited.numbers_of(slots)
+        )
 
     def _keep_clear(self, points: Float64Array) -> None:
         """From now on vertices must keep a distance from lines."""
@@ -190,10 +179,11 @@ class Editor:
         self._least = _ROUNDINGS * float(np.spacing(np.abs(points[:, :2]).max()))
         self.edited.keep_clear(self._least)
 
-    def _require_free(self, slot: int) -> None:
-        """Refuse a vertex on a line, or near one."""
-        if self._mesh.has_fixed_edge(slot) or not self._mesh.clearance(slot) > self._least:
-            raise NotLocal
+    def _require_free(self, slots: Int32Array) -> None:
+        """Refuse vertices on lines, or near one."""
+        for slot in set(slots.tolist()) if self._has_lines else ():
+            if self._mesh.has_fixed_edge(slot) or not self._mesh.clearance(slot) > self._least:
+                raise NotLocal
 
     def _take_back(self, slots: Int32Array) -> None:
         """Remove vertices that were inserted, also from fixed edges."""
@@ -244,17 +234,15 @@ class Editor:
         own = np.arange(len(rows), dtype=np.int32)
         slots = own if growth.kept_row is None else growth.kept_row
         is_kept = slots == own
-        vertex = np.flatnonzero(is_kept).astype(np.int32)
-        self._live = LiveMesh(
-            rows,
-            growth.triangles if is_kept.all() else vertex[growth.triangles],
-            growth.neighbors,
-            np.zeros(growth.triangles.shape, np.bool_),
-            alive=is_kept,
-        )
+        triangles = growth.triangles
+        self.edited = _kernel.EditedMesh(rows, 0, 0)
+        if not is_kept.all():
+            triangles = np.flatnonzero(is_kept).astype(np.int32)[triangles]
+            self.edited.leave_empty(np.flatnonzero(~is_kept).astype(np.int32))
+        self._unchanged = triangles, growth.neighbors, np.zeros(triangles.shape, np.bool_)
         return slots[first:]
 
-    def remove(self, slots: Int32Array) -> Change:
+    def remove(self, vertices: Int64Array) -> Done:
         """Remove vertices and the rows there.
 
         Raises
@@ -262,25 +250,22 @@ class Editor:
         PointsError
             If no triangle would be left.
         """
-        if self._has_lines:
-            self._require_clear(slots)
+        slots = self.edited.slots_of(vertices)
+        self._require_free(slots)
         gone: list[int] = []
-        edited = self._live.open()
+        edited = self._open()
         for slot in slots.tolist():
             if not edited.empty(slot):
-                self._put_back(gone)
+                for other in gone:
+                    edited.fill(other, *edited.point(other)[:2])
                 raise PointsError(
                     "No triangle would be left: three vertices not in line must stay."
                 )
             gone.append(slot)
         rows = [row for slot in gone for row in self._find_rows_at(slot)]
-        return Change(removed=np.array(rows, np.int64))
+        return Done(Change(removed=np.array(rows, np.int64)))
 
-    def _put_back(self, slots: Sequence[int]) -> None:
-        for slot in slots:
-            self.edited.fill(slot, *self.edited.point(slot)[:2])
-
-    def move(self, slot: int, point: Float64Array) -> Change:
+    def move(self, vertices: Int64Array, point: Float64Array) -> Done:
         """Move a vertex and the rows there.
 
         Raises
@@ -288,18 +273,20 @@ class Editor:
         PointsError
             If another vertex stands there, or no triangle would be left.
         """
+        slots = self.edited.slots_of(vertices)
+        (slot,) = slots.tolist()
         if self._has_lines and self._mesh.has_fixed_edge(slot):
             raise NotLocal
         x, y, z = point.tolist()
         if self.edited.point(slot)[:2] != (x, y):
-            self._move_in_plane(slot, x, y)
+            self._move_in_plane(slots, x, y)
         self.edited.put_elevation(slot, z)
-        return self._move_rows(slot, point)
+        return Done(self._move_rows(slot, point))
 
-    def _move_in_plane(self, slot: int, x: float, y: float) -> None:
-        if self._has_lines:
-            self._require_free(slot)
-        edited, before = self._live.open(), self.edited.point(slot)[:2]
+    def _move_in_plane(self, slots: Int32Array, x: float, y: float) -> None:
+        self._require_free(slots)
+        (slot,) = slots.tolist()
+        edited, before = self._open(), self.edited.point(slot)[:2]
         if not edited.empty(slot):
             raise PointsError(
                 "The vertex cannot be moved while all others are in line: insert a point first."
@@ -307,25 +294,20 @@ class Editor:
         found = edited.fill(slot, x, y)
         if found != slot:
             edited.fill(slot, *before)
-            raise explain_occupied(int(self.numbers(np.array([found], np.int32))[0]), x, y)
-        if self._has_lines:
-            try:
-                self._require_free(slot)
-            except NotLocal:
-                self._take_back(np.array([slot], np.int32))
-                edited.fill(slot, *before)
-                raise
+            raise explain_occupied(int(edited.numbers_of(np.array([found], np.int32))[0]), x, y)
+        try:
+            self._require_free(slots)
+        except NotLocal:
+            self._take_back(slots)
+            edited.fill(slot, *before)
+            raise
 
-    def set_elevations(self, slots: Int32Array, elevations: list[float]) -> Change:
+    def set_elevations(self, vertices: Int64Array, elevations: list[float]) -> Done:
         """Give vertices, and the rows there, other elevations."""
-        if self._has_lines and any(map(self._mesh.has_fixed_edge, slots.tolist())):
+        slots = self.edited.slots_of(vertices).tolist()
+        if self._has_lines and any(map(self._mesh.has_fixed_edge, slots)):
             raise NotLocal
-        return _join_changes(
-            [
-                self._put_elevation(slot, elevation)
-                for slot, elevation in zip(slots.tolist(), elevations, strict=True)
-            ]
-        )
+        return Done(_join_changes(list(map(self._put_elevation, slots, elevations))))
 
     def _put_elevation(self, slot: int, elevation: float) -> Change:
         self.edited.put_elevation(slot, elevation)
@@ -336,7 +318,7 @@ class Editor:
         points = point[None] if len(rows) == 1 else np.tile(point, (len(rows), 1))
         return Change(moved=rows, points=points)
 
-    def flip(self, a: int, b: int) -> Change:
+    def flip(self, ends: Int64Array) -> Done:
         """Put the other diagonal of the two triangles at an edge in its place, as a soft line.
 
         Raises
@@ -344,6 +326,7 @@ class Editor:
         PointsError
             If there is no such inner edge, or the triangles are no convex quadrilateral.
         """
+        a, b = self.edited.slots_of(ends).tolist()
         if not self._has_uncut_lines or b in self._mesh.fixed_neighbors(a).tolist():
             raise NotLocal
         beside = self._mesh.corners_beside(a, b).tolist()
@@ -352,31 +335,36 @@ class Editor:
         self._mesh.force(np.array([beside], np.int32))
         self._lines = self._lines.with_breakline(beside, line)
         self._keep_clear(self.edited.points())
-        return Change(lines=(AddLine(line),))
+        return Done(Change(lines=(partial(add_line, breakline=line),)))
 
     # ------------------------------------------------------------------ the log
 
     def take_log(self) -> Iterator[tuple[Edit, Change]]:
         """Yield the edits that the core did on its own since it was last asked, in order."""
         for edit, kind, slot, point in take_log(self.edited):
-            if kind == INSERT:
-                yield edit, self._enter_one(slot, point)
-            elif kind == REMOVE:
+            if kind == _INSERT:
+                self._own_rows.append(self._n_first_rows + len(self._new_slots))
+                self._new_slots.append(slot)
+                yield edit, Change(added=point[None])
+            elif kind == _REMOVE:
                 yield edit, Change(removed=np.array(self._find_rows_at(slot), np.int64))
             else:
                 yield edit, self._move_rows(slot, point)
-
-    def _enter_one(self, slot: int, point: Float64Array) -> Change:
-        self._own_rows.append(self._n_first_rows + len(self._new_slots))
-        self._new_slots.append(slot)
-        return Change(added=point[None])
 
     # ------------------------------------------------------------------- result
 
     def make_version(self, inputs: Callable[[], NumberedInputs]) -> Version:
         """Return what the edits led to; ``inputs()`` are those of now, asked for if needed."""
         number = self.edited.numbers()
-        surface = self._make_triangulation()
+        if self._unchanged is None:
+            triangles, neighbors, constrained = self.edited.mesh.arrays(self._threads)
+        else:
+            triangles, neighbors, constrained = self._unchanged
+            if self.count < self.edited.slots:
+                triangles = number[triangles]
+        if self._n_rows < self._n_base < self.edited.slots:  # vertices of lines are the last ones
+            triangles = number[number >= 0][triangles]
+        surface = Triangulation(self.edited.points(), triangles, neighbors, constrained)
         slot_of_row = np.append(self._vertex_of_row, np.array(self._new_slots, np.int32))
         vertex_of_row = np.append(number, np.int32(-1))[slot_of_row]
         lines, base = self._lines, self._report
@@ -391,18 +379,6 @@ class Editor:
         if self._has_lines:
             report = report.with_lines(inputs().build_inputs.lines.labels())
         return Version(triangulation=surface, vertex_of=vertex_of_row, lines=lines, report=report)
-
-    def _make_triangulation(self) -> Triangulation:
-        triangles, neighbors, constrained = self._live.arrays(self._threads)
-        if self._n_rows < self._n_base < self.edited.slots:  # vertices of lines are the last ones
-            number = self.edited.numbers()
-            triangles = number[number >= 0][triangles]
-        return Triangulation(
-            points=self.edited.points(),
-            triangles=triangles,
-            neighbors=neighbors,
-            constrained=constrained,
-        )
 
 
 class _RowsByVertex(NamedTuple):
@@ -426,6 +402,33 @@ def _group_rows_by_vertex(vertex_of_row: Int32Array) -> _RowsByVertex:
     order = np.argsort(vertex_of_row, kind="stable")
     offsets = np.searchsorted(vertex_of_row[order], np.arange(count + 1))
     return _RowsByVertex(count, order, offsets)
+
+
+def take_log(edited: _kernel.EditedMesh) -> Iterator[tuple[Edit, int, int, Float64Array]]:
+    """Yield the edits that were logged, in order; the log is empty then.
+
+    Yields
+    ------
+    Edit
+        As the caller gave it.
+    kind, slot : int
+    point : (3,) float64 array
+        Where the vertex is then; nowhere, and not to be looked at, once it is removed.
+    """
+    numbers, given = edited.take_log()
+    points = given + 0.0  # no -0.0
+    for (kind, vertex, slot), xyz, point in zip(
+        numbers.tolist(), given.tolist(), points, strict=True
+    ):
+        if kind == _INSERT:
+            edit = Edit("insert", {"points": [xyz], "duplicates": "last"})
+        elif kind == _REMOVE:
+            edit = Edit("remove", {"vertices": vertex})
+        elif kind == _MOVE:
+            edit = Edit("move", {"vertex": vertex, "point": xyz})
+        else:
+            edit = Edit("set_elevation", {"vertices": vertex, "z": xyz[2]})
+        yield edit, kind, slot, point
 
 
 def _gather_merges(

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
 from ...base.checks import require_count
 from ...base.errors import PointsError, TinsmithError
 from ...base.interrupts import hold_interrupts
+from ...base.records import require
 from ...base.sentences import counted, inflect
 from ..report import Edit
 from .changes import Change, NumberedInputs
 from .existing_triangles import build_of_triangles, gather_inputs_of_triangles
 from .mesh_editor import Editor, NotLocal, is_local
-from .operations import OPERATIONS, Done, MeshOperation, Operation
-from .origin import Origin
+from .operations import OPERATIONS
+from .rebuilding import Rebuild
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray
@@ -24,7 +25,30 @@ if TYPE_CHECKING:
     from ..building.inputs import BuildInputs
     from ..building.version import Version
 
-__all__ = ["Session"]
+__all__ = ["Origin", "Session"]
+
+
+class Origin(NamedTuple):
+    """What a TIN was built from, and what was done to it since.
+
+    Attributes
+    ----------
+    inputs : BuildInputs or None
+        What it was built from before all edits; None for one of existing triangles.
+    given : Version or None
+        Existing triangles before the first edit; None without edits.
+    edits : tuple of Edit
+    """
+
+    inputs: BuildInputs | None = None
+    given: Version | None = None
+    edits: tuple[Edit, ...] = ()
+
+    def _require_sound(self, version: Version) -> None:
+        """Refuse stored edits of operations that there are not; arguments are judged when done."""
+        told = (version, self.given or version)
+        for edit in (*self.edits, *(edit for one in told for edit in one.report.edits)):
+            require(isinstance(edit, Edit) and edit.operation in OPERATIONS, "the edits are none")
 
 
 class Session:
@@ -153,9 +177,16 @@ class Session:
         operation = OPERATIONS[name](**arguments)
         kept, before = operation.arguments(), self._version
         try:
-            done = self._do_on_mesh(operation)
-            if done is None:
-                done = operation.apply(self)
+            if self._editor is None and operation.is_of_vertices:
+                inputs = self.inputs()
+                if is_local(inputs.build_inputs):
+                    self._editor = Editor(self.now(), inputs)
+            try:
+                if self._editor is None or not operation.is_of_vertices:
+                    raise NotLocal
+                done = operation.do(self._editor)
+            except NotLocal:
+                done = operation.do(Rebuild(self.now, self.inputs()))
         except TinsmithError:
             raise
         except BaseException:  # interrupted: the mesh may be half-way
@@ -167,20 +198,6 @@ class Session:
         if done.version is not None:
             self._editor = None
         return done.result
-
-    def _do_on_mesh(self, operation: Operation) -> Done | None:
-        """Do an edit in the mesh; None if it reaches a line, or may."""
-        if not isinstance(operation, MeshOperation):
-            return None
-        if self._editor is None:
-            inputs = self.inputs()
-            if not is_local(inputs.build_inputs):
-                return None
-            self._editor = Editor(self.now(), inputs)
-        try:
-            return operation.apply_to_mesh(self._editor)
-        except NotLocal:
-            return None
 
     def lend(self) -> EditedMesh | None:
         """Return what does edits of one vertex and logs them, until it is taken back."""

@@ -22,7 +22,7 @@ from ....tin.building.version import Version
 from ....tin.constraints.breaklines import Lines
 from ....tin.constraints.constraint_set import LineSet
 from ....tin.constraints.constraint_table import ConstraintTable
-from ....tin.editing.origin import Origin
+from ....tin.editing.session import Origin
 from ....tin.report import Crossings, Edit, Overruled, Report, Simplification, Unmended
 from ....tin.surface import TIN
 from ....tin.triangulation import Triangulation

@@ -10,7 +10,7 @@ import pytest
 
 import tinsmith as ts
 from tinsmith.tin import _kernel
-from tinsmith.tin.editing import single_edits
+from tinsmith.tin.editing import mesh_editor
 
 LINES = [[[10.0, 10, 1], [40, 12, 2], [60, 40, 3]], [[20.0, 80, 1], [70, 70, 2]]]
 
@@ -62,7 +62,7 @@ def do_all(tin, script, look):
 def logged(monkeypatch):
     """How many edits came from the log."""
     found = []
-    take_log = single_edits.take_log
+    take_log = mesh_editor.take_log
 
     def counted(edited):
         for edit in take_log(edited):
@@ -174,11 +174,11 @@ def test_a_mesh_that_an_error_left_half_way_is_made_anew():
         def __getattr__(self, name):
             return getattr(self._edited, name)
 
-    live = tin._session._editor._live
-    assert isinstance(live.edited, _kernel.EditedMesh)
-    live.edited = Broken(live.edited)
+    editor = tin._session._editor
+    assert isinstance(editor.edited, _kernel.EditedMesh)
+    editor.edited = Broken(editor.edited)
     tin.set_elevation([3], 7.0)
-    assert tin._session._editor._live is not live
+    assert tin._session._editor is not editor
     assert [edit.operation for edit in tin.edits] == ["remove", "insert", "set_elevation"]
     assert len(tin.points) == 300
     assert tin.points[3, 2] == 7.0
