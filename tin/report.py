@@ -104,13 +104,7 @@ class Merge(NamedTuple):
         >>> Merge(0, (0, 3), (5.0, 7.0), (0.0, 0.0), 6.0).to_dict()["rows"]
         (0, 3)
         """
-        return {
-            "vertex": self.vertex,
-            "rows": self.rows,
-            "elevations": self.elevations,
-            "shifts": self.shifts,
-            "elevation": self.elevation,
-        }
+        return self._asdict()
 
 
 class Edit(NamedTuple):
@@ -188,6 +182,11 @@ class Overruled(NamedTuple):
     lines: Int32Array
     elevations: Float64Array
     vertex_elevations: Float64Array
+
+    @classmethod
+    def none(cls) -> Overruled:
+        """Return none."""
+        return cls(np.empty(0, np.int32), np.empty(0, np.int32), np.empty(0), np.empty(0))
 
 
 class Unmended(NamedTuple):
@@ -325,18 +324,6 @@ def describe_skipped(skipped: Mapping[str, int]) -> tuple[str, ...]:
     return (f"Left out by the reader: {', '.join(left)}.",) if left else ()
 
 
-def _make_none_overruled() -> Overruled:
-    return Overruled(_make_no_rows(), _make_no_rows(), np.empty(0), np.empty(0))
-
-
-def _make_no_rows() -> Int32Array:
-    return np.empty(0, np.int32)
-
-
-def _make_no_numbers() -> Float64Array:
-    return np.empty(0)
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Report(Frozen):
     """What the triangulation did with the input, row by row.
@@ -400,18 +387,18 @@ class Report(Frozen):
     n_triangles: int
     duplicates: DuplicatePolicy = "mean"
     snap: float = 0.0
-    merged_vertices: Int32Array = field(default_factory=_make_no_rows)
+    merged_vertices: Int32Array = field(default_factory=lambda: np.empty(0, np.int32))
     merged_offsets: Int32Array = field(default_factory=lambda: np.zeros(1, np.int32))
-    merged_rows: Int32Array = field(default_factory=_make_no_rows)
-    merged_elevations: Float64Array = field(default_factory=_make_no_numbers)
-    merged_shifts: Float64Array = field(default_factory=_make_no_numbers)
-    vertex_elevations: Float64Array = field(default_factory=_make_no_numbers)
-    left_out_rows: Int32Array = field(default_factory=_make_no_rows)
+    merged_rows: Int32Array = field(default_factory=lambda: np.empty(0, np.int32))
+    merged_elevations: Float64Array = field(default_factory=lambda: np.empty(0))
+    merged_shifts: Float64Array = field(default_factory=lambda: np.empty(0))
+    vertex_elevations: Float64Array = field(default_factory=lambda: np.empty(0))
+    left_out_rows: Int32Array = field(default_factory=lambda: np.empty(0, np.int32))
     left_out_why: Int8Array = field(default_factory=lambda: np.empty(0, np.int8))
     n_lines: int = 0
     line_labels: tuple[str, ...] = ()
     crossings: Crossings = field(default_factory=Crossings.none)
-    overruled: Overruled = field(default_factory=_make_none_overruled)
+    overruled: Overruled = field(default_factory=Overruled.none)
     from_raster: bool = False
     skipped: Mapping[str, int] = field(default_factory=dict)
     notes: Sequence[str] = ()
@@ -684,9 +671,24 @@ class Report(Frozen):
             "duplicates": self.duplicates,
             "snap": self.snap,
             "merges": [merge.to_dict() for merge in self.merges()],
-            "left_out": self._list_left_out(),
+            "left_out": {
+                reason: self.left_out_rows[self.left_out_why == code].tolist()
+                for code, reason in enumerate(LEFT_OUT)
+                if (self.left_out_why == code).any()
+            },
             "lines": self.n_lines,
-            "crossings": self._list_crossings(),
+            "crossings": [
+                {
+                    "vertex": vertex,
+                    "place": place,
+                    "lines": [self.line_labels[line] for line in lines],
+                    "elevations": elevations,
+                    "elevation": elevation,
+                }
+                for vertex, place, lines, elevations, elevation in zip(
+                    *(array.tolist() for array in self.crossings), strict=True
+                )
+            ],
             "overruled": self._list_overruled(),
             "from_raster": self.from_raster,
             "skipped": dict(self.skipped),
@@ -699,27 +701,6 @@ class Report(Frozen):
     def _describe_simplification(self) -> dict[str, Any]:
         found = self.simplification
         return {} if found is None else {"simplification": found.to_dict()}
-
-    def _list_left_out(self) -> dict[str, list[int]]:
-        return {
-            reason: self.left_out_rows[self.left_out_why == code].tolist()
-            for code, reason in enumerate(LEFT_OUT)
-            if (self.left_out_why == code).any()
-        }
-
-    def _list_crossings(self) -> list[dict[str, Any]]:
-        return [
-            {
-                "vertex": vertex,
-                "place": place,
-                "lines": [self.line_labels[line] for line in lines],
-                "elevations": elevations,
-                "elevation": elevation,
-            }
-            for vertex, place, lines, elevations, elevation in zip(
-                *(array.tolist() for array in self.crossings), strict=True
-            )
-        ]
 
     def _list_overruled(self) -> list[dict[str, Any]]:
         return [

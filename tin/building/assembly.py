@@ -15,7 +15,7 @@ from ..constraints.clipping import BOUNDARY, EXTENT, HOLES, in_rings
 from ..constraints.constraint_set import LineSet
 from ..constraints.draping import drape
 from ..constraints.pslg import Clip, Pslg, find_lines_in
-from ..report import LEFT_OUT, Crossings, Overruled, Report
+from ..report import LEFT_OUT, Overruled, Report
 from ..topology import find_offsets
 from ..triangulation import Triangulation
 from ..validation.points import require_three
@@ -24,7 +24,7 @@ from .duplicates import merge_rows
 from .version import LineVertices, Version
 
 if TYPE_CHECKING:
-    from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int32Array, Int64Array
     from ...base.progress import Tell
     from .inputs import BuildInputs
 
@@ -100,7 +100,12 @@ class _Ground(NamedTuple):
 
 
 def _with_lines(inputs: BuildInputs, progress: Progress) -> Version:
-    is_erased = _find_erased(inputs)
+    # which rows are left out before anything is built: masked or erased ones
+    is_erased = np.zeros(len(inputs.points), np.bool_)
+    if inputs.is_masked is not None:
+        is_erased |= inputs.is_masked
+    for rings in inputs.erase:
+        is_erased |= in_rings(inputs.points[:, :2], rings) > 0
     rows = np.flatnonzero(~is_erased)
     ground = _drape_lines(rows, inputs, progress.stage(0.1, 0.4))
     progress(0.4)
@@ -112,7 +117,7 @@ def _with_lines(inputs: BuildInputs, progress: Progress) -> Version:
         made, pslg = _triangulate_with_lines(inputs, ground, rows)
     surface, number_of = pslg.surface(made.surface)
     vertex_of = _renumber(pslg.vertex_of, number_of)
-    account = _gather_account(inputs, made, number_of, is_erased, vertex_of, ground)
+    account = _gather_account(inputs, ground, made, number_of, rows=rows, vertex_of=vertex_of)
     is_whole = surface is made.surface
     lines = find_lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=is_whole)
     is_snapped = inputs.options.snap > 0
@@ -185,16 +190,6 @@ def _renumber(vertices: Int32Array, number_of: Int32Array) -> Int32Array:
     return found
 
 
-def _find_erased(inputs: BuildInputs) -> BoolArray:
-    """Tell which rows are left out before anything is built: masked or erased ones."""
-    is_erased = np.zeros(len(inputs.points), np.bool_)
-    if inputs.is_masked is not None:
-        is_erased |= inputs.is_masked
-    for rings in inputs.erase:
-        is_erased |= in_rings(inputs.points[:, :2], rings) > 0
-    return is_erased
-
-
 def _drape_lines(rows: Int64Array, inputs: BuildInputs, progress: Tell | None) -> _Ground:
     """Give all lines elevations: draped ones from the surface of everything else."""
     lines = inputs.lines
@@ -224,38 +219,46 @@ def _drape_lines(rows: Int64Array, inputs: BuildInputs, progress: Tell | None) -
 
 def _gather_account(
     inputs: BuildInputs,
+    ground: _Ground,
     made: ConstrainedTriangulation,
     number_of: Int32Array,
-    is_erased: BoolArray,
+    *,
+    rows: Int64Array,
     vertex_of: Int32Array,
-    ground: _Ground,
 ) -> dict[str, Any]:
     """Return the report's fields about merged rows, left-out rows and lines that cross."""
     final = _renumber(made.number_of, number_of)
     account = _drop_lost_merges(dict(made.merges), final)
     left_out = np.flatnonzero(vertex_of < 0).astype(np.int32)
-    labels = ground.lines.labels()
     overruled = made.overruled
+    # the earlier one of two lines that cross in front
+    crossings = made.noded.crossings
+    order = np.argsort(crossings.lines, axis=1, kind="stable")
+    # why each row was left out, as indices into `LEFT_OUT`; `rows` were used
+    xy = inputs.points[left_out, :2]
+    why = np.full(len(left_out), LEFT_OUT.index("trimmed"), np.int8)
+    for rings in inputs.holes:
+        why[in_rings(xy, rings) >= 0] = LEFT_OUT.index("in a hole")
+    for outer in (inputs.extent, inputs.boundary):
+        if outer and len(left_out):
+            why[in_rings(xy, outer) <= 0] = LEFT_OUT.index("outside the boundary")
+    why[np.isin(left_out, rows[made.vertex_of < 0])] = LEFT_OUT.index("in water")
+    why[~np.isin(left_out, rows)] = LEFT_OUT.index("erased")
+    if inputs.is_masked is not None:
+        why[inputs.is_masked[left_out]] = LEFT_OUT.index("masked")
     return account | {
         "left_out_rows": left_out,
-        "left_out_why": _find_reasons(inputs, left_out, is_erased, made),
+        "left_out_why": why,
         "n_lines": len(inputs.lines.kinds) - len(inputs.extent),
-        "line_labels": tuple(labels),
-        "crossings": _renumber_crossings(made, final),
+        "line_labels": tuple(ground.lines.labels()),
+        "crossings": crossings._replace(
+            vertices=_renumber(crossings.vertices, final),
+            lines=np.take_along_axis(crossings.lines, order, axis=1),
+            elevations=np.take_along_axis(crossings.elevations, order, axis=1),
+        ),
         "overruled": Overruled(_renumber(overruled.vertices, final), *overruled[1:]),
         "notes": (*inputs.notes, *ground.notes),
     }
-
-
-def _renumber_crossings(made: ConstrainedTriangulation, final: Int32Array) -> Crossings:
-    """Return the crossings by the numbers of the TIN, the earlier line in front."""
-    found = made.noded.crossings
-    order = np.argsort(found.lines, axis=1, kind="stable")
-    return found._replace(
-        vertices=_renumber(found.vertices, final),
-        lines=np.take_along_axis(found.lines, order, axis=1),
-        elevations=np.take_along_axis(found.elevations, order, axis=1),
-    )
 
 
 def _drop_lost_merges(account: dict[str, Any], final: Int32Array) -> dict[str, Any]:
@@ -272,26 +275,3 @@ def _drop_lost_merges(account: dict[str, Any], final: Int32Array) -> dict[str, A
         "vertex_elevations": account["vertex_elevations"][keep],
         **{k: account[k][rows] for k in ("merged_rows", "merged_elevations", "merged_shifts")},
     }
-
-
-def _find_reasons(
-    inputs: BuildInputs,
-    rows: Int32Array,
-    is_erased: BoolArray,
-    made: ConstrainedTriangulation,
-) -> Int8Array:
-    """Return why each row was left out, as indices into ``LEFT_OUT``."""
-    xy = inputs.points[rows, :2]
-    why = np.full(len(rows), LEFT_OUT.index("trimmed"), np.int8)
-    for rings in inputs.holes:
-        why[in_rings(xy, rings) >= 0] = LEFT_OUT.index("in a hole")
-    for outer in (inputs.extent, inputs.boundary):
-        if outer and len(rows):
-            why[in_rings(xy, outer) <= 0] = LEFT_OUT.index("outside the boundary")
-    in_water = np.zeros(len(is_erased), np.bool_)
-    in_water[np.flatnonzero(~is_erased)[made.vertex_of < 0]] = True
-    why[in_water[rows]] = LEFT_OUT.index("in water")
-    why[is_erased[rows]] = LEFT_OUT.index("erased")
-    if inputs.is_masked is not None:
-        why[inputs.is_masked[rows]] = LEFT_OUT.index("masked")
-    return why

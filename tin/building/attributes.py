@@ -134,13 +134,7 @@ def _are_exact(columns: Iterable[AnyArray]) -> bool:
 
 
 def as_row_attributes(given: Any, n_rows: int) -> dict[str, AnyArray]:
-    """Return columns of the first rows of a TIN as read-only views.
-
-    Raises
-    ------
-    OptionError
-        If one is no column, or longer than there are rows.
-    """
+    """Return columns of the first rows of a TIN as read-only views."""
     columns = as_columns(given, None)
     for name, column in columns.items():
         if len(column) > n_rows:
@@ -177,7 +171,13 @@ def _as_column(name: str, values: Any, shape: tuple[int, ...] | None) -> AnyArra
 def _as_array(values: Any) -> AnyArray:
     """Return values as an array that holds them as they are: no number as text, none rounded."""
     if isinstance(values, np.ma.MaskedArray):
-        return _fill_masked(values)
+        # values with NaN, or None where the others are no floats, for those masked
+        if not np.ma.is_masked(values):
+            return np.asarray(values.data)
+        is_float = values.dtype.kind == "f"
+        filled = np.array(values.data, values.dtype if is_float else object)
+        filled[np.ma.getmaskarray(values)] = np.nan if is_float else None
+        return filled
     column = np.asarray(values)
     if not isinstance(values, list | tuple) or column.ndim != 1 or column.dtype.kind == "O":
         return column
@@ -187,16 +187,6 @@ def _as_array(values: Any) -> AnyArray:
     mixed = np.empty(len(values), object)
     mixed[:] = values
     return mixed
-
-
-def _fill_masked(values: np.ma.MaskedArray[Any, Any]) -> AnyArray:
-    """Return values with NaN, or None where the others are no floats, for those masked."""
-    if not np.ma.is_masked(values):
-        return np.asarray(values.data)
-    is_float = values.dtype.kind == "f"
-    filled = np.array(values.data, values.dtype if is_float else object)
-    filled[np.ma.getmaskarray(values)] = np.nan if is_float else None
-    return filled
 
 
 def as_mapping(name: str, given: Any) -> Mapping[str, Any]:

@@ -25,7 +25,6 @@ from .water import leave_out_water
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array, Int64Array
-    from ...base.policies import DuplicatePolicy
     from ...base.progress import Tell
     from .options import BuildOptions
 
@@ -96,7 +95,7 @@ def triangulate_constrained(
         If lines cross that must not.
     """
     xyz, threads = points[rows], thread_count(options.threads, len(points))
-    merged = _merge(xyz, rows, lines, options, threads, progress)
+    merged = _merge(xyz, rows, lines, options, threads=threads, progress=progress)
     mesh = build_mesh_of_growth(merged.points, merged.growth)
     noded = accept_noded(merged.polylines, lines.elevations)
     is_simple = options.snap == 0.0 and not (lines.priorities == ABOVE_ALL).any()
@@ -158,6 +157,7 @@ def _merge(
     rows_of: Int64Array,
     lines: LineSet,
     options: BuildOptions,
+    *,
     threads: int,
     progress: Tell | None,
 ) -> _Merged:
@@ -174,35 +174,24 @@ def _merge(
     is_kept = place == own
     vertex_of = (np.cumsum(is_kept, dtype=np.int32) - np.int32(1))[place]
     points = rows[is_kept]
-    merges = _merge_points(xyz, rows_of, vertex_of[:n], points, options.duplicates)
-    overruled = _set_line_elevations(points, vertex_of, n, lines)
-    polylines = Polylines.whole(vertex_of[n:], lines.offsets)
-    return _Merged(points, vertex_of, polylines, growth, merges, overruled)
-
-
-def _merge_points(
-    xyz: Float64Array,
-    rows_of: Int64Array,
-    vertex_of: Int32Array,
-    points: Float64Array,
-    policy: DuplicatePolicy,
-) -> dict[str, Any]:
-    """Give vertices the elevations of their points; return the account of merged rows."""
-    n = len(xyz)
+    # vertices get the elevations of their points, before those of lines
     first = np.full(len(points), n, np.int32)
-    np.minimum.at(first, vertex_of, np.arange(n, dtype=np.int32))
-    merged = merge_rows(xyz, first[vertex_of], policy, rows_of)
+    np.minimum.at(first, vertex_of[:n], own[:n])
+    merged = merge_rows(xyz, first[vertex_of[:n]], options.duplicates, rows_of)
     of_vertex = np.flatnonzero(first < n)
     of_vertex = of_vertex[np.argsort(first[of_vertex], kind="stable")].astype(np.int32)
     points[:, 2] = np.nan
     points[of_vertex, 2] = merged.points[:, 2]
-    account = dict(merged.account)
-    if account:
-        account["merged_vertices"] = of_vertex[account["merged_vertices"]]
-        moved = xyz[account["merged_rows"], :2] - points[vertex_of[account["merged_rows"]], :2]
-        account["merged_shifts"] = np.hypot(*moved.T)
-        account["merged_rows"] = rows_of[account["merged_rows"]].astype(np.int32)
-    return account
+    merges = dict(merged.account)
+    if merges:
+        merged_rows = merges["merged_rows"]
+        moved = xyz[merged_rows, :2] - points[vertex_of[merged_rows], :2]
+        merges["merged_vertices"] = of_vertex[merges["merged_vertices"]]
+        merges["merged_shifts"] = np.hypot(*moved.T)
+        merges["merged_rows"] = rows_of[merged_rows].astype(np.int32)
+    overruled = _set_line_elevations(points, vertex_of, n, lines)
+    polylines = Polylines.whole(vertex_of[n:], lines.offsets)
+    return _Merged(points, vertex_of, polylines, growth, merges, overruled)
 
 
 def _set_line_elevations(

@@ -12,7 +12,7 @@ from ...base.sentences import height, inflect
 from ..validation.points import SHOWN
 
 if TYPE_CHECKING:
-    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int32Array, Int64Array
 
 __all__ = ["DuplicatePolicy", "Merged", "merge_rows"]
 
@@ -55,7 +55,14 @@ def merge_rows(
     is_kept = kept_row == np.arange(n, dtype=np.int32)
     vertex_at = np.cumsum(is_kept, dtype=np.int32) - np.int32(1)
     vertex_of = vertex_at[kept_row]
-    rows, offsets, vertices = _group_rows(vertex_of, kept_row, is_kept)
+    # rows of merged vertices, group after group and ascending within, with offsets
+    is_shared = np.zeros(len(kept_row), np.bool_)
+    is_shared[kept_row[~is_kept]] = True
+    rows = np.flatnonzero(is_shared[kept_row]).astype(np.int32)
+    rows = rows[np.argsort(vertex_of[rows], kind="stable")]
+    vertices, counts = np.unique(vertex_of[rows], return_counts=True)
+    offsets = np.zeros(len(vertices) + 1, np.int32)
+    np.cumsum(counts, out=offsets[1:])
     if policy == "error" and len(rows):
         _refuse(xyz, rows, offsets, rows_of)
     points = xyz[is_kept]
@@ -72,20 +79,6 @@ def merge_rows(
     return Merged(points, vertex_of, account)
 
 
-def _group_rows(
-    vertex_of: Int32Array, kept_row: Int32Array, is_kept: BoolArray
-) -> tuple[Int32Array, Int32Array, Int32Array]:
-    """Return rows of merged vertices, group after group and ascending within, with offsets."""
-    is_shared = np.zeros(len(kept_row), np.bool_)
-    is_shared[kept_row[~is_kept]] = True
-    rows = np.flatnonzero(is_shared[kept_row]).astype(np.int32)
-    rows = rows[np.argsort(vertex_of[rows], kind="stable")]
-    vertices, counts = np.unique(vertex_of[rows], return_counts=True)
-    offsets = np.zeros(len(vertices) + 1, np.int32)
-    np.cumsum(counts, out=offsets[1:])
-    return rows, offsets, vertices
-
-
 def _choose_elevations(
     elevations: Float64Array, offsets: Int32Array, policy: DuplicatePolicy
 ) -> Float64Array:
@@ -98,27 +91,18 @@ def _choose_elevations(
         return np.minimum.reduceat(elevations, starts)
     if policy == "highest":
         return np.maximum.reduceat(elevations, starts)
-    return _average_elevations(elevations, starts, ends - starts)
-
-
-def _average_elevations(
-    elevations: Float64Array, starts: Int32Array, counts: Int32Array
-) -> Float64Array:
-    """Average what lies above the lowest of each group, all made small enough not to overflow."""
+    # average what lies above the lowest of each group, all made small enough not to overflow
+    counts = ends - starts
     group = np.repeat(np.arange(len(counts)), counts)
     ascending = elevations[np.lexsort((elevations, group))]
-    halvings = _count_halvings(elevations, counts)
+    # how often to halve so that differences and their sums stay finite
+    _, size = np.frexp(np.abs(elevations).max(initial=0.0))
+    _, most = np.frexp(float(counts.max(initial=1)))
+    halvings = max(0, int(size) + int(most) + 1 - np.finfo(np.float64).maxexp)
     ascending = np.ldexp(ascending, -halvings)
     lowest = ascending[starts]
     excess = np.add.reduceat(ascending - lowest[group], starts) / counts
     return np.asarray(np.ldexp(lowest + excess, halvings), np.float64)
-
-
-def _count_halvings(elevations: Float64Array, counts: Int32Array) -> int:
-    """Return how often to halve so that differences and their sums stay finite."""
-    _, size = np.frexp(np.abs(elevations).max(initial=0.0))
-    _, most = np.frexp(float(counts.max(initial=1)))
-    return max(0, int(size) + int(most) + 1 - np.finfo(np.float64).maxexp)
 
 
 def _refuse(

@@ -142,7 +142,14 @@ class BuildInputs:
         _require_simple_rings(lines)
         if self.has_own_boundary:
             return replace(self, lines=lines)
-        rings = {kind: _choose_rings(lines, kind) for kind in ("boundary", "hole")}
+        rings = {
+            kind: [
+                lines.xy[lines.offsets[line] : lines.offsets[line + 1] - 1]
+                for line, own in enumerate(lines.kinds)
+                if own == kind
+            ]
+            for kind in ("boundary", "hole")
+        }
         corners = iter(rings["hole"])
         return replace(
             self,
@@ -151,15 +158,6 @@ class BuildInputs:
             extent=rings["boundary"][len(self.boundary) :],
             holes=[[next(corners) for _ in hole] for hole in self.holes],
         )
-
-
-def _choose_rings(lines: LineSet, kind: str) -> list[Float64Array]:
-    """Return the rings of a kind, the first corner not repeated."""
-    return [
-        lines.xy[lines.offsets[line] : lines.offsets[line + 1] - 1]
-        for line, own in enumerate(lines.kinds)
-        if own == kind
-    ]
 
 
 @cache
@@ -180,20 +178,16 @@ def gather_inputs(
     crs: CrsLike | None,
     elevation_unit: UnitLike | None,
 ) -> BuildInputs:
-    """Check everything; lines come on top of the survey's own.
-
-    Raises
-    ------
-    PointsError, LinesError, CrsError, OptionError
-        As :func:`tinsmith.triangulate`.
-    """
+    """Check everything; lines come on top of the survey's own."""
     own = points if isinstance(points, Survey) else _make_empty_survey()
     system, unit = _settle_reference(own, CRS.of(crs), Unit.of(elevation_unit))
     given = zip(_NAMES, (points, breaklines, boundary, holes, erase, water), strict=True)
     system, told = settle_crs(system, dict(given))
     rows = points.points if isinstance(points, Survey) else points
     xyz, is_masked = as_masked_points(rows, threads=options.threads)
-    told += _look_at_degrees(xyz, is_masked, system)
+    # refuse points that are no longitudes and latitudes; tell of a wide span
+    require_degrees(xyz, system, "Points")
+    told += describe_span(xyz if is_masked is None else xyz[~is_masked], system, "Points")
     outer = [*own.boundary, *as_sequence(boundary, "boundary")]
     inner = [*own.holes, *as_sequence(holes, "holes")]
     open_lines = [*own.breaklines, *as_sequence(breaklines, "breaklines")]
@@ -223,12 +217,6 @@ def gather_inputs(
         notes=(*own.notes, *told, *_describe_rings(outer, inner)),
         source=own.source or "",
     )
-
-
-def _look_at_degrees(xyz: Float64Array, is_masked: BoolArray | None, crs: CRS | None) -> list[str]:
-    """Refuse points that are no longitudes and latitudes; tell of a wide span."""
-    require_degrees(xyz, crs, "Points")
-    return describe_span(xyz if is_masked is None else xyz[~is_masked], crs, "Points")
 
 
 def _describe_rings(boundary: Sequence[Any], holes: Sequence[Any]) -> list[str]:

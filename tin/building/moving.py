@@ -14,7 +14,7 @@ from ..validation.points import as_points
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...base.arrays import Float64Array, Int64Array
+    from ...base.arrays import Float64Array
     from ...base.crs import CRS, Unit
     from .inputs import BuildInputs
 
@@ -42,15 +42,14 @@ def move_inputs(
     -----
     Draped vertices have no elevation before and after. Water stays flat, at the mean of what
     becomes of its corners.
-
-    Raises
-    ------
-    PointsError
-        As :func:`move_points`.
     """
     lines = inputs.lines
     xyz = _move_places(np.column_stack([lines.xy, lines.elevations]), move)
-    _level_water(xyz, lines.offsets, lines.kinds)
+    for line, kind in enumerate(lines.kinds):
+        if kind == "water":
+            part = slice(lines.offsets[line], lines.offsets[line + 1])
+            if np.ptp(xyz[part, 2]) > 0:
+                xyz[part, 2] = xyz[part, 2].mean()
     moved = replace(
         inputs,
         points=_move_places(inputs.points, move),
@@ -65,12 +64,7 @@ def move_inputs(
 
 
 def require_move(function: Any, length: Any) -> None:
-    """Refuse what cannot move points, or is no factor of lengths.
-
-    Raises
-    ------
-    OptionError
-    """
+    """Refuse what cannot move points, or is no factor of lengths."""
     if not callable(function):
         raise OptionError("function", function, "one that takes and returns (n, 3) points")
     if not (is_finite_number(length) and length > 0):
@@ -78,13 +72,7 @@ def require_move(function: Any, length: Any) -> None:
 
 
 def move_points(points: Float64Array, move: Move) -> Float64Array:
-    """Return where a function puts points.
-
-    Raises
-    ------
-    PointsError
-        If it returns no points, or another number of them.
-    """
+    """Return where a function puts points."""
     moved = as_points(move(points))
     if len(moved) != len(points):
         raise PointsError(
@@ -109,11 +97,3 @@ def _move_places(xyz: Float64Array, move: Move) -> Float64Array:
 
 def _move_ring(ring: Float64Array, move: Move) -> Float64Array:
     return move_points(np.column_stack([ring, np.zeros(len(ring))]), move)[:, :2].copy()
-
-
-def _level_water(xyz: Float64Array, offsets: Int64Array, kinds: tuple[str, ...]) -> None:
-    for line, kind in enumerate(kinds):
-        if kind == "water":
-            part = slice(offsets[line], offsets[line + 1])
-            if np.ptp(xyz[part, 2]) > 0:
-                xyz[part, 2] = xyz[part, 2].mean()

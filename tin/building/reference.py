@@ -35,12 +35,7 @@ def find_crs(given: Any) -> CRS | None:
 
 
 def require_crs(given: Any, crs: CRS | None, what: str) -> None:
-    """Refuse what says that it is in another CRS than one that is known.
-
-    Raises
-    ------
-    CrsError
-    """
+    """Refuse what says that it is in another CRS than one that is known."""
     found = find_crs(given)
     if found is None or crs is None or adds_to(found, crs) or adds_to(crs, found):
         return

@@ -121,10 +121,20 @@ class Survey:
         unit = require_one_unit(crs, Unit.of(self.elevation_unit))
         object.__setattr__(self, "elevation_unit", unit)
         for name in _LINES:
-            object.__setattr__(self, name, _as_lines(name, getattr(self, name)))
+            # several lines or rings as a sequence; one alone is told from several
+            lines = getattr(self, name)
+            is_ready = isinstance(lines, tuple | list) and all(map(_is_ready, lines))
+            object.__setattr__(self, name, lines if is_ready else as_sequence(lines, name))
         object.__setattr__(self, "skipped", as_mapping("skipped", self.skipped))
         object.__setattr__(self, "skipped_lines", as_mapping("skipped_lines", self.skipped_lines))
-        _require_texts(self)
+        # refuse a source that is no text, and notes that are no sequence of texts
+        notes = self.notes
+        if not isinstance(notes, tuple | list) or not all(isinstance(note, str) for note in notes):
+            raise OptionError("notes", notes, "a list of sentences")
+        if not isinstance(self.source, str | None):
+            raise OptionError("source", self.source, "text or None")
+        if not isinstance(self.from_raster, bool):
+            raise OptionError("from_raster", self.from_raster, "True or False")
         if told:
             object.__setattr__(self, "notes", [*self.notes, *told])
         table = Table(self.points) if _is_plain(self.points) else as_table(self.points, "Points")
@@ -133,7 +143,12 @@ class Survey:
         object.__setattr__(self, "points", table.values)
         columns = as_columns(self.attributes, table.values.shape[:1])
         object.__setattr__(self, "attributes", columns)
-        _require_sources(self)
+        # refuse sources that are none; where points were left out nothing is known of the others
+        sources = self.row_sources
+        if not isinstance(sources, RowSources | None):
+            raise OptionError("row_sources", sources, "RowSources or None")
+        if sources is not None and len(sources.lines) != len(self.points):
+            object.__setattr__(self, "row_sources", None)
         if table.is_masked is not None:
             self._leave_out(table.is_masked)
 
@@ -170,34 +185,8 @@ class Survey:
         return make_html_repr(self)
 
 
-def _as_lines(name: str, lines: Any) -> Sequence[Any]:
-    """Return several lines or rings as a sequence; one alone is told from several."""
-    is_ready = isinstance(lines, tuple | list) and all(map(_is_ready, lines))
-    return lines if is_ready else as_sequence(lines, name)
-
-
 def _is_ready(line: Any) -> bool:
     return isinstance(line, Breakline | Water) or is_plain(line)
-
-
-def _require_texts(survey: Survey) -> None:
-    """Refuse a source that is no text, and notes that are no sequence of texts."""
-    notes = survey.notes
-    if not isinstance(notes, tuple | list) or not all(isinstance(note, str) for note in notes):
-        raise OptionError("notes", notes, "a list of sentences")
-    if not isinstance(survey.source, str | None):
-        raise OptionError("source", survey.source, "text or None")
-    if not isinstance(survey.from_raster, bool):
-        raise OptionError("from_raster", survey.from_raster, "True or False")
-
-
-def _require_sources(survey: Survey) -> None:
-    """Refuse sources that are none; where points were left out nothing is known of the others."""
-    sources = survey.row_sources
-    if not isinstance(sources, RowSources | None):
-        raise OptionError("row_sources", sources, "RowSources or None")
-    if sources is not None and len(sources.lines) != len(survey.points):
-        object.__setattr__(survey, "row_sources", None)
 
 
 def _is_plain(points: Any) -> bool:

@@ -134,10 +134,6 @@ class Water:
         return f"<Water: {len(self.ring)} corners at {height(self.z)}{name}>"
 
 
-def _make_no_numbers() -> Int32Array:
-    return np.empty(0, np.int32)
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Lines(Frozen):
     """The lines in a TIN: chains of vertices, every segment of which is an edge of the TIN.
@@ -167,10 +163,10 @@ class Lines(Frozen):
     <Lines: 1 hard, 0 soft, 0 boundary, 0 hole, 0 water; 3 vertices>
     """
 
-    vertices: Int32Array = field(default_factory=_make_no_numbers)
+    vertices: Int32Array = field(default_factory=lambda: np.empty(0, np.int32))
     offsets: Int32Array = field(default_factory=lambda: np.zeros(1, np.int32))
     kinds: tuple[LineKind, ...] = ()
-    sources: Int32Array = field(default_factory=_make_no_numbers)
+    sources: Int32Array = field(default_factory=lambda: np.empty(0, np.int32))
     names: tuple[str, ...] = ()
 
     def __len__(self) -> int:
@@ -292,15 +288,20 @@ def _as_name(name: Any) -> str:
 
 
 def as_coords(coords: ArrayLike, what: str, *, least: int) -> Float64Array:
-    """Return a (k, 2) or (k, 3) float64 array of at least ``least`` finite rows, read-only.
-
-    Raises
-    ------
-    LinesError
-        Otherwise; the sentence begins with ``what``.
-    """
+    """Return a (k, 2) or (k, 3) float64 array of at least ``least`` finite rows, read-only."""
     subject = what[0].upper() + what[1:]
-    array = _as_numbers(_take_only_line(coords, subject), subject)
+    try:
+        values, is_masked = as_table(_take_only_line(coords, subject), subject, least=2)
+    except PointsError as error:
+        if str(error).startswith(f"{subject} are no table"):
+            raise LinesError(f"{subject} is no table of real numbers.") from None
+        raise LinesError(str(error)) from None
+    if is_masked is not None:
+        raise LinesError(
+            f"{subject} has {counted(int(is_masked.sum()), 'masked vertex', 'masked vertices')} "
+            f"(first: vertex {int(np.argmax(is_masked))}): a line needs all of its vertices."
+        )
+    array = values.copy()
     if array.ndim != 2 or array.shape[1] not in (2, 3) or len(array) < least:
         raise LinesError(
             f"{subject} has shape {array.shape}: (k, 3), or (k, 2) to drape it, "
@@ -335,21 +336,6 @@ def _take_only_line(given: Any, subject: str) -> Any:
             "as a sequence."
         )
     return found.parts[0].rings[0]
-
-
-def _as_numbers(coords: Any, subject: str) -> Float64Array:
-    try:
-        values, is_masked = as_table(coords, subject, least=2)
-    except PointsError as error:
-        if str(error).startswith(f"{subject} are no table"):
-            raise LinesError(f"{subject} is no table of real numbers.") from None
-        raise LinesError(str(error)) from None
-    if is_masked is not None:
-        raise LinesError(
-            f"{subject} has {counted(int(is_masked.sum()), 'masked vertex', 'masked vertices')} "
-            f"(first: vertex {int(np.argmax(is_masked))}): a line needs all of its vertices."
-        )
-    return values.copy()
 
 
 def as_ring(ring: ArrayLike, what: str) -> Float64Array:

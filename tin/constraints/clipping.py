@@ -84,13 +84,34 @@ def is_inside(
         If a hole cuts nothing away.
     """
     half = _gather_half_edges(surface, segments)
-    region, largest = _find_regions(surface, half)
+    barrier = np.zeros(surface.constrained.shape, np.bool_)
+    barrier[half.triangle, half.corner] = True
+    region, largest = surface.find_regions(barrier)
     is_out = np.zeros(len(largest), np.bool_)
     is_out[region[half.triangle[half.is_behind_own_boundary]]] = True
-    toggles = _find_toggles(segments, len(surface.points))
-    point = _find_middles(surface, largest)
+    # for each edge along rings the groups that lie on other sides of it, as bits
+    toggles: dict[int, int] = {}
+    keys = edge_keys(segments.pairs, len(surface.points)).tolist()
+    for key, group in zip(keys, segments.groups.tolist(), strict=True):
+        toggles[key] = toggles.get(key, 0) ^ (0 if group == OWN_BOUNDARY else 1 << group)
+    a, b, c = (surface.points[surface.triangles[largest, k], :2] for k in range(3))
+    point: Float64Array = a + ((b - a) + (c - a)) / 3.0
+    (x, y), (u, v) = (b - a).T, (c - a).T
     side = _Sides(boundary, extent, holes)
-    bits = _spread_bits(surface, region, half, toggles, is_out, largest, point, side)
+    beside = _find_regions_beside(surface, region, half)
+    known: dict[int, int] = {}  # bits of regions, from the largest one across the rings
+    for start in np.argsort(-(x * v - y * u), kind="stable").tolist():
+        if start in known:
+            continue
+        known[start] = side.at(point[start])
+        pending = [start] if not is_out[start] else []
+        while pending:
+            here = pending.pop()
+            for there, key in beside.get(here, ()):
+                if there not in known and not is_out[there]:
+                    known[there] = known[here] ^ toggles[key]
+                    pending.append(there)
+    bits = [known[number] for number in range(len(largest))]
     keep = ~is_out & np.array([side.is_kept(own) for own in bits])
     _require_all_cut(bits, is_out, side)
     chosen: BoolArray = keep[region]
@@ -117,21 +138,6 @@ def _gather_half_edges(surface: Triangulation, segments: RingSegments) -> _HalfE
     backwards = boundary[:, 1] * n + boundary[:, 0]
     is_behind = np.isin(start[is_ring] * n + end[is_ring], backwards)
     return _HalfEdges(triangle, corner, key, is_behind)
-
-
-def _find_regions(surface: Triangulation, half: _HalfEdges) -> tuple[Int32Array, Int32Array]:
-    barrier = np.zeros(surface.constrained.shape, np.bool_)
-    barrier[half.triangle, half.corner] = True
-    return surface.find_regions(barrier)
-
-
-def _find_toggles(segments: RingSegments, n_vertices: int) -> dict[int, int]:
-    """Return for each edge along rings the groups that lie on other sides of it, as bits."""
-    toggles: dict[int, int] = {}
-    keys = edge_keys(segments.pairs, n_vertices).tolist()
-    for key, group in zip(keys, segments.groups.tolist(), strict=True):
-        toggles[key] = toggles.get(key, 0) ^ (0 if group == OWN_BOUNDARY else 1 << group)
-    return toggles
 
 
 class _Sides:
@@ -161,33 +167,6 @@ class _Sides:
         return self.is_within(bits) and bits >> HOLES == 0
 
 
-def _spread_bits(
-    surface: Triangulation,
-    region: Int32Array,
-    half: _HalfEdges,
-    toggles: dict[int, int],
-    is_out: BoolArray,
-    largest: Int32Array,
-    point: Float64Array,
-    side: _Sides,
-) -> list[int]:
-    """Return the bits of every region, from the largest one across the rings."""
-    beside = _find_regions_beside(surface, region, half)
-    bits: list[int | None] = [None] * len(largest)
-    for start in _sort_by_size(surface, largest):
-        if bits[start] is not None:
-            continue
-        bits[start] = side.at(point[start])
-        pending = [start] if not is_out[start] else []
-        while pending:
-            here = pending.pop()
-            for there, key in beside.get(here, ()):
-                if bits[there] is None and not is_out[there]:
-                    bits[there] = (bits[here] or 0) ^ toggles[key]
-                    pending.append(there)
-    return [own or 0 for own in bits]
-
-
 def _find_regions_beside(
     surface: Triangulation, region: Int32Array, half: _HalfEdges
 ) -> dict[int, list[tuple[int, int]]]:
@@ -204,13 +183,6 @@ def _find_regions_beside(
     return found
 
 
-def _sort_by_size(surface: Triangulation, largest: Int32Array) -> list[int]:
-    a, b, c = (surface.points[surface.triangles[largest, k], :2] for k in range(3))
-    (x, y), (u, v) = (b - a).T, (c - a).T
-    order: list[int] = np.argsort(-(x * v - y * u), kind="stable").tolist()
-    return order
-
-
 def _require_all_cut(bits: list[int], is_out: BoolArray, side: _Sides) -> None:
     cut = 0
     for own, out in zip(bits, is_out.tolist(), strict=True):
@@ -222,12 +194,6 @@ def _require_all_cut(bits: list[int], is_out: BoolArray, side: _Sides) -> None:
                 f"Hole {number} lies outside the surface: it must cut away a part of it.",
                 lines=[number],
             )
-
-
-def _find_middles(surface: Triangulation, triangles: Int32Array) -> Float64Array:
-    a, b, c = (surface.points[surface.triangles[triangles, k], :2] for k in range(3))
-    center: Float64Array = a + ((b - a) + (c - a)) / 3.0
-    return center
 
 
 def trim(

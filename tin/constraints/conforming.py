@@ -78,14 +78,43 @@ def conform(
     """
     n_given, most = len(points), max(_LEAST_LIMIT, _NEW_PER_VERTEX * len(points))
     for _ in range(_MOST_ROUNDS):
-        bad = _find_segments_to_split(mesh, points)
+        # the segments that are not Delaunay, as pairs of ends, in order of their places
+        ends = mesh.illegal_fixed_edges().reshape(-1, 2)
+        start, end = points[ends[:, 0], :2], points[ends[:, 1], :2]
+        is_backward = is_before(end, start)
+        ends = np.where(is_backward[:, None], ends[:, ::-1], ends)
+        start, end = points[ends[:, 0], :2], points[ends[:, 1], :2]
+        order = np.lexsort((*end.T, *start.T))
+        bad = np.ascontiguousarray(ends[order])
         if not len(bad):
             return mesh, points, polylines
         if len(points) + len(bad) - n_given > most:
             raise _explain_hopeless(f"{most} new vertices", points, bad)
-        points, polylines, is_noded = _split(mesh, points, polylines, bad, n_given)
+        middle = _place_split_points(points, bad, n_given)
+        splits_before = mesh.fixed_splits
+        mesh.release(bad)
+        vertex = mesh.insert(np.ascontiguousarray(middle[:, :2]))
+        is_noded = bool((vertex == len(points) + np.arange(len(middle))).all())
+        points = np.concatenate([points, middle])
+        # put a vertex between the ends of these segments, wherever a line takes them
+        keys = edge_keys(bad, len(points))
+        order = np.argsort(keys)
+        own = edge_keys(polylines.segments(), len(points))
+        slot = np.minimum(np.searchsorted(keys, own, sorter=order), len(keys) - 1)
+        hit = np.flatnonzero(keys[order[slot]] == own)
+        polylines = polylines.insert(polylines.starts()[hit], vertex[order[slot[hit]]])
+        halves = np.stack([bad[:, 0], vertex, vertex, bad[:, 1]], axis=1).reshape(-1, 2)
+        passed, blocked = mesh.force(np.ascontiguousarray(halves))
+        is_noded &= mesh.fixed_splits == splits_before and not (len(passed) or len(blocked))
         if not is_noded:
-            mesh, points, polylines = _node_again(mesh, points, polylines, priorities, threads)
+            # a split point fell on a vertex or another segment, or something is in the way of the
+            # halves: the lines are noded exactly, the vertices triangulated without gaps
+            alive = mesh.alive()
+            number_of = (np.cumsum(alive) - 1).astype(np.int32)
+            points, polylines = points[alive], polylines.renumber(number_of)
+            priority = priorities[polylines.lines]
+            points, polylines = node_again(points, polylines, priority, threads=threads)
+            mesh = build_mesh(points, polylines, threads=threads)
     raise _explain_hopeless(f"{_MOST_ROUNDS} rounds of splitting", points, bad)
 
 
@@ -98,42 +127,6 @@ def _explain_hopeless(what: str, points: Float64Array, bad: Int32Array) -> Lines
     )
 
 
-def _find_segments_to_split(mesh: _kernel.Mesh, points: Float64Array) -> Int32Array:
-    """Return the segments that are not Delaunay, as pairs of ends, in order of their places."""
-    ends = mesh.illegal_fixed_edges().reshape(-1, 2)
-    start, end = points[ends[:, 0], :2], points[ends[:, 1], :2]
-    is_backward = is_before(end, start)
-    ends = np.where(is_backward[:, None], ends[:, ::-1], ends)
-    start, end = points[ends[:, 0], :2], points[ends[:, 1], :2]
-    order = np.lexsort((*end.T, *start.T))
-    return np.ascontiguousarray(ends[order])
-
-
-def _split(
-    mesh: _kernel.Mesh,
-    points: Float64Array,
-    polylines: Polylines,
-    bad: Int32Array,
-    n_given: int,
-) -> tuple[Float64Array, Polylines, bool]:
-    """Split segments in the mesh too; tell whether the lines are still noded.
-
-    If not, a split point fell on a vertex or another segment, or something is in the way of the
-    halves: only the new points and polylines are right then, not the mesh.
-    """
-    middle = _place_split_points(points, bad, n_given)
-    splits_before = mesh.fixed_splits
-    mesh.release(bad)
-    vertex = mesh.insert(np.ascontiguousarray(middle[:, :2]))
-    is_noded = bool((vertex == len(points) + np.arange(len(middle))).all())
-    points = np.concatenate([points, middle])
-    polylines = _insert_middles(polylines, bad, vertex, len(points))
-    halves = np.concatenate([np.stack([bad[:, 0], vertex], 1), np.stack([vertex, bad[:, 1]], 1)])
-    passed, blocked = mesh.force(np.ascontiguousarray(halves))
-    is_noded &= mesh.fixed_splits == splits_before and not (len(passed) or len(blocked))
-    return points, polylines, is_noded
-
-
 def _place_split_points(points: Float64Array, segments: Int32Array, n_given: int) -> Float64Array:
     start, end = points[segments[:, 0]], points[segments[:, 1]]
     length = np.hypot(*(end - start)[:, :2].T)
@@ -142,16 +135,13 @@ def _place_split_points(points: Float64Array, segments: Int32Array, n_given: int
     share = np.where(is_given[:, 0], shell, np.where(is_given[:, 1], 1 - shell, 0.5))
     share = np.where(is_given.all(axis=1), 0.5, share)
     middle = np.empty_like(start)
-    middle[:, :2] = _round_to_exact_range(start[:, :2] + share[:, None] * (end - start)[:, :2])
+    # round to 0 what is too small for the predicates
+    xy = start[:, :2] + share[:, None] * (end - start)[:, :2]
+    smallest, _ = _kernel.EXACT_RANGE
+    middle[:, :2] = np.where(np.abs(xy) < smallest, 0.0, xy)
     middle[:, 2] = interpolate_linearly(start[:, 2], end[:, 2], share)
     _require_between(middle[:, :2], start[:, :2], end[:, :2])
     return middle
-
-
-def _round_to_exact_range(xy: Float64Array) -> Float64Array:
-    """Round to 0 what is too small for the predicates."""
-    smallest, _ = _kernel.EXACT_RANGE
-    return np.where(np.abs(xy) < smallest, 0.0, xy)
 
 
 def _require_between(middle: Float64Array, start: Float64Array, end: Float64Array) -> None:
@@ -162,31 +152,3 @@ def _require_between(middle: Float64Array, start: Float64Array, end: Float64Arra
             f"The lines cannot be made conforming at x {x!r}, y {y!r}: a segment there is too "
             "short to be split."
         )
-
-
-def _insert_middles(
-    polylines: Polylines, split: Int32Array, vertex: Int32Array, n: int
-) -> Polylines:
-    """Put a vertex between the ends of some segments, wherever a line takes them."""
-    keys = edge_keys(split, n)
-    order = np.argsort(keys)
-    own = edge_keys(polylines.segments(), n)
-    slot = np.minimum(np.searchsorted(keys, own, sorter=order), len(keys) - 1)
-    hit = np.flatnonzero(keys[order[slot]] == own)
-    return polylines.insert(polylines.starts()[hit], vertex[order[slot[hit]]])
-
-
-def _node_again(
-    mesh: _kernel.Mesh,
-    points: Float64Array,
-    polylines: Polylines,
-    priorities: AnyArray,
-    threads: int,
-) -> tuple[_kernel.Mesh, Float64Array, Polylines]:
-    """Node the lines exactly, and triangulate the vertices anew, numbered without gaps."""
-    alive = mesh.alive()
-    number_of = (np.cumsum(alive) - 1).astype(np.int32)
-    points, polylines = points[alive], polylines.renumber(number_of)
-    priority = priorities[polylines.lines]
-    points, polylines = node_again(points, polylines, priority, threads=threads)
-    return build_mesh(points, polylines, threads=threads), points, polylines

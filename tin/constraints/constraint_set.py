@@ -152,21 +152,24 @@ def gather_lines(
     holes: Sequence[Any],
     water: Sequence[Water],
 ) -> LineSet:
-    """Put all lines into one set: breaklines, then boundary rings, holes and water.
-
-    Raises
-    ------
-    LinesError
-        If a line has another shape, too few vertices, coordinates that are not finite or too
-        large, or if a ring crosses itself.
-    """
+    """Put all lines into one set: breaklines, then boundary rings, holes and water."""
     if not (len(breaklines) or len(boundary) or len(holes) or len(water)):
         return _NONE
     found = None if boundary or holes or water else _gather_arrays_alone(breaklines)
     if found is None:
         found = _gather(breaklines, boundary, holes, water)
     _require_exact_range(found)
-    _require_elevations(found)
+    highest = _kernel.LARGEST_ELEVATION
+    wrong = np.abs(found.elevations) > highest  # NaN is draped
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        line = int(found.line_of[row])
+        label = found.label(line)
+        raise LinesError(
+            f"{label[0].upper() + label[1:]} has an elevation of {found.elevations[row]:.3g}: "
+            f"magnitudes up to {highest:.0e} are allowed.",
+            lines=[line],
+        )
     require_length(found)
     return found
 
@@ -211,7 +214,7 @@ def _gather(
     coords = [
         *(line.coords for line in lines),
         *(_close(ring) for _, ring in rings),
-        *(_close(_make_level(pond)) for pond in ponds),
+        *(_close(np.column_stack([pond.ring, np.full(len(pond.ring), pond.z)])) for pond in ponds),
     ]
     kinds: list[LineKind] = [line.kind for line in lines]
     kinds += [kind for kind, _ in rings]
@@ -308,10 +311,6 @@ def _gather_rings_of_kind(
     return [(kind, ring) for rings in found for ring in rings]
 
 
-def _make_level(pond: Water) -> Float64Array:
-    return np.column_stack([pond.ring, np.full(len(pond.ring), pond.z)])
-
-
 def _close(ring: Float64Array) -> Float64Array:
     return np.concatenate([ring, ring[:1]])
 
@@ -338,12 +337,7 @@ def _count_sources(kinds: Sequence[str]) -> Int32Array:
 
 
 def require_length(lines: LineSet) -> None:
-    """Refuse a line whose vertices are all at one place.
-
-    Raises
-    ------
-    LinesError
-    """
+    """Refuse a line whose vertices are all at one place."""
     starts = lines.offsets[:-1]
     begins_at_one_place = (lines.xy[starts] == lines.xy[starts + 1]).all(axis=1)
     for line in np.flatnonzero(begins_at_one_place).tolist():
@@ -372,19 +366,5 @@ def _require_exact_range(lines: LineSet) -> None:
             f"{label[0].upper() + label[1:]} has a vertex outside the exact range "
             f"(x {x!r}, y {y!r}): magnitudes from {smallest:.0e} to {largest:.0e}, or 0, are "
             "allowed.",
-            lines=[line],
-        )
-
-
-def _require_elevations(lines: LineSet) -> None:
-    highest = _kernel.LARGEST_ELEVATION
-    wrong = np.abs(lines.elevations) > highest  # NaN is draped
-    if wrong.any():
-        row = int(np.argmax(wrong))
-        line = int(lines.line_of[row])
-        label = lines.label(line)
-        raise LinesError(
-            f"{label[0].upper() + label[1:]} has an elevation of {lines.elevations[row]:.3g}: "
-            f"magnitudes up to {highest:.0e} are allowed.",
             lines=[line],
         )

@@ -48,20 +48,12 @@ def drape(surface: Triangulation, lines: LineSet, *, threads: int) -> Draped:
     hull = topology.boundary_rings(surface.triangles, surface.neighbors)[0]
     ring = np.ascontiguousarray(surface.points[hull, :2])
     if (in_rings(lines.xy, [ring]) >= 0).all():
-        xy, polylines = _find_vertices(lines)
+        # the places of the lines' vertices, and the lines through these
+        xy, vertex_of = np.unique(lines.xy, axis=0, return_inverse=True)
+        polylines = Polylines.whole(vertex_of.reshape(-1).astype(np.int32), lines.offsets)
         whole = _take_elevations(surface, xy, np.full(len(xy), np.nan), polylines, lines)
-        return Draped(whole, _make_no_lines(lines), 0)
+        return Draped(whole, lines.choose(np.zeros(len(lines.kinds), np.bool_)), 0)
     return _cut_at_boundary(surface, hull, lines, threads=threads)
-
-
-def _make_no_lines(lines: LineSet) -> LineSet:
-    return lines.choose(np.zeros(len(lines.kinds), np.bool_))
-
-
-def _find_vertices(lines: LineSet) -> tuple[Float64Array, Polylines]:
-    """Return the places of the lines' vertices, and the lines through these."""
-    xy, vertex_of = np.unique(lines.xy, axis=0, return_inverse=True)
-    return xy, Polylines.whole(vertex_of.reshape(-1).astype(np.int32), lines.offsets)
 
 
 def _cut_at_boundary(
@@ -134,18 +126,8 @@ def _split_boundary(
     """
     corner = np.flatnonzero(np.isin(chain, own))
     is_split = np.diff(corner) > 1
-    is_split |= _find_hidden_edges(points[chain], corner, is_split)
-    begins, ends = corner[:-1][is_split], corner[1:][is_split] + 1
-    counts = ends - begins
-    offsets = find_offsets(counts)
-    rows = np.arange(offsets[-1]) + np.repeat(begins - offsets[:-1], counts)
-    sources = np.full(len(counts), -1, np.int32)
-    table = ConstraintTable.of_kind("boundary", sources, np.full(len(counts), BELOW_ALL))
-    return LineSet(points[chain[rows]], elevations[rows], offsets, table)
-
-
-def _find_hidden_edges(xy: Float64Array, corner: Int64Array, is_split: BoolArray) -> BoolArray:
-    """Tell which edges of a closed boundary, corner to corner, a vertex on another one hides."""
+    # which edges of a closed boundary, corner to corner, a vertex on another one hides
+    xy = points[chain]
     is_hidden = np.zeros(len(is_split), np.bool_)
     n = len(is_split)
     for edge in np.flatnonzero(is_split).tolist():
@@ -156,7 +138,14 @@ def _find_hidden_edges(xy: Float64Array, corner: Int64Array, is_split: BoolArray
                 if not _are_beyond(between, xy[corner[[other, other + 1]]]).any():
                     break
                 is_hidden[other] = True
-    return is_hidden
+    is_split |= is_hidden
+    begins, ends = corner[:-1][is_split], corner[1:][is_split] + 1
+    counts = ends - begins
+    offsets = find_offsets(counts)
+    rows = np.arange(offsets[-1]) + np.repeat(begins - offsets[:-1], counts)
+    sources = np.full(len(counts), -1, np.int32)
+    table = ConstraintTable.of_kind("boundary", sources, np.full(len(counts), BELOW_ALL))
+    return LineSet(points[chain[rows]], elevations[rows], offsets, table)
 
 
 def _are_beyond(xy: Float64Array, edge: Float64Array) -> BoolArray:

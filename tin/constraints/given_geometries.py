@@ -41,13 +41,7 @@ def convert_geometries(found: Geometries, what: str) -> list[Any]:
 
 
 def list_regions(found: Geometries, what: str) -> Iterator[list[Any]]:
-    """Return the rings of each polygon, and of each closed line.
-
-    Raises
-    ------
-    LinesError
-        For anything else.
-    """
+    """Return the rings of each polygon, and of each closed line."""
     for part in found.parts:
         is_closed = part.kind == "LineString" and _is_closed(part.rings[0])
         if part.kind != "Polygon" and not is_closed:

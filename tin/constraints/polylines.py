@@ -15,9 +15,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import AnyArray, BoolArray, Int32Array, Int64Array
 
-__all__ = ["Polylines", "offsets_of", "owners_of"]
-
-offsets_of, owners_of = find_offsets, find_owners  # their names at first
+__all__ = ["Polylines"]
 
 
 @dataclass(frozen=True, eq=False)

@@ -245,7 +245,9 @@ class Splitting:
         whole = _measure_square(a, b)
         grows = (_measure_square(before, p) >= whole) | (_measure_square(p, after) >= whole)
         keep = ~np.isin(edge, edge[grows])
-        nearest = np.lexsort((p[:, 1], p[:, 0], np.abs(_measure_cross(a, b, p)), edge))
+        u, v = b - a, p - a
+        area: Float64Array = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+        nearest = np.lexsort((p[:, 1], p[:, 0], np.abs(area), edge))
         keep[nearest[is_first]] = True  # both orders are by edge first
         return edge[keep], vertex[keep]
 
@@ -270,7 +272,17 @@ class Splitting:
         points = self.find_crossing_points(pairs)
         if at_ends:
             points = self._move_to_ends(pairs, points)
-        vertex = np.repeat(self._find_or_make_vertices(points), 2)
+        order = np.lexsort((points[:, 1], points[:, 0]))
+        is_first = np.append(True, (np.diff(points[order], axis=0) != 0).any(axis=1))
+        distinct = points[order[is_first]]
+        vertices = _kernel.vertices_at(self.xy, distinct)
+        is_new = vertices < 0
+        vertices[is_new] = len(self.xy) + np.arange(is_new.sum(), dtype=np.int32)
+        self.xy = np.concatenate([self.xy, distinct[is_new]])
+        self.crossing_vertices = np.union1d(self.crossing_vertices, vertices)
+        number = np.empty(len(points), np.int32)
+        number[order] = vertices[np.cumsum(is_first) - 1]
+        vertex = np.repeat(number, 2)
         edge = pairs.ravel()
         inside = (self.segments.ends[edge] != vertex[:, None]).all(axis=1)
         split, at = _split_keys(np.unique(_make_keys(edge[inside], vertex[inside])))
@@ -299,20 +311,6 @@ class Splitting:
     def find_crossing_points(self, pairs: Int64Array) -> Float64Array:
         """Return where the edges of each pair cross, (c, 2)."""
         return _kernel.intersections(self.xy, self.segments.ends, pairs.astype(np.int32))
-
-    def _find_or_make_vertices(self, points: Float64Array) -> Int32Array:
-        """Find or make the vertex at each place."""
-        order = np.lexsort((points[:, 1], points[:, 0]))
-        is_first = np.append(True, (np.diff(points[order], axis=0) != 0).any(axis=1))
-        distinct = points[order[is_first]]
-        vertices = _kernel.vertices_at(self.xy, distinct)
-        is_new = vertices < 0
-        vertices[is_new] = len(self.xy) + np.arange(is_new.sum(), dtype=np.int32)
-        self.xy = np.concatenate([self.xy, distinct[is_new]])
-        self.crossing_vertices = np.union1d(self.crossing_vertices, vertices)
-        number = np.empty(len(points), np.int32)
-        number[order] = vertices[np.cumsum(is_first) - 1]
-        return number
 
     # ---------------------------------------------------------------- splitting
 
@@ -402,12 +400,6 @@ def interpolate_linearly(
 def _project(a: Float64Array, b: Float64Array, p: Float64Array) -> Float64Array:
     along: Float64Array = ((p - a) * (b - a)).sum(axis=1)
     return along
-
-
-def _measure_cross(a: Float64Array, b: Float64Array, p: Float64Array) -> Float64Array:
-    u, v = b - a, p - a
-    area: Float64Array = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
-    return area
 
 
 def _measure_square(a: Float64Array, b: Float64Array) -> Float64Array:

@@ -57,13 +57,7 @@ def as_array(given: Any) -> Any:
 
 
 def as_vertices(vertices: ArrayLike, count: int) -> Int64Array:
-    """Return vertex numbers below ``count``; none of an empty list.
-
-    Raises
-    ------
-    PointsError
-        If there is no such vertex.
-    """
+    """Return vertex numbers below ``count``; none of an empty list."""
     only = vertices[0] if isinstance(vertices, list) and len(vertices) == 1 else vertices
     if type(only) is int and 0 <= only < count:  # most edits: no arrays for one number
         return np.array([only], np.int64)
@@ -80,13 +74,7 @@ def as_new_points(points: ArrayLike) -> Float64Array:
 
 
 def as_ends(a: int, b: int, count: int) -> Int64Array:
-    """Return the two ends of an edge.
-
-    Raises
-    ------
-    PointsError
-        If there is no such vertex, or both are the same.
-    """
+    """Return the two ends of an edge."""
     ends = as_vertices([a, b], count)
     if ends[0] == ends[1]:
         raise PointsError("An edge has two different ends.")

@@ -140,13 +140,7 @@ class NumberedInputs(Frozen):
         )
 
     def build(self) -> Version:
-        """Build the TIN of the inputs, whose rows have their lasting numbers.
-
-        Raises
-        ------
-        PointsError, LinesError
-            As :func:`tinsmith.triangulate`.
-        """
+        """Build the TIN of the inputs, whose rows have their lasting numbers."""
         built = assemble(self.build_inputs)
         vertex_of = np.full(self.n_rows, -1, np.int32)
         vertex_of[self.rows] = built.vertex_of

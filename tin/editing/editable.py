@@ -407,7 +407,11 @@ class Editable:
             if not is_plain(arguments[name]):
                 require_crs(arguments[name], self._crs, f"{name} of the edit")
                 arguments[name] = as_array(arguments[name])
-            self._require_degrees(arguments[name], name)
+            # refuse what is no longitude and latitude; what is no coordinates, the operation does
+            if self._is_in_degrees:
+                rows = np.array(as_table(arguments[name], "Points", least=2).values, ndmin=2)
+                if rows.ndim == 2 and rows.shape[1] >= 2:
+                    require_degrees(rows, self._crs, _PLACES[name])
         with self._lock:
             session = self._open_session()
             result = session.do(operation, arguments)
@@ -420,13 +424,6 @@ class Editable:
     @property
     def _is_in_degrees(self) -> bool:
         return measure_angular_unit(self._crs) is not None
-
-    def _require_degrees(self, given: Any, name: str) -> None:
-        """Refuse what is no longitude and latitude; what is no coordinates, the operation does."""
-        if self._is_in_degrees:
-            rows = np.array(as_table(given, "Points", least=2).values, ndmin=2)
-            if rows.ndim == 2 and rows.shape[1] >= 2:
-                require_degrees(rows, self._crs, _PLACES[name])
 
     def _open_session(self) -> Session:
         """Return the session, which nobody else has until the lock is let go."""

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.errors import PointsError, TinsmithError
-from .. import topology
 from ..building.assembly import assemble
 from ..building.inputs import BuildInputs
 from ..building.options import BuildOptions
@@ -21,8 +20,7 @@ from ..topology import find_offsets
 from ..validation.points import as_points
 
 if TYPE_CHECKING:
-    from ...base.arrays import Float64Array, Int32Array
-    from ...base.policies import LineKind
+    from ...base.arrays import Int32Array
     from ..building.version import Version
     from ..triangulation import Triangulation
 
@@ -38,26 +36,32 @@ def gather_inputs_of_triangles(version: Version) -> BuildInputs:
         If a vertex is not finite.
     """
     surface, lines = version.triangulation, version.lines
-    chains = [(kind, name, chain) for kind, name, chain in _list_named_chains(version)]
-    is_breakline = [kind in ("hard", "soft") for kind, _, _ in chains]
-    ordered = [chain for chain, is_first in zip(chains, is_breakline, strict=True) if is_first]
-    ordered += [("soft", "", edge) for edge in _find_edges_of_no_line(version)]
-    n_breaklines = len(ordered)
-    ordered += [chain for chain, first in zip(chains, is_breakline, strict=True) if not first]
+    given = list(zip(lines.kinds, lines.names, lines.chains(), strict=True))
+    named = [one for one in given if one[0] in ("hard", "soft")]
+    named += [
+        ("soft", "", edge) for edge in version.find_edges_of_no_line(on_boundary=not len(lines))
+    ]
+    sources = list(range(len(named)))
+    named += [one for one in given if one[0] not in ("hard", "soft")]
+    sources += [0] * (len(named) - len(sources))
     has_own_boundary = not surface.fills_hull or "boundary" in lines.kinds
-    boundary = [np.append(ring, ring[:1]) for ring in surface.rings] if has_own_boundary else []
-    sources = np.concatenate(
-        [np.arange(n_breaklines), np.zeros(len(ordered) - n_breaklines), np.full(len(boundary), -1)]
-    )
+    if has_own_boundary:
+        named += [("boundary", "", np.append(ring, ring[:1])) for ring in surface.rings]
+    sources += [-1] * (len(named) - len(sources))
+    vertices = np.concatenate([*(chain for _, _, chain in named), np.empty(0, np.int32)])
     return BuildInputs(
         points=as_points(surface.points),
         is_masked=None,
-        lines=_make_line_set(
-            surface.points,
-            [chain for _, _, chain in ordered] + boundary,
-            [kind for kind, _, _ in ordered] + ["boundary"] * len(boundary),
-            [name for _, name, _ in ordered] + [""] * len(boundary),
-            sources.astype(np.int32),
+        lines=LineSet(
+            np.ascontiguousarray(surface.points[vertices, :2]),
+            surface.points[vertices, 2],
+            find_offsets([len(chain) for _, _, chain in named]),
+            ConstraintTable(
+                tuple(kind for kind, _, _ in named),
+                np.array(sources, np.int32),
+                np.where(np.array(sources) < 0, BELOW_ALL, 0.0),
+                tuple(name for _, name, _ in named),
+            ),
         ),
         boundary=[],
         extent=[],
@@ -67,40 +71,6 @@ def gather_inputs_of_triangles(version: Version) -> BuildInputs:
         crs=None,
         has_own_boundary=has_own_boundary,
     )
-
-
-def _list_named_chains(version: Version) -> list[tuple[LineKind, str, Int32Array]]:
-    lines = version.lines
-    return list(zip(lines.kinds, lines.names, lines.chains(), strict=True))
-
-
-def _make_line_set(
-    points: Float64Array,
-    chains: list[Int32Array],
-    kinds: list[LineKind],
-    names: list[str],
-    sources: Int32Array,
-) -> LineSet:
-    vertices = np.concatenate([*chains, np.empty(0, np.int32)])
-    priorities = np.where(sources < 0, BELOW_ALL, 0.0)
-    return LineSet(
-        np.ascontiguousarray(points[vertices, :2]),
-        points[vertices, 2],
-        find_offsets(map(len, chains)),
-        ConstraintTable(tuple(kinds), sources, priorities, tuple(names)),
-    )
-
-
-def _find_edges_of_no_line(version: Version) -> list[Int32Array]:
-    """Return the flagged edges of no line; those of the boundary count if there are no lines."""
-    surface, lines = version.triangulation, version.lines
-    flagged = surface.constrained
-    if len(lines):
-        flagged = flagged & (surface.neighbors > topology.NO_NEIGHBOR)
-    edges = np.unique(np.sort(topology.edges_at(surface.triangles, flagged), axis=1), axis=0)
-    n = len(surface.points)
-    is_segment = np.isin(topology.edge_keys(edges, n), topology.edge_keys(lines.segments(), n))
-    return list(edges[~is_segment])
 
 
 def build_of_triangles(given: Version, inputs: BuildInputs) -> Version:

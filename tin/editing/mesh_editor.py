@@ -148,7 +148,10 @@ class Editor:
         """
         before = self.edited, self._unchanged
         first = self.edited.slots
-        is_large = self._is_large(len(xyz))
+        # whether growing all points anew is quicker than inserting so many
+        count = len(xyz)
+        is_worth_it = count > _LARGE_BATCH and count * _LARGE_SHARE > self.count
+        is_large = is_worth_it and self.count == self.edited.slots and not self._has_lines
         slots = self._grow_with(xyz) if is_large else self._open().insert(xyz)
         own = np.arange(first, first + len(xyz), dtype=np.int32)
         is_new = slots == own
@@ -217,11 +220,6 @@ class Editor:
             added[slots == slot, 2] = elevation
         return _join_changes(moved)._replace(added=added)
 
-    def _is_large(self, count: int) -> bool:
-        """Tell whether growing all points anew is quicker than inserting so many."""
-        is_worth_it = count > _LARGE_BATCH and count * _LARGE_SHARE > self.count
-        return is_worth_it and self.count == self.edited.slots and not self._has_lines
-
     def _grow_with(self, xyz: Float64Array) -> Int32Array:
         """Triangulate the points that are there and those that come; return slots of the latter.
 
@@ -243,13 +241,7 @@ class Editor:
         return slots[first:]
 
     def remove(self, vertices: Int64Array) -> Done:
-        """Remove vertices and the rows there.
-
-        Raises
-        ------
-        PointsError
-            If no triangle would be left.
-        """
+        """Remove vertices and the rows there."""
         slots = self.edited.slots_of(vertices)
         self._require_free(slots)
         gone: list[int] = []
@@ -468,13 +460,7 @@ def _join_changes(changes: list[Change]) -> Change:
 
 
 def merge_elevations(old: float, new: float, policy: DuplicatePolicy) -> float:
-    """Return the elevation of a vertex at which a point is inserted.
-
-    Raises
-    ------
-    PointsError
-        If the policy is "error".
-    """
+    """Return the elevation of a vertex at which a point is inserted."""
     if policy == "error":
         raise PointsError(
             f"A vertex with elevation {height(old)} stands where one with {height(new)} is "

@@ -166,13 +166,7 @@ class Session:
         return replace(found, vertex_of=vertex_of, report=report)
 
     def do(self, name: str, arguments: dict[str, Any]) -> Any:
-        """Do one of ``OPERATIONS`` and remember it; one that fails leaves everything as it was.
-
-        Raises
-        ------
-        PointsError, LinesError
-            As the methods of :class:`.TIN`.
-        """
+        """Do one of ``OPERATIONS`` and remember it; one that fails leaves everything as it was."""
         self.settle()
         operation = OPERATIONS[name](**arguments)
         kept, before = operation.arguments(), self._version

@@ -20,12 +20,13 @@ from ...base.sentences import counted
 from .. import _kernel, topology
 from ..building.version import Version
 from ..constraints.pslg import build_mesh_of_growth, find_lines_in
+from ..report import Unmended
 from ..surface import TIN
 from ..triangulation import Triangulation
 from ..validation.threads import thread_count
 from .flips import describe_flips
+from .shape_quality import measure_smallest_angles
 from .surface_pslg import gather_pslg, list_rings
-from .unmended import find_unmended
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array, Int64Array
     from ...base.progress import Tell
     from ..constraints.pslg import Pslg
-    from ..report import Report
 
 __all__ = ["LARGEST_MIN_ANGLE", "refine"]
 
@@ -133,8 +133,22 @@ def refine(
     """
     require_tin(tin)
     done = Progress(progress)
-    _require_limits(min_angle, max_area, max_edge, max_vertices)
-    _require_room(tin, max_area, max_vertices)
+    if not is_finite_number(min_angle) or not 0.0 <= min_angle <= LARGEST_MIN_ANGLE:
+        raise OptionError(
+            "min_angle",
+            min_angle,
+            f"from 0 to {LARGEST_MIN_ANGLE:g} degrees, for no mesh of larger angles can be "
+            "promised",
+        )
+    require_positive("max_area", max_area, what="an area")
+    require_positive("max_edge", max_edge)
+    if not is_whole_number(max_vertices) or not 0 < max_vertices <= _kernel.MOST_POINTS:
+        allowed = f"a whole number from 1 to {_kernel.MOST_POINTS:,}"
+        raise OptionError("max_vertices", max_vertices, allowed)
+    # refuse at once what cannot be: a vertex has two triangles, but for those on the boundary
+    least = 0.0 if max_area is None else tin.triangulation.area / max_area / 2.0
+    if max(least, len(tin.points)) > max_vertices:
+        raise PointsError(_explain_too_many(max_vertices))
     goal = _Goal(
         math.radians(min_angle),
         math.inf if max_area is None else float(max_area),
@@ -159,30 +173,6 @@ def refine(
 
 
 # ----------------------------------------------------------------------- options
-
-
-def _require_limits(
-    min_angle: float, max_area: float | None, max_edge: float | None, max_vertices: int
-) -> None:
-    if not is_finite_number(min_angle) or not 0.0 <= min_angle <= LARGEST_MIN_ANGLE:
-        raise OptionError(
-            "min_angle",
-            min_angle,
-            f"from 0 to {LARGEST_MIN_ANGLE:g} degrees, for no mesh of larger angles can be "
-            "promised",
-        )
-    require_positive("max_area", max_area, what="an area")
-    require_positive("max_edge", max_edge)
-    if not is_whole_number(max_vertices) or not 0 < max_vertices <= _kernel.MOST_POINTS:
-        allowed = f"a whole number from 1 to {_kernel.MOST_POINTS:,}"
-        raise OptionError("max_vertices", max_vertices, allowed)
-
-
-def _require_room(tin: TIN, max_area: float | None, max_vertices: int) -> None:
-    """Refuse at once what cannot be: a vertex has two triangles, but for those on the boundary."""
-    least = 0.0 if max_area is None else tin.triangulation.area / max_area / 2.0
-    if max(least, len(tin.points)) > max_vertices:
-        raise PointsError(_explain_too_many(max_vertices))
 
 
 def _explain_too_many(max_vertices: int) -> str:
@@ -272,16 +262,13 @@ def _interpolate(tin: TIN, xy: Float64Array) -> Float64Array:
     """Return elevations; beside the boundary by a rounding that of the nearest edge there."""
     z = tin.interpolate(xy)
     for row in np.flatnonzero(np.isnan(z)).tolist():
-        z[row] = _interpolate_on_boundary(tin, xy[row])
+        point = xy[row]
+        start, end = (tin.points[ends] for ends in _find_boundary_ends(tin))
+        whole = end[:, :2] - start[:, :2]
+        share = ((point - start[:, :2]) * whole).sum(axis=1) / (whole * whole).sum(axis=1)
+        foot = start + np.clip(share, 0.0, 1.0)[:, None] * (end - start)
+        z[row] = float(foot[np.hypot(*(foot[:, :2] - point).T).argmin(), 2])
     return z
-
-
-def _interpolate_on_boundary(tin: TIN, point: Float64Array) -> float:
-    start, end = (tin.points[ends] for ends in _find_boundary_ends(tin))
-    whole = end[:, :2] - start[:, :2]
-    share = ((point - start[:, :2]) * whole).sum(axis=1) / (whole * whole).sum(axis=1)
-    foot = start + np.clip(share, 0.0, 1.0)[:, None] * (end - start)
-    return float(foot[np.hypot(*(foot[:, :2] - point).T).argmin(), 2])
 
 
 def _find_boundary_ends(tin: TIN) -> tuple[Int64Array, Int64Array]:
@@ -353,7 +340,29 @@ def _build(
     done(0.9)
     if len(surface.points) != len(points) or len(surface.triangles) != found.n_triangles:
         return set()
-    return _make_refined(tin, pslg, surface, number_of, found)
+    unmended = _find_unmended(surface.points, surface.triangles, found.left)
+    added = (
+        f"Refinement added {counted(len(found.xy), 'point')}, "
+        f"{len(found.splits.middle):,} of them on the boundary and on lines."
+    )
+    version = Version(
+        triangulation=surface,
+        vertex_of=tin.vertex_of,
+        report=replace(
+            tin.report,
+            n_vertices=len(surface.points),
+            n_triangles=len(surface.triangles),
+            notes=(*tin.report.notes, added, *describe_flips(tin), *unmended.sentences()),
+            unmended=unmended,
+        ),
+        lines=find_lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=False),
+    )
+    return TIN._of(
+        version,
+        crs=tin.crs,
+        elevation_unit=tin.elevation_unit,
+        row_attributes=tin.row_attributes,
+    )
 
 
 def _force(mesh: _kernel.Mesh, pslg: Pslg, splits: _Splits) -> set[tuple[int, int]] | None:
@@ -378,37 +387,19 @@ def _add_kept_whole(
     return np.sort(np.stack(_find_boundary_ends(tin), axis=1), axis=1).astype(np.int32)
 
 
-def _make_refined(
-    tin: TIN, pslg: Pslg, surface: Triangulation, number_of: Int32Array, found: _Found
-) -> TIN:
-    version = Version(
-        triangulation=surface,
-        vertex_of=tin.vertex_of,
-        report=_report(tin, surface, found),
-        lines=find_lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=False),
-    )
-    return TIN._of(
-        version,
-        crs=tin.crs,
-        elevation_unit=tin.elevation_unit,
-        row_attributes=tin.row_attributes,
-    )
+def _find_unmended(points: Float64Array, triangles: Int32Array, left: Int32Array) -> Unmended:
+    """Find the triangles that the core left, whatever the order of their corners.
 
-
-def _report(tin: TIN, surface: Triangulation, found: _Found) -> Report:
-    unmended = find_unmended(surface.points, surface.triangles, found.left)
-    added = _note(len(found.xy), len(found.splits.middle))
-    return replace(
-        tin.report,
-        n_vertices=len(surface.points),
-        n_triangles=len(surface.triangles),
-        notes=(*tin.report.notes, added, *describe_flips(tin), *unmended.sentences()),
-        unmended=unmended,
-    )
-
-
-def _note(n_new: int, n_on_segments: int) -> str:
-    return (
-        f"Refinement added {counted(n_new, 'point')}, "
-        f"{n_on_segments:,} of them on the boundary and on lines."
-    )
+    ``left`` has the corners of each, and why, (k, 4).
+    """
+    if len(left) == 0:
+        return Unmended.none()
+    why_of = {tuple(sorted(row[:3])): row[3] for row in left.tolist()}
+    is_near = np.zeros(int(triangles.max()) + 1, np.bool_)
+    is_near[left[:, :3]] = True
+    near = np.flatnonzero(is_near[triangles].all(axis=1))
+    why = [why_of.get(tuple(row), -1) for row in np.sort(triangles[near], axis=1).tolist()]
+    codes = np.array(why, np.int8)
+    found = near[codes >= 0]
+    angles = measure_smallest_angles(points[triangles[found], :2])
+    return Unmended(found.astype(np.int32), codes[codes >= 0], angles)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -109,14 +109,7 @@ class Quality:
         return {name: values.tolist() for name, values in self._gather_columns().items()}
 
     def _gather_columns(self) -> dict[str, Float64Array]:
-        return {
-            "min_angle": self.min_angle,
-            "max_angle": self.max_angle,
-            "aspect_ratio": self.aspect_ratio,
-            "edge_lengths": self.edge_lengths,
-            "circumradius": self.circumradius,
-            "radius_edge": self.radius_edge,
-        }
+        return {one.name: getattr(self, one.name) for one in fields(self) if one.name != "space"}
 
     def __repr__(self) -> str:
         count = len(self)
@@ -175,7 +168,13 @@ def quality(tin: TIN, *, space: bool = False) -> Quality:
     """
     require_tin(tin)
     in_space = as_flag("space", space)
-    edges = _subtract_corners(_gather_corners(tin, in_space=in_space))
+    # the corners of all triangles, (3, 2 or 3, m): each coordinate lies by itself
+    scales = [1.0, 1.0, scale_elevations(tin.crs, tin.elevation_unit)] if in_space else [1.0, 1.0]
+    columns = [np.ascontiguousarray(tin.points[:, k] * scale) for k, scale in enumerate(scales)]
+    numbers = [corner.astype(np.intp) for corner in tin.triangles.T]
+    edges = _subtract_corners(
+        np.array([[column[corner] for column in columns] for corner in numbers])
+    )
     lengths = _measure_lengths(edges)
     doubled = _measure_doubled_areas(edges, lengths)
     angles = _measure_angles(edges, doubled)
@@ -192,14 +191,6 @@ def quality(tin: TIN, *, space: bool = False) -> Quality:
         radius_edge=circumradius / shortest,
         space=bool(space),
     )
-
-
-def _gather_corners(tin: TIN, *, in_space: bool) -> Float64Array:
-    """Return the corners of all triangles, (3, 2 or 3, m): each coordinate lies by itself."""
-    scales = [1.0, 1.0, scale_elevations(tin.crs, tin.elevation_unit)] if in_space else [1.0, 1.0]
-    columns = [np.ascontiguousarray(tin.points[:, k] * scale) for k, scale in enumerate(scales)]
-    numbers = [corner.astype(np.intp) for corner in tin.triangles.T]
-    return np.array([[column[corner] for column in columns] for corner in numbers])
 
 
 def measure_smallest_angles(corners: Float64Array) -> Float64Array:

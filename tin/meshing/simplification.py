@@ -61,13 +61,7 @@ class Goal(NamedTuple):
 
     @classmethod
     def of(cls, tolerance: Any, points: Any, hold: Any = None) -> Goal:
-        """Return what is asked for.
-
-        Raises
-        ------
-        OptionError
-            If it is not one of the two, or none that can be.
-        """
+        """Return what is asked for."""
         if hold is not None:
             choice("hold", hold, SimplificationHold)
         if (tolerance is None) == (points is None):
@@ -85,12 +79,7 @@ class Goal(NamedTuple):
         return cls(float(tolerance), None, hold)
 
     def require_count(self, n_required: int, n_points: int) -> None:
-        """Refuse a number of vertices that cannot be.
-
-        Raises
-        ------
-        OptionError
-        """
+        """Refuse a number of vertices that cannot be."""
         if self.points is not None and not n_required <= self.points <= n_points:
             raise OptionError(
                 "points",
@@ -149,7 +138,17 @@ def simplify_tin(
     """Return the TIN of few vertices; :func:`tinsmith.simplify` tells what is promised."""
     done = Progress(progress)
     require_tin(tin)
-    is_required = _find_required(tin, keep)
+    # which vertices stay: those of lines, corners of the boundary, and those given
+    is_required = np.zeros(len(tin.points), np.bool_)
+    is_required[as_vertex_array(keep, len(tin.points)).ravel()] = True
+    is_required[tin.lines.vertices] = True
+    is_inner = tin.constrained & (tin.neighbors > topology.NO_NEIGHBOR)
+    is_required[topology.edges_at(tin.triangles, is_inner)] = True
+    visits = np.zeros(len(tin.points), np.int64)
+    for ring in tin.rings:
+        np.add.at(visits, ring, 1)
+        is_required[ring[~are_straight(tin.points[ring])]] = True
+    is_required[visits > 1] = True
     goal.require_count(int(is_required.sum()), len(tin.points))
     skeleton = _Part(tin, np.flatnonzero(is_required), thread_count(threads, len(tin.points)))
     done(0.05)
@@ -211,31 +210,14 @@ def insert_until_near(
         progress(0.9)
         errors = measure(built, limit)
         if len(errors.far) == 0 and errors.is_done:
-            return built, _tell(errors, goal)
+            surface = None if errors.surface is None else goal.drop_rounding(errors.surface)
+            return built, errors._replace(
+                largest=goal.drop_rounding(errors.largest), surface=surface
+            )
         rows = np.union1d(rows, errors.far)
 
 
-def _tell(errors: Errors, goal: Goal) -> Errors:
-    surface = None if errors.surface is None else goal.drop_rounding(errors.surface)
-    return errors._replace(largest=goal.drop_rounding(errors.largest), surface=surface)
-
-
 # ------------------------------------------------------------------ what must be left
-
-
-def _find_required(tin: TIN, keep: ArrayLike) -> BoolArray:
-    """Tell which vertices stay: those of lines, corners of the boundary, and those given."""
-    is_required = np.zeros(len(tin.points), np.bool_)
-    is_required[as_vertex_array(keep, len(tin.points)).ravel()] = True
-    is_required[tin.lines.vertices] = True
-    is_inner = tin.constrained & (tin.neighbors > topology.NO_NEIGHBOR)
-    is_required[topology.edges_at(tin.triangles, is_inner)] = True
-    visits = np.zeros(len(tin.points), np.int64)
-    for ring in tin.rings:
-        np.add.at(visits, ring, 1)
-        is_required[ring[~are_straight(tin.points[ring])]] = True
-    is_required[visits > 1] = True
-    return is_required
 
 
 def are_straight(ring: Float64Array) -> BoolArray:
@@ -336,18 +318,15 @@ class _Part:
         across = np.arange(len(surface.triangles), dtype=np.int32)[:, None]
         edge = np.nonzero(surface.neighbors > across)  # each inside once
         ends = self.rows[np.stack(topology.ends(surface.triangles, *edge), axis=1)]
-        beyond = meter.measure(ends, self._tell_left(), limit)
+        # which vertices of the TIN are left; and at the end that none is to be added
+        is_left = self._number_of >= 0
+        is_left[-1] = True
+        beyond = meter.measure(ends, is_left, limit)
         return errors._replace(
             far=np.union1d(errors.far, beyond.rows),
             surface=max(errors.largest, beyond.largest),
             is_done=len(meter.forced) == n_forced,
         )
-
-    def _tell_left(self) -> BoolArray:
-        """Tell which vertices of the TIN are left; and at the end that none is to be added."""
-        is_left = self._number_of >= 0
-        is_left[-1] = True
-        return is_left
 
     def _make(self) -> TIN:
         return TIN.from_triangles(self.surface.points, self.surface.triangles)

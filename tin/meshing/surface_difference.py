@@ -87,7 +87,18 @@ class SurfaceMeter:
         keys = topology.edge_keys(edges, len(self.tin.points))
         place = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
         is_known = self._keys[place] == keys
-        found = self._trace(edges[~is_known])
+        # follow edges of the new surface over the TIN
+        start, end = self.tin.points[self._sort(*edges[~is_known].T)]
+        traced = self.tin.triangulation.locator.trace(
+            np.ascontiguousarray(start[:, :2]), np.ascontiguousarray(end[:, :2])
+        )
+        if traced.failed >= 0:
+            raise PointsError("The TIN cannot be simplified: triangles lie over each other.")
+        owners, ratios = topology.find_owners(traced.offsets), traced.ratios
+        z, other = start[owners, 2], end[owners, 2]
+        own = np.where(ratios > 0.5, other + (1.0 - ratios) * (z - other), z + ratios * (other - z))
+        errors = np.nan_to_num(np.abs(own - traced.elevations))
+        found = Crossings(owners, traced.places, errors, self._list_candidates(traced))
         largest = np.zeros(int((~is_known).sum()))
         np.maximum.at(largest, found.owners, found.errors)
         whole = max(largest.max(initial=0.0), self._errors[place[is_known]].max(initial=0.0))
@@ -102,20 +113,6 @@ class SurfaceMeter:
         keys, errors = np.append(self._keys, keys), np.append(self._errors, errors)
         order = np.argsort(keys, kind="stable")
         self._keys, self._errors = keys[order], errors[order]
-
-    def _trace(self, edges: Int64Array) -> Crossings:
-        """Follow edges of the new surface over the TIN."""
-        start, end = self.tin.points[self._sort(*edges.T)]
-        traced = self.tin.triangulation.locator.trace(
-            np.ascontiguousarray(start[:, :2]), np.ascontiguousarray(end[:, :2])
-        )
-        if traced.failed >= 0:
-            raise PointsError("The TIN cannot be simplified: triangles lie over each other.")
-        owners, ratios = topology.find_owners(traced.offsets), traced.ratios
-        z, other = start[owners, 2], end[owners, 2]
-        own = np.where(ratios > 0.5, other + (1.0 - ratios) * (z - other), z + ratios * (other - z))
-        errors = np.nan_to_num(np.abs(own - traced.elevations))
-        return Crossings(owners, traced.places, errors, self._list_candidates(traced))
 
     def _list_candidates(self, traced: Trace) -> Int64Array:
         """Return the vertices around each crossing; one that is a vertex alone."""

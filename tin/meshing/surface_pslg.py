@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import topology
 from ..constraints.clipping import BOUNDARY
 from ..constraints.constraint_table import ConstraintTable
 from ..constraints.polylines import Polylines
@@ -59,7 +58,7 @@ def gather_pslg(
     """
     lines = [chain.tolist() for chain in tin.lines.chains()]
     more: list[list[int]] = [] if more_edges is None else more_edges.tolist()
-    nameless = _find_edges_without_line(tin) + more
+    nameless = [*tin._current.find_edges_of_no_line().tolist(), *more]
     named = rings if names_boundary and "boundary" not in tin.lines.kinds else []
     chains = [follow(chain) for chain in lines + nameless] + named + rings
     return Pslg(
@@ -91,13 +90,3 @@ def _gather_constraints(tin: TIN, n_nameless: int, n_named: int, n_rings: int) -
 
 def _make_nameless(kind: LineKind, sources: Int64Array) -> ConstraintTable:
     return ConstraintTable.of_kind(kind, sources.astype(np.int32), np.zeros(len(sources)))
-
-
-def _find_edges_without_line(tin: TIN) -> list[list[int]]:
-    """Return the constrained edges inside the surface that are no segment of a line."""
-    is_inner = tin.constrained & (tin.neighbors > topology.NO_NEIGHBOR)
-    edges = np.unique(np.sort(topology.edges_at(tin.triangles, is_inner), axis=1), axis=0)
-    n = len(tin.points)
-    is_segment = np.isin(topology.edge_keys(edges, n), topology.edge_keys(tin.lines.segments(), n))
-    found: list[list[int]] = edges[~is_segment].tolist()
-    return found
