@@ -104,7 +104,14 @@ def in_circle(xy: Columns, a: AnyArray, b: AnyArray, c: AnyArray, d: AnyArray) -
         (ax, ay), (bx, by), (cx, cy), (dx, dy) = (
             _gather_coordinates(xy, corner[block]) for corner in (a, b, c, d)
         )
-        value, permanent = _evaluate_in_circle(ax - dx, ay - dy, bx - dx, by - dy, cx - dx, cy - dy)
+        value = permanent = np.zeros(())  # permanent: the same with all terms positive
+        corners = [(x - dx, y - dy) for x, y in ((ax, ay), (bx, by), (cx, cy))]
+        for k in range(3):
+            (x, y), (px, py), (qx, qy) = corners[k:] + corners[:k]
+            lift = x * x + y * y
+            left, right = px * qy, qx * py
+            value = value + lift * (left - right)
+            permanent = permanent + lift * (np.abs(left) + np.abs(right))
         terms = ((ax, dx), (ay, dy), (bx, dx), (by, dy), (cx, dx), (cy, dy))
         signs[block] = _decide(value, _IN_CIRCLE_BOUND * permanent, terms, _decide_in_circle)
     return signs
@@ -165,28 +172,6 @@ def _gather_coordinates(xy: Columns, vertices: AnyArray) -> Columns:
 # -------------------------------------------------------------------- doubles
 
 
-def _evaluate_in_circle(
-    adx: Float64Array,
-    ady: Float64Array,
-    bdx: Float64Array,
-    bdy: Float64Array,
-    cdx: Float64Array,
-    cdy: Float64Array,
-) -> tuple[Float64Array, Float64Array]:
-    """Return the rounded determinant, and its permanent: the same with all terms positive."""
-    value = permanent = np.zeros(())
-    for x, y, px, py, qx, qy in (
-        (adx, ady, bdx, bdy, cdx, cdy),
-        (bdx, bdy, cdx, cdy, adx, ady),
-        (cdx, cdy, adx, ady, bdx, bdy),
-    ):
-        lift = x * x + y * y
-        left, right = px * qy, qx * py
-        value = value + lift * (left - right)
-        permanent = permanent + lift * (np.abs(left) + np.abs(right))
-    return value, permanent
-
-
 def _decide(
     value: Float64Array,
     bound: Float64Array,
@@ -217,7 +202,11 @@ def _decide_exactly(
     exact_sign: Callable[[Int64Array], Int8Array],
 ) -> Int8Array:
     """Decide rows on the integers that their (terms, rows) differences are multiples of."""
-    high, low = _subtract_exactly(minuends, subtrahends)
+    # the rounded difference and what the rounding left out (Knuth's two-sum)
+    high = minuends - subtrahends
+    b_part = minuends - high
+    a_part = high + b_part
+    low = (b_part - subtrahends) + (minuends - a_part)
     unit = np.minimum(_find_lowest_bit(high), _find_lowest_bit(low)).min(axis=0)
     limbs = (_find_top_bit(high).max(axis=0) - unit) // _LIMB_BITS + 1
     limbs[~high.any(axis=0)] = 1
@@ -229,14 +218,6 @@ def _decide_exactly(
             numbers += _split(low[:, rows], unit[rows], int(count))
         signs[rows] = exact_sign(numbers)
     return signs
-
-
-def _subtract_exactly(a: Float64Array, b: Float64Array) -> tuple[Float64Array, Float64Array]:
-    """Return the rounded difference and what the rounding left out (Knuth's two-sum)."""
-    high = a - b
-    b_part = a - high
-    a_part = high + b_part
-    return high, (b_part - b) + (a - a_part)
 
 
 _NO_BIT = np.int64(1 << 20)

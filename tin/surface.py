@@ -1121,7 +1121,16 @@ class TIN(Editable, Surface):
         inputs = self._gather_inputs()
         if inputs is None:
             moved = move_points(self.points.copy(), function)
-            return self._keep_triangles(moved, system, unit)
+            # the same triangles at other places, all turned round where the map is mirrored
+            made = type(self).from_triangles(
+                moved, self.triangles, constrained=self.constrained, crs=system, elevation_unit=unit
+            )
+            return made.replace(
+                vertex_of=self.vertex_of,
+                report=self.report,
+                lines=self.lines,
+                row_attributes=self._row_attributes,
+            )
         rows = self._list_rows()
         inputs = inputs.with_sources_of(rows)
         inputs = move_inputs(inputs, function, length=length, crs=system, elevation_unit=unit)
@@ -1130,18 +1139,6 @@ class TIN(Editable, Surface):
             attributes = dict(Attributes(attributes, lambda: rows))
         return type(self)._of(
             assemble(inputs), inputs, crs=system, elevation_unit=unit, row_attributes=attributes
-        )
-
-    def _keep_triangles(self, points: Float64Array, crs: CRS | None, unit: Unit | None) -> TIN:
-        """Return the same triangles at other places, all turned round where the map is mirrored."""
-        made = type(self).from_triangles(
-            points, self.triangles, constrained=self.constrained, crs=crs, elevation_unit=unit
-        )
-        return made.replace(
-            vertex_of=self.vertex_of,
-            report=self.report,
-            lines=self.lines,
-            row_attributes=self._row_attributes,
         )
 
     def __setattr__(self, name: str, value: Never) -> None:

@@ -147,7 +147,7 @@ class _Sweep:
         low, high = self._find_edges_through(point)
         if any(edge[2:4] != point for edge in self._met[low:high]):
             return True
-        starting = _sort_from_below(starting)
+        starting = starting if len(starting) < 2 else sorted(starting, key=cmp_to_key(_turn))
         self._met[low:high] = starting
         top = low + len(starting)
         neighbors = {(low - 1, low), (top - 1, top)} | {(i, i + 1) for i in range(low, top - 1)}
@@ -179,11 +179,6 @@ class _Sweep:
         if below[2:4] < above[2:4]:
             return _compare(above, below.bx, below.by) < 0
         return _compare(below, above.bx, above.by) > 0
-
-
-def _sort_from_below(edges: list[_Edge]) -> list[_Edge]:
-    """Sort edges from one place by the angle under which they leave it."""
-    return edges if len(edges) < 2 else sorted(edges, key=cmp_to_key(_turn))
 
 
 def _turn(edge: _Edge, other: _Edge) -> int:

@@ -218,7 +218,15 @@ class _Walker:
         """Yield behind which vertices a chain may begin, the likeliest first, then all."""
         if here is None and self._begins_with(rows, chain):
             yield 0
-        off = self._measure_offsets(rows, at, here, chain)
+        # how far from each segment a chain's first step is; inf if it goes back there
+        first, second = (np.array([self._points[position]]) for position in chain[:2])
+        a, b = self._xy[rows[at:-1]], self._xy[rows[at + 1 :]]
+        off = np.maximum(distance(first, a, b), distance(second, a, b))
+        begin, end = _project(first, a, b), _project(second, a, b)
+        off[end < begin - self._unit] = np.inf
+        if here is not None and len(begin):  # not behind the end of the chain before; both may move
+            passed = _project(np.array(self._points[here]), a[:1], b[:1]) - 2 * self._unit
+            off[:1][begin[:1] < passed] = np.inf
         best = off.min(initial=np.inf)
         allowed = (1 + UNSEEN_CUTS + len(chain)) * self._unit
         if best > allowed:
@@ -231,20 +239,6 @@ class _Walker:
             )
         yield int(fits[np.argmax(worst <= worst.min() + self._unit)])
         yield from (at + np.flatnonzero(off <= allowed)).tolist()
-
-    def _measure_offsets(
-        self, rows: list[int], at: int, here: int | None, chain: range
-    ) -> Float64Array:
-        """Return how far from each segment a chain's first step is; inf if it goes back there."""
-        first, second = (np.array([self._points[position]]) for position in chain[:2])
-        a, b = self._xy[rows[at:-1]], self._xy[rows[at + 1 :]]
-        off = np.maximum(distance(first, a, b), distance(second, a, b))
-        begin, end = _project(first, a, b), _project(second, a, b)
-        off[end < begin - self._unit] = np.inf
-        if here is not None and len(begin):  # not behind the end of the chain before; both may move
-            passed = _project(np.array(self._points[here]), a[:1], b[:1]) - 2 * self._unit
-            off[:1][begin[:1] < passed] = np.inf
-        return off
 
     def _measure(self, between: list[Between]) -> tuple[Float64Array, Float64Array, Int64Array]:
         """Return how far vertices are off their line, and back of the one before; its rows."""

@@ -23,18 +23,6 @@ NO_VERTEX = -1
 
 def check_arrays(tin: TIN, found: Findings) -> bool:
     """Check shapes, types and ranges, without which nothing else can be looked at."""
-    _check_shapes(tin, found)
-    if found.problems:
-        return False
-    found.counts.update(
-        rows=len(tin.vertex_of), vertices=len(tin.points), triangles=len(tin.triangles)
-    )
-    _check_coordinates(tin.points, found)
-    _check_ranges(tin, found)
-    return not found.problems
-
-
-def _check_shapes(tin: TIN, found: Findings) -> None:
     n_triangles = len(tin.triangles) if np.ndim(tin.triangles) else 0
     wanted = (
         ("points", "f", (None, 3)),
@@ -49,6 +37,14 @@ def _check_shapes(tin: TIN, found: Findings) -> None:
             found.fail("shape", f"{name} is a {array.dtype} array of shape {array.shape}.")
     if n_triangles == 0:
         found.fail("shape", "There is no triangle: a TIN needs at least one.")
+    if found.problems:
+        return False
+    found.counts.update(
+        rows=len(tin.vertex_of), vertices=len(tin.points), triangles=len(tin.triangles)
+    )
+    _check_coordinates(tin.points, found)
+    _check_ranges(tin, found)
+    return not found.problems
 
 
 def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:

@@ -22,7 +22,7 @@ import numpy as np
 from ...base.sentences import counted, inflect
 from ..report import LEFT_OUT
 from .boundary_sweep import find_sides
-from .chain_matching import UNSEEN_CUTS, Walk, distance, walk_along
+from .chain_matching import UNSEEN_CUTS, distance, walk_along
 from .shape import find_boundary, has_sound_boundary
 
 if TYPE_CHECKING:
@@ -85,32 +85,15 @@ def check_given_lines(tin: TIN, given: LineSet, found: Findings) -> None:
         "{count} [line has|lines have] chains that do not begin on [it|them] "
         "(first: [line|lines] {first}).",
     )
-    most = _check_course(xy, given, walk, unit, found)
-    slack = (1 + most + UNSEEN_CUTS) * unit
-    _check_gaps(tin, given, walk, slack, found)
-    _check_ends(tin, given, walk, slack, found)
-
-
-def _measure_unit(tin: TIN, xy: Float64Array) -> float:
-    """Return by how much one cut may move a line."""
-    largest = max(np.abs(tin.points[:, :2]).max(), np.abs(xy[:, :2]).max(initial=0.0))
-    return float(tin.report.snap + _UNITS_OF_ROUNDING * np.spacing(largest))
-
-
-def _check_course(
-    xy: Float64Array, given: LineSet, walk: Walk, unit: float, found: Findings
-) -> int:
-    """Check that vertices between those given lie on the line, in order; count the most cuts."""
-    if not len(walk.between):
-        return 0
+    # vertices between those given lie on the line, in order
     vertices, before, after = walk.between.T
     p, a, b = xy[vertices], given.xy[before], given.xy[after]
     cuts = np.bincount(before, minlength=len(given.xy))
     cuts[np.array(walk.gap_rows, np.int64)] += UNSEEN_CUTS
     allowed = (1 + cuts[before]) * unit
     along = ((p - a) * (b - a)).sum(axis=1) / np.hypot(*(b - a).T)
-    is_same = np.append(False, np.diff(before) == 0)
-    is_wrong = is_same & (np.append(0.0, np.diff(along)) < -2 * allowed)
+    is_same = np.append(False, np.diff(before) == 0)[: len(before)]
+    is_wrong = is_same & (np.append(0.0, np.diff(along))[: len(before)] < -2 * allowed)
     is_wrong |= distance(p, a, b) > allowed
     found.report(
         "lines",
@@ -118,37 +101,34 @@ def _check_course(
         "{count} [line has|lines have] chains that leave their course "
         "(first: [line|lines] {first}).",
     )
-    return int(cuts.max())
-
-
-def _check_gaps(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findings) -> None:
-    """Check that what is left out of lines lies outside the surface or in water."""
-    points = np.array(walk.gap_points, np.float64).reshape(-1, 2)
-    is_wrong = _is_inside(tin, points, slack)
-    is_wrong[is_wrong] = ~_is_in_water(points[is_wrong], given, slack)
+    most = int(cuts.max()) if len(before) else 0
+    slack = (1 + most + UNSEEN_CUTS) * unit
+    # what is left out of lines lies outside the surface or in water
+    is_wrong = _is_on_land(tin, np.array(walk.gap_points).reshape(-1, 2), given, slack)
     found.report(
         "lines",
         np.unique(np.array(walk.gap_lines, np.int64)[is_wrong]),
         "{count} [line has|lines have] parts inside the surface that are missing "
         "(first: [line|lines] {first}).",
     )
-
-
-def _check_ends(tin: TIN, given: LineSet, walk: Walk, slack: float, found: Findings) -> None:
-    """Check that chains end with their line, at the boundary or at water."""
+    # chains end with their line, at the boundary or at water
     vertices = np.array(walk.end_vertices, np.int64)
     is_wet = np.repeat([kind == "water" for kind in tin.lines.kinds], np.diff(tin.lines.offsets))
     shore = tin.lines.vertices[is_wet.astype(np.bool_)]
     loose = np.flatnonzero(~np.isin(vertices, np.append(find_boundary(tin).start, shore)))
-    points = tin.points[vertices[loose], :2]
-    is_wrong = _is_inside(tin, points, slack)
-    is_wrong[is_wrong] = ~_is_in_water(points[is_wrong], given, slack)
+    is_wrong = _is_on_land(tin, xy[vertices[loose]], given, slack)
     found.report(
         "lines",
         np.unique(np.array(walk.end_lines, np.int64)[loose[is_wrong]]),
         "{count} [line ends|lines end] inside the surface, before [its|their] end "
         "(first: [line|lines] {first}).",
     )
+
+
+def _measure_unit(tin: TIN, xy: Float64Array) -> float:
+    """Return by how much one cut may move a line."""
+    largest = max(np.abs(tin.points[:, :2]).max(), np.abs(xy[:, :2]).max(initial=0.0))
+    return float(tin.report.snap + _UNITS_OF_ROUNDING * np.spacing(largest))
 
 
 def _is_inside(tin: TIN, points: Float64Array, slack: float) -> BoolArray:
@@ -162,6 +142,13 @@ def _is_inside(tin: TIN, points: Float64Array, slack: float) -> BoolArray:
         for number in candidates[find_sides(boundary, points[candidates]) > 0]:
             is_inside[number] = distance(points[number], a, b).min() > slack
     return is_inside
+
+
+def _is_on_land(tin: TIN, points: Float64Array, given: LineSet, slack: float) -> BoolArray:
+    """Tell which places lie inside the surface and in no water, further in than ``slack``."""
+    is_on_land = _is_inside(tin, points, slack)
+    is_on_land[is_on_land] = ~_is_in_water(points[is_on_land], given, slack)
+    return is_on_land
 
 
 def _is_in_water(points: Float64Array, given: LineSet, slack: float) -> BoolArray:

@@ -37,7 +37,15 @@ def check_shape(tin: TIN, found: Findings) -> None:
         return
     is_convex, is_free = _check_boundary(tin, xy, rings, found)
     if not (is_convex or len(clockwise)):
-        _check_overlaps(tin, found)
+        # check that the boundary meets itself in vertices only, with the surface on one side of it
+        fault = find_fault(find_boundary(tin))
+        if fault is not None:
+            what = (
+                "The boundary crosses or overlaps itself, or runs through a vertex of itself"
+                if fault.is_meeting
+                else "Parts of the surface lie over each other"
+            )
+            found.report("overlap", [fault.vertex], f"{what} (westernmost: near vertex {{first}}).")
     if is_free and len(rings) > 1:
         found.fail(
             "boundary",
@@ -84,18 +92,6 @@ def find_boundary(tin: TIN) -> Boundary:
     triangle, corner = np.nonzero(tin.neighbors == topology.NO_NEIGHBOR)
     start, end = topology.ends(tin.triangles, triangle, corner)
     return Boundary(tin.points, start, end)
-
-
-def _check_overlaps(tin: TIN, found: Findings) -> None:
-    """Check that the boundary meets itself in vertices only, with the surface on one side of it."""
-    fault = find_fault(find_boundary(tin))
-    if fault is not None:
-        what = (
-            "The boundary crosses or overlaps itself, or runs through a vertex of itself"
-            if fault.is_meeting
-            else "Parts of the surface lie over each other"
-        )
-        found.report("overlap", [fault.vertex], f"{what} (westernmost: near vertex {{first}}).")
 
 
 def _get_boundary_flags(tin: TIN, start: Int32Array, end: Int32Array) -> BoolArray:

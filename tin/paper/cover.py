@@ -37,11 +37,22 @@ def cover(points: Float64Array, triangles: Int32Array, hull: Int32Array) -> Cove
     The hull is its vertices, counter-clockwise, those within its edges too. Areas are exactly zero
     where there are none; otherwise exact but for rounding where no edges cross.
     """
-    edges, weights = _find_left_over(len(points), triangles, hull)
-    level = points[edges[:, 0], 1] == points[edges[:, 1], 1]
-    edges, weights = edges[~level], weights[~level]
+    # edges, smaller vertex first, and how often more they run forwards than backwards
+    n = len(points)
+    start = np.concatenate([triangles.ravel(), np.roll(hull, -1)]).astype(np.int64)
+    end = np.concatenate([triangles[:, [1, 2, 0]].ravel(), hull]).astype(np.int64)
+    keys, which = np.unique(
+        np.minimum(start, end) * n + np.maximum(start, end), return_inverse=True
+    )
+    runs = np.bincount(which, np.where(start < end, 1, -1)).astype(np.int64)
+    edges = np.stack([keys // n, keys % n], axis=1)
+    counts = (runs != 0) & (points[edges[:, 0], 1] != points[edges[:, 1], 1])  # not level ones
+    edges, weights = edges[counts], runs[counts]
     xy = points[:, :2] - points[:, :2].min(axis=0)
-    south, north = _sort_ends(xy, edges)
+    # the southern and the northern end of every edge
+    first, second = xy[edges[:, 0]], xy[edges[:, 1]]
+    is_northward = (first[:, 1] < second[:, 1])[:, None]
+    south, north = np.where(is_northward, first, second), np.where(is_northward, second, first)
     # An edge that runs north has its triangle in the west: eastwards, the triangle ends there.
     step = np.where(xy[edges[:, 0], 1] < xy[edges[:, 1], 1], -weights, weights)
     overlap = gap = 0.0
@@ -51,27 +62,6 @@ def cover(points: Float64Array, triangles: Int32Array, hull: Int32Array) -> Cove
         overlap += height * width.overlap
         gap += height * width.gap
     return Cover(overlap, gap)
-
-
-def _find_left_over(
-    n: int, triangles: Int32Array, hull: Int32Array
-) -> tuple[Int64Array, Int64Array]:
-    """Return edges, smaller vertex first, and how often more they run forwards than backwards."""
-    start = np.concatenate([triangles.ravel(), np.roll(hull, -1)]).astype(np.int64)
-    end = np.concatenate([triangles[:, [1, 2, 0]].ravel(), hull]).astype(np.int64)
-    keys, which = np.unique(
-        np.minimum(start, end) * n + np.maximum(start, end), return_inverse=True
-    )
-    runs = np.bincount(which, np.where(start < end, 1, -1)).astype(np.int64)
-    keys, runs = keys[runs != 0], runs[runs != 0]
-    return np.stack([keys // n, keys % n], axis=1), runs
-
-
-def _sort_ends(xy: Float64Array, edges: Int64Array) -> tuple[Float64Array, Float64Array]:
-    """Return the southern and the northern end of every edge."""
-    first, second = xy[edges[:, 0]], xy[edges[:, 1]]
-    is_northward = (first[:, 1] < second[:, 1])[:, None]
-    return np.where(is_northward, first, second), np.where(is_northward, second, first)
 
 
 def _walk_strips(y: Float64Array) -> Iterator[tuple[float, float]]:

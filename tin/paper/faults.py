@@ -9,7 +9,7 @@ import numpy as np
 from ..predicates import columns, in_circle, orientation
 
 if TYPE_CHECKING:
-    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import BoolArray, Float64Array, Int32Array
     from ..predicates import Columns
 
 __all__ = ["find_overlapping", "find_violating", "measure_minimum_angles"]
@@ -55,41 +55,27 @@ def find_overlapping(points: Float64Array, triangles: Int32Array) -> BoolArray:
     for start in range(0, len(triangles), _BLOCK):
         block = np.arange(start, min(start + _BLOCK, len(triangles)))
         block = block[~found[block]]
-        near = _match_boxes(points[triangles, :2], block)
+        # for each triangle of a block which triangles have a bounding box that meets its own
+        corners = points[triangles, :2]
+        low, high = corners.min(axis=1), corners.max(axis=1)
+        near = np.ones((len(block), len(corners)), np.bool_)
+        for axis in range(2):
+            near &= low[:, axis] < high[block, axis, None]
+            near &= high[:, axis] > low[block, axis, None]
         near[np.arange(len(block)), block] = False
-        _mark(xy, triangles, block, near, found)
+        # mark triangles of the block, and some of those that they overlap, if they overlap any
+        rank = np.cumsum(near, axis=1, dtype=np.int32)
+        seen, ahead = 0, _CHUNK
+        while len(block) and seen < rank.max():
+            row, other = np.nonzero(near & (rank > seen) & (rank <= ahead))
+            first, second = triangles[block[row]], triangles[other]
+            hit = ~(_is_apart(xy, first, second) | _is_apart(xy, second, first))
+            found[block[row[hit]]] = True
+            found[other[hit]] = True
+            is_left = ~found[block]
+            block, near, rank = block[is_left], near[is_left], rank[is_left]
+            seen, ahead = ahead, 2 * ahead
     return found
-
-
-def _match_boxes(corners: Float64Array, block: Int64Array) -> BoolArray:
-    """Tell for each triangle of a block which triangles have a bounding box that meets its own."""
-    low, high = corners.min(axis=1), corners.max(axis=1)
-    meet = np.ones((len(block), len(corners)), np.bool_)
-    for axis in range(2):
-        meet &= low[:, axis] < high[block, axis, None]
-        meet &= high[:, axis] > low[block, axis, None]
-    return meet
-
-
-def _mark(
-    xy: Columns,
-    triangles: Int32Array,
-    block: Int64Array,
-    near: BoolArray,
-    found: BoolArray,
-) -> None:
-    """Mark triangles of a block, and some of those that they overlap, if they overlap any."""
-    rank = np.cumsum(near, axis=1, dtype=np.int32)
-    seen, ahead = 0, _CHUNK
-    while len(block) and seen < rank.max():
-        row, other = np.nonzero(near & (rank > seen) & (rank <= ahead))
-        first, second = triangles[block[row]], triangles[other]
-        hit = ~(_is_apart(xy, first, second) | _is_apart(xy, second, first))
-        found[block[row[hit]]] = True
-        found[other[hit]] = True
-        is_left = ~found[block]
-        block, near, rank = block[is_left], near[is_left], rank[is_left]
-        seen, ahead = ahead, 2 * ahead
 
 
 def _is_apart(xy: Columns, first: Int32Array, second: Int32Array) -> BoolArray:

@@ -211,7 +211,9 @@ def improved(
 
 def _grow(rows: Float64Array, rule: Rule, *, removal: bool, most: int | None) -> Network:
     require_count("most_triangles", most, or_none=True)
-    points = _drop_repeats(rows)
+    # the first row at every place, in the order given
+    _, first = np.unique(rows[:, :2], axis=0, return_index=True)
+    points = rows[np.sort(first)]
     lists = Lists(columns(points), removal=as_flag("removal", removal))
     lists.enter(_find_first_triangle(lists.xy, len(rows)))
     is_stopped = False
@@ -219,7 +221,11 @@ def _grow(rows: Float64Array, rule: Rule, *, removal: bool, most: int | None) ->
         is_stopped = most is not None and len(lists.triangles) >= most
         if is_stopped:
             break
-        _extend(lists, rule, p1, p2)
+        # third to sixth step, for an edge of a triangle
+        point, tests = rule(lists.xy, p2, p1, lists.qualified(p1, p2))
+        lists.tests += tests
+        if point is not None:
+            lists.enter((p2, p1, point))
     return Network(
         points=points,
         triangles=np.array(lists.triangles, np.int32),
@@ -237,20 +243,6 @@ def _walk_edges_to_extend(lists: Lists) -> Iterator[Edge]:
         for p1, p2 in ((a, b), (b, c), (c, a)):
             if not lists.is_used_up(p1, p2):
                 yield p1, p2
-
-
-def _extend(lists: Lists, rule: Rule, p1: int, p2: int) -> None:
-    """Third to sixth step, for an edge of a triangle."""
-    point, tests = rule(lists.xy, p2, p1, lists.qualified(p1, p2))
-    lists.tests += tests
-    if point is not None:
-        lists.enter((p2, p1, point))
-
-
-def _drop_repeats(rows: Float64Array) -> Float64Array:
-    """Return the first row at every place, in the order given."""
-    _, first = np.unique(rows[:, :2], axis=0, return_index=True)
-    return rows[np.sort(first)]
 
 
 def _find_first_triangle(xy: Columns, n_rows: int) -> Triangle:

@@ -80,21 +80,18 @@ class Lists:
         self.triangles.append(triangle)
         a, b, c = triangle
         for p, q in ((a, b), (b, c), (c, a)):
-            self._use(p, q)
+            uses = self.count(p, q) + 1
+            self._count[min(p, q), max(p, q)] = uses
+            for v, w in ((p, q), (q, p)):
+                if uses == _MOST_USES:
+                    self._used_once[v].discard(w)
+                    self._used_twice[v].add(w)
+                else:
+                    self._used_once[v].add(w)
         if self.removal:
             finished = [p for p in triangle if not self._used_once[p]]
             for p in finished:
                 self.searched = self.searched[self.searched != p]
-
-    def _use(self, p: int, q: int) -> None:
-        uses = self.count(p, q) + 1
-        self._count[min(p, q), max(p, q)] = uses
-        for v, w in ((p, q), (q, p)):
-            if uses == _MOST_USES:
-                self._used_once[v].discard(w)
-                self._used_twice[v].add(w)
-            else:
-                self._used_once[v].add(w)
 
 
 def sides(xy: Columns, p1: int, p2: int, points: Int64Array) -> Int8Array:

@@ -11,7 +11,7 @@ import numpy as np
 from ..predicates import Columns, in_circle
 
 if TYPE_CHECKING:
-    from ...base.arrays import Float64Array, Int8Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
 
 __all__ = [
     "Choice",
@@ -74,7 +74,10 @@ def _find_widest(xy: Columns, p1: int, p2: int, qualified: Int64Array) -> Int64A
     rivals = np.arange(len(qualified))
     while len(rivals):
         best = rivals[np.argmin(cotangent[rivals])]
-        side = _compare_with_circle(xy, p1, p2, int(qualified[best]), np.delete(qualified, best))
+        # points see p1-p2 under a wider angle than the best (+1), the same (0), or a narrower one
+        others = np.delete(qualified, best)
+        first, second, third = (np.full(len(others), p) for p in (p1, p2, qualified[best]))
+        side = in_circle(xy, first, second, third, others)
         side = np.insert(side, best, 0)
         rivals = np.flatnonzero(side > 0)
     widest: Int64Array = qualified[side == 0]
@@ -130,9 +133,3 @@ def _measure_cotangents(xy: Columns, p1: int, p2: int, points: Int64Array) -> Fl
 def _measure_offsets(xy: Columns, origin: int, points: Int64Array) -> Columns:
     x, y = xy
     return x[points] - x[origin], y[points] - y[origin]
-
-
-def _compare_with_circle(xy: Columns, p1: int, p2: int, p: int, points: Int64Array) -> Int8Array:
-    """Tell whether points see p1-p2 under a wider angle than P (+1), the same (0), a narrower."""
-    size = len(points)
-    return in_circle(xy, np.full(size, p1), np.full(size, p2), np.full(size, p), points)

@@ -94,7 +94,12 @@ class Interpolator:
         first = 3 * (edges // 3)
         start = self._elevations[corners[first + (edges + 1) % 3]]
         end = self._elevations[corners[first + (edges + 2) % 3]]
-        return _interpolate_between(start, end, shares)
+        # interpolate from the nearer end, so that both ends are met exactly
+        half_rise = 0.5 * end - 0.5 * start
+        early = start + 2.0 * (shares * half_rise)
+        late = end - 2.0 * ((1.0 - shares) * half_rise)
+        between: Float64Array = np.where(shares > 0.5, late, early)
+        return between
 
     def _take_nearest(self, xy: Float64Array, threads: int) -> Float64Array:
         nearest = self._surface.nearest.find(xy, threads=threads, from_west=True)
@@ -120,14 +125,3 @@ class Interpolator:
     @cached_property
     def _boundary(self) -> _kernel.NearestBoundary:
         return _kernel.NearestBoundary(self._surface.locator)
-
-
-def _interpolate_between(
-    start: Float64Array, end: Float64Array, share: Float64Array
-) -> Float64Array:
-    """Interpolate from the nearer end, so that both ends are met exactly."""
-    half_rise = 0.5 * end - 0.5 * start
-    early = start + 2.0 * (share * half_rise)
-    late = end - 2.0 * ((1.0 - share) * half_rise)
-    between: Float64Array = np.where(share > 0.5, late, early)
-    return between

@@ -74,18 +74,7 @@ class NearestVertex:
 
     def _find_outside(self, xy: Float64Array, from_west: bool) -> Int64Array:
         """Return the nearest vertex of places outside the hull."""
-        nearest = self._descend(xy, self._find_near_hull(xy))
-        return self._choose_first_of_tied(xy, nearest, self._ranks if from_west else None)
-
-    @cached_property
-    def _ranks(self) -> Int64Array:
-        """The place of each vertex in the order of eastings and northings."""
-        ranks = np.empty(len(self._xy), np.int64)
-        ranks[np.lexsort(self._xy.T[::-1])] = np.arange(len(self._xy))
-        return ranks
-
-    def _find_near_hull(self, xy: Float64Array) -> Int64Array:
-        """Return a vertex of the hull near each place outside: by one of the two coordinates."""
+        # a vertex of the hull near each place outside: by one of the two coordinates
         hull = self._xy[self._hull]
         candidates = []
         for axis in (0, 1):
@@ -96,7 +85,15 @@ class NearestVertex:
             ]
         tried = np.stack(candidates, axis=1)
         best = np.argmin(self._measure_squares(xy[:, None], tried), axis=1)
-        return np.asarray(tried[np.arange(len(xy)), best], np.int64)
+        nearest = self._descend(xy, np.asarray(tried[np.arange(len(xy)), best], np.int64))
+        return self._choose_first_of_tied(xy, nearest, self._ranks if from_west else None)
+
+    @cached_property
+    def _ranks(self) -> Int64Array:
+        """The place of each vertex in the order of eastings and northings."""
+        ranks = np.empty(len(self._xy), np.int64)
+        ranks[np.lexsort(self._xy.T[::-1])] = np.arange(len(self._xy))
+        return ranks
 
     def _descend(self, xy: Float64Array, at: Int64Array) -> Int64Array:
         """Go from vertex to nearer vertex until none of the neighbours is nearer."""
@@ -184,7 +181,8 @@ class NearestVertex:
             near = np.flatnonzero(away <= least * _ROUNDING)
             near = near[self._compare(xy[of[near]], neighbor[near], nearest[of[near]]) == 0]
             found.append((of[near], neighbor[near]))
-        return _join(found)
+        first, second = zip(*found, strict=True)
+        return np.concatenate(first), np.concatenate(second)
 
     def _cut_into_portions(self, at: Int64Array, rows: Int64Array) -> list[Int64Array]:
         """Cut rows into portions whose vertices have not too many neighbours together."""
@@ -198,10 +196,3 @@ class NearestVertex:
 
     def _compare(self, xy: Float64Array, one: Int64Array, other: Int64Array) -> Int8Array:
         return _kernel.compare_distances(np.ascontiguousarray(xy), self._xy[one], self._xy[other])
-
-
-def _join(
-    pairs: list[tuple[Int64Array, Int64Array]],
-) -> tuple[Int64Array, Int64Array]:
-    first, second = zip(*pairs, strict=True)
-    return np.concatenate(first), np.concatenate(second)

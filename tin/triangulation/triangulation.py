@@ -101,7 +101,11 @@ class Triangulation(Frozen):
         Their lengths are in proportion to the triangles' areas in space. Coordinates are scaled
         first, so that no product overflows.
         """
-        first, second = self._edge_vectors()
+        origin = self.points[self.triangles[:, 0]]
+        first, second = (
+            self.points[self.triangles[:, 1]] - origin,
+            self.points[self.triangles[:, 2]] - origin,
+        )
         run = np.abs([first[:, :2], second[:, :2]]).max()
         first[:, :2] /= run
         second[:, :2] /= run
@@ -158,10 +162,3 @@ class Triangulation(Frozen):
         first, second, third = (corner.astype(np.intp) for corner in self.triangles.T)
         columns = [np.ascontiguousarray(axis) for axis in self.points.T[:axes]]
         return [(axis[second] - axis[first], axis[third] - axis[first]) for axis in columns]
-
-    def _edge_vectors(self) -> tuple[Float64Array, Float64Array]:
-        origin = self.points[self.triangles[:, 0]]
-        return (
-            self.points[self.triangles[:, 1]] - origin,
-            self.points[self.triangles[:, 2]] - origin,
-        )

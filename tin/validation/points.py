@@ -33,13 +33,7 @@ SHOWN = 5
 
 
 def require_three(count: int) -> None:
-    """Refuse fewer points than a triangle has.
-
-    Raises
-    ------
-    PointsError
-        If there are fewer than three.
-    """
+    """Refuse fewer points than a triangle has."""
     if count < 3:
         raise PointsError(
             f"{counted(count, 'point')} cannot make a TIN: at least three not collinear "
@@ -51,12 +45,6 @@ def as_points(points: Any, *, threads: int | None = 1) -> Float64Array:
     """Return a fresh (n, 3) float64 array of finite coordinates in the exact range.
 
     -0.0 becomes 0.0, so that equal coordinates are equal bytes.
-
-    Raises
-    ------
-    PointsError
-        For another shape, values that are no numbers or masked, NaN, infinity, or magnitudes
-        outside the range in which the predicates are exact.
     """
     xyz, is_masked = as_masked_points(points, threads=threads)
     if is_masked is not None:
@@ -94,14 +82,7 @@ def clean_points(table: Table, *, threads: int | None = 1) -> Table:
 
 
 def as_xy(xy: Any) -> Float64Array:
-    """Return a (k, 2) float64 array; NaN is allowed and lies nowhere, and so is what is masked.
-
-    Raises
-    ------
-    PointsError
-        For another shape, values that are no numbers, infinity, or magnitudes outside the range
-        in which the predicates are exact.
-    """
+    """Return a (k, 2) float64 array; NaN is allowed and lies nowhere, and so is what is masked."""
     queries, is_masked = as_table(xy, "Query points", least=2, most=2)
     if queries.shape == (0,):  # an empty list is no queries
         queries = queries.reshape(0, 2)
@@ -127,13 +108,7 @@ def as_places(xy: Any) -> tuple[Float64Array, bool]:
 
 
 def as_pairs(x: Any, y: Any) -> tuple[Float64Array, tuple[int, ...]]:
-    """Return places of eastings and northings that are given apart, (k, 2), and their shape.
-
-    Raises
-    ------
-    PointsError
-        If they are no numbers, or their shapes do not fit; else as :func:`as_xy`.
-    """
+    """Return places of eastings and northings that are given apart, (k, 2), and their shape."""
     columns = [as_table(one, "Query points", least=1, most=1) for one in (x, y)]
     if any(one.is_masked is not None for one in columns):
         raise PointsError("Query points given as x and y are masked: give rows of both.")
@@ -148,13 +123,7 @@ def as_pairs(x: Any, y: Any) -> tuple[Float64Array, tuple[int, ...]]:
 
 
 def as_elevations(values: Any) -> Float64Array:
-    """Return one elevation or several as a float64 array of finite numbers.
-
-    Raises
-    ------
-    PointsError
-        Otherwise.
-    """
+    """Return one elevation or several as a float64 array of finite numbers."""
     elevations, is_masked = as_table(values, "Elevations")
     if elevations.ndim > 1:
         raise PointsError(f"Elevations have shape {elevations.shape}: one, or a row, is needed.")
@@ -209,11 +178,6 @@ def require_exact_range(xy: Float64Array, what: str, names: Sequence[str] = ("x"
         In the plural: the sentence begins with it.
     names : sequence of str
         Of the columns.
-
-    Raises
-    ------
-    PointsError
-        With the first row.
     """
     if xy.flags.c_contiguous and _kernel.are_in_exact_range(xy):
         return

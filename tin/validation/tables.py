@@ -65,23 +65,32 @@ def as_table(given: Any, what: str, *, least: int = 3, most: int = 3) -> Table:
         What the sentence of an error begins with, in the plural.
     least, most : int
         How many coordinates are needed, and how many are taken if they are there.
-
-    Raises
-    ------
-    PointsError
-        For values that are no numbers, and names of columns that do not tell the coordinates.
     """
     if _is_plain(given):
         return Table(_as_numbers(given, what))
-    _require_no_raster(given, what)
+    # refuse the cells of a raster, whose rows are no points
+    dimensions = getattr(given, "dims", ())
+    is_named = isinstance(dimensions, tuple | Mapping)
+    has_axes = is_named and any(axes <= set(dimensions) for axes in _AXES)
+    if has_axes or (hasattr(given, "transform") and hasattr(given, "block_shapes")):
+        raise PointsError(
+            f"{what} are the cells of a raster: tinsmith.from_raster makes points of them."
+        )
     given = _unwrap(given)
     geometry = _read_points(getattr(given, "geometry", given), what)
     names = _find_names(given)
     if geometry is not None:
-        return Table(_add_elevations(geometry, given, names or (), what, most))
+        return Table(_add_elevations(geometry, given, what, most=most))
     if names is None:
         return _read_unnamed(given, what)
-    columns = _choose_columns_by_name(given, names, what, least, most)
+    found = _find_roles(names, what)
+    for role in COORDINATES[:least]:
+        if role not in found:
+            raise PointsError(
+                f"{what} have columns {_list_names(names)}, and none of them is called {role}: "
+                f"one of {', '.join(_NAMES[role])} is needed."
+            )
+    columns = [given[found[role]] for role in COORDINATES[:most] if role in found]
     return _stack(columns, what)
 
 
@@ -92,17 +101,6 @@ def _is_plain(given: Any) -> bool:
     if type(given) is list:
         return all(type(row) is list for row in given)
     return type(given) in (float, int)
-
-
-def _require_no_raster(given: Any, what: str) -> None:
-    """Refuse the cells of a raster, whose rows are no points."""
-    dimensions = getattr(given, "dims", ())
-    is_named = isinstance(dimensions, tuple | Mapping)
-    has_axes = is_named and any(axes <= set(dimensions) for axes in _AXES)
-    if has_axes or (hasattr(given, "transform") and hasattr(given, "block_shapes")):
-        raise PointsError(
-            f"{what} are the cells of a raster: tinsmith.from_raster makes points of them."
-        )
 
 
 def is_masked_array(given: Any) -> bool:
@@ -131,7 +129,9 @@ def _read_unnamed(given: Any, what: str) -> Table:
 def _as_numbers(values: Any, what: str) -> Float64Array:
     try:
         array = np.asarray(values)
-        if array.dtype.kind not in "biufO" or (array.dtype.kind == "O" and _has_text(array)):
+        if array.dtype.kind not in "biufO" or (
+            array.dtype.kind == "O" and any(isinstance(value, str | bytes) for value in array.flat)
+        ):
             raise TypeError
         numbers = np.asarray(array, np.float64)
     except Exception:
@@ -156,10 +156,6 @@ def _require_held(array: AnyArray, what: str) -> None:
         )
 
 
-def _has_text(array: AnyArray) -> bool:
-    return any(isinstance(value, str | bytes) for value in array.flat)
-
-
 # ------------------------------------------------------------------------- names
 
 
@@ -177,19 +173,6 @@ def _find_names(given: Any) -> Sequence[Any] | None:
         return None
     names = list(names)
     return None if names == list(range(len(names))) else names
-
-
-def _choose_columns_by_name(
-    given: Any, names: Sequence[Any], what: str, least: int, most: int
-) -> list[Any]:
-    found = _find_roles(names, what)
-    for role in COORDINATES[:least]:
-        if role not in found:
-            raise PointsError(
-                f"{what} have columns {_list_names(names)}, and none of them is called {role}: "
-                f"one of {', '.join(_NAMES[role])} is needed."
-            )
-    return [given[found[role]] for role in COORDINATES[:most] if role in found]
 
 
 def _find_roles(names: Sequence[Any], what: str) -> dict[str, Any]:
@@ -291,14 +274,12 @@ def _is_row_of_objects(given: Any) -> bool:
     return is_one_dimensional and getattr(given, "dtype", None) != np.float64
 
 
-def _add_elevations(
-    places: _Places, given: Any, names: Sequence[Any], what: str, most: int
-) -> Float64Array:
+def _add_elevations(places: _Places, given: Any, what: str, *, most: int) -> Float64Array:
     """Return the columns asked for, elevations from a column if the geometries have none."""
     geometry = places.coordinates
     if most == 2:
         return geometry[:, :2]
-    column = _find_roles(names, what).get("elevation")
+    column = _find_roles(_find_names(given) or (), what).get("elevation")
     is_flat = bool(np.isnan(geometry[:, 2]).all())
     if column is not None:
         own = _stack([given[column]], what).values[places.rows, 0]

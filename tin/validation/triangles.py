@@ -18,13 +18,7 @@ __all__ = ["as_flags", "as_triangles", "turn_counter_clockwise"]
 
 
 def as_triangles(triangles: ArrayLike, n_vertices: int) -> Int32Array:
-    """Return an (m, 3) int32 array of vertex numbers, m >= 1.
-
-    Raises
-    ------
-    PointsError
-        For another shape, or numbers that are none of the vertices.
-    """
+    """Return an (m, 3) int32 array of vertex numbers, m >= 1."""
     try:
         given = np.asarray(triangles)
     except ValueError:
@@ -47,13 +41,7 @@ def as_triangles(triangles: ArrayLike, n_vertices: int) -> Int32Array:
 
 
 def as_flags(constrained: ArrayLike | None, n_triangles: int) -> BoolArray:
-    """Return an (m, 3) bool array of flags, all False by default.
-
-    Raises
-    ------
-    PointsError
-        For another shape.
-    """
+    """Return an (m, 3) bool array of flags, all False by default."""
     if constrained is None:
         return np.zeros((n_triangles, 3), np.bool_)
     try:
@@ -71,13 +59,7 @@ def as_flags(constrained: ArrayLike | None, n_triangles: int) -> BoolArray:
 def turn_counter_clockwise(
     points: Float64Array, triangles: Int32Array, flags: BoolArray
 ) -> tuple[Int32Array, BoolArray]:
-    """Return triangles seen from above, each with the flags of its edges.
-
-    Raises
-    ------
-    PointsError
-        If a triangle has no area.
-    """
+    """Return triangles seen from above, each with the flags of its edges."""
     turn = _kernel.turns_of_triangles(np.ascontiguousarray(points), np.ascontiguousarray(triangles))
     flat = turn == 0
     if flat.any():

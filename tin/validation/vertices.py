@@ -18,13 +18,7 @@ __all__ = ["as_rows", "as_vertex", "as_vertex_array", "as_vertex_pairs"]
 
 
 def as_vertex(vertex: Any, n_vertices: int) -> int:
-    """Return a vertex number.
-
-    Raises
-    ------
-    PointsError
-        If it is none.
-    """
+    """Return a vertex number."""
     if not is_whole_number(vertex):
         raise PointsError(f"Invalid vertex {shown(vertex)}: a whole number is needed.")
     if not 0 <= vertex < n_vertices:
@@ -35,13 +29,7 @@ def as_vertex(vertex: Any, n_vertices: int) -> int:
 
 
 def as_vertex_array(vertices: Any, n_vertices: int) -> Int64Array:
-    """Return vertex numbers as an array of the shape given; an empty list is no vertices.
-
-    Raises
-    ------
-    PointsError
-        If they are not whole numbers, or one of them is no vertex.
-    """
+    """Return vertex numbers as an array of the shape given; an empty list is no vertices."""
     numbers = _as_whole_numbers(vertices)
     if numbers is None:
         raise PointsError(f"Invalid vertices {shown(vertices)}: whole numbers are needed.")
@@ -55,13 +43,7 @@ def as_vertex_array(vertices: Any, n_vertices: int) -> Int64Array:
 
 
 def as_rows(rows: Any) -> Int64Array:
-    """Return numbers of rows as an array.
-
-    Raises
-    ------
-    OptionError
-        If they are not whole numbers.
-    """
+    """Return numbers of rows as an array."""
     numbers = _as_whole_numbers(rows)
     if numbers is None:
         raise OptionError("rows", rows, "whole numbers")
@@ -79,13 +61,7 @@ def _as_whole_numbers(given: Any) -> AnyArray | None:
 
 
 def as_vertex_pairs(a: Any, b: Any, n_vertices: int) -> tuple[Int64Array, Int64Array]:
-    """Return the vertex numbers of pairs, of one shape.
-
-    Raises
-    ------
-    PointsError
-        If one of them is no vertex, or the shapes do not fit.
-    """
+    """Return the vertex numbers of pairs, of one shape."""
     first, second = as_vertex_array(a, n_vertices), as_vertex_array(b, n_vertices)
     try:
         first_of, second_of = np.broadcast_arrays(first, second)

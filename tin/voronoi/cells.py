@@ -84,7 +84,7 @@ def cells_in_box(xy: Float64Array, growth: Growth, box: Bounds) -> Rings:
     plane = ExactPlane(xy, box)
     edges = _gather_half_edges(growth.triangles, growth.neighbors)
     order = _sort_around_vertices(edges, len(xy), len(growth.triangles))
-    centres, is_cut = _find_centres_and_cut_cells(xy, growth.triangles, edges, box, plane)
+    centres, is_cut = _find_centres_and_cut_cells(xy, growth.triangles, edges, plane, box=box)
     cut = _cut_cells(plane, edges, order, is_cut)
     inner = order[~is_cut[edges.start[order]]]
     counts = np.bincount(edges.start[inner], minlength=len(xy))
@@ -93,7 +93,12 @@ def cells_in_box(xy: Float64Array, growth: Growth, box: Bounds) -> Rings:
     coords = np.empty((len(is_of_cut), 2))
     coords[is_of_cut] = cut.coords
     coords[~is_of_cut] = centres[edges.left[inner]]
-    return _keep_with_area(_drop_repeats(coords, np.repeat(np.arange(len(xy)), counts), len(xy)))
+    cell = np.repeat(np.arange(len(xy)), counts)
+    differs = (coords != coords[_find_following(find_offsets(counts))]).any(axis=1)
+    counts = np.bincount(cell[differs], minlength=len(xy))
+    # cells of fewer than three corners, of the width of a rounding, are empty
+    left = np.where(counts >= 3, counts, 0)
+    return Rings(coords[differs][np.repeat(left > 0, counts)], find_offsets(left))
 
 
 def measure_signed_areas(rings: Rings) -> Float64Array:
@@ -167,17 +172,21 @@ _ROUNDING = 16 * np.finfo(np.float64).eps
 
 
 def _find_centres_and_cut_cells(
-    xy: Float64Array,
-    triangles: Int32Array,
-    edges: _HalfEdges,
-    box: Bounds,
-    plane: ExactPlane,
+    xy: Float64Array, triangles: Int32Array, edges: _HalfEdges, plane: ExactPlane, *, box: Bounds
 ) -> tuple[Float64Array, BoolArray]:
     """Return the circumcentres of all triangles, and which vertices' cells the box may cut.
 
     Corners of cells that are cut are exact; so must be those that other cells share with them.
     """
-    first = _group_circles(xy, triangles, edges)
+    # for each triangle the first one of those on the same circle, exactly
+    inner = np.arange(triangles.size)
+    once = inner[edges.twin[: triangles.size] > inner]
+    once = once[edges.left[edges.twin[once]] != _OUTSIDE]
+    twin = edges.twin[once]
+    opposite = triangles.ravel()[twin]
+    a, b, c = (xy[triangles[once // 3, k]] for k in range(3))
+    tied = _kernel.in_circle(a, b, c, xy[opposite]) == 0
+    first = _find_first_of_group(once[tied] // 3, twin[tied] // 3, len(triangles))
     found = _find_circles(xy, triangles, box)
     centres = _Centres(found.points[first], found.where[first])
     is_exact = centres.where == _DOUBTFUL
@@ -242,18 +251,6 @@ def _find_circles(xy: Float64Array, triangles: Int32Array, box: Bounds) -> _Cent
     return _Centres(np.stack([x, y], axis=1), where)
 
 
-def _group_circles(xy: Float64Array, triangles: Int32Array, edges: _HalfEdges) -> Int64Array:
-    """Return for each triangle the first one of those on the same circle, exactly."""
-    inner = np.arange(triangles.size)
-    once = inner[edges.twin[: triangles.size] > inner]
-    once = once[edges.left[edges.twin[once]] != _OUTSIDE]
-    twin = edges.twin[once]
-    opposite = triangles.ravel()[twin]
-    a, b, c = (xy[triangles[once // 3, k]] for k in range(3))
-    tied = _kernel.in_circle(a, b, c, xy[opposite]) == 0
-    return _find_first_of_group(once[tied] // 3, twin[tied] // 3, len(triangles))
-
-
 def _find_first_of_group(one: Int64Array, other: Int64Array, count: int) -> Int64Array:
     """Join pairs to groups, and return for each member the smallest of its group."""
     first = np.arange(count)
@@ -291,47 +288,23 @@ def _cut_cells(
     for vertex, begin, end in zip(
         np.flatnonzero(is_cut).tolist(), [0, *ends[:-1]], ends, strict=True
     ):
-        ring = _drop_spikes(plane.cell(vertex, neighbors[begin:end]))
-        coords += ring
-        counts.append(len(ring))
+        # drop corners that rounding made equal, and those to which a ring goes out and back again
+        kept: list[tuple[float, float]] = []
+        for corner in plane.cell(vertex, neighbors[begin:end]):
+            if len(kept) >= 2 and kept[-2] == corner:
+                kept.pop()
+            elif not kept or kept[-1] != corner:
+                kept.append(corner)
+        while len(kept) >= 2 and (
+            kept[0] == kept[-1] or kept[1] == kept[-1] or kept[0] == kept[-2]
+        ):
+            if kept[1] == kept[-1] and kept[0] != kept[-1]:
+                kept.pop(0)
+            else:
+                kept.pop()
+        coords += kept
+        counts.append(len(kept))
     return _CutCells(np.array(coords, np.float64).reshape(-1, 2), counts)
-
-
-def _drop_spikes(ring: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Drop corners that rounding made equal, and those to which a ring goes out and back again."""
-    kept: list[tuple[float, float]] = []
-    for corner in ring:
-        _add_corner(kept, corner)
-    while len(kept) >= 2 and (kept[0] == kept[-1] or kept[1] == kept[-1] or kept[0] == kept[-2]):
-        if kept[1] == kept[-1] and kept[0] != kept[-1]:
-            kept.pop(0)
-        else:
-            kept.pop()
-    return kept
-
-
-def _add_corner(ring: list[tuple[float, float]], corner: tuple[float, float]) -> None:
-    if len(ring) >= 2 and ring[-2] == corner:
-        ring.pop()
-    elif not ring or ring[-1] != corner:
-        ring.append(corner)
-
-
-def _drop_repeats(coords: Float64Array, cell: Int64Array, n_cells: int) -> Rings:
-    """Drop corners that equal the one after them."""
-    differs = (coords != coords[_find_following(_find_cell_offsets(cell, n_cells))]).any(axis=1)
-    return Rings(coords[differs], _find_cell_offsets(cell[differs], n_cells))
-
-
-def _keep_with_area(rings: Rings) -> Rings:
-    """Empty the rings of fewer than three corners: cells of the width of a rounding."""
-    counts = np.diff(rings.offsets)
-    left = np.where(counts >= 3, counts, 0)
-    return Rings(rings.coords[np.repeat(left > 0, counts)], find_offsets(left))
-
-
-def _find_cell_offsets(cell: Int64Array, n_cells: int) -> Int64Array:
-    return find_offsets(np.bincount(cell, minlength=n_cells))
 
 
 def _find_following(offsets: Int64Array) -> Int64Array:

@@ -144,10 +144,29 @@ def divide_plane(
         raise OptionError("pad", pad, "None where a boundary is given: only bounds are padded")
     extent = Bounds.of(points)
     if boundary is None:
-        box = _pad(extent, pad)
+        if pad is None:
+            pad = _PAD_SHARE * max(extent.width, extent.height)
+        else:
+            require_distance("pad", pad)
+        box = Bounds(extent.xmin - pad, extent.ymin - pad, extent.xmax + pad, extent.ymax + pad)
         return _make_diagram(_grow_cells(points, box), _list_corners(box))
-    ring = _as_boundary(boundary)
-    box = _join(extent, Bounds.of(ring))
+    shapely = optional.load("shapely")
+    given = _list_corners(boundary) if isinstance(boundary, Bounds) else boundary
+    ring = as_ring(given, "the boundary")[:, :2].copy()
+    region = shapely.Polygon(ring)
+    if not shapely.is_valid(region):
+        raise LinesError(
+            f"The boundary is no simple ring ({shapely.is_valid_reason(region)}): "
+            "it must have an area and must not touch or cross itself."
+        )
+    ring = ring if region.exterior.is_ccw else ring[::-1].copy()
+    other = Bounds.of(ring)
+    box = Bounds(
+        min(extent.xmin, other.xmin),
+        min(extent.ymin, other.ymin),
+        max(extent.xmax, other.xmax),
+        max(extent.ymax, other.ymax),
+    )
     cells = _grow_cells(points, box)
     if isinstance(boundary, Bounds) and box == boundary:
         return _make_diagram(cells, ring)
@@ -181,23 +200,6 @@ def _grow_cells(points: Float64Array, box: Bounds) -> Rings:
 # ---------------------------------------------------------------- the boundary
 
 
-def _pad(extent: Bounds, pad: float | None) -> Bounds:
-    if pad is None:
-        pad = _PAD_SHARE * max(extent.width, extent.height)
-    else:
-        require_distance("pad", pad)
-    return Bounds(extent.xmin - pad, extent.ymin - pad, extent.xmax + pad, extent.ymax + pad)
-
-
-def _join(one: Bounds, other: Bounds) -> Bounds:
-    return Bounds(
-        min(one.xmin, other.xmin),
-        min(one.ymin, other.ymin),
-        max(one.xmax, other.xmax),
-        max(one.ymax, other.ymax),
-    )
-
-
 def _list_corners(box: Bounds) -> Float64Array:
     """Return the corners of a box, counter-clockwise."""
     return np.array(
@@ -208,20 +210,6 @@ def _list_corners(box: Bounds) -> Float64Array:
             [box.xmin, box.ymax],
         ]
     )
-
-
-def _as_boundary(boundary: Bounds | ArrayLike) -> Float64Array:
-    """Return the ring of a boundary, counter-clockwise."""
-    shapely = optional.load("shapely")
-    given = _list_corners(boundary) if isinstance(boundary, Bounds) else boundary
-    ring = as_ring(given, "the boundary")[:, :2].copy()
-    region = shapely.Polygon(ring)
-    if not shapely.is_valid(region):
-        raise LinesError(
-            f"The boundary is no simple ring ({shapely.is_valid_reason(region)}): "
-            "it must have an area and must not touch or cross itself."
-        )
-    return ring if region.exterior.is_ccw else ring[::-1].copy()
 
 
 def _clip(cells: Rings, ring: Float64Array) -> Voronoi:
