@@ -220,7 +220,16 @@ def _describe_slivers(tin: TIN, surface: Triangulation, stays: BoolArray) -> lis
     some = slice(None, None, max(1, len(stays) // _SAMPLE))
     usual = np.percentile(_compute_gradients(surface, some), 90)
     slivers = outer[_compute_gradients(surface, outer) > _STEEPER * usual]
-    slivers = slivers[_measure_rises(surface, slivers) > _HIGHER * _measure_relief(surface, some)]
+    # how far some triangles rise, or fall, from their longest edges to the third corner
+    apex = _square_lengths(surface, slivers).argmax(axis=1)
+    corners = surface.points[surface.triangles[slivers]]
+    a, b, c = (corners[np.arange(len(slivers)), (apex + k) % 3] for k in range(3))
+    along = (c - b)[:, :2]
+    share = ((a - b)[:, :2] * along).sum(axis=1) / (along**2).sum(axis=1)
+    rises: Float64Array = np.abs(a[:, 2] - b[:, 2] - share * (c - b)[:, 2])
+    # what half of some triangles do not rise by
+    z = surface.points[surface.triangles[some], 2]
+    slivers = slivers[rises > _HIGHER * float(np.median(np.ptp(z, axis=1)))]
     degrees = _measure_slopes(tin, slivers)
     slivers, degrees = slivers[degrees > _STEEP], degrees[degrees > _STEEP]
     area = float((_measure_areas(surface, slivers) / np.cos(np.radians(degrees))).sum())
@@ -231,23 +240,6 @@ def _describe_slivers(tin: TIN, surface: Triangulation, stays: BoolArray) -> lis
         f"{_count_triangles(len(slivers))} along the hull as steep as {degrees.max():.1f} "
         f"degrees, where the ground is not: a `max_edge` below {shortest:.4g} trims them."
     ]
-
-
-def _measure_relief(surface: Triangulation, chosen: Any) -> float:
-    """Return what half of some triangles do not rise by."""
-    z = surface.points[surface.triangles[chosen], 2]
-    return float(np.median(np.ptp(z, axis=1)))
-
-
-def _measure_rises(surface: Triangulation, chosen: Int64Array) -> Float64Array:
-    """Return how far some triangles rise, or fall, from their longest edges to the third corner."""
-    apex = _square_lengths(surface, chosen).argmax(axis=1)
-    corners = surface.points[surface.triangles[chosen]]
-    a, b, c = (corners[np.arange(len(chosen)), (apex + k) % 3] for k in range(3))
-    along = (c - b)[:, :2]
-    share = ((a - b)[:, :2] * along).sum(axis=1) / (along**2).sum(axis=1)
-    rises: Float64Array = np.abs(a[:, 2] - b[:, 2] - share * (c - b)[:, 2])
-    return rises
 
 
 def _compute_gradients(surface: Triangulation, chosen: Any) -> Float64Array:

@@ -99,7 +99,19 @@ def find_heights(
     while search.correct_most_striking():
         left *= 0.5
         done(1.0 - (1.0 - _STARTED) * left)
-    found = _measure_without(search, without)
+    # what was found, measured against the surface without any of it
+    known, limits = search.known, search.limits
+    none = np.empty(0, np.int32)
+    vertices = np.sort(np.concatenate([none, *search.found])).astype(np.int32)
+    z = known.surface.points[:, 2]
+    residuals = z[vertices] - known.xyz[vertices, 2]
+    free = ~known.on_line[vertices]
+    if without is not None and 0 < free.sum() <= _MOST_REMOVED:
+        exact = z[vertices[free]] - without(vertices[free])
+        residuals[free] = np.where(np.isnan(exact), residuals[free], exact)
+    stays = np.abs(residuals) > limits[vertices]
+    vertices = vertices[stays]
+    found = Heights(vertices, residuals[stays], search.scales[vertices], limits[vertices])
     return Judgement(found, float(np.nanmedian(search.scales)))
 
 
@@ -150,7 +162,11 @@ class _Search:
             return False
         around = _Reach.of(self.known, striking)
         rank = np.zeros(len(self.residuals))
-        rank[striking] = 1 + _rank(np.abs(self.residuals[striking]))
+        # the rank of each value, equal ones in their order
+        values = np.abs(self.residuals[striking])
+        ranks = np.empty(len(values), np.int64)
+        ranks[np.argsort(values, kind="stable")] = np.arange(len(values))
+        rank[striking] = 1 + ranks
         is_first = np.ones(len(striking), np.bool_)
         outdone = rank[around.vertices] > rank[striking][around.owners]
         is_first[around.owners[outdone]] = False
@@ -166,7 +182,11 @@ class _Search:
         reach = _Reach.of(known, chosen)
         is_wrong = np.abs(residuals) > _APART * reach.measure_most(known)
         offsets, near = known.list_neighbors(chosen)
-        beyond = self._measure_beyond(offsets, near, chosen, own)
+        # how far neighbours lie off the plane through them, on the side of the vertex
+        xyz, owners = self.known.xyz, find_owners(offsets)
+        planes = fit_planes(xyz, chosen, offsets, near)
+        left = measure_offsets(xyz, chosen, planes, owners, near)
+        beyond = np.nan_to_num(np.where((own > planes[:, 0])[owners], left, -left))
         is_wrong &= np.abs(residuals) > _APART * _find_second(offsets, beyond)
         known.xyz[chosen[~is_wrong], 2] = own[~is_wrong]
         self.residuals[chosen] = np.nan
@@ -174,19 +194,6 @@ class _Search:
         again = np.unique(reach.vertices)
         again = again[~np.isnan(self.residuals[again])]
         self.residuals[again] = known.measure(again)
-
-    def _measure_beyond(
-        self,
-        offsets: Int64Array,
-        near: Int32Array,
-        chosen: Int32Array,
-        own: Float64Array,
-    ) -> Float64Array:
-        """Return how far neighbours lie off the plane through them, on the side of the vertex."""
-        xyz, owners = self.known.xyz, find_owners(offsets)
-        planes = fit_planes(xyz, chosen, offsets, near)
-        left = measure_offsets(xyz, chosen, planes, owners, near)
-        return np.nan_to_num(np.where((own > planes[:, 0])[owners], left, -left))
 
 
 class _Reach(NamedTuple):
@@ -210,7 +217,10 @@ class _Reach(NamedTuple):
         So a second blunder beside the first hides neither.
         """
         left = self._measure(known)
-        helpers = self.vertices[_find_largest(self.size, self.owners, np.abs(left))]
+        # where the largest value of each part stands, of the parts that have one
+        order = np.lexsort((np.abs(left), self.owners))
+        last = np.cumsum(np.bincount(self.owners, minlength=self.size)) - 1
+        helpers = self.vertices[order[np.unique(last[last >= 0])]]
         helpers = np.unique(helpers)
         own = known.xyz[helpers, 2].copy()
         known.xyz[helpers, 2] -= np.nan_to_num(known.measure(helpers))
@@ -227,20 +237,6 @@ class _Reach(NamedTuple):
         return left
 
 
-def _find_largest(count: int, owners: Int64Array, values: Float64Array) -> Int64Array:
-    """Return where the largest value of each part stands, of the parts that have one."""
-    order = np.lexsort((values, owners))
-    last = np.cumsum(np.bincount(owners, minlength=count)) - 1
-    return order[np.unique(last[last >= 0])]
-
-
-def _rank(values: Float64Array) -> Int64Array:
-    """Return the rank of each value, equal ones in their order."""
-    ranks = np.empty(len(values), np.int64)
-    ranks[np.argsort(values, kind="stable")] = np.arange(len(values))
-    return ranks
-
-
 def _find_care(known: Residuals, vertices: Int32Array) -> Int32Array:
     """Return those of some vertices that are on lines or on the boundary."""
     surface = known.surface
@@ -254,21 +250,3 @@ def _find_second(offsets: Int64Array, values: Float64Array) -> Float64Array:
     order = np.lexsort((-values, owner))
     second = np.append(values[order], 0.0)[np.minimum(offsets[:-1] + 1, len(values))]
     return np.where(np.diff(offsets) > 1, second, 0.0)
-
-
-def _measure_without(
-    search: _Search, without: Callable[[Int32Array], Float64Array] | None
-) -> Heights:
-    """Return what was found, measured against the surface without any of it."""
-    known, limits = search.known, search.limits
-    none = np.empty(0, np.int32)
-    vertices = np.sort(np.concatenate([none, *search.found])).astype(np.int32)
-    z = known.surface.points[:, 2]
-    residuals = z[vertices] - known.xyz[vertices, 2]
-    free = ~known.on_line[vertices]
-    if without is not None and 0 < free.sum() <= _MOST_REMOVED:
-        exact = z[vertices[free]] - without(vertices[free])
-        residuals[free] = np.where(np.isnan(exact), residuals[free], exact)
-    stays = np.abs(residuals) > limits[vertices]
-    vertices = vertices[stays]
-    return Heights(vertices, residuals[stays], search.scales[vertices], limits[vertices])

@@ -44,13 +44,7 @@ _SOME = 1_000
 
 
 def parse_nodata(nodata: float | Sequence[float] | None) -> Float64Array:
-    """Return the elevations that a caller names as no data, (k,) array.
-
-    Raises
-    ------
-    OptionError
-        If they are no numbers.
-    """
+    """Return the elevations that a caller names as no data, (k,) array."""
     try:
         return np.atleast_1d(np.asarray([] if nodata is None else nodata, np.float64)).ravel()
     except (TypeError, ValueError, OverflowError) as error:
@@ -86,7 +80,9 @@ def find_suspect_elevations(z: Float64Array) -> list[SuspectElevation]:
     rest = z
     ground = _leave_out_marks(z) if len(z) else z
     while len(found) < _MOST and len(rest):
-        ends = _find_extremes(rest)
+        # lowest and highest value, the one of larger size first
+        low, high = float(rest.min()), float(rest.max())
+        ends = (high, low) if abs(high) > abs(low) else (low, high)
         suspect = next(filter(None, (_find_suspect(rest, ground, end) for end in ends)), None)
         if suspect is None:
             break
@@ -120,12 +116,6 @@ def is_customary(value: float) -> bool:
     (True, False)
     """
     return value in _CUSTOMARY_SET
-
-
-def _find_extremes(z: Float64Array) -> tuple[float, float]:
-    """Return lowest and highest value, the one of larger size first."""
-    low, high = float(z.min()), float(z.max())
-    return (high, low) if abs(high) > abs(low) else (low, high)
 
 
 def _find_suspect(z: Float64Array, ground: Float64Array, value: float) -> SuspectElevation | None:

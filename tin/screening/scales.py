@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ...base.arrays import Float64Array, Int64Array
+    from ...base.arrays import Float64Array
 
 __all__ = ["NORMAL", "find_rounding", "measure_scales"]
 
@@ -52,22 +52,18 @@ def measure_scales(
         return np.full(len(sizes), least)
     scales = np.full(len(sizes), max(least, _LEAST_SHARE * NORMAL * float(np.nanmedian(sizes))))
     for axis in (0, 1):
-        order = _order_in_strips(xy, axis)
+        # points in strips along an axis, forth and back, so that 64 of them lie together
+        count = len(xy)
+        strips = max(1, round(float(np.sqrt(count / _BLOCK))))
+        strip = np.empty(count, np.int64)
+        strip[np.argsort(xy[:, 1 - axis])] = np.arange(count) * strips // max(count, 1)
+        along = np.where(strip % 2 == 0, xy[:, axis], -xy[:, axis])
+        order = np.lexsort((along, strip))
         with np.errstate(invalid="ignore", divide="ignore"):
             wider = np.sqrt(moments[order] / _find_medians(moments[order]))
         own = NORMAL * _find_medians(sizes[order]) * np.fmax(wider, 1.0)
         scales[order] = np.fmax(scales[order], own)
     return scales
-
-
-def _order_in_strips(xy: Float64Array, axis: int) -> Int64Array:
-    """Return points in strips along an axis, forth and back, so that 64 of them lie together."""
-    count = len(xy)
-    strips = max(1, round(float(np.sqrt(count / _BLOCK))))
-    strip = np.empty(count, np.int64)
-    strip[np.argsort(xy[:, 1 - axis])] = np.arange(count) * strips // max(count, 1)
-    along = np.where(strip % 2 == 0, xy[:, axis], -xy[:, axis])
-    return np.lexsort((along, strip))
 
 
 def _find_medians(values: Float64Array) -> Float64Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -23,7 +24,7 @@ from .voids import find_voids
 from .wrong_lines import find_wrong_lines, fit_ground, mark_rings, name_lines_at
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from ...base.arrays import BoolArray, Float64Array, Int32Array
     from ...base.progress import Tell
@@ -74,18 +75,21 @@ def inspect_points(tin: TIN, progress: Tell | None = None) -> Screening:
         done(0.2)
         rest = _take_out(tin, misplaced)
         ground = _find_ground(rest, Rows.of(rest), ())
-
-        def interpolate_without(vertices: Int32Array) -> Float64Array:
-            return _interpolate_without(rest, vertices, ground.wrong)
-
-        without = interpolate_without if ground.is_whole else None
-        heights, scale = _inspect_heights(rest, ground, without, done.stage(0.2, 0.9))
+        without = partial(_interpolate_without, rest, others=ground.wrong)
+        every = np.arange(len(ground.surface.points), dtype=np.int32)
+        heights = find_heights(
+            ground.surface,
+            every,
+            ground.wrong,
+            without=without if ground.is_whole else None,
+            progress=done.stage(0.2, 0.9),
+        )
+        suspects = [*misplaced, *ground.suspects, *_judge_vertices(rest, ground, heights.found)]
         done(0.9)
-        suspects = [*misplaced, *ground.suspects, *heights]
         repeated, more = find_repeated_numbers(tin, rows)
         suspects += repeated
-        suspects += find_repeated_places(tin, rows, scale)
-        suspects += find_crossings(tin, scale, STRICT * scale)
+        suspects += find_repeated_places(tin, rows, heights.scale)
+        suspects += find_crossings(tin, heights.scale, STRICT * heights.scale)
     return _order(suspects, [*notes, *more])
 
 
@@ -214,18 +218,6 @@ def _tell_line(tin: TIN, line: WrongLine) -> Suspect:
 
 
 # ---------------------------------------------------------------- elevations
-
-
-def _inspect_heights(
-    tin: TIN,
-    ground: _Ground,
-    without: Callable[[Int32Array], Float64Array] | None,
-    progress: Tell | None,
-) -> tuple[list[Suspect], float]:
-    """Return the rows that are too high or too low, and the usual scale of residuals."""
-    every = np.arange(len(ground.surface.points), dtype=np.int32)
-    heights = find_heights(ground.surface, every, ground.wrong, without=without, progress=progress)
-    return _judge_vertices(tin, ground, heights.found), heights.scale
 
 
 def _screen_heights(tin: TIN, ground: _Ground) -> list[Suspect]:

@@ -70,7 +70,10 @@ def _find_plateaus(surface: Triangulation, is_in: BoolArray, value: float) -> It
     outside = np.flatnonzero(~touches)
     if len(outside) == 0 or not is_inside.any():
         return
-    cliff = _CLIFF * _measure_relief(surface, outside)
+    # the difference of elevations within a steep one of some triangles
+    some = outside[:: max(1, len(outside) // _SAMPLE)]
+    z = surface.points[surface.triangles[some], 2]
+    cliff = _CLIFF * float(np.percentile(np.ptp(z, axis=1), _STEEP))
     of_vertex = _number_plateaus(surface, is_inside)
     around = surface.triangles[touches & ~is_inside]
     owners, rises = _list_rises(around, of_vertex, surface.points[:, 2] - value)
@@ -110,10 +113,3 @@ def _measure_cliff(rises: Float64Array) -> float:
     """Return how far almost all of some rises, ascending, are at least; 0 on both sides."""
     few = int(_OPEN / 100.0 * len(rises))
     return max(float(rises[few]), -float(rises[len(rises) - 1 - few]))
-
-
-def _measure_relief(surface: Triangulation, chosen: Int64Array) -> float:
-    """Return the difference of elevations within a steep one of some triangles."""
-    some = chosen[:: max(1, len(chosen) // _SAMPLE)]
-    z = surface.points[surface.triangles[some], 2]
-    return float(np.percentile(np.ptp(z, axis=1), _STEEP))

@@ -125,7 +125,19 @@ def find_wrong_lines(
     chosen = _choose_own(owners, vertices, has_row, known)
     owners, vertices = owners[chosen], vertices[chosen]
     counts = np.bincount(owners)
-    judged = _judge(surface, owners, vertices.astype(np.int32), is_point, known)
+    # the vertices of lines that points are near enough to judge, line by line
+    every = max(1, len(vertices) // _MOST_JUDGED)
+    is_judged = np.arange(len(vertices)) % every == 0
+    if every > 1:
+        is_judged |= np.isin(surface.points[vertices, 2], CUSTOMARY)
+    owners, vertices = owners[is_judged], vertices[is_judged].astype(np.int32)
+    level, limits, distances = fit_ground(surface, vertices, is_point)
+    at_point = np.flatnonzero(np.isin(vertices, np.fromiter(known, np.int64, len(known))))
+    for i in at_point.tolist():
+        level[i], limits[i], distances[i] = known[int(vertices[i])], 0.0, 0.0
+    limits += _ROUNDED * find_rounding(surface.points[:, 2])
+    judged = _Judged(owners, vertices, surface.points[vertices, 2], level, limits, distances)
+    judged = judged.choose(np.isfinite(level) & np.isfinite(limits))
     ground = surface.points[is_point, 2]
     span = (float(ground.min()), float(ground.max()))
     chains = np.unique(line_of, return_index=True)[1]
@@ -191,30 +203,6 @@ def name_lines_at(lines: Lines, vertices: Int32Array) -> list[str]:
 
 
 # ---------------------------------------------------------------- what the points give
-
-
-def _judge(
-    surface: Triangulation,
-    owners: Int64Array,
-    vertices: Int32Array,
-    is_point: BoolArray,
-    known: Mapping[int, float],
-) -> _Judged:
-    """Return the vertices of lines that points are near enough to judge, line by line."""
-    every = max(1, len(vertices) // _MOST_JUDGED)
-    z = surface.points[vertices, 2]
-    chosen = np.zeros(len(vertices), np.bool_)
-    chosen[::every] = True
-    if every > 1:
-        chosen |= np.isin(z, CUSTOMARY)
-    owners, vertices, z = owners[chosen], vertices[chosen], z[chosen]
-    ground, limits, distances = fit_ground(surface, vertices, is_point)
-    at_point = np.flatnonzero(np.isin(vertices, np.fromiter(known, np.int64, len(known))))
-    for i in at_point.tolist():
-        ground[i], limits[i], distances[i] = known[int(vertices[i])], 0.0, 0.0
-    limits += _ROUNDED * find_rounding(surface.points[:, 2])
-    judged = _Judged(owners, vertices, z, ground, limits, distances)
-    return judged.choose(np.isfinite(ground) & np.isfinite(limits))
 
 
 def fit_ground(
