@@ -141,7 +141,17 @@ def check_connections(tin: TIN, found: Findings) -> bool:
         "{count} [triangle uses|triangles use] a vertex twice "
         "(first: [triangle|triangles] {first}).",
     )
-    lonely, unequal = _find_one_sided(tin)
+    # find triangles with a neighbour that is not one in return, and with flags that differ
+    count = len(tin.triangles)
+    lonely, unequal = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
+    for block in blocks(count):
+        own = np.arange(block.start, block.stop, dtype=np.int32)  # as neighbors: nothing is cast
+        for corner in range(3):
+            across = tin.neighbors[block, corner]
+            is_met, is_flagged = _look_back(tin, own, across, corner)
+            is_inner = across != topology.NO_NEIGHBOR
+            lonely[block] |= is_inner & ~is_met
+            unequal[block] |= is_inner & is_met & (is_flagged != tin.constrained[block, corner])
     found.report(
         "neighbors",
         np.flatnonzero(lonely),
@@ -158,30 +168,13 @@ def check_connections(tin: TIN, found: Findings) -> bool:
         "{count} [triangle has|triangles have] an edge that is constrained on one side only "
         "(first: [triangle|triangles] {first}).",
     )
-    is_used = np.zeros(len(tin.points), np.bool_)
-    is_used[tin.triangles] = True
     found.report(
         "unused",
-        np.flatnonzero(~is_used),
+        np.flatnonzero(~topology.mark_corners(tin.triangles, len(tin.points))),
         "{count} [vertex belongs|vertices belong] to no triangle "
         "(first: [vertex|vertices] {first}).",
     )
     return is_reliable
-
-
-def _find_one_sided(tin: TIN) -> tuple[BoolArray, BoolArray]:
-    """Find triangles with a neighbour that is not one in return, and with flags that differ."""
-    count = len(tin.triangles)
-    lonely, unequal = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
-    for block in blocks(count):
-        own = np.arange(block.start, block.stop, dtype=np.int32)  # as neighbors: nothing is cast
-        for corner in range(3):
-            across = tin.neighbors[block, corner]
-            is_met, is_flagged = _look_back(tin, own, across, corner)
-            is_inner = across != topology.NO_NEIGHBOR
-            lonely[block] |= is_inner & ~is_met
-            unequal[block] |= is_inner & is_met & (is_flagged != tin.constrained[block, corner])
-    return lonely, unequal
 
 
 def _look_back(

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...base.sentences import inflect
 from ..predicates import Columns, columns, is_last, orientation
-from ..topology import NO_NEIGHBOR
+from ..topology import NO_NEIGHBOR, mark_corners
 from .boundary_sweep import Boundary, find_fault
 from .shape import find_boundary
 
@@ -66,7 +66,22 @@ def describe_oddities(tin: TIN) -> list[str]:
     Beside overlaps that is all that :func:`check` at level 2 may find in a TIN made of existing
     triangles but a boundary that is concave or in several rings, as surfaces may have.
     """
-    return [*_describe_unused(tin), *_describe_one_sided(tin)]
+    told = []
+    is_used = mark_corners(tin.triangles, len(tin.points))
+    n_unused = len(is_used) - int(np.count_nonzero(is_used))
+    if n_unused:
+        sentence = (
+            f"[vertex belongs|vertices belong] to no triangle (first: vertex {np.argmin(is_used)})."
+        )
+        told.append(f"{n_unused:,} {inflect(sentence, n_unused)}")
+    triangle, corner = np.nonzero(tin.constrained & (tin.neighbors != NO_NEIGHBOR))
+    across = tin.neighbors[triangle, corner]
+    back = np.argmax(tin.neighbors[across] == triangle[:, None], axis=1)
+    count = int(np.count_nonzero(~tin.constrained[across, back]))
+    if count:
+        edges = inflect("[edge is|edges are] constrained on one side only.", count)
+        told.append(f"{count:,} {edges}")
+    return told
 
 
 def _is_convex(xy: Columns, boundary: Boundary) -> bool:
@@ -81,27 +96,3 @@ def _is_convex(xy: Columns, boundary: Boundary) -> bool:
         xy, boundary.end, boundary.end[following]
     )
     return bool((turns >= 0).all() and np.count_nonzero(is_extreme) == 1)
-
-
-def _describe_unused(tin: TIN) -> list[str]:
-    is_used = np.zeros(len(tin.points), np.bool_)
-    is_used[tin.triangles] = True
-    count = len(is_used) - int(np.count_nonzero(is_used))
-    if count == 0:
-        return []
-    sentence = (
-        f"[vertex belongs|vertices belong] to no triangle (first: vertex {np.argmin(is_used)})."
-    )
-    return [f"{count:,} {inflect(sentence, count)}"]
-
-
-def _describe_one_sided(tin: TIN) -> list[str]:
-    triangle, corner = np.nonzero(tin.constrained)
-    across = tin.neighbors[triangle, corner]
-    inner = across != NO_NEIGHBOR
-    triangle, across = triangle[inner], across[inner]
-    back = np.argmax(tin.neighbors[across] == triangle[:, None], axis=1)
-    count = int(np.count_nonzero(~tin.constrained[across, back]))
-    if count == 0:
-        return []
-    return [f"{count:,} {inflect('[edge is|edges are] constrained on one side only.', count)}"]

@@ -11,7 +11,7 @@ from ..predicates import Columns, columns, is_last, orientation
 from .boundary_sweep import Boundary, find_fault
 
 if TYPE_CHECKING:
-    from ...base.arrays import BoolArray, Float64Array, Int32Array
+    from ...base.arrays import Float64Array, Int32Array
     from ..surface import TIN
     from .findings import Findings
 
@@ -65,8 +65,16 @@ def _check_boundary(
     here = np.concatenate(rings)
     before = np.concatenate([np.roll(ring, 1) for ring in rings])
     after = np.concatenate([np.roll(ring, -1) for ring in rings])
-    is_constrained = _get_boundary_flags(tin, here, after)
-    came_constrained = _get_boundary_flags(tin, before, here)
+    triangle, corner = np.nonzero(tin.neighbors == topology.NO_NEIGHBOR)
+    start, end = topology.ends(tin.triangles, triangle, corner)
+    n = len(tin.points)
+    keys = start * n + end
+    order = np.argsort(keys)
+    slots = [
+        order[np.searchsorted(keys, a.astype(np.int64) * n + b, sorter=order)]
+        for a, b in ((here, after), (before, here))
+    ]
+    is_constrained, came_constrained = (tin.constrained[triangle[at], corner[at]] for at in slots)
     is_reflex = orientation(xy, before, here, after) < 0
     is_allowed = is_constrained & came_constrained
     found.report(
@@ -92,18 +100,6 @@ def find_boundary(tin: TIN) -> Boundary:
     triangle, corner = np.nonzero(tin.neighbors == topology.NO_NEIGHBOR)
     start, end = topology.ends(tin.triangles, triangle, corner)
     return Boundary(tin.points, start, end)
-
-
-def _get_boundary_flags(tin: TIN, start: Int32Array, end: Int32Array) -> BoolArray:
-    """Return whether the boundary edges from ``start`` to ``end`` are constrained."""
-    triangle, corner = np.nonzero(tin.neighbors == topology.NO_NEIGHBOR)
-    boundary_start, boundary_end = topology.ends(tin.triangles, triangle, corner)
-    keys = boundary_start * len(tin.points) + boundary_end
-    order = np.argsort(keys)
-    wanted = start.astype(np.int64) * len(tin.points) + end
-    slot = order[np.searchsorted(keys, wanted, sorter=order)]
-    flags: BoolArray = tin.constrained[triangle[slot], corner[slot]]
-    return flags
 
 
 def _check_euler(rings: list[Int32Array], is_free: bool, found: Findings) -> None:

@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Editable"]
 
+_ONE = np.zeros(1, np.int32)
+
 _PLACES = {"points": "Points", "point": "Points", "coords": "Vertices of the breakline"}
 """Arguments of edits that are coordinates, and what errors call them."""
 
@@ -185,9 +187,11 @@ class Editable:
         if lent is not None:
             vertex = lent.insert_one(points, duplicates)
             if vertex >= 0:
-                return np.array([vertex], np.int32)
-        made: Int32Array = self._edit("insert", points=points, duplicates=duplicates)
-        return made
+                made = _ONE.copy()  # half the time of making an array of a list
+                made[0] = vertex
+                return made
+        vertices: Int32Array = self._edit("insert", points=points, duplicates=duplicates)
+        return vertices
 
     def remove(self, vertices: ArrayLike) -> None:
         """Remove vertices, in place; those behind them move up, as in ``numpy.delete``.

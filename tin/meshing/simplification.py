@@ -230,8 +230,7 @@ def are_straight(ring: Float64Array) -> BoolArray:
 def _find_rows(tin: TIN, skeleton: _Part, goal: Goal) -> tuple[Int64Array, int]:
     """Return the vertices that the core leaves, and how many it removed again."""
     surface = skeleton.surface
-    is_used = np.zeros(len(tin.points), np.bool_)
-    is_used[tin.triangles] = True
+    is_used = topology.mark_corners(tin.triangles, len(tin.points))
     is_used[skeleton.rows] = True
     used = np.flatnonzero(is_used)
     tolerance, most = goal.limits(find_rounding(tin.points[:, 2]))
@@ -303,9 +302,7 @@ class _Part:
     def measure(self, limit: float) -> Errors:
         """Measure all vertices of the TIN that its triangles use."""
         tin = self.tin
-        is_used = np.zeros(len(tin.points), np.bool_)
-        is_used[tin.triangles] = True
-        used = np.flatnonzero(is_used)
+        used = np.flatnonzero(topology.mark_corners(tin.triangles, len(tin.points)))
         error = np.abs(self._make().interpolate(tin.points[used, :2]) - tin.points[used, 2])
         is_far = ~(error <= limit)
         near = error[~is_far] if is_far.any() else error

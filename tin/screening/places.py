@@ -84,9 +84,13 @@ def find_places(rows: Rows, crs: CRS | None) -> tuple[list[Suspect], list[str]]:
         told = _explain(rows, i, box)
         if told is not None:
             found[i] = rows.suspect(i, *told, "high")
-        elif i not in found and not _is_in_company(rows, i, far, box):
-            distance = box.measure_distances(rows.xyz[i : i + 1, :2])[0]
-            found[i] = _tell_isolated(rows, i, float(distance))
+            continue
+        apart = np.hypot(*(rows.xyz[far, :2] - rows.xyz[i, :2]).T)
+        if i not in found and (apart < box.diagonal).sum() < _SITE:  # else a site of their own
+            distance = float(box.measure_distances(rows.xyz[i : i + 1, :2])[0])
+            sentence = f"It lies {distance:.3g} times the extent of the site away from it."
+            certainty = "high" if distance > _VERY_FAR else "medium"
+            found[i] = rows.suspect(i, "isolated", sentence, certainty)
     return list(found.values()), notes
 
 
@@ -119,14 +123,3 @@ def _explain(rows: Rows, i: int, box: _Box) -> tuple[str, str] | None:
             if box.measure_distances(np.array([place]))[0] < _NEAR:
                 return "factor", f"Its {name} {words} what would lie among the others."
     return None
-
-
-def _is_in_company(rows: Rows, i: int, far: Int64Array, box: _Box) -> bool:
-    """Whether some far points lie together, which are then a site of their own."""
-    apart = np.hypot(*(rows.xyz[far, :2] - rows.xyz[i, :2]).T)
-    return int((apart < box.diagonal).sum()) >= _SITE
-
-
-def _tell_isolated(rows: Rows, i: int, distance: float) -> Suspect:
-    sentence = f"It lies {distance:.3g} times the extent of the site away from it."
-    return rows.suspect(i, "isolated", sentence, "high" if distance > _VERY_FAR else "medium")

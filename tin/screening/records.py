@@ -10,7 +10,7 @@ from .naming import make_namer, write_number
 from .suspects import Suspect
 
 if TYPE_CHECKING:
-    from ...base.arrays import AnyArray, Int64Array
+    from ...base.arrays import Int64Array
     from ..surface import TIN
     from .suspects import Rows
 
@@ -27,7 +27,9 @@ def find_repeated_numbers(tin: TIN, rows: Rows) -> tuple[list[Suspect], list[str
     if numbers is None:
         return [], []
     given = rows.numbers[rows.numbers < len(numbers)]  # edits insert rows without one behind them
-    own = _as_names(numbers[given])
+    own = numbers[given]
+    if own.dtype.kind not in "iu":  # whole numbers stay as they are
+        own = np.array([write_number(value) for value in own.tolist()], str)
     named = np.flatnonzero(own != "") if own.dtype.kind == "U" else np.arange(len(own))
     if len(named) == 0:
         return [], []
@@ -45,13 +47,6 @@ def find_repeated_numbers(tin: TIN, rows: Rows) -> tuple[list[Suspect], list[str
         for text, same in groups.items()
         for i in same
     ], []
-
-
-def _as_names(numbers: AnyArray) -> AnyArray:
-    """Return whole numbers as they are, others as texts."""
-    if numbers.dtype.kind in "iu":
-        return numbers
-    return np.array([write_number(value) for value in numbers.tolist()], str)
 
 
 def _name_others(tin: TIN, text: str, same: Int64Array, own: int) -> str:

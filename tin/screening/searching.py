@@ -104,7 +104,15 @@ def screen_points(tin: TIN) -> Screening:
         rows = Rows.of(tin)
         misplaced, notes = find_places(rows, tin.crs)
         ground = _find_ground(tin, rows, _find_vertices(rows, misplaced))
-        heights = _screen_heights(tin, ground)
+        surface, count = ground.surface, len(ground.surface.points)
+        is_small, heights = count <= _FEW, []
+        judged = np.arange(count, dtype=np.int32)
+        if not is_small:
+            judged = _kernel.find_peaks_and_pits(surface.points, surface.triangles)
+        if is_small or len(judged) <= _MOST_PEAKS * count:
+            sample = None if is_small else _SAMPLE
+            found = find_heights(surface, judged, ground.wrong, sample=sample).found
+            heights = _judge_vertices(tin, ground, found)
     return _order([*misplaced, *ground.suspects, *heights], notes)
 
 
@@ -218,22 +226,6 @@ def _tell_line(tin: TIN, line: WrongLine) -> Suspect:
 
 
 # ---------------------------------------------------------------- elevations
-
-
-def _screen_heights(tin: TIN, ground: _Ground) -> list[Suspect]:
-    """Return the rows that are too high or too low, of many points those that stand out most."""
-    surface = ground.surface
-    count = len(surface.points)
-    is_small = count <= _FEW
-    if is_small:
-        judged = np.arange(count, dtype=np.int32)
-    else:
-        judged = _kernel.find_peaks_and_pits(surface.points, surface.triangles)
-    if not is_small and len(judged) > _MOST_PEAKS * count:
-        return []
-    sample = None if is_small else _SAMPLE
-    heights = find_heights(surface, judged, ground.wrong, sample=sample)
-    return _judge_vertices(tin, ground, heights.found)
 
 
 def _find_vertices(rows: Rows, suspects: Sequence[Suspect]) -> Int32Array:

@@ -72,7 +72,11 @@ class Rows:
         vertex_of, report = tin.vertex_of, tin.report
         numbers = np.flatnonzero(vertex_of >= 0)
         xyz = tin.points[vertex_of[numbers]]
-        _restore_overruled(xyz, vertex_of[numbers], report)
+        # rows that a line overruled, whose vertex has its elevation, get back their own
+        overruled = list_overruled_points(report)
+        if overruled:
+            at = np.flatnonzero(np.isin(vertex_of[numbers], list(overruled)))
+            xyz[at, 2] = [overruled[vertex] for vertex in vertex_of[numbers[at]].tolist()]
         own = np.isin(report.merged_rows, numbers)
         at = np.searchsorted(numbers, report.merged_rows[own])
         xyz[at, 2] = report.merged_elevations[own]
@@ -85,14 +89,6 @@ class Rows:
 
     def __len__(self) -> int:
         return len(self.numbers)
-
-
-def _restore_overruled(xyz: Float64Array, vertices: Int32Array, report: Report) -> None:
-    """Give rows that a line overruled, whose vertex has its elevation, back their own."""
-    own = list_overruled_points(report)
-    if own:
-        at = np.flatnonzero(np.isin(vertices, list(own)))
-        xyz[at, 2] = [own[vertex] for vertex in vertices[at].tolist()]
 
 
 def list_overruled_points(report: Report) -> dict[int, float]:

@@ -50,18 +50,13 @@ def find_voids(surface: Triangulation) -> list[Void]:
     triangles.
     """
     found: list[Void] = []
-    for value in _list_values(surface.points[:, 2]):
-        is_in = surface.points[:, 2] == value
+    z = surface.points[:, 2]
+    lowest, highest = z.min(initial=np.inf), z.max(initial=-np.inf)
+    for value in (one for one in CUSTOMARY if lowest <= one <= highest):
+        is_in = z == value
         if _FEWEST <= is_in.sum() <= _MOST_SHARE * len(is_in):
             found += _find_plateaus(surface, is_in, value)
     return found
-
-
-def _list_values(z: Float64Array) -> list[float]:
-    if len(z) == 0:
-        return []
-    lowest, highest = z.min(), z.max()
-    return [value for value in CUSTOMARY if lowest <= value <= highest]
 
 
 def _find_plateaus(surface: Triangulation, is_in: BoolArray, value: float) -> Iterator[Void]:

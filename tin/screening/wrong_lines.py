@@ -148,7 +148,21 @@ def find_wrong_lines(
         kind, name = lines.kinds[chains[line]], _name(lines, int(chains[line]))
         told = _find_wrong(own, kind, span, metre)
         if told is not None:
-            found.append(_describe(own.choose(told.chosen), told, name, int(counts[line])))
+            wrong = own.choose(told.chosen)
+            found.append(
+                WrongLine(
+                    name=name,
+                    n_vertices=int(counts[line]),
+                    vertices=wrong.vertices,
+                    worst=int(wrong.vertices[np.argmax(np.abs(wrong.offsets))]),
+                    offset=float(np.median(wrong.offsets)),
+                    limit=float(np.median(wrong.limits)),
+                    lowest=float(wrong.ground.min()),
+                    highest=float(wrong.ground.max()),
+                    words=told.words,
+                    certainty=told.certainty,
+                )
+            )
     return found
 
 
@@ -283,19 +297,3 @@ def _find_factor(own: _Judged, is_off: BoolArray) -> _Told | None:
         return None
     told = str(words[np.argmax(counts)])
     return _Told(names == told, f"[is|are] {told} what the points around give", "high")
-
-
-def _describe(wrong: _Judged, told: _Told, name: str, count: int) -> WrongLine:
-    sizes = np.abs(wrong.offsets)
-    return WrongLine(
-        name=name,
-        n_vertices=count,
-        vertices=wrong.vertices,
-        worst=int(wrong.vertices[np.argmax(sizes)]),
-        offset=float(np.median(wrong.offsets)),
-        limit=float(np.median(wrong.limits)),
-        lowest=float(wrong.ground.min()),
-        highest=float(wrong.ground.max()),
-        words=told.words,
-        certainty=told.certainty,
-    )
