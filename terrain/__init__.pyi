@@ -22,6 +22,7 @@ from .earthwork.grading import grade as grade
 from .earthwork.grading import paste as paste
 from .gridding import height_above as height_above
 from .gridding import rasterize as rasterize
+from .gridding.shading import hillshade as hillshade
 from .ground_filter import GroundPoints as GroundPoints
 from .ground_filter import ground as ground
 from .hydrology import catchments as catchments
@@ -46,7 +47,6 @@ from .relief.classes import slope_classes as slope_classes
 from .relief.curvatures import curvature as curvature
 from .relief.gradients import aspect as aspect
 from .relief.gradients import slope as slope
-from .relief.shading import hillshade as hillshade
 from .relief.statistics import slope_statistics as slope_statistics
 from .sections import cross_sections as cross_sections
 from .sections import drape as drape

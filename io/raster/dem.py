@@ -19,7 +19,7 @@ from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError
 from ...base.progress import Progress
 from ...base.sentences import FILE, coordinate, counted
-from ...terrain.gridding.voids import trace_rings
+from ...terrain.surface import trace_rings
 from ...tin import Bounds, Survey
 from ...tin.screening.elevation_summary import ElevationSummary
 from ...tin.screening.nodata import parse_nodata

@@ -11,7 +11,7 @@ from ...base.errors import OptionError
 from ...base.georeference import find_plane_units
 from ...base.products import product
 from ...base.results import Features
-from ...terrain.isolines.measures import measure_ring_areas
+from ...terrain.surface import measure_ring_areas
 from ...tin import TIN, Surface, Survey, Voronoi
 from ...tin.topology import find_offsets
 from .surface_features import make_features

@@ -11,7 +11,8 @@ from ...base.errors import FormatError, choice
 from ...base.policies import FeatureKind
 from ...base.results import Features
 from ...terrain.drawing.linework import EDGE_KINDS, find_line_edges
-from ...terrain.relief.gradients import aspect, measure_areas, measure_ring_area, slope
+from ...terrain.relief.gradients import aspect, slope
+from ...terrain.surface import measure_areas, measure_ring_area
 from ...tin import TIN, Survey
 from ...tin.topology import edge_keys, edges_at, find_offsets
 from ..mesh.common import require_writable

@@ -13,8 +13,7 @@ from ...base.georeference.axes import turn_into_drawing
 from ...base.results import Table
 from ...base.sentences import counted
 from ...tin.screening.suspects import DROPPED
-from .. import palette
-from .arguments import parse_title
+from ..drawing import palette, parse_title
 from .figures import INK, picture
 from .maps import draw_shade, shade_for_map, start_map
 

@@ -9,8 +9,7 @@ import numpy as np
 from ...base.checks import require_type
 from ...base.sentences import counted
 from ...tin.paper.comparison import Comparison
-from ..palette import TRIANGULATIONS
-from .arguments import parse_title
+from ..drawing import TRIANGULATIONS, parse_title
 from .figures import INK, start_panels
 
 if TYPE_CHECKING:

@@ -10,8 +10,7 @@ import numpy as np
 from ...base.checks import as_number, is_whole_number
 from ...base.crs import CRS, Unit, assume_elevation_unit
 from ...base.errors import OptionError
-from .. import palette
-from ..drawing.rounding import format_number, round_down
+from ..drawing import format_number, palette, round_down
 from .figures import INK, color_frame
 
 if TYPE_CHECKING:

@@ -9,14 +9,11 @@ import numpy as np
 from ...base import optional
 from ...base.checks import require_tin, require_type
 from ...tin import Bounds
-from .. import palette
-from ..drawing.north_up import draw_north_up
-from ..drawing.rounding import round_down
+from ..drawing import draw_north_up, palette, parse_title, round_down
 from ..earthwork import Difference
 from ..gridding import rasterize
 from ..gridding.grids import cover
-from ..relief.shading import hillshade
-from .arguments import parse_title
+from ..gridding.shading import hillshade
 from .figures import INK, picture
 from .maps import PIXELS, draw_scale, draw_shade, start_map
 

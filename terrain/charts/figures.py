@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 from ...base import optional
 from ...base.products import notes_of_surfaces, product
 from ...tin.surface import Surface
-from .. import palette
-from ..drawing.north_up import draw_north_up
+from ..drawing import draw_north_up, palette
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

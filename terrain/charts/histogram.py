@@ -11,9 +11,7 @@ import numpy as np
 from ...base.checks import require_type
 from ...base.sentences import counted
 from ...tin import Quality
-from .. import palette
-from ..drawing.rounding import choose_ticks
-from .arguments import parse_text, parse_title
+from ..drawing import choose_ticks, palette, parse_text, parse_title
 from .figures import INK, start_panels
 
 if TYPE_CHECKING:

@@ -8,10 +8,8 @@ import numpy as np
 
 from ...base import optional
 from ...base.checks import require_tin
-from .. import palette
+from ..drawing import interpolate_tints, palette, parse_title, require_features
 from ..isolines.labels import contour_labels
-from ..palette import interpolate_tints
-from .arguments import parse_title, require_features
 from .figures import picture
 from .maps import draw_scale, draw_shade, find_paths, shade_for_map, start_map
 

@@ -11,8 +11,8 @@ import numpy as np
 from ...base import optional
 from ...base.georeference.axes import label_axes
 from ...base.georeference.units import find_ground
-from ..drawing.rounding import choose_ticks
-from ..relief.shading import hillshade
+from ..drawing import choose_ticks
+from ..gridding.shading import hillshade
 from .figures import INK, color_frame, start_figure, write_title
 
 if TYPE_CHECKING:

@@ -10,9 +10,8 @@ import numpy as np
 from ...base.crs import CRS
 from ...base.errors import OptionError
 from ...base.results import Table
-from ..drawing.rounding import choose_ticks, format_number
+from ..drawing import choose_ticks, format_number, parse_title
 from . import curves
-from .arguments import parse_title
 from .figures import INK, color_frame, picture, start_figure, write_title
 
 if TYPE_CHECKING:

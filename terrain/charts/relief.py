@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from ...base import optional
 from ...base.checks import require_tin, require_type
 from ...base.results import Raster
-from .arguments import parse_title, require_features
+from ..drawing import parse_title, require_features
 from .figures import picture
 from .maps import draw_shade, find_paths, shade_for_map, start_map
 

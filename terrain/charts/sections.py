@@ -12,9 +12,8 @@ from ...base.checks import require_count
 from ...base.crs import CRS
 from ...base.errors import OptionError
 from ...base.results import Table
-from ..drawing.rounding import choose_ticks, round_down
+from ..drawing import choose_ticks, parse_title, round_down
 from . import curves
-from .arguments import parse_title
 from .figures import INK, picture, start_figure, write_title
 
 if TYPE_CHECKING:

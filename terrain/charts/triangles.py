@@ -12,9 +12,8 @@ from ...base.errors import OptionError
 from ...base.georeference.axes import find_axes
 from ...base.georeference.units import find_ground
 from ...base.products import product
-from .. import palette
-from ..drawing.linework import EDGE_KINDS, find_line_edges
-from ..relief.gradients import slope
+from ..drawing import EDGE_KINDS, find_line_edges, palette
+from ..surface import compute_normals, measure_slopes
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
@@ -109,7 +108,7 @@ def _find_values(tin: TIN, values: Any) -> tuple[Float64Array | None, str]:
         if values == "elevation":
             return tin.points[:, 2], values
         if values == "slope":
-            return slope(tin), values
+            return measure_slopes(compute_normals(tin), "degrees"), values
         raise OptionError("values", values, ["elevation", "slope"])
     try:
         numbers = np.asarray(values, np.float64)

@@ -1,1 +1,55 @@
 """Drawing: what pages, plans, charts and notebooks share: lines, numbers, 3D models, HTML."""
+
+from .arguments import parse_text, parse_title, require_features
+from .linework import EDGE_KINDS, LineEdges, add_lines, add_polylines, find_line_edges
+from .models import choose_origin
+from .north_up import draw_north_up
+from .palette import (
+    BACKGROUNDS,
+    COMPASS,
+    PAGE,
+    SAMPLE_FRAME,
+    STEEPNESS,
+    TRIANGULATIONS,
+    Color,
+    Palette,
+    choose_palette,
+    choose_ramp,
+    interpolate_colors,
+    interpolate_tints,
+    mix_tints,
+    parse_hex,
+    write_hex,
+)
+from .rounding import choose_ticks, format_number, round_down
+
+__all__ = [
+    "BACKGROUNDS",
+    "COMPASS",
+    "EDGE_KINDS",
+    "PAGE",
+    "SAMPLE_FRAME",
+    "STEEPNESS",
+    "TRIANGULATIONS",
+    "Color",
+    "LineEdges",
+    "Palette",
+    "add_lines",
+    "add_polylines",
+    "choose_origin",
+    "choose_palette",
+    "choose_ramp",
+    "choose_ticks",
+    "draw_north_up",
+    "find_line_edges",
+    "format_number",
+    "interpolate_colors",
+    "interpolate_tints",
+    "mix_tints",
+    "parse_hex",
+    "parse_text",
+    "parse_title",
+    "require_features",
+    "round_down",
+    "write_hex",
+]

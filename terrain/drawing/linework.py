@@ -8,13 +8,13 @@ import numpy as np
 
 from ...base import optional
 from ...tin.topology import edge_keys, edges_at
-from .. import palette
-from ..palette import parse_hex
+from . import palette
+from .palette import parse_hex
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array, Int8Array, Int32Array, Int64Array
     from ...tin import TIN
-    from ..palette import Color
+    from .palette import Color
 
 __all__ = ["EDGE_KINDS", "LineEdges", "add_lines", "add_polylines", "find_line_edges"]
 

@@ -13,7 +13,7 @@ from ...base.checks import as_number, require_tin
 from ...base.crs import scale_elevations
 from ...base.errors import OptionError
 from ...base.products import product
-from ..relief.gradients import aspect, slope
+from ..surface import compute_normals, measure_aspects, measure_slopes
 
 if TYPE_CHECKING:
     import pyvista
@@ -81,8 +81,9 @@ def lift(
         (tin.points - shift) * (1.0, 1.0, scale * factor), np.array(tin.triangles)
     )
     mesh.point_data["elevation"] = tin.points[:, 2].copy()
-    mesh.cell_data["slope"] = slope(tin)
-    mesh.cell_data["aspect"] = aspect(tin)
+    normals = compute_normals(tin)
+    mesh.cell_data["slope"] = measure_slopes(normals, "degrees")
+    mesh.cell_data["aspect"] = measure_aspects(normals)
     mesh.field_data["origin"] = shift
     mesh.field_data["exaggeration"] = [factor]
     mesh.field_data["elevation_scale"] = [scale]

@@ -14,9 +14,9 @@ from ...base.products import product
 from ...base.progress import Progress
 from ...base.results import Features, Table
 from .. import _kernel
+from ..surface import Reference, Surface
 from . import zones as parts
 from .planes import level_surface
-from .reference import Reference, Surface
 from .regional import find_regional_zones, subtract_in_regions
 from .statistics import percentiles
 from .subtraction import subtract

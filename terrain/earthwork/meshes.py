@@ -9,7 +9,7 @@ import numpy as np
 from ...base.errors import LinesError, PointsError
 from ...tin import TIN, check, topology, triangulate
 from ...tin.report import Report
-from .cells import turns
+from ..surface import turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

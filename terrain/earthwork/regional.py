@@ -10,9 +10,8 @@ from ...base.errors import LinesError, PointsError
 from ...base.results import Features
 from ...tin import topology
 from .. import _kernel
-from .cells import Pieces, cut_pieces
+from ..surface import Pieces, Surface, cut_pieces
 from .meshes import as_mesh, drop_unused, unite
-from .reference import Surface
 from .subtraction import subtract
 from .zones import find_zones
 
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Int64Array
     from ...tin import TIN
-    from .reference import Reference
+    from ..surface import Reference
     from .volumes import Measured
 
 __all__ = ["Regional", "find_regional_zones", "subtract_in_regions"]

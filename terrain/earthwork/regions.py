@@ -13,8 +13,7 @@ from ...base.georeference import require_same_crs
 from ...base.results import Features
 from ...tin import triangulate
 from ...tin.constraints.polygons import gather_rings_of_regions
-from .cells import Pieces
-from .reference import Surface
+from ..surface import Pieces, Surface
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int64Array

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...base.arrays import Float64Array, Int64Array
-    from .reference import Surface
+    from ..surface import Surface
 
 __all__ = ["percentiles"]
 

@@ -15,8 +15,7 @@ from ...base.products import product
 from ...base.results import Features, Table
 from ...tin import topology
 from .. import _kernel
-from .cells import cut_pieces
-from .reference import Surface, find_reference, require_finite
+from ..surface import Surface, cut_pieces, find_reference, require_finite
 from .regions import as_regions
 
 if TYPE_CHECKING:

@@ -10,18 +10,16 @@ from ...base.errors import PointsError
 from ...base.sentences import coordinate
 from ...tin import topology
 from .. import _kernel
+from ..surface import Surface, fan_out, leave_out_slivers, measure_rounding, require_finite
 from . import zones as parts
-from .cells import fan_out
 from .meshes import as_mesh, cut_at_zero, mend, part_places, rebuild
-from .reference import Surface, require_finite
-from .slivers import leave_out_slivers, measure_rounding
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
     from ...base.arrays import Float64Array, Int32Array
     from ...tin import TIN
-    from .reference import Reference
+    from ..surface import Reference
 
     _Mesh = tuple[Float64Array, Int32Array]
 

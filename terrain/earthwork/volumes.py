@@ -13,9 +13,15 @@ from ...base.results import Table
 from ...base.sentences import inflect
 from ...tin.validation.threads import thread_count
 from .. import _kernel
-from .cells import Pieces, cut_pieces
+from ..surface import (
+    Pieces,
+    Surface,
+    cut_pieces,
+    find_common_reference,
+    find_reference,
+    require_finite,
+)
 from .planes import as_plane
-from .reference import Surface, find_common_reference, find_reference, require_finite
 from .regions import as_regions
 
 if TYPE_CHECKING:
@@ -26,7 +32,7 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...base.progress import Tell
     from ...tin import TIN
-    from .reference import Reference
+    from ..surface import Reference
 
 __all__ = ["Measured", "as_table", "describe_overlaps", "measure", "subtract", "volume"]
 

@@ -14,7 +14,7 @@ from .meshes import number_parts
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
     from ...tin.triangulation import Triangulation
-    from .reference import Reference
+    from ..surface import Reference
 
 __all__ = ["classify", "find_zones", "join_segments", "number_zones", "trace_zero_line"]
 

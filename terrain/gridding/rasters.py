@@ -11,7 +11,7 @@ from ...base.policies import InterpolationMethod, RasterSample, RasterValue
 from ...base.products import product
 from ...base.progress import Progress
 from ...base.results import Raster
-from ..relief import PlaneMeasure, as_light
+from ..surface import PlaneMeasure, as_light
 from .bands import SurfaceBand
 from .coverage import require_covered
 from .grids import as_grid

@@ -11,15 +11,14 @@ from ...base.checks import as_flag
 from ...base.errors import OptionError
 from ...base.results import locate_centers
 from ...tin.validation.threads import thread_count
-from ..relief.gradients import compute_normals, sum_at_vertices
-from ..relief.light import normalise
+from ..surface import compute_normals, normalise, sum_at_vertices
 from .bands import SurfaceBand
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array, Int64Array
     from ...base.progress import Tell
     from ...tin import TIN, Grid
-    from ..relief import PlaneMeasure
+    from ..surface import PlaneMeasure
 
 __all__ = ["DESCRIBED_MEANS", "ReliefBand", "choose_smooth"]
 

@@ -29,7 +29,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...tin import triangulate
-from ..relief.dissolving import join_components
+from ..surface import join_components
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array

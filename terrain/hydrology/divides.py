@@ -8,8 +8,7 @@ import numpy as np
 
 from ...tin import topology
 from .. import _kernel
-from ..earthwork.cells import fan_out
-from ..relief.dissolving import DividedMesh
+from ..surface import DividedMesh, fan_out
 from .descent import interpolate_edges
 from .strips import SAME, follow
 

@@ -12,13 +12,13 @@ from ...base.products import product
 from ...base.progress import Progress
 from ...base.results import Features
 from .. import _kernel
-from ..earthwork.reference import find_reference
+from ..surface import as_places, find_reference
 from .descent import MOVING
 from .divides import cut_at_divides
 from .filling import fill
 from .hierarchy import build_hierarchy
 from .networks import accumulate, build_network, find_ends
-from .paths import FILLED_NOTE, as_places
+from .paths import FILLED_NOTE
 from .routes import DESCENT, FLAT_GROUND, KINDS, POND
 from .starts import place_drops
 from .strips import settle

@@ -10,7 +10,7 @@ import numpy as np
 from ...base.checks import as_number
 from ...base.products import product
 from ...base.results import Features
-from ..earthwork.reference import find_reference
+from ..surface import find_reference
 from .falls import find_falls
 
 if TYPE_CHECKING:

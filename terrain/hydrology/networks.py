@@ -8,7 +8,7 @@ import numpy as np
 
 from ...base.progress import Progress
 from .. import _kernel
-from ..relief.dissolving import join_components
+from ..surface import join_components
 from .descent import BOUNDARY, MOVING, Walker, make_drops
 from .falls import find_falls
 from .strips import Strips, cut_strips, leave_strips, settle

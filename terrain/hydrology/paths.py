@@ -7,14 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.checks import as_flag
-from ...base.errors import PointsError
-from ...base.georeference import require_same_crs
 from ...base.products import product
 from ...base.results import Features
 from ...base.sentences import counted
 from ...tin.topology import find_offsets
-from ...tin.validation.points import as_xy
-from ..earthwork.reference import find_reference
+from ..surface import as_places, find_reference
 from .descent import BOUNDARY, FLAT, PIT, Walker
 from .falls import find_falls
 from .filling import fill
@@ -28,7 +25,7 @@ if TYPE_CHECKING:
     from .filling import Filling
     from .routes import Trace
 
-__all__ = ["ENDS", "FILLED_NOTE", "as_places", "flow_path"]
+__all__ = ["ENDS", "FILLED_NOTE", "flow_path"]
 
 FILLED_NOTE = "Depressions are full: their water goes on from where they spill."
 ENDS = {PIT: "pit", FLAT: "flat", BOUNDARY: "boundary"}
@@ -178,35 +175,3 @@ def _measure_lines(coordinates: Float64Array, offsets: Int64Array) -> dict[str, 
         "length": np.add.reduceat(spans, offsets[:-1]) if len(offsets) > 1 else np.zeros(0),
         "drop": coordinates[offsets[:-1], 2] - coordinates[offsets[1:] - 1, 2],
     }
-
-
-def as_places(tin: TIN, points: Any, what: str) -> tuple[Float64Array, tuple[str, ...]]:
-    """Return places on a surface, and what was assumed of them.
-
-    Raises
-    ------
-    CrsError
-        If their CRS is another one.
-    PointsError
-        If there is none, or one lies outside the surface.
-    """
-    theirs = getattr(points, "crs", None)
-    notes: tuple[str, ...] = ()
-    if isinstance(points, Features):
-        if points.kind != "points":
-            raise PointsError(f"Points are needed for {what}, and there are {points.kind}.")
-        notes = require_same_crs(theirs, tin.crs, what) + tuple(points.notes)
-        points = points.coordinates[:, :2]
-    xy = np.atleast_2d(as_xy(np.atleast_2d(points) if np.size(points) else points)) + 0.0
-    if len(xy) == 0:
-        raise PointsError(f"There is no point for {what}: at least one is needed.")
-    outside = np.flatnonzero(tin.locate(xy) < 0)
-    if len(outside):
-        first = int(outside[0])
-        raise PointsError(
-            f"{len(outside):,} of {counted(len(xy), 'point')} for {what} "
-            f"{'lies' if len(outside) == 1 else 'lie'} outside the surface (first: number {first}, "
-            f"at {tuple(xy[first].tolist())}).",
-            rows=outside[:5],
-        )
-    return xy, notes

@@ -8,10 +8,7 @@ import numpy as np
 
 from ...tin import topology
 from .. import _kernel
-from ..earthwork.cells import fan_out
-from ..earthwork.reference import require_finite
-from ..isolines.repair import PolygonParts, repair_polygons
-from ..relief.dissolving import DividedMesh, dissolve
+from ..surface import DividedMesh, PolygonParts, dissolve, fan_out, repair_polygons, require_finite
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array

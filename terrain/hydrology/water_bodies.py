@@ -11,9 +11,7 @@ from ...base.errors import OptionError
 from ...base.products import product
 from ...base.results import Features
 from ...tin.topology import NO_NEIGHBOR, find_boundary_vertices, gather
-from ..earthwork.reference import find_reference
-from ..earthwork.slivers import find_slivers
-from ..relief.dissolving import number_components
+from ..surface import find_reference, find_slivers, number_components
 from .descent import Walker
 from .falls import find_falls
 from .filling import fill
@@ -24,7 +22,7 @@ from .water import Waters, cut_below, gather_polygons, measure_waters
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ...tin import TIN
-    from ..earthwork.reference import Reference
+    from ..surface import Reference
     from .filling import Filling
     from .hierarchy import Hierarchy
 

@@ -12,11 +12,17 @@ from ...base.products import product
 from ...base.results import Features
 from ...base.types import seal
 from .. import _kernel
-from ..earthwork.slivers import leave_out_slivers
+from ..surface import (
+    PolygonParts,
+    is_whole,
+    leave_out_slivers,
+    measure_ring_areas,
+    repair_polygons,
+    require_whole,
+    sum_parts,
+)
 from .levels import LevelOptions
-from .measures import measure_ring_areas, sum_parts
 from .rebuilding import rebuild_wrong_bands
-from .repair import PolygonParts, is_whole, repair_polygons, require_whole
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

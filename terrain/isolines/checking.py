@@ -13,7 +13,7 @@ from ...base.errors import OptionError
 from ...base.products import product
 from ...base.results import Features
 from ...tin.predicates import orientation
-from ..earthwork.slivers import take_without_slivers
+from ..surface import take_without_slivers
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array, ObjectArray

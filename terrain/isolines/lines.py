@@ -11,9 +11,8 @@ from ...base.progress import Progress
 from ...base.results import Features
 from ...base.types import seal
 from .. import _kernel
-from ..earthwork.slivers import take_without_slivers
+from ..surface import measure_lengths, take_without_slivers
 from .levels import LevelOptions, Levels
-from .measures import measure_lengths
 from .smoothing import smooth_lines
 
 if TYPE_CHECKING:

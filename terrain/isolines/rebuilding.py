@@ -9,8 +9,7 @@ import numpy as np
 from ...base import optional
 from ...base.sentences import counted
 from .. import _kernel
-from .measures import measure_lengths, measure_ring_areas, sum_parts
-from .repair import PolygonParts, as_parts, turn
+from ..surface import PolygonParts, as_parts, measure_lengths, measure_ring_areas, sum_parts, turn
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, ObjectArray

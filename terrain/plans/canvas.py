@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...base import optional
-from .. import palette
+from ..drawing import palette
 from .lettering import FONT, PURPOSE
 from .papers import MM_PER_INCH
 

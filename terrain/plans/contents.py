@@ -14,8 +14,7 @@ from ...base.georeference import require_same_crs
 from ...base.georeference.axes import label_axes
 from ...base.sentences import counted
 from ...tin.topology import find_offsets
-from ..drawing.linework import EDGE_KINDS, LineEdges, find_line_edges
-from ..drawing.rounding import round_down
+from ..drawing import EDGE_KINDS, LineEdges, find_line_edges, round_down
 from ..isolines import contours
 from ..isolines.levels import elevation_range
 from .clipping import Paths, join_paths

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...base import optional
-from ..drawing.linework import EDGE_KINDS, find_line_edges
+from ..drawing import EDGE_KINDS, find_line_edges
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...base.georeference.axes import label_axes
-from .. import palette
-from ..drawing.rounding import round_down
+from ..drawing import palette, round_down
 from .canvas import Pen
 from .clipping import clip_paths, join_paths
 from .lettering import measure_text

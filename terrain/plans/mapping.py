@@ -11,7 +11,7 @@ import numpy as np
 
 from ...base import optional
 from ...base.results import Features
-from .. import palette
+from ..drawing import palette
 from ..isolines import contour_labels
 from .canvas import Canvas, Pen
 from .clipping import Paths, clip_paths, join_paths

@@ -19,10 +19,8 @@ from ...base.policies import ContourLabeling, GridStyle, PointMarking, SheetLayo
 from ...base.products import product
 from ...base.sentences import counted
 from ...tin import Bounds, Survey
-from ..charts.arguments import parse_text
-from ..drawing.north_up import draw_north_up
-from ..sections.geometries import as_features
-from ..sections.segments import as_segments
+from ..drawing import draw_north_up, parse_text
+from ..surface import as_features, as_segments
 from .arrangement import Ground, choose_single, cut_rows, cut_strip_windows
 from .canvas import Canvas
 from .contents import describe_count, gather_contents

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...tin import Bounds
-from .. import palette
-from ..drawing.rounding import format_number, round_down
+from ..drawing import format_number, palette, round_down
 from .canvas import INK, Pen
 from .grid import PEN as GRID_PEN
 from .lettering import fit_text

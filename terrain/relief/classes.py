@@ -12,9 +12,9 @@ from ...base.georeference import describe_unknown, find_plane_units
 from ...base.policies import SlopeUnit
 from ...base.products import product
 from ...base.results import Features
-from ..palette import COMPASS, STEEPNESS, interpolate_colors
-from .dissolving import dissolve, make_polygons
-from .gradients import aspect, measure_plane_areas, slope
+from ..drawing import COMPASS, STEEPNESS, interpolate_colors
+from ..surface import dissolve, make_polygons, measure_plane_areas
+from .gradients import aspect, slope
 from .statistics import SYMBOLS
 
 if TYPE_CHECKING:

@@ -12,7 +12,8 @@ from ...base.georeference import describe_unknown, find_plane_units
 from ...base.policies import SlopeUnit
 from ...base.products import product
 from ...base.results import Table
-from .gradients import measure_plane_areas, slope
+from ..surface import measure_plane_areas
+from .gradients import slope
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

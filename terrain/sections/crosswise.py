@@ -15,7 +15,7 @@ from ...base.products import product
 from ...base.results import Features, Table
 from ...base.sentences import coordinate
 from ...tin.validation.points import as_elevations
-from .geometries import as_features
+from ..surface import Segments, as_features
 from .profiles import (
     lines_to_segments,
     measure_rows,
@@ -24,7 +24,6 @@ from .profiles import (
 )
 from .rows import cut_rows
 from .runs import find_runs
-from .segments import Segments
 from .surfaces import as_surfaces
 
 if TYPE_CHECKING:

@@ -14,10 +14,9 @@ from ...base.products import product
 from ...base.results import Features
 from ...base.sentences import counted
 from ...tin.topology import find_offsets, find_owners
-from .geometries import as_features
+from ..surface import as_features, as_segments
 from .rows import cut_rows
 from .runs import find_runs
-from .segments import as_segments
 from .surfaces import as_surfaces
 
 if TYPE_CHECKING:

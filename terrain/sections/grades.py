@@ -11,8 +11,8 @@ from ...tin.topology import NO_NEIGHBOR
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array, Int64Array
     from ...tin import TIN
+    from ..surface import Segments
     from .rows import Rows
-    from .segments import Segments
     from .surfaces import Surfaces
 
 __all__ = ["measure_grades"]

@@ -13,10 +13,9 @@ from ...base.georeference import require_same_crs
 from ...base.products import product
 from ...base.results import Table
 from ...base.sentences import counted
-from .geometries import as_features
+from ..surface import as_features, as_segments
 from .grades import measure_grades
 from .rows import Places, cut_rows
-from .segments import as_segments
 from .surfaces import as_surfaces
 
 if TYPE_CHECKING:
@@ -25,8 +24,8 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array, Int64Array, StrArray
     from ...base.results import Features
     from ...tin import TIN
+    from ..surface import Segments
     from .rows import Rows
-    from .segments import Segments
     from .surfaces import Surfaces
 
 __all__ = [

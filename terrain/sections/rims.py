@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...tin.topology import NO_NEIGHBOR
-from .breaks import Breaks, trace_breaks
-from .roundings import find_rounding, find_written_rounding
-from .segments import Segments
+from ..surface import Breaks, Segments, find_rounding, find_written_rounding, trace_breaks
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array

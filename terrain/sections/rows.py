@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...tin.topology import NO_NEIGHBOR
-from .breaks import CROSSED
+from ..surface import CROSSED
 from .rims import trace_to_rim
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array, StrArray
-    from .breaks import Breaks
-    from .segments import Segments
+    from ..surface import Breaks, Segments
     from .surfaces import Surfaces
 
 __all__ = ["Places", "Rows", "cut_rows"]

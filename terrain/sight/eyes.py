@@ -8,7 +8,7 @@ import numpy as np
 
 from ...base.checks import as_length
 from ...base.errors import PointsError
-from ..hydrology.paths import as_places
+from ..surface import as_places
 from .lines import as_height, raise_places
 
 if TYPE_CHECKING:

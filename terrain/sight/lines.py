@@ -11,8 +11,7 @@ from ...base.errors import PointsError
 from ...base.products import product
 from ...base.results import Features
 from ...base.sentences import counted
-from ..earthwork.reference import find_reference
-from ..hydrology.paths import as_places
+from ..surface import as_places, find_reference
 from .rays import Rays, find_blocks, find_curvature
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...tin.topology import find_offsets
 from .. import _kernel
-from ..relief.dissolving import DividedMesh
+from ..surface import DividedMesh
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array, UInt8Array

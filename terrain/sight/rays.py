@@ -9,14 +9,12 @@ import numpy as np
 
 from ...base.checks import as_flag, as_number
 from ...base.errors import CrsError, OptionError
-from ..sections.breaks import trace_breaks
-from ..sections.segments import Segments
+from ..surface import Segments, trace_breaks
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
     from ...tin import TIN
-    from ..earthwork.reference import Reference
-    from ..sections.breaks import Breaks
+    from ..surface import Breaks, Reference
 
 __all__ = ["EARTH_RADIUS", "REFRACTION", "Blocks", "Rays", "find_blocks", "find_curvature"]
 

@@ -11,7 +11,7 @@ from ...base.types import seal
 from ...tin.predicates import EXACT_RANGE
 from ...tin.validation.threads import thread_count
 from .. import _kernel
-from ..earthwork.reference import find_reference
+from ..surface import find_reference
 from .eyes import as_view, measure_distances
 from .rays import Rays, find_blocks, find_curvature
 

@@ -10,9 +10,8 @@ from ...base.checks import as_flag
 from ...base.georeference import find_plane_units
 from ...base.products import product
 from ...base.progress import Progress
-from .. import palette
-from ..earthwork.reference import find_reference
-from ..relief.dissolving import dissolve, make_polygons
+from ..drawing import palette
+from ..surface import dissolve, find_reference, make_polygons
 from .eyes import as_view, measure_distances
 from .parts import divide
 from .rays import find_curvature
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...base.results import Features
     from ...tin import TIN
-    from ..relief.dissolving import Mesh
+    from ..surface import Mesh
     from .eyes import View
 
     _Numbers = Int64Array

@@ -25,7 +25,7 @@ from ...tin.screening.nodata import describe_suspects, find_suspect_elevations
 from ...tin.topology import NO_NEIGHBOR
 from ...tin.validation.threads import thread_count
 from .. import _kernel
-from ..gridding.voids import find_surface
+from ..surface import find_surface
 from .cell_crossings import cross_cells
 from .elevations import Block, Elevations, Heights, cut_blocks
 from .seams import Frame, find_frame, trace_block

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...base.errors import PointsError
 from ...tin.meshing.simplification import are_straight, find_rounding
-from ..gridding.voids import find_border, trace_cycles
+from ..surface import find_border, trace_cycles
 from .elevations import Heights
 
 if TYPE_CHECKING:

@@ -9,10 +9,8 @@ import numpy as np
 
 from ...base import optional
 from ...tin.topology import edges_at
-from .. import palette
-from ..drawing.models import choose_origin
-from ..palette import choose_ramp, parse_hex
-from ..relief.light import Light
+from ..drawing import choose_origin, choose_ramp, palette, parse_hex
+from ..surface import Light
 from .elevations import ElevationRange, find_elevation_range
 from .legend import measure_tint
 

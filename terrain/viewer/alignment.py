@@ -10,7 +10,7 @@ from ...base.errors import OptionError
 from ...base.georeference import agree
 from ...base.georeference.axes import find_axes
 from ...tin import TIN
-from ..drawing.north_up import draw_north_up
+from ..drawing import draw_north_up
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...tin import Bounds
-from ..drawing.rounding import choose_ticks, format_number, round_down
-from ..palette import Palette, choose_ramp
+from ..drawing import Palette, choose_ramp, choose_ticks, format_number, round_down
 from .actors import NORTHWEST
 from .camera import View, measure_pixels_per_unit, name_direction, project_ground_axes
 from .legend import Legend
@@ -17,8 +16,8 @@ from .titles import fit_title, shorten
 
 if TYPE_CHECKING:
     from ...base.crs import Unit
-    from ..palette import Color
-    from ..relief.light import Light
+    from ..drawing import Color
+    from ..surface import Light
     from .overlay import Overlay
 
 __all__ = ["Layout", "TitleBlock", "annotate", "scale_bar_length"]
@@ -169,7 +168,7 @@ def _describe_light(sun: Light) -> str:
 
     Examples
     --------
-    >>> from ..relief.light import Light
+    >>> from ..surface.light import Light
     >>> _describe_light(Light(250.0, 30.0))
     'Light from the west-southwest, 30° high'
     """

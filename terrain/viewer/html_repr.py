@@ -10,9 +10,8 @@ import numpy as np
 from ...base.georeference.units import find_ground
 from ...base.products import product
 from ...base.sentences import counted
+from ..drawing import draw_north_up, interpolate_tints
 from ..drawing.html_repr.frame import SIZE, describe_bounds, name_crs, name_units, write_html
-from ..drawing.north_up import draw_north_up
-from ..palette import interpolate_tints
 from .actors import NORTHWEST, choose_exaggeration, measure_relief
 
 if TYPE_CHECKING:

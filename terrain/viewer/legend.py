@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..palette import choose_ramp
-from ..relief.gradients import aspect, slope
+from ..drawing import choose_ramp
+from ..surface import compute_normals, measure_aspects, measure_slopes
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, UInt8Array
@@ -44,9 +44,13 @@ def measure_tint(
     ramp = choose_ramp(tint, 100)
     if tint == "slope":
         ticks: Any = ((0.0, "0"), (15.0, "15"), (30.0, "30"), (45.0, "45"), (STEEPEST, "60+"))
-        return slope(tin), Legend("Slope (degrees)", ramp, (0.0, STEEPEST), ticks)
+        return measure_slopes(compute_normals(tin), "degrees"), Legend(
+            "Slope (degrees)", ramp, (0.0, STEEPEST), ticks
+        )
     if tint == "aspect":
         ticks = tuple(zip((0.0, 90.0, 180.0, 270.0, 360.0), "NESWN", strict=True))
-        return aspect(tin), Legend("Aspect: facing", ramp, (0.0, 360.0), ticks)
+        return measure_aspects(compute_normals(tin)), Legend(
+            "Aspect: facing", ramp, (0.0, 360.0), ticks
+        )
     name = f"Elevation ({unit or 'unit not known'})"
     return tin.points[:, 2], Legend(name, ramp, elevations)

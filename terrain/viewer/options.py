@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, TypedDict
 from ...base.checks import as_flag, as_number, is_finite_number, is_whole_number
 from ...base.errors import OptionError, choice
 from ...base.policies import Tint
-from ..palette import BACKGROUNDS, Palette, choose_palette, parse_hex
-from ..relief.light import Light
+from ..drawing import BACKGROUNDS, Palette, choose_palette, parse_hex
+from ..surface import Light
 from .actors import NORTHWEST
 from .camera import VIEWS, View
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ...base.arrays import UInt8Array
-    from ..palette import Color
+    from ..drawing import Color
 
 __all__ = ["Overlay"]
 

@@ -11,12 +11,8 @@ from ...base import optional
 from ...base.georeference.units import find_ground
 from ...base.sentences import counted
 from ...tin import Bounds
-from .. import palette
-from ..drawing.linework import add_lines, add_polylines
-from ..drawing.models import choose_origin
-from ..drawing.rounding import format_number
+from ..drawing import add_lines, add_polylines, choose_origin, format_number, palette, parse_hex
 from ..isolines import contours
-from ..palette import parse_hex
 from .actors import (
     BLOCK_SHARE,
     add_lights,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..drawing.rounding import format_number
+from ..drawing import format_number
 from .actors import fade_edges
 from .camera import place_camera
 from .corridor import STRIP_GAP

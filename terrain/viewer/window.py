@@ -11,13 +11,9 @@ from ...base import optional
 from ...base.errors import TinsmithError
 from ...base.georeference.axes import label_axes
 from ...base.policies import Tint
-from .. import palette
-from ..drawing.linework import add_polylines
-from ..drawing.models import choose_origin
-from ..drawing.rounding import round_down
-from ..palette import parse_hex
-from ..relief.gradients import slope
+from ..drawing import add_polylines, choose_origin, palette, parse_hex, round_down
 from ..sections import profile
+from ..surface import compute_normals, measure_slopes
 from . import opengl
 from .overlay import Overlay
 from .picture import keep_vtk_plain
@@ -74,7 +70,7 @@ class Window:
         scene = make_scene(tin, options, ortho, has_strips=False)
         self.drawn = ScenePlotter(scene, options.size, off_screen=off_screen)
         self.readings: list[Reading] = []
-        self._slopes = slope(tin)
+        self._slopes = measure_slopes(compute_normals(tin), "degrees")
         self._words = Overlay(self.drawn.plotter.renderer)
         self._marks: list[Any] = []
         self._section: Table | None = None

@@ -14,7 +14,7 @@ import tinsmith as ts
 from tinsmith.cli import main
 from tinsmith.cli.commands.compare import _sample_points
 from tinsmith.terrain import comparison_picture
-from tinsmith.terrain.palette import TRIANGULATIONS
+from tinsmith.terrain.drawing.palette import TRIANGULATIONS
 
 SAMPLES = Path(__file__).parents[2] / "sample_data"
 SURVEY = SAMPLES / "site_survey.csv"

@@ -9,9 +9,9 @@ from support.simplification import errors, is_needed
 import tinsmith as ts
 from tinsmith.base.results.gridded import locate_centers
 from tinsmith.terrain import _kernel
-from tinsmith.terrain.gridding.voids import find_surface
 from tinsmith.terrain.simplification.rasters import simplify_raster
 from tinsmith.terrain.simplification.seams import choose_vertices, trace_block
+from tinsmith.terrain.surface.voids import find_surface
 from tinsmith.tin._kernel import VECTOR_PATHS
 from tinsmith.tin.meshing.simplification import Goal
 

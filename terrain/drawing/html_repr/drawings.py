@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...palette import interpolate_tints
+from ..palette import interpolate_tints
 from .frame import SIZE
 
 if TYPE_CHECKING:

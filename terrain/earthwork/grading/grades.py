@@ -13,7 +13,7 @@ from ....base.products import product
 from ....base.progress import Progress
 from ....base.sentences import coordinate, height
 from ....tin.constraints.polygons import gather_rings_of_regions
-from ..reference import find_reference
+from ...surface import find_reference
 from .outlines import find_area
 from .pads import build_patch
 from .pasting import join_surfaces

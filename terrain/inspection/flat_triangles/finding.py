@@ -11,8 +11,7 @@ from ....base.georeference import describe_unknown, find_plane_units
 from ....base.products import product
 from ....base.results import Features
 from ....base.sentences import counted
-from ...relief.dissolving import dissolve, make_polygons
-from ...relief.gradients import measure_plane_areas
+from ...surface import dissolve, make_polygons, measure_plane_areas
 from .regions import KINDS, find_regions
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ....tin.topology import NO_NEIGHBOR, edges_at
-from ...relief.dissolving import number_components
+from ...surface import number_components
 
 if TYPE_CHECKING:
     from ....base.arrays import BoolArray, Float64Array, Int32Array, Int64Array

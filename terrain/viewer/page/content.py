@@ -12,9 +12,7 @@ from ....base.errors import OptionError
 from ....base.georeference.axes import label_axes
 from ....base.georeference.units import find_ellipsoid
 from ....base.sentences import counted
-from ... import palette
-from ...drawing.linework import EDGE_KINDS, find_line_edges
-from ...palette import choose_ramp, mix_tints, write_hex
+from ...drawing import EDGE_KINDS, choose_ramp, find_line_edges, mix_tints, palette, write_hex
 from .packing import pack_counts, pack_rows, pack_triangles, sort_in_morton_order
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from html import escape
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
-from ...palette import PAGE, SAMPLE_FRAME
+from ...drawing import PAGE, SAMPLE_FRAME
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

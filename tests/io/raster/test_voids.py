@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 import tinsmith as ts
 from tinsmith.cli import main
-from tinsmith.terrain.gridding.voids import trace_rings
+from tinsmith.terrain.surface.voids import trace_rings
 
 rasterio = pytest.importorskip("rasterio")
 

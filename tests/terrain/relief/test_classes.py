@@ -13,8 +13,8 @@ from matplotlib.colors import to_hex
 from support.point_sets import seeds
 
 import tinsmith as ts
-from tinsmith.terrain.relief.dissolving import dissolve
-from tinsmith.terrain.relief.gradients import measure_plane_areas
+from tinsmith.terrain.surface.dissolving import dissolve
+from tinsmith.terrain.surface.normals import measure_plane_areas
 
 
 def dissolved(tin, classes):

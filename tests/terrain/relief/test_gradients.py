@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from tinsmith import CRS, TIN, OptionError, triangulate
 from tinsmith.terrain import aspect, slope
-from tinsmith.terrain.relief.gradients import measure_areas, measure_ring_area
+from tinsmith.terrain.surface.normals import measure_areas, measure_ring_area
 
 UTM = np.array([742_000.0, 4_030_000.0])
 

@@ -11,7 +11,7 @@ import pytest
 from tinsmith import TIN, Breakline, Water, triangulate
 from tinsmith.base.georeference.units import find_ground
 from tinsmith.terrain.drawing.linework import add_lines
-from tinsmith.terrain.palette import interpolate_tints
+from tinsmith.terrain.drawing.palette import interpolate_tints
 from tinsmith.terrain.viewer.actors import (
     _average_normals,
     add_terrain,

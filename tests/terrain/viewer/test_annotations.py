@@ -12,7 +12,7 @@ import pytest
 from tinsmith import triangulate
 from tinsmith.base.crs import METRE
 from tinsmith.base.georeference.units import find_ground
-from tinsmith.terrain.palette import Palette, interpolate_tints
+from tinsmith.terrain.drawing.palette import Palette, interpolate_tints
 from tinsmith.terrain.viewer.actors import add_lights, place_vertices
 from tinsmith.terrain.viewer.annotations import (
     Layout,

@@ -14,7 +14,7 @@ from support.processes import run_alone
 
 import tinsmith as ts
 from tinsmith.terrain.drawing.html_repr.frame import encode_png
-from tinsmith.terrain.palette import compute_lightness
+from tinsmith.terrain.drawing.palette import compute_lightness
 from tinsmith.terrain.viewer.html_repr import draw_map
 
 CORNER = np.array([742_000.0, 4_030_000.0])

@@ -12,7 +12,7 @@ from support.pictures import make_dipping_plane, read_pixels
 from tinsmith import triangulate
 from tinsmith.base.crs import METRE
 from tinsmith.terrain import OptionError, preview
-from tinsmith.terrain.palette import choose_palette, compute_lightness
+from tinsmith.terrain.drawing.palette import choose_palette, compute_lightness
 from tinsmith.terrain.viewer.actors import add_lights
 from tinsmith.terrain.viewer.annotations import Layout, TitleBlock, annotate
 from tinsmith.terrain.viewer.camera import View, aim, measure_pixels_per_unit, project_ground_axes

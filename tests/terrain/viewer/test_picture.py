@@ -15,8 +15,8 @@ from tinsmith import TIN, MissingExtraError, triangulate
 from tinsmith.base.crs import FOOT, METRE
 from tinsmith.base.georeference.units import NOT_KNOWN, find_ground
 from tinsmith.terrain import OptionError, RenderError, preview, slope
+from tinsmith.terrain.drawing.palette import compute_lightness, interpolate_tints
 from tinsmith.terrain.drawing.rounding import choose_ticks, format_number, round_down
-from tinsmith.terrain.palette import compute_lightness, interpolate_tints
 from tinsmith.terrain.viewer import opengl
 from tinsmith.terrain.viewer.actors import choose_exaggeration, measure_relief
 from tinsmith.terrain.viewer.annotations import Layout, scale_bar_length

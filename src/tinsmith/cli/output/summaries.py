@@ -12,7 +12,7 @@ from ...base.georeference.axes import find_axes
 from ...base.sentences import counted
 from ...io.reprojection.transformation import is_geographic, length_unit
 from ...terrain import slope
-from ...terrain.relief.gradients import measure_areas
+from ...terrain.surface import measure_areas
 from ...tin import TIN, Bounds, Survey, quality
 from ...tin.report import describe_skipped
 from .counts import count_constrained_edges, describe_counts

@@ -1,4 +1,4 @@
-"""Polygons that meet themselves by rounding: made valid, or refused."""
+"""Lengths of lines and areas of polygons, and polygons that meet themselves by rounding."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ import numpy as np
 
 from ...base import optional
 from ...base.errors import PointsError
+from ...base.georeference.units import find_scales
 from ...base.sentences import counted
-from .measures import measure_lengths, measure_ring_areas
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array, Int64Array, ObjectArray
+    from ...base.crs import CRS
     from ...tin import TIN
 
 __all__ = [
@@ -20,8 +21,11 @@ __all__ = [
     "as_parts",
     "has_area",
     "is_whole",
+    "measure_lengths",
+    "measure_ring_areas",
     "repair_polygons",
     "require_whole",
+    "sum_parts",
     "turn",
 ]
 
@@ -130,3 +134,48 @@ def require_whole(tin: TIN, parts: PolygonParts) -> None:
             f"The bands add up to an area of {found:g}, the surface has {area:g}: its "
             "triangles are too thin for coordinates of this size; subtract an origin from them."
         )
+
+
+def measure_lengths(
+    crs: CRS | None, coordinates: Float64Array, offsets: Int64Array
+) -> Float64Array:
+    """Measure lines of two points or more in the plane.
+
+    In CRS units; in a geographic CRS in metres along the ellipsoid, which holds for segments of
+    some kilometres.
+    """
+    run, rise = np.diff(coordinates[:, 0]), np.diff(coordinates[:, 1])
+    if crs is not None and crs.is_geographic:
+        middle = 0.5 * (coordinates[1:, 1] + coordinates[:-1, 1])
+        scales = find_scales(crs, None, middle)
+        run, rise = run * scales.east, rise * scales.north
+    spans = np.hypot(run, rise, out=run)
+    spans[offsets[1:-1] - 1] = 0.0  # from one line to the next
+    return sum_parts(spans, offsets[:-1])
+
+
+def measure_ring_areas(
+    crs: CRS | None, coordinates: Float64Array, offsets: Int64Array
+) -> Float64Array:
+    """Measure the areas inside closed rings, the first point of each repeated.
+
+    In CRS units squared, in a geographic CRS square metres; positive where the ring runs
+    counter-clockwise.
+    """
+    origin = np.repeat(coordinates[offsets[:-1]], np.diff(offsets), axis=0)
+    x, y = (coordinates - origin).T
+    doubled = np.append(x[:-1] * y[1:] - x[1:] * y[:-1], 0.0)
+    doubled[offsets[1:] - 1] = 0.0
+    if crs is not None and crs.is_geographic:
+        north = coordinates[:, 1]
+        scales = find_scales(crs, None, (north + np.append(north[1:], 0.0) + origin[:, 1]) / 3)
+        doubled *= scales.east * scales.north
+    return 0.5 * sum_parts(doubled, offsets[:-1])
+
+
+def sum_parts(values: Float64Array, starts: Int64Array) -> Float64Array:
+    """Sum consecutive parts of an array, none of them empty, that start at these places."""
+    if len(starts) == 0:
+        return np.zeros(0)
+    sums: Float64Array = np.add.reduceat(values, starts)
+    return sums

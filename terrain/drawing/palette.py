@@ -9,8 +9,8 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..base.arrays import Float64Array, UInt8Array
-    from ..base.policies import Tint
+    from ...base.arrays import Float64Array, UInt8Array
+    from ...base.policies import Tint
 
 __all__ = [
     "Color",

@@ -11,12 +11,11 @@ from ...base.errors import OptionError
 from ...base.georeference import describe_unknown
 from ...base.products import product
 from ...base.results import Raster
-from ..drawing.rounding import round_down
-from ..gridding.coverage import require_covered
-from ..gridding.grids import as_grid
-from ..gridding.relief_bands import ReliefBand, choose_smooth
-from .light import as_light
-from .measures import PlaneMeasure
+from ..drawing import round_down
+from ..surface import PlaneMeasure, as_light
+from .coverage import require_covered
+from .grids import as_grid
+from .relief_bands import ReliefBand, choose_smooth
 
 if TYPE_CHECKING:
     from ...tin import TIN, Grid

@@ -1,4 +1,4 @@
-"""Light: how bright a surface is under a low sun."""
+"""Light: how bright a surface is under a low sun; and what else is measured of planes."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ import numpy as np
 
 from ...base.checks import as_number
 from .. import _kernel
+from .normals import measure_aspects, measure_slopes
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, UInt8Array
+    from ...base.policies import RasterValue
 
-__all__ = ["BRIGHTEST", "DARKEST", "Light", "as_light", "normalise", "shade"]
+__all__ = ["BRIGHTEST", "DARKEST", "Light", "PlaneMeasure", "as_light", "normalise", "shade"]
 
 DARKEST, BRIGHTEST = 1, 255
 """As gdaldem writes them; 0 is outside."""
@@ -65,3 +67,23 @@ def normalise(vectors: Float64Array) -> Float64Array:
     with np.errstate(invalid="ignore"):
         small = vectors / np.abs(vectors).max(axis=1, keepdims=True)  # no square is 0 or infinite
         return np.asarray(small / np.linalg.norm(small, axis=1, keepdims=True), np.float64)
+
+
+class PlaneMeasure(NamedTuple):
+    """What is measured of a plane: degrees of slope or aspect, or light from 1 to 255."""
+
+    value: RasterValue
+    light: Light
+    exaggeration: float = 1.0
+
+    def of(self, upward: Float64Array) -> Float64Array:
+        """Return the value of planes with some upward normals, (k, 3); NaN where there is none."""
+        factor = self.exaggeration
+        normals = upward if factor == 1.0 else upward * (factor, factor, 1.0)
+        if self.value == "slope":
+            return measure_slopes(normals, "degrees")
+        if self.value == "aspect":
+            return measure_aspects(normals)
+        lights = shade(normals, self.light).astype(np.float64)
+        lights[np.isnan(normals[:, 2])] = np.nan
+        return lights

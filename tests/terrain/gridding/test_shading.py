@@ -10,8 +10,8 @@ import pytest
 import tinsmith as ts
 from tinsmith.base.results.gridded import locate_centers
 from tinsmith.base.types import Bounds, Grid
-from tinsmith.terrain.relief.gradients import sum_normals
-from tinsmith.terrain.relief.light import as_light, shade
+from tinsmith.terrain.surface.light import as_light, shade
+from tinsmith.terrain.surface.normals import sum_normals
 
 
 def plane(east, north, **about):
@@ -82,7 +82,7 @@ def test_every_cell_has_the_light_of_the_triangle_at_its_centre():
 def test_blocks_are_seamless(monkeypatch):
     tin = plane(0.3, -0.2)
     whole = ts.hillshade(tin, spacing=0.25).bands["hillshade"]
-    monkeypatch.setattr("tinsmith.terrain.relief.shading._BLOCK_CELLS", 100)
+    monkeypatch.setattr("tinsmith.terrain.gridding.shading._BLOCK_CELLS", 100)
     np.testing.assert_array_equal(ts.hillshade(tin, spacing=0.25).bands["hillshade"], whole)
 
 

@@ -1,0 +1,51 @@
+"""Places on a surface, from what a caller gives."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...base.errors import PointsError
+from ...base.georeference import require_same_crs
+from ...base.results import Features
+from ...base.sentences import counted
+from ...tin.validation.points import as_xy
+
+if TYPE_CHECKING:
+    from ...base.arrays import Float64Array
+    from ...tin import TIN
+
+__all__ = ["as_places"]
+
+
+def as_places(tin: TIN, points: Any, what: str) -> tuple[Float64Array, tuple[str, ...]]:
+    """Return places on a surface, and what was assumed of them.
+
+    Raises
+    ------
+    CrsError
+        If their CRS is another one.
+    PointsError
+        If there is none, or one lies outside the surface.
+    """
+    theirs = getattr(points, "crs", None)
+    notes: tuple[str, ...] = ()
+    if isinstance(points, Features):
+        if points.kind != "points":
+            raise PointsError(f"Points are needed for {what}, and there are {points.kind}.")
+        notes = require_same_crs(theirs, tin.crs, what) + tuple(points.notes)
+        points = points.coordinates[:, :2]
+    xy = np.atleast_2d(as_xy(np.atleast_2d(points) if np.size(points) else points)) + 0.0
+    if len(xy) == 0:
+        raise PointsError(f"There is no point for {what}: at least one is needed.")
+    outside = np.flatnonzero(tin.locate(xy) < 0)
+    if len(outside):
+        first = int(outside[0])
+        raise PointsError(
+            f"{len(outside):,} of {counted(len(xy), 'point')} for {what} "
+            f"{'lies' if len(outside) == 1 else 'lie'} outside the surface (first: number {first}, "
+            f"at {tuple(xy[first].tolist())}).",
+            rows=outside[:5],
+        )
+    return xy, notes
