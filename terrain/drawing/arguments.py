@@ -16,10 +16,7 @@ __all__ = ["parse_text", "parse_title", "require_features"]
 def parse_title(title: Any, usual: str) -> str:
     r"""Return a title on one line, the usual one if none is given.
 
-    Raises
-    ------
-    OptionError
-        If it is no text.
+    Raises OptionError if it is no text.
 
     Examples
     --------
@@ -32,12 +29,7 @@ def parse_title(title: Any, usual: str) -> str:
 
 
 def parse_text(option: str, text: Any) -> str:
-    """Return a text, or refuse what is none.
-
-    Raises
-    ------
-    OptionError
-    """
+    """Return a text, or refuse what is none."""
     if not isinstance(text, str):
         raise OptionError(option, text, "text")
     return text

@@ -41,12 +41,7 @@ class Plane:
 
 
 def as_plane(base: Any) -> Plane:
-    """Return the plane that a level or three points stand for.
-
-    Raises
-    ------
-    OptionError
-    """
+    """Return the plane that a level or three points stand for."""
     try:
         given = np.asarray(base, np.float64)
     except (TypeError, ValueError):

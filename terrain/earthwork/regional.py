@@ -40,10 +40,7 @@ def subtract_in_regions(
 
     ``holds`` tells whether both surfaces hold places, (k, 2).
 
-    Raises
-    ------
-    PointsError
-        If no region holds both surfaces, or as :func:`subtract`.
+    Raises PointsError if no region holds both surfaces, or as :func:`subtract`.
     """
     assert measured.parts is not None
     found, regions = [], _split(measured.parts, len(measured.names))
@@ -112,10 +109,7 @@ def _hold_too(holds: Callable[[Any], Any], regions: Sequence[Surface]) -> Callab
 def _unite(regions: Sequence[Surface]) -> Surface:
     """Return triangles of all that is in any region.
 
-    Raises
-    ------
-    LinesError
-        If borders cross in ways that coordinates cannot tell apart.
+    Raises LinesError if borders cross in ways that coordinates cannot tell apart.
     """
     starts = np.cumsum([0, *(len(one.points) for one in regions)])[:-1].tolist()
     points = np.concatenate([one.points for one in regions])

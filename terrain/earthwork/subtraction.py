@@ -48,10 +48,7 @@ def subtract(
     ``sums`` are those of the kernel of the same surfaces, which the volumes of the TIN must be;
     ``holds`` tells whether both surfaces hold places, (k, 2).
 
-    Raises
-    ------
-    PointsError
-        If they do not overlap, or only in what is thinner than coordinates can tell.
+    Raises PointsError if they do not overlap, or only in what is thinner than coordinates can tell.
     """
     if len(first.triangles) == 0 or len(second.triangles) == 0:
         raise PointsError(_TOO_THIN)
@@ -73,10 +70,7 @@ def _choose_surface(
 ) -> TIN:
     """Return the first mesh whose volumes are those of the surfaces.
 
-    Raises
-    ------
-    PointsError
-        If there is none: rounding has moved a wall, or left nothing.
+    Raises PointsError if there is none: rounding has moved a wall, or left nothing.
     """
     least = np.inf
     for mesh in candidates:
@@ -116,12 +110,7 @@ def _trim_one(surface: Surface, rounding: float) -> Surface:
 
 
 def _refuse_empty(first: Surface, second: Surface) -> NoReturn:
-    """Refuse surfaces that do not overlap, or only in triangles that were left out.
-
-    Raises
-    ------
-    PointsError
-    """
+    """Refuse surfaces that do not overlap, or only in triangles that were left out."""
     if len(_overlay(first, second).triangles):
         raise PointsError(_TOO_THIN)
     raise PointsError(

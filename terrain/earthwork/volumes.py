@@ -144,10 +144,7 @@ def measure(
 ) -> Measured:
     """Measure as :func:`volume` does, with what else the sums were made of.
 
-    Raises
-    ------
-    OptionError, CrsError, LinesError
-        As :func:`volume`.
+    Raises OptionError, CrsError, LinesError as :func:`volume`.
     """
     if (other is None) == (base is None):
         given = "neither" if other is None else "both"

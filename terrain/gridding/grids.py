@@ -89,10 +89,6 @@ def as_grid(
 def cover(bounds: Bounds, spacing: float) -> Grid:
     """Return the cells that cover bounds, with edges at multiples of the spacing.
 
-    Raises
-    ------
-    OptionError
-
     Examples
     --------
     >>> cover(Bounds(0.5, 0.5, 3.5, 2.0), 1.0)
@@ -108,12 +104,7 @@ def cover(bounds: Bounds, spacing: float) -> Grid:
 
 
 def as_one_grid(grid: Any) -> Grid:
-    """Return a Grid whose numbers fit together.
-
-    Raises
-    ------
-    OptionError
-    """
+    """Return a Grid whose numbers fit together."""
     if not isinstance(grid, Grid):
         raise OptionError("grid", grid, "a Grid")
     as_length("spacing", grid.spacing)
@@ -170,10 +161,7 @@ def describe_extent(bounds: Bounds) -> str:
 def as_cells(like: Any) -> Cells:
     """Return the cells of another raster.
 
-    Raises
-    ------
-    OptionError
-        If it is none, or has no north-up square cells.
+    Raises OptionError if it is none, or has no north-up square cells.
     """
     if isinstance(like, Cells):
         return like

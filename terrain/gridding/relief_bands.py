@@ -33,10 +33,6 @@ def choose_smooth(tin: TIN, smooth: Any, *, is_mean: bool = False) -> tuple[bool
 
     ``smooth`` is what was asked for; None for the default: of cells of a raster, among which there
     are no breaklines, unless the means of cells are taken, which are those of triangles.
-
-    Raises
-    ------
-    OptionError
     """
     if is_mean and smooth is not None and as_flag("smooth", smooth):
         raise OptionError("smooth", smooth, "False for means, which are those of triangles")

@@ -55,10 +55,7 @@ class Cells:
 def lay_cells(points: Float64Array, side: float) -> Cells:
     """Lay square cells over points whose least easting and northing are 0.
 
-    Raises
-    ------
-    PointsError
-        If there would be far more cells than points.
+    Raises PointsError if there would be far more cells than points.
     """
     counts = np.floor(points[:, :2].max(axis=0) / side) + 1
     most = max(_FEWEST, _CELLS_PER_POINT * len(points))

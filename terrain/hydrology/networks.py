@@ -79,10 +79,8 @@ def build_network(
 ) -> Network:
     """Find the way of all water of a surface, or of a filled one.
 
-    Raises
-    ------
-    PointsError
-        If fall lines cross too many triangles, or elevations are too large to decide exactly.
+    Raises PointsError if fall lines cross too many triangles, or elevations are too large to decide
+    exactly.
     """
     done = Progress(progress)
     walker = Walker(find_falls(tin), filling)

@@ -47,10 +47,7 @@ class Strips(NamedTuple):
 def cut_strips(surface: _kernel.FallingSurface) -> Strips:
     """Cut triangles along the fall lines that come down to vertices.
 
-    Raises
-    ------
-    PointsError
-        If there are too many cuts.
+    Raises PointsError if there are too many cuts.
 
     Notes
     -----

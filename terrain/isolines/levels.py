@@ -162,10 +162,7 @@ def elevation_range(tin: TIN) -> tuple[float, float]:
 def as_levels(given: Any) -> Float64Array:
     """Return explicit levels in ascending order, each once.
 
-    Raises
-    ------
-    OptionError
-        If they are not one or more finite numbers, or too many.
+    Raises OptionError if they are not one or more finite numbers, or too many.
     """
     try:
         values = np.asarray(given, np.float64)

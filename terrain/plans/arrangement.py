@@ -66,10 +66,7 @@ def choose_single(
 def find_fitting(bounds: Bounds, layout: Layout, unit: Unit, air: float = _AIR) -> Scale:
     """Return the largest usual scale at which a rectangle fits the frame.
 
-    Raises
-    ------
-    OptionError
-        If there is none.
+    Raises OptionError if there is none.
     """
     for scale in Scale.usual(unit):
         if _fits(bounds, layout, scale.measure_unit(unit), air):
@@ -105,10 +102,7 @@ def _describe_too_large(
 def cut_rows(ground: Ground, layout: Layout, scale: Scale) -> list[Window]:
     """Return windows in rows from north to south, each from west to east, where there is ground.
 
-    Raises
-    ------
-    OptionError
-        If there would be too many.
+    Raises OptionError if there would be too many.
     """
     shapely = optional.load("shapely")
     length = scale.measure_unit(ground.unit)
@@ -172,12 +166,7 @@ def _match_neighbors(
 
 
 def require_few(n_sheets: float, scale: Scale, layout: Layout) -> None:
-    """Refuse more sheets than anybody prints.
-
-    Raises
-    ------
-    OptionError
-    """
+    """Refuse more sheets than anybody prints."""
     if n_sheets > MOST_SHEETS:
         raise OptionError(
             "scale",
@@ -195,10 +184,7 @@ def cut_strip_windows(
 ) -> list[Window]:
     """Return windows one after the other along an axis, the way on to the right of each.
 
-    Raises
-    ------
-    OptionError
-        If a strip is too narrow for the ground, or there would be too many.
+    Raises OptionError if a strip is too narrow for the ground, or there would be too many.
     """
     shapely = optional.load("shapely")
     length = scale.measure_unit(ground.unit)

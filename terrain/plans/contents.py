@@ -84,12 +84,8 @@ def gather_contents(
 ) -> Contents:
     """Trace contours, and gather lines and points.
 
-    Raises
-    ------
-    OptionError
-        If an interval makes too many levels, or points have no numbers.
-    CrsError
-        If the survey is in another CRS.
+    Raises OptionError if an interval makes too many levels, or points have no numbers. Raises
+    CrsError if the survey is in another CRS.
     """
     chosen = choose_interval(tin) if interval is None else interval
     lines = _trace(tin, chosen, smooth)

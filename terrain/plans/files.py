@@ -32,12 +32,7 @@ _MOST_PIXELS = 150_000_000
 def list_files(path: str | os.PathLike[str], count: int) -> list[Path]:
     """Return the names of the files of so many sheets.
 
-    Raises
-    ------
-    OptionError
-        If the path is none.
-    RenderError
-        If its suffix is another.
+    Raises OptionError if the path is none. Raises RenderError if its suffix is another.
 
     Examples
     --------

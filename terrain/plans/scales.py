@@ -54,12 +54,7 @@ class Scale:
 
     @classmethod
     def of(cls, value: Any, unit: Unit) -> Scale:
-        """Return the scale that a caller gives, for coordinates in a unit.
-
-        Raises
-        ------
-        OptionError
-        """
+        """Return the scale that a caller gives, for coordinates in a unit."""
         if isinstance(value, str):
             text = _THOUSANDS.sub("", value.strip())
             inches = _INCHES.fullmatch(text)
@@ -160,10 +155,7 @@ def _parse_unit(declared: UnitLike | None) -> Unit | None:
 def measure_scale_factor(crs: CRS | None, x: float, y: float) -> float | None:
     """Return how much longer lengths are in a CRS than on the ellipsoid; None if nothing tells.
 
-    Raises
-    ------
-    CrsError
-        If it is so far from 1 that no scale would hold.
+    Raises CrsError if it is so far from 1 that no scale would hold.
 
     Examples
     --------

@@ -133,12 +133,8 @@ def profile(
 def lines_to_segments(features: Features, start: Any, what: str) -> Segments:
     """Return the segments of features that are lines, their stations counted from ``start``.
 
-    Raises
-    ------
-    LinesError
-        If they are no lines, or one has no length.
-    OptionError
-        If ``start`` is no number, or too large.
+    Raises LinesError if they are no lines, or one has no length. Raises OptionError if ``start`` is
+    no number, or too large.
     """
     if features.kind != "lines":
         raise LinesError(f"A {what} runs along lines, and there are {features.kind}.")
@@ -200,12 +196,7 @@ def _describe_gaps(surfaces: Surfaces, rows: Rows) -> list[str]:
 
 
 def require_surface(surfaces: Surfaces, segments: Segments, rows: Rows, what: str = "line") -> None:
-    """Refuse lines that meet no surface at all.
-
-    Raises
-    ------
-    LinesError
-    """
+    """Refuse lines that meet no surface at all."""
     if np.isfinite(rows.elevations).any():
         return
     low = np.minimum(segments.starts.min(axis=0), segments.ends.min(axis=0)).tolist()
@@ -223,12 +214,7 @@ def require_surface(surfaces: Surfaces, segments: Segments, rows: Rows, what: st
 
 
 def as_start(value: Any, segments: Segments) -> float:
-    """Return the station where lines begin, small enough for their stations to differ.
-
-    Raises
-    ------
-    OptionError
-    """
+    """Return the station where lines begin, small enough for their stations to differ."""
     start = as_number("start", value, unit="in CRS units")
     lengths = segments.end_stations - segments.start_stations
     shortest = float(np.bincount(segments.lines, lengths).min())
@@ -251,12 +237,7 @@ def _place_at_interval(segments: Segments, interval: float) -> Places:
 
 
 def require_few(option: str, interval: float, lengths: Float64Array) -> None:
-    """Refuse an interval that makes more stations than anybody can use.
-
-    Raises
-    ------
-    OptionError
-    """
+    """Refuse an interval that makes more stations than anybody can use."""
     least = float(lengths.sum()) / MOST_STATIONS
     if not interval >= least:
         allowed = f"{least:.3g} or more here, where at most {MOST_STATIONS:,} stations are made"

@@ -123,12 +123,7 @@ def line_of_sight(
 
 
 def as_height(option: str, value: Any) -> float:
-    """Return a height above ground.
-
-    Raises
-    ------
-    OptionError
-    """
+    """Return a height above ground."""
     return as_number(option, value, "a height", least=0, unit="above the ground")
 
 

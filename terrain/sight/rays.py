@@ -52,11 +52,7 @@ class Blocks(NamedTuple):
 def find_curvature(reference: Reference, curvature: Any, refraction: Any) -> float:
     """Return by how much the earth falls away at a distance of 1, in the unit of elevations.
 
-    Raises
-    ------
-    CrsError
-        If curvature is asked for and the lengths of units are not known.
-    OptionError
+    Raises CrsError if curvature is asked for and the lengths of units are not known.
     """
     if not as_flag("curvature", curvature):
         if refraction is not None:

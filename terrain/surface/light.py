@@ -31,12 +31,7 @@ class Light(NamedTuple):
 
 
 def as_light(azimuth: Any, altitude: Any) -> Light:
-    """Return a light, or say which number is out of range.
-
-    Raises
-    ------
-    OptionError
-    """
+    """Return a light, or say which number is out of range."""
     return Light(
         as_number("azimuth", azimuth, unit="of degrees"),
         as_number("altitude", altitude, least=0, most=90, unit="degrees"),

@@ -137,10 +137,7 @@ def _compute_exact_normal(*corners: Float64Array) -> list[float]:
 def sum_normals(tin: TIN, per: SurfacePart) -> Float64Array:
     """Return the upward normals of triangles, or their sums at each vertex, (n, 3).
 
-    Raises
-    ------
-    OptionError
-        For another place.
+    Raises OptionError for another place.
     """
     choice("per", per, SurfacePart)
     upward = compute_normals(tin)

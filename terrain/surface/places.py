@@ -22,12 +22,8 @@ __all__ = ["as_places"]
 def as_places(tin: TIN, points: Any, what: str) -> tuple[Float64Array, tuple[str, ...]]:
     """Return places on a surface, and what was assumed of them.
 
-    Raises
-    ------
-    CrsError
-        If their CRS is another one.
-    PointsError
-        If there is none, or one lies outside the surface.
+    Raises CrsError if their CRS is another one. Raises PointsError if there is none, or one lies
+    outside the surface.
     """
     theirs = getattr(points, "crs", None)
     notes: tuple[str, ...] = ()

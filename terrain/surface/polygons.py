@@ -122,10 +122,7 @@ def has_area(parts: PolygonParts, area: float) -> bool:
 def require_whole(tin: TIN, parts: PolygonParts) -> None:
     """Refuse polygons whose areas do not add up to that of the surface.
 
-    Raises
-    ------
-    PointsError
-        If more is missing than rounding along all rings can account for.
+    Raises PointsError if more is missing than rounding along all rings can account for.
     """
     if not is_whole(tin, parts):
         found = float(measure_ring_areas(None, parts.points, parts.ring_offsets).sum())

@@ -59,10 +59,7 @@ class Surface:
 def find_reference(tin: TIN, purpose: str) -> Reference:
     """Read the units of a TIN.
 
-    Raises
-    ------
-    CrsError
-        If coordinates are angles.
+    Raises CrsError if coordinates are angles.
     """
     require_tin(tin)
     return make_reference(tin.crs, tin.elevation_unit, purpose)
@@ -77,10 +74,7 @@ def make_reference(crs: CRS | None, unit: Unit | None, purpose: str) -> Referenc
 def find_common_reference(tin: TIN, other: TIN, purpose: str) -> tuple[Reference, Surface, Surface]:
     """Read the units of two TINs, and return both surfaces in them.
 
-    Raises
-    ------
-    CrsError
-        If coordinates are angles, or as :func:`tinsmith.base.georeference.agree` says.
+    Raises CrsError if coordinates are angles, or as :func:`tinsmith.base.georeference.agree` says.
     """
     for one in (tin, other):
         require_tin(one)
@@ -110,12 +104,7 @@ def _require_lengths(crs: CRS | None, purpose: str) -> None:
 
 
 def require_finite(values: Float64Array) -> None:
-    """Refuse sums that double precision cannot hold.
-
-    Raises
-    ------
-    PointsError
-    """
+    """Refuse sums that double precision cannot hold."""
     if np.isnan(values).any():
         raise PointsError(
             "Coordinates or elevations are too large for volumes in double precision: their "

@@ -53,14 +53,8 @@ class Aligned(NamedTuple):
 def align(given: TIN | Mapping[str, TIN], survey: Survey | None) -> Aligned:
     """Bring surfaces and points together, elevations in the unit of the first that has one.
 
-    Raises
-    ------
-    OptionError
-        If there is no surface.
-    PointsError
-        If one is no TIN.
-    CrsError
-        As :func:`tinsmith.base.georeference.agree` says.
+    Raises OptionError if there is no surface. Raises PointsError if one is no TIN. Raises CrsError
+    as :func:`tinsmith.base.georeference.agree` says.
     """
     named = given if isinstance(given, Mapping) else {_ALONE: given}
     if not named:

@@ -35,12 +35,8 @@ _NO_DISPLAY = "There is no display to open a window on: name a picture file as o
 def require_opengl() -> None:
     """Make sure that a picture can be drawn off screen.
 
-    Raises
-    ------
-    MissingExtraError
-        If PyVista, which brings VTK, is not installed.
-    RenderError
-        If this machine cannot; the sentence says what to install.
+    Raises MissingExtraError if PyVista, which brings VTK, is not installed. Raises RenderError if
+    this machine cannot; the sentence says what to install.
     """
     optional.require("pyvista", "A preview")
     if not _find_window_class():
@@ -53,10 +49,7 @@ def require_opengl() -> None:
 def require_window() -> None:
     """Make sure that a window can be opened.
 
-    Raises
-    ------
-    RenderError
-        If there is no display, or no OpenGL.
+    Raises RenderError if there is no display, or no OpenGL.
     """
     require_opengl()
     require_on_screen(_find_window_class())

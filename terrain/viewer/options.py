@@ -69,10 +69,7 @@ class PreviewOptions:
     def of(cls, **given: Any) -> PreviewOptions:
         """Return options that are checked; None stands for the default.
 
-        Raises
-        ------
-        OptionError
-            If one is outside what is allowed, or two contradict each other.
+        Raises OptionError if one is outside what is allowed, or two contradict each other.
         """
         always: dict[str, Callable[[Any], Any]] = {
             "edges": partial(as_flag, "edges"),

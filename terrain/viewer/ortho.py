@@ -95,10 +95,7 @@ class Ortho:
     def measure_gap(self, tins: Sequence[TIN]) -> float:
         """Return the share of the vertices of surfaces at which there is no picture.
 
-        Raises
-        ------
-        ReadError
-            If it shows nothing of any of them.
+        Raises ReadError if it shows nothing of any of them.
         """
         if not any(self._meets(tin) for tin in tins):
             raise ReadError(
