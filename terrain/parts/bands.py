@@ -12,9 +12,15 @@ import numpy as np
 
 from ...base.errors import PointsError
 from .. import _kernel
-from ..earthwork.slivers import find_slivers, find_thin, keep_triangles
 from ..isolines.bands import as_features
-from ..isolines.repair import PolygonParts, has_area, repair_polygons
+from ..surface import (
+    PolygonParts,
+    find_slivers,
+    find_thin,
+    has_area,
+    keep_triangles,
+    repair_polygons,
+)
 from .surfaces import are_inner, are_owned_triangles
 
 if TYPE_CHECKING:

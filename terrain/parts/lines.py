@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ...base.crs import CRS, Unit
     from ...base.types import Bounds
     from ...tin.tiling import LocalTriangulation
-    from ..sections.segments import Segments
+    from ..surface import Segments
 
 __all__ = ["RINGS", "LineOptions", "SurfacePart", "compute_part", "join"]
 

@@ -17,7 +17,7 @@ from ...base.errors import OptionError
 from ...base.results import locate_centers
 from ...base.types import Bounds
 from ..gridding import ReliefBand, SurfaceBand, locate_edges
-from ..relief import Light, PlaneMeasure
+from ..surface import Light, PlaneMeasure
 from .surfaces import as_surface
 
 if TYPE_CHECKING:

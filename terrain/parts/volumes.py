@@ -12,9 +12,8 @@ import numpy as np
 
 from ...base.types import Bounds
 from .. import _kernel
-from ..earthwork.cells import Pieces, cut_pieces
-from ..earthwork.reference import Surface
 from ..earthwork.volumes import as_table, describe_overlaps, subtract
+from ..surface import Pieces, Surface, cut_pieces
 from .surfaces import are_owned_triangles
 
 if TYPE_CHECKING:
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
     from ...base.results import Table
     from ...tin.tiling import LocalTriangulation
     from ..earthwork.planes import Plane
-    from ..earthwork.reference import Reference
+    from ..surface import Reference
 
 __all__ = ["VolumeOptions", "VolumePart", "compute_part", "find_reach", "join", "merge"]
 

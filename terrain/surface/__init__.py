@@ -26,6 +26,7 @@ from .places import as_places
 from .polygons import (
     PolygonParts,
     as_parts,
+    has_area,
     is_whole,
     measure_lengths,
     measure_ring_areas,
@@ -34,10 +35,24 @@ from .polygons import (
     sum_parts,
     turn,
 )
-from .reference import Reference, Surface, find_common_reference, find_reference, require_finite
+from .reference import (
+    Reference,
+    Surface,
+    find_common_reference,
+    find_reference,
+    make_reference,
+    require_finite,
+)
 from .roundings import find_rounding, find_written_rounding
 from .segments import Segments, as_segments
-from .slivers import find_slivers, leave_out_slivers, measure_rounding, take_without_slivers
+from .slivers import (
+    find_slivers,
+    find_thin,
+    keep_triangles,
+    leave_out_slivers,
+    measure_rounding,
+    take_without_slivers,
+)
 from .voids import find_border, find_surface, trace_cycles, trace_rings
 
 __all__ = [
@@ -67,11 +82,15 @@ __all__ = [
     "find_rounding",
     "find_slivers",
     "find_surface",
+    "find_thin",
     "find_written_rounding",
+    "has_area",
     "is_whole",
     "join_components",
+    "keep_triangles",
     "leave_out_slivers",
     "make_polygons",
+    "make_reference",
     "measure_areas",
     "measure_aspects",
     "measure_lengths",

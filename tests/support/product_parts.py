@@ -6,12 +6,10 @@ import numpy as np
 
 import tinsmith as ts
 from tinsmith.terrain.earthwork.planes import as_plane
-from tinsmith.terrain.earthwork.reference import find_reference
 from tinsmith.terrain.earthwork.regions import as_regions
-from tinsmith.terrain.earthwork.slivers import measure_rounding
 from tinsmith.terrain.isolines import LevelOptions
 from tinsmith.terrain.parts import bands, contours, lines, places, rasters, volumes
-from tinsmith.terrain.sections.segments import as_segments
+from tinsmith.terrain.surface import as_segments, find_reference, measure_rounding
 
 
 def require_same_bits(found, wanted, what=""):

@@ -10,7 +10,7 @@ from support.tiled import divide
 
 import tinsmith as ts
 from tinsmith.terrain.parts import rasters
-from tinsmith.terrain.relief.light import Light
+from tinsmith.terrain.surface import Light
 from tinsmith.tin.tiling.boxes import widen
 from tinsmith.tin.tiling.local_triangulation import triangulate_box
 

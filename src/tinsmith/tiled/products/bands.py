@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.crs import CRS, Unit
-from ...terrain.earthwork import measure_rounding
 from ...terrain.isolines import LevelOptions, Levels, as_levels
 from ...terrain.parts import bands
+from ...terrain.surface import measure_rounding
 from ..tasks import load_arrays, save_arrays
 
 if TYPE_CHECKING:

@@ -12,7 +12,8 @@ from ...base.checks import as_length, as_number
 from ...base.crs import CRS
 from ...base.results import Features
 from ...terrain.parts import lines
-from ...terrain.sections import as_features, as_segments, lines_to_segments, profile
+from ...terrain.sections import lines_to_segments, profile
+from ...terrain.surface import as_features, as_segments
 from ...tin import triangulate
 from ...tin.tiling import reduce_to_hull
 from ..reading import open_store

@@ -30,7 +30,7 @@ from ...terrain.parts.rasters import (
     find_cells,
     find_reach,
 )
-from ...terrain.relief import as_light
+from ...terrain.surface import as_light
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

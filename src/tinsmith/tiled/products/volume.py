@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.crs import CRS, Unit
-from ...terrain.earthwork import Pieces, Surface, as_plane, as_regions, make_reference
+from ...terrain.earthwork import as_plane, as_regions
 from ...terrain.parts import volumes
+from ...terrain.surface import Pieces, Surface, make_reference
 from ..tasks import load_arrays, save_arrays
 
 if TYPE_CHECKING:
