@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ...base.arrays import Float64Array, Int32Array
+    from ...base.arrays import AnyArray, Float64Array
 
 __all__ = ["ExactSum", "add_doubled_areas"]
 
@@ -74,9 +74,7 @@ def _take_high(values: Float64Array) -> Float64Array:
     return big - (big - values)
 
 
-def add_doubled_areas(
-    into: ExactSum, points: Float64Array, start: Int32Array, end: Int32Array
-) -> None:
+def add_doubled_areas(into: ExactSum, points: Float64Array, start: AnyArray, end: AnyArray) -> None:
     """Add twice the area on the left of edges, to the origin; of closed rings what they enclose."""
     x, y = points[:, 0], points[:, 1]
     into.add_products(x[start], y[end])

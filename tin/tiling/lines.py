@@ -137,7 +137,7 @@ def choose_near(points: NumberedPoints, lines: LineSet) -> NumberedPoints:
     """
     xy, rows = points.points[:, :2], len(points.numbers)
     if not rows or not len(lines.xy):
-        return points.choose(slice(0, 0))
+        return NumberedPoints.none()
     together = np.ascontiguousarray(np.concatenate([xy, lines.xy]))
     distance = _ROUNDINGS * float(np.abs(together).max())
     segments = Polylines.whole(np.arange(len(lines.xy), dtype=np.int32), lines.offsets).segments()

@@ -251,7 +251,8 @@ def _triangulate_constrained(points: Float64Array, seen: _Seen, threads: int) ->
 def _choose_kept(rows: AnyArray, kept_row: Int32Array | None) -> AnyArray:
     if kept_row is None:
         return rows
-    return rows[kept_row == np.arange(len(kept_row), dtype=np.int32)]
+    kept: AnyArray = rows[kept_row == np.arange(len(kept_row), dtype=np.int32)]
+    return kept
 
 
 def _find_open(

@@ -257,14 +257,62 @@ def _walk_rings(sides: dict[tuple[int, int], _Side]) -> list[list[tuple[int, int
                 "its right, and does not belong to a boundary that closes."
             )
     rings = []
+    places = {start: side.start for (start, _), side in sides.items()}
     for first in list(leaving):
         while leaving[first]:
-            ring, at = [], first
-            while not ring or at != first:
-                ring.append((at, leaving[at].pop()))
-                at = ring[-1][1]
+            ring = [(first, leaving[first].pop())]
+            while ring[-1][1] != first or not _closes(ring, leaving, places):
+                ring.append(_find_next(ring[-1], leaving, places))
             rings.append(ring)
     return rings
+
+
+def _closes(
+    ring: list[tuple[int, int]],
+    leaving: dict[int, list[int]],
+    places: dict[int, tuple[float, ...]],
+) -> bool:
+    """Tell whether a ring that is back at its first vertex goes on with its first edge."""
+    vertex = ring[0][0]
+    ends = [ring[0][1], *leaving[vertex]]
+    return _find_clockwise(ring[-1][0], vertex, ends, places) == ring[0][1]
+
+
+def _find_next(
+    edge: tuple[int, int],
+    leaving: dict[int, list[int]],
+    places: dict[int, tuple[float, ...]],
+) -> tuple[int, int]:
+    """Return the boundary edge behind one, and take it: where several leave, that of the same fan.
+
+    The triangles at the edge lie on its left, so clockwise from it about its end.
+    """
+    start, vertex = edge
+    end = _find_clockwise(start, vertex, leaving[vertex], places)
+    leaving[vertex].remove(end)
+    return vertex, end
+
+
+def _find_clockwise(
+    start: int, vertex: int, ends: list[int], places: dict[int, tuple[float, ...]]
+) -> int:
+    """Return the first of some vertices in clockwise turn about a vertex, from one on."""
+    if len(ends) == 1:
+        return ends[0]
+    center = places[vertex]
+    found = ends[0]
+    for end in ends[1:]:
+        halves = [_turn(places[start], center, places[one]) for one in (found, end)]
+        is_sooner = halves[0] < halves[1]
+        if halves[0] == halves[1]:
+            is_sooner = _turn(center, places[found], places[end]) > 0
+        found = end if is_sooner else found
+    return found
+
+
+def _turn(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> int:
+    rows = (np.array([one[:2]]) for one in (a, b, c))
+    return int(_kernel.orientation(*rows)[0])
 
 
 def _require_hull(

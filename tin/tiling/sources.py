@@ -59,6 +59,13 @@ class NumberedPoints(NamedTuple):
             np.insert(self.numbers, at, other.numbers),
         )
 
+    def append(self, other: NumberedPoints) -> NumberedPoints:
+        """Return these points and others behind them, as they come."""
+        return NumberedPoints(
+            np.concatenate([self.points, other.points]),
+            np.concatenate([self.numbers, other.numbers]),
+        )
+
     def choose(self, which: BoolArray | Int64Array) -> NumberedPoints:
         """Return some of them."""
         return NumberedPoints(self.points[which], self.numbers[which])
@@ -95,8 +102,8 @@ class NumberedSegments(NamedTuple):
     def add(self, other: NumberedSegments) -> NumberedSegments:
         """Return these segments and some more."""
         return NumberedSegments(
-            NumberedPoints(*map(np.concatenate, zip(self.starts, other.starts, strict=True))),
-            NumberedPoints(*map(np.concatenate, zip(self.ends, other.ends, strict=True))),
+            self.starts.append(other.starts),
+            self.ends.append(other.ends),
             np.concatenate([self.are_rings, other.are_rings]),
         )
 

@@ -77,7 +77,8 @@ class BoxTriangles {
  private:
   static constexpr double kRoom = 1.0 + 0x1p-17;
   static constexpr double kTrusted = 0x1p-20;  // largest relative error of a cross product
-  static constexpr double kLeast = 0x1p-900;   // below it products lose digits
+  static constexpr double kLeast = 0x1p-900;   // below it products lose digits,
+  static constexpr double kMost = 0x1p900;     // and above it they may be infinite
 
   bool meets_box(Point a, Point b, Point c) const {
     const bool holds_one = box_.holds(a) | box_.holds(b) | box_.holds(c);
@@ -106,7 +107,7 @@ class BoxTriangles {
     const double distance = std::min(std::min(a.x - around_.west, around_.east - a.x),
                                      std::min(a.y - around_.south, around_.north - a.y));
     const double reach = distance * cross;
-    return (distance > 0.0) & (error <= kTrusted * cross) & (sides >= kLeast) &
+    return (distance > 0.0) & (error <= kTrusted * cross) & (sides >= kLeast) & (sides <= kMost) &
            (sides * kRoom <= reach * reach);
   }
 

@@ -38,14 +38,12 @@ class Extraction {
   void run(bool is_ordered) {
     number_vertices();
     std::fill_n(number_.get(), all_.count, kNoNeighbor);
-    order_ = streamed_array<std::int32_t>(chosen_.count);
     if (is_ordered) {
-      sort();
+      number_by_corners();
     } else {
-      for (std::uint32_t i = 0; i < chosen_.count; ++i) order_[i] = static_cast<std::int32_t>(i);
-    }
-    for (std::uint32_t i = 0; i < chosen_.count; ++i) {
-      number_[chosen_.triangles[order_[i]]] = static_cast<std::int32_t>(i);
+      for (std::uint32_t i = 0; i < chosen_.count; ++i) {
+        number_[chosen_.triangles[i]] = static_cast<std::int32_t>(i);
+      }
     }
     write();
   }
@@ -59,14 +57,14 @@ class Extraction {
   StreamedArray<std::int32_t> take_order() { return std::move(order_); }
 
  private:
-  static constexpr std::uint32_t kAhead = 24;  // triangles: their order may be a random one
   static constexpr std::int32_t kNoNumber = -1;
 
   struct Entry {
-    std::int32_t second, place;
+    std::int32_t second;
+    Triangle triangle;
   };
 
-  Triangle triangle(std::int32_t place) const {
+  Triangle triangle(std::uint32_t place) const {
     return triangle_numbered(chosen_.triangles[place]);
   }
 
@@ -75,7 +73,7 @@ class Extraction {
     auto is_used = scratch_array<bool>(places);
     std::fill_n(is_used.get(), places, false);
     for (std::uint32_t i = 0; i < chosen_.count; ++i) {
-      const Triangle t = triangle(static_cast<std::int32_t>(i));
+      const Triangle t = triangle(i);
       for (std::uint32_t k = 0; k < 3; ++k) is_used[number(all_.vertex(t, k))] = true;
     }
     auto number_at = scratch_array<std::int32_t>(places);  // by row
@@ -94,41 +92,43 @@ class Extraction {
   std::int32_t row(std::int32_t place) const { return rows_ == nullptr ? place : rows_[place]; }
 
   // Counts by first corner, then sorts the few that start at the same one.
-  void sort() {
+  void number_by_corners() {
     const std::size_t vertex_count = vertices_.size();
     auto begins = scratch_array<std::uint32_t>(vertex_count + 1);
     std::fill_n(begins.get(), vertex_count + 1, 0u);
-    for (std::uint32_t i = 0; i < chosen_.count; ++i) ++begins[first(i) + 1];
+    for (std::uint32_t i = 0; i < chosen_.count; ++i) ++begins[corner(i, chosen_.firsts[i]) + 1];
     for (std::size_t v = 0; v < vertex_count; ++v) begins[v + 1] += begins[v];
     auto entries = scratch_array<Entry>(chosen_.count);
     for (std::uint32_t i = 0; i < chosen_.count; ++i) {
-      const Triangle t = triangle(static_cast<std::int32_t>(i));
-      const std::uint32_t second = corner_after(chosen_.firsts[i]);
-      entries[begins[first(i)]++] = {vertex_[number(all_.vertex(t, second))],
-                                     static_cast<std::int32_t>(i)};
+      const std::uint32_t first = chosen_.firsts[i];
+      entries[begins[corner(i, first)]++] = {
+          static_cast<std::int32_t>(corner(i, corner_after(first))), triangle(i)};
     }
     std::uint32_t begin = 0;
     for (std::size_t v = 0; v < vertex_count; ++v) {
       const std::uint32_t end = begins[v];
       std::sort(entries.get() + begin, entries.get() + end,
                 [](const Entry& a, const Entry& b) { return a.second < b.second; });
-      for (; begin < end; ++begin) order_[begin] = entries[begin].place;
+      for (; begin < end; ++begin) {
+        number_[number(entries[begin].triangle)] = static_cast<std::int32_t>(begin);
+      }
     }
   }
-  std::size_t first(std::uint32_t i) const {
-    const Triangle t = triangle(static_cast<std::int32_t>(i));
-    return static_cast<std::size_t>(vertex_[number(all_.vertex(t, chosen_.firsts[i]))]);
+  std::size_t corner(std::uint32_t i, std::uint32_t k) const {
+    return static_cast<std::size_t>(vertex_[number(all_.vertex(triangle(i), k))]);
   }
 
+  // In the order of the sweep: what is read lies side by side, and what is written need not.
   void write() {
     const std::size_t size = std::size_t{3} * chosen_.count;
+    order_ = streamed_array<std::int32_t>(chosen_.count);
     triangles_ = streamed_array<std::int32_t>(size);
     neighbors_ = streamed_array<std::int32_t>(size);
     if (fixed_ != nullptr) made_fixed_ = streamed_array<bool>(size);
     for (std::uint32_t i = 0; i < chosen_.count; ++i) {
-      fetch_ahead(i);
-      const Triangle t = triangle(order_[i]), own{i};
-      std::uint32_t from = chosen_.firsts[order_[i]];
+      const Triangle t = triangle(i), own = triangle_numbered(number_[chosen_.triangles[i]]);
+      order_[number(own)] = static_cast<std::int32_t>(i);
+      std::uint32_t from = chosen_.firsts[i];
       for (std::uint32_t k = 0; k < 3; ++k, from = corner_after(from)) {
         triangles_[entry_of(own, k)] = vertex_[number(all_.vertex(t, from))];
         const Triangle beyond = all_.neighbor(t, from);
@@ -137,15 +137,6 @@ class Extraction {
         if (fixed_ != nullptr) made_fixed_[entry_of(own, k)] = fixed_[entry_of(t, from)];
       }
     }
-  }
-
-  void fetch_ahead(std::uint32_t i) const {
-#if defined(__GNUC__)
-    const std::uint32_t later = std::min(i + kAhead, chosen_.count - 1);
-    const std::size_t entry = entry_of(triangle(order_[later]), 0);
-    __builtin_prefetch(all_.corners + entry);
-    __builtin_prefetch(all_.neighbors + entry);
-#endif
   }
 
   PlaneTriangles all_;
