@@ -12,8 +12,8 @@ from ...base.georeference import describe_unknown, find_plane_units
 from ...base.policies import SlopeUnit
 from ...base.products import product
 from ...base.results import Table
-from ..surface import measure_plane_areas
-from .gradients import slope
+from ..surface import compute_normals, measure_slopes
+from .moments import list_terms, summarise
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -52,6 +52,11 @@ def slope_statistics(
     OptionError
         If the unit is another, or percentiles are not from 0 to 100.
 
+    Notes
+    -----
+    Area, mean and standard deviation come from exact sums, rounded once: the same for any order of
+    triangles.
+
     Examples
     --------
     >>> import tinsmith as ts
@@ -62,9 +67,9 @@ def slope_statistics(
     """
     choice("unit", unit, SlopeUnit)
     shares = as_percentages("percentiles", percentiles)
-    values, weights = slope(tin, unit=unit), measure_plane_areas(tin)
-    mean = float(np.average(values, weights=weights))
-    deviation = float(np.sqrt(np.average((values - mean) ** 2, weights=weights)))
+    normals = compute_normals(tin)
+    values, weights = measure_slopes(normals, unit), 0.5 * normals[:, 2]
+    area, mean, deviation = summarise(list_terms(values, weights))
     measured = {
         "minimum": values.min(),
         "mean": mean,
@@ -75,7 +80,7 @@ def slope_statistics(
     measured |= {f"p{share:g}": value for share, value in zip(shares, found, strict=True)}
     symbol = SYMBOLS[unit] or "ratio"
     return Table(
-        {name: np.array([value]) for name, value in {"area": weights.sum(), **measured}.items()},
+        {name: np.array([value]) for name, value in {"area": area, **measured}.items()},
         units={"area": find_plane_units(tin.crs).area, **dict.fromkeys(measured, symbol)},
         name="slope_statistics",
         notes=describe_unknown(tin.crs, tin.elevation_unit),

@@ -102,12 +102,18 @@ def find_thin(points: Float64Array, triangles: Int32Array, rounding: float) -> B
 def _measure_thin(
     points: Float64Array, triangles: Int32Array, rounding: float
 ) -> tuple[BoolArray, Int64Array]:
-    """Tell which triangles are thinner above their longest edge, which is returned too."""
+    """Tell which triangles are thinner above their longest edge, which is returned too.
+
+    Counted from the first corner by easting, then northing, however corners are numbered.
+    """
     height = _ROUNDINGS * rounding
     xy = points[triangles, :2]
+    is_west = xy[..., 0] == xy[..., 0].min(axis=1)[:, None]
+    first = np.argmin(np.where(is_west, xy[..., 1], np.inf), axis=1)
+    xy = xy[np.arange(len(xy))[:, None], (first[:, None] + (0, 1, 2)) % 3]
     edges = xy[:, [2, 0, 1]] - xy[:, [1, 2, 0]]
     (ux, uy), (vx, vy) = edges[:, 1].T, edges[:, 2].T
     lengths = np.hypot(edges[..., 0], edges[..., 1])
     with np.errstate(over="ignore", invalid="ignore"):
         is_thin = np.abs(ux * vy - uy * vx) <= height * lengths.max(axis=1)
-    return is_thin, lengths.argmax(axis=1)
+    return is_thin, (lengths.argmax(axis=1) + first) % 3

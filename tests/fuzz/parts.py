@@ -47,10 +47,10 @@ def examine(case: Case) -> str:
     except ts.PointsError:
         return "refused"
     tiling = Tiling(PointCells(xyz, case["xs"], case["ys"]))
-    require_parts_of_products(
+    made = require_parts_of_products(
         tin, tiling, levels=case["levels"], cells=case["cells"], seed=case["seed"]
     )
-    return f"{len(tiling.parts)} tiles" if len(tiling.parts) < 5 else "more tiles"
+    return f"{made} products"
 
 
 CAMPAIGNS = (Campaign("parts", "products of a surface in tiles", generate, examine),)

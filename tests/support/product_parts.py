@@ -113,36 +113,46 @@ def join_places(tiling, asked, seed=0):
 
 
 def require_parts_of_products(tin, tiling, *, levels, cells, seed):
-    """Require every product of tiles to be that of the whole, or refused as that is."""
-    points = tin.points
+    """Require every product of tiles to be that of the whole; return how many the whole has."""
+    points, made = tin.points, 0
     grid = make_grid(points, cells)
     for value in ("elevation", "slope", "aspect", "hillshade"):
         for smooth in (None,) if value == "elevation" else (False, True):
             options = rasters.RasterOptions(grid, value, bool(smooth))
-            found = join_raster(tiling, options, seed)
-            try:
-                wanted = ts.rasterize(tin, grid=grid, value=value, smooth=smooth).bands[value]
-            except ts.PointsError:  # no cell has a value
-                wanted = np.full(grid.shape, np.nan)
-            require_same_bits(found, wanted, value)
+            whole = _make(ts.rasterize, tin, grid=grid, value=value, smooth=smooth)
+            if whole is not None:
+                found = join_raster(tiling, options, seed)
+                require_same_bits(found, whole.bands[value], value)
+                made += 1
     given = {"levels": levels}
-    require_same_features(join_contours(tiling, points, given, seed), ts.contours(tin, **given))
-    _require_bands(tin, tiling, given, seed)
-    options = make_volume_options(tin, levels[0], None)
-    require_same_table(join_volumes(tiling, options, seed), ts.volume(tin, base=levels[0]))
-    middle = 0.5 * (points[:-1, :2] + points[1:, :2])
+    whole = _make(ts.contours, tin, **given)
+    if whole is not None:
+        require_same_features(join_contours(tiling, points, given, seed), whole)
+        made += 1
+    whole = _make(ts.contour_bands, tin, **given)
+    found = None if whole is None else _make(join_bands, tiling, points, given, seed)
+    if found is not None:  # polygons that meet themselves need the whole, thin triangles a tile
+        require_same_features(found, whole)
+        made += 1
+    whole = _make(ts.volume, tin, base=levels[0])
+    if whole is not None:
+        options = make_volume_options(tin, levels[0], None)
+        require_same_table(join_volumes(tiling, options, seed), whole)
+        made += 1
+    middle = 0.5 * points[:-1, :2] + 0.5 * points[1:, :2]
     asked = np.concatenate([points[:, :2], middle])
     require_same_bits(join_places(tiling, asked, seed), tin.interpolate(asked), "places")
-    ends = points[np.array([0, len(points) // 2, len(points) - 1]), :2]
-    if (np.diff(ends, axis=0) != 0).any(axis=1).all():
-        surface = join_lines(tiling, tin, [ends], seed)
-        require_same_table(ts.profile(surface, ends), ts.profile(tin, ends))
+    line = points[np.array([0, len(points) // 2, len(points) - 1]), :2]
+    whole = _make(ts.profile, tin, line)
+    if whole is not None:
+        require_same_table(ts.profile(join_lines(tiling, tin, [line], seed), line), whole)
+        made += 1
+    return made
 
 
-def _require_bands(tin, tiling, given, seed):
+def _make(function, *given, **options):
+    """Return a product, or None if it is refused."""
     try:
-        wanted = ts.contour_bands(tin, **given)
-        found = join_bands(tiling, tin.points, given, seed)
-    except ts.PointsError:  # polygons that meet themselves need the whole, thin triangles a tile
-        return
-    require_same_features(found, wanted)
+        return function(*given, **options)
+    except ts.TinsmithError:
+        return None

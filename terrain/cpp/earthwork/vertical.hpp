@@ -97,10 +97,14 @@ inline void direct(CrossingEdge& edge, CrossingEdge& other) {
   other.end_area = -other.end_area;
 }
 
-// Of the second edge above the first where they cross; the same whichever way edges are directed.
+// Of the second edge above the first where they cross; the same whichever way edges are directed,
+// and the opposite if they are exchanged.
 inline double height_at_crossing(CrossingEdge first, CrossingEdge second) {
   direct(first, second);
   direct(second, first);
+  if (lexicographically_before(second.start, first.start)) {
+    return -height_at_crossing(second, first);
+  }
   const double datum = first.start_elevation;
   const double weight[3] = {second.end_area, -second.start_area, -first.start_area};
   const double elevation[3] = {second.start_elevation, second.end_elevation, first.end_elevation};
