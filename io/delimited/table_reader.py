@@ -67,6 +67,9 @@ _WGS84 = "EPSG:4326"
 _SOME = 4_096
 """Points of each block that the elevations and places of all are judged by."""
 
+_MOST_KEPT = 1 << 18
+"""Such points of all blocks; of more every other one is kept."""
+
 _MOST_NOTES = 20
 """Notes of single blocks that are told."""
 
@@ -377,6 +380,7 @@ class _Places:
         self.is_headed = is_headed
         self._area = area
         self._some: list[Taken] = []
+        self._share = 1
         self._columns: Columns | None = None
         self._is_local = True
         self._counts = [0, 0, 0]
@@ -394,11 +398,16 @@ class _Places:
         if len(self._some) == 1:
             self._count(self._some[0])
             self._some[0] = _thin(self._some[0])
+        self._columns = columns
         if self._some:
             self._count(taken)
-            taken = _thin(taken)
-        self._columns = columns
+            taken = _thin(taken, self._share)
         self._some.append(taken)
+        if len(self._some) > 1 and sum(len(one.points) for one in self._some) > _MOST_KEPT:
+            self._some = [
+                Taken(one.points[::2].copy(), one.rows[::2].copy(), {}) for one in self._some
+            ]
+            self._share *= 2
 
     def _count(self, taken: Taken) -> None:
         area, xy = self._area, taken.points[:, :2]
@@ -445,8 +454,8 @@ _FIRST = 6
 """Lines of points outside that are kept: one more than are named."""
 
 
-def _thin(taken: Taken) -> Taken:
-    step = slice(None, None, max(1, len(taken.points) // _SOME))
+def _thin(taken: Taken, share: int = 1) -> Taken:
+    step = slice(None, None, max(1, len(taken.points) * share // _SOME))
     return Taken(taken.points[step].copy(), taken.rows[step].copy(), {})
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .nodata import describe_elevations, describe_suspects, find_suspect_elevations, is_customary
+from .nodata import describe_elevations, describe_suspects, find_suspect_elevations
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
@@ -17,6 +17,9 @@ __all__ = ["ElevationSummary"]
 
 _SOME = 65_536
 """Elevations of each block that are kept, spread over it."""
+
+_MOST = 1 << 20
+"""Elevations of all blocks that are kept; of more every other one is."""
 
 _EXTREMES = 4
 """Lowest and highest values of each block that are kept, and counted."""
@@ -45,6 +48,7 @@ class ElevationSummary:
     def __init__(self, what: str, *, keeps_all: bool = False) -> None:
         self._what, self._keeps_all = what, keeps_all
         self._kept: list[Float64Array] = []
+        self._share = 1
         self._counts: Counter[float] = Counter()
         self._n_blocks = 0
         self._n = 0
@@ -55,16 +59,19 @@ class ElevationSummary:
             return
         self._n_blocks += 1
         self._n += len(z)
-        if not self._keeps_all and self._n_blocks == 2:
+        if self._keeps_all or self._n_blocks == 1:
+            self._kept.append(z)
+            return
+        if self._n_blocks == 2:
             self._kept = [self._thin(self._kept[0])]
-        self._kept.append(z if self._keeps_all or self._n_blocks == 1 else self._thin(z))
+        self._kept.append(self._thin(z))
+        if sum(map(len, self._kept)) > _MOST:
+            self._kept = [np.concatenate(self._kept)[::2].copy()]
+            self._share *= 2
 
     def _thin(self, z: Float64Array) -> Float64Array:
-        counts: dict[float, int] = {}
-        extremes = [one for sign in (1.0, -1.0) for one in _count_extremes(z, sign, counts)]
-        self._counts.update(counts)
-        some = z[:: max(1, len(z) // _SOME)]
-        return np.concatenate([some, extremes])
+        self._counts.update(_count_extremes(z, 1.0) | _count_extremes(z, -1.0))
+        return z[:: max(1, len(z) * self._share // _SOME)].copy()
 
     def describe(self) -> list[str]:
         """Say which elevations may stand for no data, as :func:`describe_elevations`."""
@@ -73,23 +80,23 @@ class ElevationSummary:
         kept = np.concatenate(self._kept)
         if self._keeps_all or self._n_blocks == 1:
             return describe_elevations(kept, self._what)
-        if is_customary(float(kept[0])) and bool((kept == kept[0]).all()):
-            return describe_elevations(np.full(self._n, kept[0]), self._what)
+        repeats = [min(count, _REPEATS) for count in self._counts.values()]
+        kept = np.concatenate([kept, np.repeat([*self._counts], repeats)])
+        if bool((kept == kept[0]).all()):
+            return describe_elevations(np.broadcast_to(kept[0], (self._n,)), self._what)
         suspects = find_suspect_elevations(kept)
         told = [replace(one, count=self._counts.get(one.value, one.count)) for one in suspects]
         return describe_suspects(told, self._what)
 
 
-def _count_extremes(z: Float64Array, sign: float, counts: dict[float, int]) -> list[float]:
-    """Count the lowest values, or the highest, and return them as often as they matter."""
-    found: list[float] = []
+def _count_extremes(z: Float64Array, sign: float) -> dict[float, int]:
+    """Return the lowest values (sign 1), or the highest (-1), and how often they are there."""
+    found: dict[float, int] = {}
     last = -np.inf
     for _ in range(_EXTREMES):
         rest = (sign * z)[sign * z > last]
         if len(rest) == 0:
             break
         last = float(rest.min())
-        count = int((rest == last).sum())
-        counts[sign * last] = count
-        found += [sign * last] * min(count, _REPEATS)
+        found[sign * last] = int((rest == last).sum())
     return found

@@ -5,7 +5,7 @@ import pytest
 from support.streams import gather, require_same
 
 import tinsmith as ts
-from tinsmith.io.delimited import survey_text
+from tinsmith.io.delimited import survey_text, table_reader
 from tinsmith.io.delimited.lines import TextLines, iterate_lines
 
 RNG = np.random.default_rng(1)
@@ -150,6 +150,17 @@ def test_places_outside_the_area_of_use_are_counted(tmp_path, small_blocks):
     points = XYZ.copy()
     points[[5, 250, 251, 480], 1] = 9e6
     require_same(write(tmp_path, with_header(rows_of(points))), crs=UTM)
+
+
+@pytest.mark.parametrize("most", [20, 10**6])
+def test_most_points_outside_the_area_of_use(tmp_path, monkeypatch, most):
+    """What all rows are judged by are some of each block, and fewer of each the more there are."""
+    monkeypatch.setattr(survey_text, "BLOCK_BYTES", 900)
+    monkeypatch.setattr(table_reader, "_MOST_KEPT", most)
+    monkeypatch.setattr(table_reader, "_SOME", 5)
+    points = XYZ.copy()
+    points[100:, 1] = 9.3e6
+    require_same(write(tmp_path, with_header(rows_of(points))), crs=UTM, chunks=(50,))
 
 
 def test_exchanged_coordinates_are_refused_at_the_end(tmp_path, small_blocks):
