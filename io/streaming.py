@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from contextvars import Context, copy_context
 from dataclasses import replace
@@ -15,7 +15,7 @@ import numpy as np
 from ..base.checks import require_count
 from ..base.errors import OptionError, ReadError
 from ..base.sentences import FILE
-from ..tin import TIN, Bounds
+from ..tin import Bounds
 from .door import naming_file
 from .isolated.archives import unpack
 from .isolated.spooling import open_ordinary_file
@@ -36,6 +36,7 @@ from .registry import (
     StreamHead,
     join_chunks,
     make_source_header,
+    yield_survey,
 )
 from .reprojection import checking_crs
 
@@ -46,7 +47,6 @@ if TYPE_CHECKING:
     from typing import Self
 
     from ..base.crs import CRS, CrsLike, Unit, UnitLike
-    from ..tin import Survey
     from .reading import Call
     from .registry import Blocks
 
@@ -243,8 +243,8 @@ class _ReadAhead:
         self._thread = ThreadPoolExecutor(1)
         self._coming = self._begin()
 
-    def _begin(self) -> Any:
-        return self._thread.submit(self._context.run, next, self._items, None)
+    def _begin(self) -> Future[Any]:
+        return self._thread.submit(lambda: self._context.run(next, self._items, None))
 
     def __iter__(self) -> Iterator[StreamHead | PointChunk | StreamEnd]:
         return self
@@ -265,7 +265,7 @@ class _ReadAhead:
 
     def close(self) -> None:
         """End the generator, once what is on the way has come."""
-        self._thread.submit(self._context.run, self._items.close).result()
+        self._thread.submit(lambda: self._context.run(self._items.close)).result()
         self._thread.shutdown()
         self.close = _do_nothing  # type: ignore[method-assign]
 
@@ -330,31 +330,13 @@ def _slice_whole(
             f"{_LARGEST_WHOLE / 1e6:,.0f} MB: write the points as LAZ, GeoParquet or CSV.",
             path=named,
         )
-    survey = _require_points(read(file, format=name, **options), named)
-    yield StreamHead(survey.crs, survey.elevation_unit, len(survey))
-    sources = survey.row_sources
-    rows = np.arange(len(survey)) if sources is None else sources.lines
-    if len(rows) > 1 and not (np.diff(rows) > 0).all():
-        rows = np.arange(len(survey))
-    yield PointChunk(survey.points, rows, dict(survey.attributes))
-    return StreamEnd(survey.notes, survey.skipped, has_voids=len(survey.extent) > 0)
+    return (yield from yield_survey(read(file, format=name, **options)))
 
 
 def _measure_size(file: Path) -> int:
     if not file.is_dir():
         return file.stat().st_size
     return sum(one.stat().st_size for one in file.rglob("*") if one.is_file())
-
-
-def _require_points(found: Survey | TIN, file: Path) -> Survey:
-    if isinstance(found, TIN):
-        raise ReadError(f"'{file}' holds a TIN, not points alone: read_tin reads it.", path=file)
-    if found.has_lines:
-        raise ReadError(
-            f"'{file}' holds lines beside its points, and points alone are read part by part.",
-            path=file,
-        )
-    return found
 
 
 # ------------------------------------------------------------------ headers and boxes

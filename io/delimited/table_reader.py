@@ -466,7 +466,8 @@ def _require_no_headings(lines: TextLines, layout: Layout) -> None:
     if not is_other.any():
         return
     own = replace(lines, first=0)
-    unit, axes = (find(own, layout.rows - lines.first) for find in (find_unit_line, find_axes_line))
+    rows = layout.rows - lines.first
+    unit, axes = find_unit_line(own, rows), find_axes_line(own, rows)
     if (unit is not None and unit.unit) or axes is not None:
         raise ReadError(
             f"a line between lines {lines.first + 1} and {lines.last + 1} tells the unit or the "

@@ -8,5 +8,6 @@ from .chunks import gather as gather
 from .chunks import gathering as gathering
 from .chunks import join_chunks as join_chunks
 from .chunks import make_source_header as make_source_header
+from .chunks import yield_survey as yield_survey
 from .format import SURFACES as SURFACES
 from .format import Format as Format

@@ -12,7 +12,7 @@ import numpy as np
 from ...base.errors import ReadError
 from ...base.sentences import FILE
 from ...base.types import RowSources
-from ...tin import Survey
+from ...tin import TIN, Survey
 from ..isolated.limits import measure_free_memory
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ __all__ = [
     "gathering",
     "join_chunks",
     "make_source_header",
+    "yield_survey",
 ]
 
 _BYTES_PER_POINT = 24
@@ -144,6 +145,27 @@ def make_source_header(path: Path, name: str, **told: Any) -> SourceHeader:
     size = sum(one.st_size for one in stats)
     changed = max((one.st_mtime_ns for one in stats), default=path.stat().st_mtime_ns)
     return SourceHeader(path, name, size, changed, **told)
+
+
+def yield_survey(found: Survey | TIN) -> Blocks:
+    """Give the points of a survey that was read at once.
+
+    Raises
+    ------
+    ReadError
+        If it is a TIN, or holds lines.
+    """
+    if isinstance(found, TIN):
+        raise ReadError(f"{FILE} holds a TIN, not points alone: read_tin reads it.")
+    if found.has_lines:
+        raise ReadError(f"{FILE} holds lines beside its points, and points alone are streamed.")
+    yield StreamHead(found.crs, found.elevation_unit, len(found))
+    sources = found.row_sources
+    rows = np.arange(len(found)) if sources is None else sources.lines
+    if len(rows) > 1 and not (np.diff(rows) > 0).all():
+        rows = np.arange(len(found))
+    yield PointChunk(found.points, rows, dict(found.attributes))
+    return StreamEnd(found.notes, found.skipped, has_voids=len(found.extent) > 0)
 
 
 def join_chunks(chunks: Sequence[PointChunk]) -> PointChunk:

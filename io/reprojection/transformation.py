@@ -286,7 +286,8 @@ def find_bounds(
             transformer = pyproj.Transformer.from_crs(
                 source.horizontal.to_pyproj(), target.horizontal.to_pyproj(), always_xy=True
             )
-            box = list(transformer.transform_bounds(*box, densify_pts=_BETWEEN))
+            west, south, east, north = box
+            box = list(transformer.transform_bounds(west, south, east, north, densify_pts=_BETWEEN))
         except ProjError:
             return None
     is_box = np.isfinite(box).all() and box[0] <= box[2] and box[1] <= box[3]

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from ...base.crs import CRS
 
 
-__all__ = ["read_features"]
+__all__ = ["make_layer", "read_features"]
 
 
 _FOLDERS = (".gdb",)
@@ -91,7 +91,7 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
     library = "pyarrow" if is_parquet(content) else "pyogrio"
     optional.require(library, "Reading vector files")
     head = read_json_members(content, path)
-    child = "parquet_child" if is_parquet(content) else "gdal_child"
+    child = "parquet.child" if is_parquet(content) else "gdal_child"
     parts = [one for one in path.iterdir() if one.is_file()] if path.is_dir() else [path]
     size = sum(one.stat().st_size for one in parts)
     value, arrays = run_isolated(
@@ -105,6 +105,20 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
     crs = None if head.names_no_crs else CRS.of(value["crs"])
     in_metres = head.is_json and crs is not None and crs.is_geographic  # by RFC 7946
     unit = value["elevation_unit"] or head.elevation_unit or ("metre" if in_metres else "")
+    return _drop_heights_above_ground(
+        make_layer(path, value | {"elevation_unit": unit}, arrays, crs, has_surfaces=not lines_only)
+    )
+
+
+def make_layer(
+    path: Path,
+    value: dict[str, Any],
+    arrays: dict[str, AnyArray],
+    crs: CRS | None,
+    *,
+    has_surfaces: bool = True,
+) -> Layer:
+    """Return what a child read as a layer, without features that have no geometry."""
     columns = {}
     for k, name in enumerate(name_columns(value["names"])):
         texts = value["texts"].get(str(k))
@@ -113,14 +127,14 @@ def _read_layer(path: Path, layer: str | None, where: str | None, *, lines_only:
     found = Layer(
         path,
         arrays["numbers"],
-        _parse_shapes(arrays, has_surfaces=not lines_only),
+        _parse_shapes(arrays, has_surfaces=has_surfaces),
         columns,
         crs,
         tuple(value.get("notes", ())),
         tuple(name_apart(value["names"])),
-        unit,
+        value["elevation_unit"] or "",
     )
-    return _drop_heights_above_ground(_drop_without_geometry(found))
+    return _drop_without_geometry(found)
 
 
 def _read_design(path: Path, layer: str | None, where: str | None) -> Layer:

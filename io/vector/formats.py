@@ -102,6 +102,9 @@ FORMATS = (
     _make(
         *("geoparquet", "GeoParquet", ".parquet", ".geoparquet"),
         writer="geoparquet:write",
+        stream=f"{__package__}.parquet.streaming:stream",
+        describe=f"{__package__}.parquet.streaming:describe",
+        read_box=f"{__package__}.parquet.streaming:read_box",
         extra="interop",
         sniff=is_parquet,
     ),

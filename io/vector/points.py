@@ -28,13 +28,20 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ...base.arrays import BoolArray, Float64Array, Int64Array, ObjectArray
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array, ObjectArray
     from ...base.crs import CrsLike, UnitLike
     from ...base.policies import FacePolicy
 
-__all__ = ["read"]
+__all__ = [
+    "POINT",
+    "collect_attributes",
+    "gather_points",
+    "list_kinds",
+    "read",
+    "require_finite",
+]
 
-_POINT, _LINE, _RING, _POLYGON = range(4)
+POINT, _LINE, _RING, _POLYGON = range(4)
 _TRIANGLE_CORNERS = 4
 
 
@@ -92,18 +99,12 @@ def read(
     declared = Unit.of(elevation_unit)
     unit = find_elevation_unit(features, declared)
     asked = _Asked(CRS.of(crs), declared, unit, z_field, parse_nodata(nodata))
-    shapely = optional.load("shapely")
-    shapes, _ = _take_apart(features)
-    found = np.unique(shapely.get_type_id(shapes[~shapely.is_empty(shapes)])).tolist()
-    kinds = {_LINE if kind == _RING else int(kind) for kind in found}
-    if kinds == {_POINT}:
-        shapely = optional.load("shapely")
-        xyz, rows = shapely.get_coordinates(features.geometries, include_z=True, return_index=True)
-        has_z = shapely.has_z(features.geometries)[rows]
-        return _make_survey(_Vertices(xyz, rows, np.arange(len(xyz) + 1), has_z), features, asked)
+    kinds = list_kinds(features)
+    if kinds == {POINT}:
+        return _make_survey(gather_points(features), features, asked)
     if role is None and kinds == {_POLYGON} and _are_triangles(features):
         return _make_triangles(features, asked, faces)
-    if _POINT in kinds:
+    if POINT in kinds:
         raise ReadError(
             f"{FILE} holds both points and lines or polygons: one kind is needed; the option "
             "where chooses some features."
@@ -114,21 +115,7 @@ def read(
             f"{FILE} holds {what}, no points: the option `lines_as` takes their vertices as "
             "points, or them as breaklines."
         )
-    shapely = optional.load("shapely")
-    shapes, rows = _take_apart(features)
-    is_polygon = shapely.get_type_id(shapes) == _POLYGON
-    rings, of_polygon = shapely.get_rings(shapes[is_polygon], return_index=True)
-    lines = np.concatenate([shapes[~is_polygon], rings])
-    of_lines = np.concatenate([rows[~is_polygon], rows[is_polygon][of_polygon]])
-    there = ~shapely.is_empty(lines)
-    lines, of_lines = lines[there], of_lines[there]
-    order = np.argsort(of_lines, kind="stable")
-    lines, of_lines = lines[order], of_lines[order]
-    xyz, line = shapely.get_coordinates(lines, include_z=True, return_index=True)
-    bounds = find_offsets(shapely.get_num_coordinates(lines))
-    return _make_line_survey(
-        _Vertices(xyz, of_lines[line], bounds, shapely.has_z(lines)[line]), features, asked, role
-    )
+    return _make_line_survey(_gather_lines(features), features, asked, role)
 
 
 class _Asked(NamedTuple):
@@ -150,6 +137,17 @@ class _Vertices(NamedTuple):
     has_z: BoolArray
 
 
+# ----------------------------------------------------------------------- the geometry
+
+
+def list_kinds(features: Layer) -> set[int]:
+    """Return the kinds of single geometries, with collections taken apart."""
+    shapely = optional.load("shapely")
+    shapes, _ = _take_apart(features)
+    found = np.unique(shapely.get_type_id(shapes[~shapely.is_empty(shapes)])).tolist()
+    return {_LINE if kind == _RING else int(kind) for kind in found}
+
+
 def _take_apart(features: Layer) -> tuple[ObjectArray, Int64Array]:
     """Return single geometries, and the row of the feature of each; collections may be nested."""
     shapely = optional.load("shapely")
@@ -160,10 +158,33 @@ def _take_apart(features: Layer) -> tuple[ObjectArray, Int64Array]:
     return shapes, rows
 
 
-# ------------------------------------------------------------------------ the survey
+def gather_points(features: Layer) -> _Vertices:
+    """Return the points of features."""
+    shapely = optional.load("shapely")
+    xyz, rows = shapely.get_coordinates(features.geometries, include_z=True, return_index=True)
+    has_z = shapely.has_z(features.geometries)[rows]
+    return _Vertices(xyz, rows, np.arange(len(xyz) + 1), has_z)
 
 
-def _make_survey(vertices: _Vertices, features: Layer, asked: _Asked) -> Survey:
+def _gather_lines(features: Layer) -> _Vertices:
+    """Return the vertices of lines and rings; the last of a closed one is left out of no line."""
+    shapely = optional.load("shapely")
+    shapes, rows = _take_apart(features)
+    is_polygon = shapely.get_type_id(shapes) == _POLYGON
+    rings, of_polygon = shapely.get_rings(shapes[is_polygon], return_index=True)
+    lines = np.concatenate([shapes[~is_polygon], rings])
+    of_lines = np.concatenate([rows[~is_polygon], rows[is_polygon][of_polygon]])
+    there = ~shapely.is_empty(lines)
+    lines, of_lines = lines[there], of_lines[there]
+    order = np.argsort(of_lines, kind="stable")
+    lines, of_lines = lines[order], of_lines[order]
+    xyz, line = shapely.get_coordinates(lines, include_z=True, return_index=True)
+    bounds = find_offsets(shapely.get_num_coordinates(lines))
+    return _Vertices(xyz, of_lines[line], bounds, shapely.has_z(lines)[line])
+
+
+def require_finite(vertices: _Vertices, features: Layer) -> None:
+    """Refuse coordinates that are not finite."""
     wrong = ~np.isfinite(vertices.xyz[:, :2]).all(axis=1)
     if wrong.any():
         row = int(np.argmax(wrong))
@@ -171,6 +192,13 @@ def _make_survey(vertices: _Vertices, features: Layer, asked: _Asked) -> Survey:
             f"{features.label(int(vertices.rows[row]))} has a coordinate that is not finite, "
             f"{vertices.xyz[row, :2].tolist()}: every coordinate must be a finite number."
         )
+
+
+# ------------------------------------------------------------------------ the survey
+
+
+def _make_survey(vertices: _Vertices, features: Layer, asked: _Asked) -> Survey:
+    require_finite(vertices, features)
     found = find_elevations(
         features, vertices.xyz[:, 2], vertices.has_z, vertices.rows, asked.z_field
     )
@@ -186,11 +214,9 @@ def _make_survey(vertices: _Vertices, features: Layer, asked: _Asked) -> Survey:
         "features without an elevation": len(np.unique(vertices.rows[np.isnan(found.z)])),
         "nodata points": int(is_nodata.sum()),
     }
-    names = features.names or tuple(features.columns)
-    columns = zip(names, features.columns.values(), strict=True)
     return Survey(
         points=placed.points,
-        attributes={name: column[rows] for name, column in columns},
+        attributes=collect_attributes(features, rows),
         crs=placed.crs,
         elevation_unit=placed.elevation_unit,
         source=features.path.name,
@@ -204,15 +230,18 @@ def _make_survey(vertices: _Vertices, features: Layer, asked: _Asked) -> Survey:
     )
 
 
+def collect_attributes(features: Layer, rows: Int64Array) -> dict[str, AnyArray]:
+    """Return the columns under the names of the file."""
+    names = features.names or tuple(features.columns)
+    columns = zip(names, features.columns.values(), strict=True)
+    return {name: column[rows] for name, column in columns}
+
+
 def _make_line_survey(
     vertices: _Vertices, features: Layer, asked: _Asked, role: LineReading
 ) -> Survey:
     """Return the vertices as points, those that close a ring once, and the lines if asked for."""
-    starts, ends = vertices.bounds[:-1], vertices.bounds[1:] - 1
-    closed = (vertices.xyz[starts, :2] == vertices.xyz[ends, :2]).all(axis=1) & (ends > starts)
-    found = np.zeros(len(vertices.xyz), np.bool_)
-    found[ends[closed]] = True
-    is_open = ~found
+    is_open = ~_find_closing(vertices)
     if role == "points":
         xyz, rows, _, has_z = vertices
         return _make_survey(
@@ -224,24 +253,40 @@ def _make_line_survey(
             f"{counted(sum(survey.skipped.values()), 'feature')} without an "
             "elevation cannot be breaklines: the option `where` leaves them out."
         )
+    breaklines = _make_breaklines(survey.points, vertices, features)
+    return replace(_take_rows(survey, is_open), breaklines=breaklines)
+
+
+def _find_closing(vertices: _Vertices) -> BoolArray:
+    """Return which vertices stand for the first of their line again."""
+    starts, ends = vertices.bounds[:-1], vertices.bounds[1:] - 1
+    closed = (vertices.xyz[starts, :2] == vertices.xyz[ends, :2]).all(axis=1) & (ends > starts)
+    found = np.zeros(len(vertices.xyz), np.bool_)
+    found[ends[closed]] = True
+    return found
+
+
+def _make_breaklines(points: Float64Array, vertices: _Vertices, features: Layer) -> list[Breakline]:
     rows = vertices.rows[vertices.bounds[:-1]]
     names = features.columns.get("name", np.full(len(features.numbers), None, object))[rows]
-    lines = np.split(survey.points, vertices.bounds[1:-1])
-    breaklines = [
+    lines = np.split(points, vertices.bounds[1:-1])
+    return [
         Breakline(line, name="" if name is None or name != name else str(name))
         for line, name in zip(lines, names.tolist(), strict=True)
         if len(line) > 1
     ]
-    attributes = {name: values[is_open] for name, values in survey.attributes.items()}
-    return replace(
-        replace(survey, points=survey.points[is_open], attributes=attributes), breaklines=breaklines
-    )
+
+
+def _take_rows(survey: Survey, keep: BoolArray) -> Survey:
+    attributes = {name: values[keep] for name, values in survey.attributes.items()}
+    return replace(survey, points=survey.points[keep], attributes=attributes)
 
 
 # -------------------------------------------------------------------------- triangles
 
 
 def _are_triangles(features: Layer) -> bool:
+    """Whether every polygon has three corners with elevations, and no island."""
     shapely = optional.load("shapely")
     shapes, _ = _take_apart(features)
     return bool(
