@@ -11,7 +11,7 @@ import re
 import sqlite3
 import struct
 from contextlib import closing
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 

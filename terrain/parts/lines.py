@@ -13,7 +13,7 @@ import numpy as np
 
 from ...base.types import seal
 from ...tin import TIN
-from ..sections import move_aside
+from ..sections.rims import move_aside
 from .surfaces import are_owned_triangles, as_surface
 
 if TYPE_CHECKING:

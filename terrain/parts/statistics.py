@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..relief.gradients import compute_normals, measure_slopes
 from ..relief.moments import list_terms, merge_terms, summarise
+from ..surface import compute_normals, measure_slopes
 from .surfaces import are_owned_triangles, as_surface
 
 if TYPE_CHECKING:

@@ -13,7 +13,9 @@ from ..product_options import product_options
 
 
 @file_command
-@product_options("terrain.relief.shading.hillshade", "spacing azimuth altitude exaggeration smooth")
+@product_options(
+    "terrain.gridding.shading.hillshade", "spacing azimuth altitude exaggeration smooth"
+)
 @surface_options()
 def hillshade(file: Path, job: Job, **asked: Any) -> None:
     """Write a georeferenced hillshade raster of the TIN in FILE, or built from the points in it.
