@@ -8,8 +8,8 @@ import numpy as np
 
 from ...base.errors import ReadError
 from .columns import COORDINATES, shorten
-from .languages import LANGUAGES
 from .names import find_languages, parse_name
+from .vocabulary import read_languages
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -96,7 +96,7 @@ def _find_language(columns: Columns) -> str:
     """Return the language of a header where X is the northing on maps; "" for others."""
     spoken = [one for one in map(find_languages, columns.names) if one]
     languages = frozenset.intersection(*spoken) if spoken else frozenset()
-    are_all = bool(languages) and all(LANGUAGES[one].x_is_north for one in languages)
+    are_all = bool(languages) and all(read_languages()[one]["x_is_north"] for one in languages)
     return min(languages) if are_all else ""
 
 

@@ -7,17 +7,25 @@ words are joined ("ussurveyfoot").
 
 from __future__ import annotations
 
+import csv
 import re
 import unicodedata
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
-
-from .languages import LANGUAGES, LOOK_ALIKES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["CONTEXT", "Kind", "Sense", "find_sense", "list_languages", "simplify"]
+__all__ = [
+    "CONTEXT",
+    "Kind",
+    "Sense",
+    "find_sense",
+    "list_languages",
+    "read_languages",
+    "simplify",
+]
 
 Kind = Literal["word", "letter", "axis", "angle", "sure", "open", ""]
 """How a word names its role.
@@ -37,6 +45,20 @@ class Sense(NamedTuple):
     rank: int = 0
     """Of words for one role the first say it most clearly."""
 
+
+_SENSES: dict[str, Sense] = {
+    "easting": Sense("role", "easting", "word"),
+    "northing": Sense("role", "northing", "word"),
+    "elevation": Sense("role", "elevation", "sure"),
+    "height": Sense("role", "elevation", "open"),
+    "longitude": Sense("role", "easting", "angle"),
+    "latitude": Sense("role", "northing", "angle"),
+    "number": Sense("role", "number"),
+    "description": Sense("role", "description"),
+    "coordinate": Sense("noun"),
+}
+"""What the phrases say that a column of ``languages.tsv`` lists, parted by commas: "height" is for
+words of a height of some kind, "coordinate" for those that say nothing more beside another."""
 
 _ROLES: dict[tuple[str, Kind], str] = {
     ("easting", "word"): "easting eastings east",
@@ -120,6 +142,8 @@ _PLAIN_LETTERS = str.maketrans(
 )
 _SINGLE_LETTERS = {"ø": "ø", "ö": "ø"}
 """Short for "øst" and "öst", where O is short for "oeste"."""
+_LOOK_ALIKES = str.maketrans("ΧΥΖΕΝΗχυζХУЕНЗхун", "XYZENHxyzXYEHZxyh")
+"""Greek and Cyrillic letters that stand alone for the Latin letters of coordinates."""
 _WORDS = re.compile(r"[^\s/'№]+|№")
 _ACCENTS = re.compile("[\u0300-\u036f]")
 
@@ -127,11 +151,21 @@ _ACCENTS = re.compile("[\u0300-\u036f]")
 def simplify(word: str) -> str:
     """Return a word without case and accents."""
     if len(word) == 1:
-        word = word.translate(LOOK_ALIKES)
+        word = word.translate(_LOOK_ALIKES)
         if word.casefold() in _SINGLE_LETTERS:
             return _SINGLE_LETTERS[word.casefold()]
     letters = unicodedata.normalize("NFKD", word).casefold().translate(_PLAIN_LETTERS)
     return _ACCENTS.sub("", letters)
+
+
+@cache
+def read_languages() -> dict[str, dict[str, str]]:
+    """Return the words of ``languages.tsv`` by language and column.
+
+    ``x_is_north`` is not empty where X is the northing on the plans of the countries that speak it.
+    """
+    text = Path(__file__).with_name("languages.tsv").read_text("utf-8")
+    return {row.pop("language"): row for row in csv.DictReader(text.splitlines(), delimiter="\t")}
 
 
 @cache
@@ -143,19 +177,9 @@ def _make_vocabulary() -> dict[str, Sense]:
     }
     for what, text in (("unit", _UNITS), ("degree", _DEGREES), ("noun", _NOUNS)):
         words |= {simplify(word): Sense(what) for word in text.split()}  # type: ignore[arg-type]
-    for language in LANGUAGES.values():
-        for texts, sense in (
-            (language.easting, Sense("role", "easting", "word")),
-            (language.northing, Sense("role", "northing", "word")),
-            (language.elevation, Sense("role", "elevation", "sure")),
-            (language.height, Sense("role", "elevation", "open")),
-            (language.longitude, Sense("role", "easting", "angle")),
-            (language.latitude, Sense("role", "northing", "angle")),
-            (language.number, Sense("role", "number")),
-            (language.description, Sense("role", "description")),
-            (language.coordinate, Sense("noun")),
-        ):
-            for rank, phrase in enumerate(_list_phrases(texts)):
+    for language in read_languages().values():
+        for column, sense in _SENSES.items():
+            for rank, phrase in enumerate(_list_phrases(language[column])):
                 words.setdefault(phrase, sense._replace(rank=rank))
     return words
 
@@ -164,9 +188,9 @@ def _make_vocabulary() -> dict[str, Sense]:
 def _make_languages() -> dict[str, frozenset[str]]:
     english = {word for text in _ROLES.values() for word in text.split()} | {*_NOUNS.split()}
     found: dict[str, set[str]] = {}
-    for name, language in LANGUAGES.items():
-        for text in language[:-1]:
-            for phrase in _list_phrases(text):
+    for name, language in read_languages().items():
+        for column in _SENSES:
+            for phrase in _list_phrases(language[column]):
                 found.setdefault(phrase, set()).add(name)
     return {word: frozenset(names) for word, names in found.items() if word not in english}
 

@@ -58,7 +58,7 @@ def is_shipped(name):
     inside = Path(name)
     if inside.parts[0] == "cpp" or "src" in inside.parts[:-1]:
         return False
-    return inside.suffix in (".py", ".pyi", ".typed", ".css", ".html", ".js", ".sha256")
+    return inside.suffix in (".py", ".pyi", ".typed", ".css", ".html", ".js", ".sha256", ".tsv")
 
 
 def test_the_wheel_holds_the_packages_and_nothing_else(distributions):
