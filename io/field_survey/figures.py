@@ -29,7 +29,7 @@ class Curve(NamedTuple):
 class Fault(NamedTuple):
     """What is odd in the codes, and at which rows.
 
-    ``kind`` is one of the keys of :data:`.remarks.SENTENCES`; ``what`` a line or a word.
+    ``kind`` is a row of ``remarks.tsv``; ``what`` a line or a word.
     """
 
     kind: str

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 from ...base.sentences import inflect, printable
 from ...base.types import Finding
@@ -12,82 +14,26 @@ if TYPE_CHECKING:
 
     from .figures import Fault
 
-__all__ = ["SENTENCES", "describe_faults", "make_finding"]
+__all__ = ["describe_faults", "make_finding", "read_remarks"]
 
 _SHOWN = 5
 _LONGEST = 40
 
-SENTENCES = {
-    "end without a begin": (
-        "{count} [line ends|lines end] at [its|their] first shot, and [stays|stay] a point"
-    ),
-    "nothing to continue": ("{count} [shot continues|shots continue] a line that goes on nowhere"),
-    "mark not applied": "{count} [mark is|marks are] known and not applied",
-    "line without an end": "{count} [line is|lines are] begun and not ended, where others are",
-    "end of no curve": "{count} [curve ends|curves end] that [was|were] not begun",
-    "curve of too few points": (
-        "{count} [curve has|curves have] too few points and [is|are] straight"
-    ),
-    "curve without an end": (
-        "{count} [curve has|curves have] no end and [is|are] the arc through three shots"
-    ),
-    "curve without a leg": (
-        "{count} tangent [curve has|curves have] no leg beside [it|them] and [is|are] straight"
-    ),
-    "curve not tangent to the leg behind it": (
-        "{count} [curve leaves its|curves leave their] second leg by more than 10°"
-    ),
-    "curve that turns back": (
-        "{count} tangent [curve points|curves point] away from [its|their] end and [is|are] "
-        "straight"
-    ),
-    "repeated point": (
-        "{count} [shot stands|shots stand] at the place of the one before and [is|are] taken once"
-    ),
-    "no rectangle": "{count} [rectangle has|rectangles have] three corners in one line",
-    "rectangle out of square": (
-        "{count} [rectangle is|rectangles are] out of square by more than 5°"
-    ),
-    "code behind others": (
-        "{count} [code stands|codes stand] behind others only, and [makes a line|make lines] all "
-        "the same"
-    ),
-    "open figure": (
-        "{count} [ring is|rings are] not closed by a mark, and closed from last to first shot"
-    ),
-    "open building": "{count} [building is|buildings are] not closed",
-    "line that crosses itself": "{count} [line crosses itself|lines cross themselves]",
-    "line that jumps": (
-        "{count} [line jumps on a segment|lines jump on segments] more than ten times as long as "
-        "the others"
-    ),
-    "contour that is not level": "{count} contour [line has|lines have] several elevations",
-    "mark before a code": (
-        "{count} [mark stands before its code and is|marks stand before their codes and are] not "
-        "read"
-    ),
-    "unknown code": "{count} [code is|codes are] not in the code table",
-    "unknown line code": "{count} unknown [code has|codes have] marks of lines",
-    "too few points": (
-        "{count} [line is left out, which has|lines are left out, which have] too few points"
-    ),
-    "unknown mark": (
-        "{count} unknown [mark behind line codes is|marks behind line codes are] taken for remarks"
-    ),
-}
-"""By kind: what is told, of one and of several."""
 
-_HINTS = {
-    "too few points": ": a line needs two, a closed one three",
-    "unknown mark": (": {words} are known; a remark stands in quotes or behind a comma, / or ;"),
-    "mark not applied": ": offsets, recalled points and others are for drawings",
-    "code behind others": ": a remark stands in quotes or behind a comma, / or ;",
-    "mark before a code": ': place = "before" in a code table reads them',
-    "unknown code": ": their points are points of the surface",
-    "unknown line code": ": their points are points of the surface; a code table defines codes",
-    "line that crosses itself": ": check codes, marks and the order of the shots",
-    "line that jumps": ": check codes, marks and the order of the shots",
-}
+class Remark(NamedTuple):
+    """What is told of a kind of fault, and behind the faults that are shown."""
+
+    sentence: str
+    """Of one and of several: "{count} [line is|lines are] ..."."""
+    hint: str
+
+
+@cache
+def read_remarks() -> dict[str, Remark]:
+    """Return the rows of ``remarks.tsv`` by kinds of faults."""
+    text = Path(__file__).with_name("remarks.tsv").read_text("utf-8")
+    rows = (line.split("\t") for line in text.splitlines()[1:])
+    return {kind: Remark(*texts) for kind, *texts in rows}
 
 
 def describe_faults(
@@ -118,10 +64,11 @@ def make_finding(fault: Fault, name_row: Callable[[int], str]) -> Finding:
 
 
 def _note(kind: str, found: Sequence[Fault], name_row: Callable[[int], str], words: str) -> str:
+    remark = read_remarks()[kind]
     shown = ", ".join(_name(fault, name_row) for fault in found[:_SHOWN])
     more = " ..." if len(found) > _SHOWN else ""
-    head = inflect(SENTENCES[kind], len(found)).format(count=f"{len(found):,}")
-    hint = _HINTS.get(kind, "").format(words=words)
+    head = inflect(remark.sentence, len(found)).format(count=f"{len(found):,}")
+    hint = remark.hint.format(words=words)
     return printable(f"{head} ({shown}{more}){hint}.")
 
 

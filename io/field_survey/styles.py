@@ -22,7 +22,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal, TypeAlias, get_args
+from typing import Literal, TypeAlias, cast, get_args
 
 from ...base.errors import choice
 from ...base.policies import CodeStyle
@@ -46,21 +46,18 @@ Meaning: TypeAlias = Literal[
 
 MEANINGS: tuple[Meaning, ...] = get_args(Meaning)
 
-MARKS: Mapping[str, Meaning] = {
-    **dict.fromkeys(("B", "BEG", "BEGIN", "ST", "START"), "begin"),
-    **dict.fromkeys(("E", "END"), "end"),
-    **dict.fromkeys(("C", "CLS", "CLO", "CLOSE", "X"), "close"),
-}
+
+def _list_marks(text: str) -> dict[str, Meaning]:
+    """Return words by groups of one meaning: "begin:B,BEG end:E,END"."""
+    groups = (group.split(":") for group in text.split())
+    return {word: cast("Meaning", what) for what, words in groups for word in words.split(",")}
+
+
+MARKS = _list_marks("begin:B,BEG,BEGIN,ST,START end:E,END close:C,CLS,CLO,CLOSE,X")
 """Marks behind a code that begin, end and close a line in any style of plain words."""
 
-_CURVES: Mapping[str, Meaning] = {
-    "BC": "begin_curve",
-    "EC": "end_curve",
-    "PC": "begin_tangent_curve",
-    "PT": "end_curve",
-    "RECT": "rectangle",
-}
-_BEGIN_END: Mapping[str, Meaning] = {word: MARKS[word] for word in ("B", "BEG", "E", "END")}
+_CURVES = "begin_curve:BC end_curve:EC begin_tangent_curve:PC end_curve:PT rectangle:RECT"
+_BEGIN_END = "begin:B,BEG end:E,END"
 
 COMMENTS = ",;(/"
 """A remark stands behind one of these, or in quotes."""
@@ -98,7 +95,7 @@ class Style:
         return ", ".join(word for word, meaning in self.marks.items() if meaning != "other")
 
 
-_WORDS = Style("words", {**MARKS, **_CURVES})
+_WORDS = Style("words", {**MARKS, **_list_marks(_CURVES)})
 
 STYLES: Mapping[str, Style] = {
     one.name: one
@@ -111,71 +108,43 @@ STYLES: Mapping[str, Style] = {
         replace(_WORDS, name="star-end", marks={**_WORDS.marks, "*": "end"}),
         Style(
             "civil3d",
-            {
-                **_BEGIN_END,
-                "C": "continue",
-                "CLS": "close",
-                **{word: _CURVES[word] for word in ("BC", "EC", "RECT")},
-                "BCV": "begin_curve",
-                "ECV": "end_curve",
-                **dict.fromkeys(("RPN", "CPN", "RT", "CIR", "SO"), "other"),
-            },
+            _list_marks(
+                f"{_BEGIN_END} continue:C close:CLS begin_curve:BC end_curve:EC rectangle:RECT "
+                "begin_curve:BCV end_curve:ECV other:RPN,CPN,RT,CIR,SO"
+            ),
             others=r"(?:RPN|CPN|RT|CIR|X|H|V|RECT)-?\d+(?:\.\d+)?",
         ),
         Style(
             "carlson",
-            {
-                **_BEGIN_END,
-                "+7": "begin",
-                "-7": "end",
-                **dict.fromkeys(("CLO", "CLOSE"), "close"),
-                **{word: _CURVES[word] for word in ("PC", "PT", "RECT")},
-                **dict.fromkeys(("SMO", "JPN", "OH", "OV"), "other"),
-            },
+            _list_marks(
+                f"{_BEGIN_END} begin:+7 end:-7 close:CLO,CLOSE begin_tangent_curve:PC end_curve:PT "
+                "rectangle:RECT other:SMO,JPN,OH,OV"
+            ),
             others=r"[+-]\d|(?:JPN|RECT|OH|OV)-?\d+(?:\.\d+)?",
         ),
         Style(
             "trimble",
-            {
-                **dict.fromkeys(("ST", "B"), "begin"),
-                **dict.fromkeys(("END", "E"), "end"),
-                **dict.fromkeys(("CLOSE", "C"), "close"),
-                **dict.fromkeys(("STCV", "SC", "NEWCV", "NC"), "begin_curve"),
-                **dict.fromkeys(("NEWARC", "NA"), "begin_curve"),
-                **dict.fromkeys(("STARC", "SA"), "begin_tangent_curve"),
-                **dict.fromkeys(("ENDCV", "ENDONCV", "EC"), "end_curve"),
-                **dict.fromkeys(("ENDARC", "ENDONARC", "EA"), "end_curve"),
-                "CLSRECT": "rectangle",
-                **dict.fromkeys(("JP", "JPT", "NOJOIN"), "other"),
-            },
+            _list_marks(
+                "begin:ST,B end:END,E close:CLOSE,C begin_curve:STCV,SC,NEWCV,NC,NEWARC,NA "
+                "begin_tangent_curve:STARC,SA end_curve:ENDCV,ENDONCV,EC,ENDARC,ENDONARC,EA "
+                "rectangle:CLSRECT other:JP,JPT,NOJOIN"
+            ),
             least_words=2,
         ),
         Style(
             "leica",
-            {
-                "N": "begin",
-                "P": "close",
-                "CS": "begin_curve",
-                "CE": "end_curve",
-                "TS": "begin_tangent_curve",
-                "TE": "end_curve",
-                "X": "exclude",
-                **dict.fromkeys(("G", "D", "Y", "Z", "H", "J", "K", "L", "M", "O"), "other"),
-                **dict.fromkeys(("XS", "XE", "YS", "YE", "ZS", "ZE"), "other"),
-            },
+            _list_marks(
+                "begin:N close:P begin_curve:CS end_curve:CE begin_tangent_curve:TS end_curve:TE "
+                "exclude:X other:G,D,Y,Z,H,J,K,L,M,O,XS,XE,YS,YE,ZS,ZE"
+            ),
             separators="-",
             least_words=2,
         ),
         Style(
             "cg",
-            {
-                "BL": "begin",
-                "EL": "end",
-                "CL": "close",
-                "PC": "begin_tangent_curve",
-                "PT": "end_curve",
-                "OC": "toggle_curve",
-            },
+            _list_marks(
+                "begin:BL end:EL close:CL begin_tangent_curve:PC end_curve:PT toggle_curve:OC"
+            ),
             least_words=2,
         ),
     )
