@@ -18,6 +18,7 @@ from .cells import is_number, split_line
 from .columns import COORDINATES, find_unit_word, list_names, names_coordinates
 from .content import are_plausible_elevations, is_too_steep, measure_relief_and_extent
 from .lines import COMMENT_PREFIXES
+from .vocabulary import list_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -52,22 +53,7 @@ _SHOWN = 5
 _LARGEST_WHOLE = 1e15
 """Below, whole point numbers are written without an exponent or decimals."""
 _SHOWN_NAME = 40
-_STATISTICS = frozenset(
-    {*("min", "max", "mean", "average", "avg", "median", "total", "totals", "sum", "count", "std")}
-    | {
-        *(
-            "minimum",
-            "maximum",
-            "mittel",
-            "mittelwert",
-            "summe",
-            "anzahl",
-            "moyenne",
-            "media",
-            "suma",
-        )
-    }
-)
+_STATISTICS = list_words("statistic")
 _EXPONENT = re.compile(r"[-+]?[0-9](?:[.,](?P<decimals>[0-9]*))?[eE][+]?(?P<exponent>[0-9]{1,3})")
 _SOME = 4_096
 _FEW_POINTS = 3

@@ -15,6 +15,7 @@ from ...base.errors import ReadError
 from .columns import describe_doubts, find_columns_by_header, find_unit_word
 from .lines import COMMENT_PREFIXES
 from .names import is_label, parse_name, read_words
+from .vocabulary import list_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -30,28 +31,13 @@ _SHOWN_LETTERS = 60
 _LETTERS = re.compile(r"[PNEXYZHD-]{3,8}", re.IGNORECASE)
 _SPLITS = (r"[,;\t|]", r"[/|\\]", r"->|[-\u2013>\u2192]", r"\s+")
 _BEFORE_BRACKET = re.compile(r"\s+(?=[(\[])")
-_SPEAKING = frozenset(
-    (
-        *("easting", "eastings", "northing", "northings", "rechtswert", "hochwert", "ostwert"),
-        *("nordwert", "longitude", "latitude", "lat", "lon", "lng", "longitud", "latitud"),
-    )
-)
+_SPEAKING = list_words("coordinate word")
 """Words that stand for a coordinate wherever they are; "north" may be in the name of a site."""
 
 
 _COORDINATES = {"easting", "northing", "elevation"}
-_UNIT_NOUNS = frozenset(
-    (
-        *("unit", "units", "einheit", "einheiten", "unite", "unites", "unidad", "unidades"),
-        *("unita", "unidade", "eenheid", "enhet"),
-    )
-)
-_FILLERS = _UNIT_NOUNS | frozenset(
-    (
-        *("in", "are", "is", "all", "the", "of", "given", "as", "and", "for", "values", "used"),
-        *("alle", "sind", "en", "de", "las", "los", "le", "les", "hoehen", "hohen", "altitudes"),
-    )
-)
+_UNIT_NOUNS = list_words("unit noun")
+_FILLERS = _UNIT_NOUNS | list_words("unit filler")
 """Words beside which "elevations" and a unit say what the unit of the elevations is."""
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
-from .vocabulary import CONTEXT, find_sense, list_languages, simplify
+from .vocabulary import CONTEXT, find_sense, list_languages, list_words, simplify
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -42,14 +42,7 @@ _JOINED_WORDS = re.compile(
     r"(?<=[a-z]{2})(?=[A-Z])|(?<=[A-Za-z])(?=[\u3040-\u9fff\uac00-\ud7af])"
     r"|(?<=[\u3040-\u9fff\uac00-\ud7af])(?=[A-Za-z])"
 )
-_LABELS = frozenset(
-    (
-        *("order", "columns", "column", "cols", "format", "fields", "field", "header", "layout"),
-        *("sequence", "names", "headings", "spalten", "reihenfolge", "felder", "colonnes", "ordre"),
-        *("columnas", "orden", "campos", "ordem", "colunas", "colonne", "kolommen", "kolumner"),
-        *("kolonner", "kolumny", "sloupce", "порядок", "формат", "столбцы"),
-    )
-)
+_LABELS = list_words("label")
 _OPENING, _CLOSING = "([{", ")]}"
 _NO_BRACKETS = str.maketrans(dict.fromkeys(_OPENING + _CLOSING, " "))
 _SEPARATORS = frozenset('_.,:;/|"=\u2013-')

@@ -12,7 +12,7 @@ import re
 import unicodedata
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple, cast
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,6 +23,7 @@ __all__ = [
     "Sense",
     "find_sense",
     "list_languages",
+    "list_words",
     "read_languages",
     "simplify",
 ]
@@ -60,83 +61,9 @@ _SENSES: dict[str, Sense] = {
 """What the phrases say that a column of ``languages.tsv`` lists, parted by commas: "height" is for
 words of a height of some kind, "coordinate" for those that say nothing more beside another."""
 
-_ROLES: dict[tuple[str, Kind], str] = {
-    ("easting", "word"): "easting eastings east",
-    ("easting", "letter"): "e ø",
-    ("easting", "axis"): "x abscisse",
-    ("easting", "angle"): "longitude long lon lng",
-    ("northing", "word"): "northing northings north",
-    ("northing", "letter"): "n",
-    ("northing", "axis"): "y ordonnee",
-    ("northing", "angle"): "latitude lat",
-    ("elevation", "axis"): "z",
-    ("elevation", "sure"): (
-        "elevation elevations elev el rl reducedlevel level orthometricheight orthoheight "
-        "orthometricelevation orthoelevation mslheight mslelevation"
-    ),
-    ("elevation", "open"): "height heights hgt h altitude alt ele up u",
-    ("number", ""): (
-        "point points pt pts pointnumber pointno pointnr pointnum pointid pointname ptno ptnr "
-        "ptnum ptnumber ptid ptname pnt pno p no nr num number id name fid objectid station "
-        "stationid stn stationname target targetid"
-    ),
-    ("description", ""): (
-        "description desc descr code featurecode fieldcode rawdescription rawdesc fulldescription "
-        "pointcode pointdescription d remark remarks comment comments note notes feature label type"
-    ),
-    ("hemisphere", ""): (
-        "ns ew latdir londir latns lonew longew hemisphere hemi latitudedirection "
-        "longitudedirection latdirection londirection lathemisphere lonhemisphere latref lonref"
-    ),
-}
-"""Words in English, and letters."""
-CONTEXT = frozenset(("point", "points", "pt", "pnt", "punkt", "pkt", "punto", "ponto"))
-"""Words for a point, which beside that for a coordinate say nothing: POINT_X."""
-
-_NOUNS = (
-    "coordinate coordinates coord coords coor center centre value position positiveup mn me "
-    "м 米 公尺 メートル 미터 metri metros metro metrów metra מ"
-)
-_AFFIXES = (*("coordinate", "coord", "koordinate", "koord", "coordenada", "coordonnee"),
-            *("koordinaatti", "koordinat", "coordinaat", "coordinata"),
-            *("point", "center", "centre", "utm", "grid", "value"))  # fmt: skip
-"""Words that are written together with the letter of an axis: xcoord, utmx."""
-
 _OF_PLANE = ("utm", "grid")
 
-_UNITS = (
-    "m metre metres meter meters mtr mtrs mm cm dm km ft foot feet usft ussft ftus usfoot usfeet "
-    "sft ussurveyfoot ussurveyfeet surveyfoot surveyfeet ussurveyft surveyft ift intft ftint "
-    "internationalfoot internationalfeet yd yard yards fathom fathoms"
-)
-_DEGREES = "deg degs degree degrees ° dd decdeg decimaldegree decimaldegrees grad° wgs84degrees"
-_DATUMS = re.compile(
-    "navd(88)?|ngvd(29)?|egm(84|96|2008|08)|geoid(03|09|12a?|12b|18)|cgvd(28|2013)|nhn|nn|mnn|unn|"
-    "uebernn|ubernn|ueberm?nhn|uberm?nhn|munhn|mnhn|dhhn(12|85|92|2016)?|a?msl|"
-    "evrf(2000|2007|2019)(nh)?|"
-    "masl|asl|abovemsl|(above)?(mean)?sealevel|verticaldatum|datum|aod|odn?|malin(head)?|belfast|"
-    "ahd(71)?|nap|mnap|taw|mtaw|ran95|orth|ngf(ign69)?|ign69|ngg|ln02|lhn95|rh(00|70|2000)|nn(1954|2000)|"
-    "dvr90|n(43|60|2000)|eh2000|las(2000|07)?(5|h)?|las2000h5|bpv|kst|kronstadt(86)?|kronsztadt(86)?|nh|hvrs71|dnn|"
-    "sno|nvn99|nzvd(2009|2016)|mum|umm|masm|m?snm|slm|orthometric|orthom|ortho|vertical|"
-    "chartdatum|mpd|hkpd|tp|jgd(2000|2011)?vertical|(1985|1956)?(国家)?(黄海)?高程(基准|系统)(1985|1956)?|"
-    "(1985|1956)国家高程基准|黄海|twvd(2001)?|imbituba|mbf|mbalti|балт(ииская)?|бс(77)?|kn"
-)
 _ZONE = "(fuso|huso|uso|fuseau|zone|zona|zon|strefa|pas)?[0-9]{0,3}(tm)?[nse]?"
-_SYSTEMS = re.compile(
-    f"((wgs)?(19)?(84)?utm|mtm|ntm|mga(94|2020)?|amg(66|84)?|map?grid|gk|gausskr(ue|u)ger|"
-    "sirgas(2000)?|wgs(19)?(72|84)|etrs(19)?(89)?|nad(27|83)([0-9]{4})?|gda(94|2020)|rgf93|"
-    "ed(19)?50|pl2000|pl1992|posgar(94|98|2007|07)?|sad69|psad56|lambert|lamb|cc|lcc|ctm|lo|wg|zone|"
-    f"zona|fuso|huso|sk(42|63|95)|ск(42|63|95)|cgcs2000|turef|itrf[0-9]{{0,4}}|sweref99|d96|d48){_ZONE}|"
-    "epsg[0-9]{4,6}|osgb(36)?|osgm(02|15)|bng|ig75|irenet95|itm(95)?|(lv|mn)(03|95)|svy21|ch1903|"
-    "lambert(ii|iii|iv|i|cc)|cc(4[2-9]|50)|l93|l(2|ii)e?|dhdn|mgi|rt90|rd(new)?|"
-    "pz90|jgd(2000|2011)|tokyo|nzgd2000|nztm(2000)?|nzmg|hd72|eov|s?jtsk(03)?|stereo70|"
-    "s42|spcs(83|27)?|stateplane|htrs96(tm)?|isn(93|2004|2016)|(pt)?tm(06|35fin|30|65)|tm75|"
-    "lks(92|94)|lest(97)?|twd(67|97)(tm2)?|origennacional|magna(sirgas)?|bogota|xian80|西安80|"
-    "bj54|beijing54|北京54|国家2000|大地2000|2000国家大地坐标系|kkj|ykj|vn2000|gdm2000|rso|cassini|"
-    "hartebeesthoek94|hart94|ggrs87|egsa87|εγσα87|εγσα|igd05|sirgaschile|bgs2005|ccs2005|"
-    "уск2000|ucs2000|мск[0-9]{0,2}|msk[0-9]{0,2}|"
-    "grid|ground|local|global|world|map|projected|projection|plane"
-)
 _PLAIN_LETTERS = str.maketrans(
     {"ø": "o", "æ": "ae", "ł": "l", "đ": "d", "œ": "oe", "ı": "i", "ð": "d", "þ": "th"}
 )
@@ -159,6 +86,25 @@ def simplify(word: str) -> str:
 
 
 @cache
+def read_table() -> dict[tuple[str, str, Kind], tuple[str, ...]]:
+    """Return the words of ``words.tsv``, in English but for some, by what they say of a column."""
+    text = Path(__file__).with_name("words.tsv").read_text("utf-8")
+    rows = (line.split("\t") for line in text.splitlines()[1:])
+    return {
+        (what, role, cast("Kind", kind)): tuple(words.split()) for what, role, kind, words in rows
+    }
+
+
+def list_words(what: str) -> frozenset[str]:
+    """Return the words of ``words.tsv`` that say one thing."""
+    return frozenset(read_table()[what, "", ""])
+
+
+CONTEXT = list_words("point")
+"""Words for a point, which beside that for a coordinate say nothing: POINT_X."""
+
+
+@cache
 def read_languages() -> dict[str, dict[str, str]]:
     """Return the words of ``languages.tsv`` by language and column.
 
@@ -170,13 +116,15 @@ def read_languages() -> dict[str, dict[str, str]]:
 
 @cache
 def _make_vocabulary() -> dict[str, Sense]:
+    table = read_table()
     words = {
         word: Sense("role", role, kind, rank)
-        for (role, kind), text in _ROLES.items()
-        for rank, word in enumerate(text.split())
+        for (what, role, kind), named in table.items()
+        for rank, word in enumerate(named)
+        if what == "role"
     }
-    for what, text in (("unit", _UNITS), ("degree", _DEGREES), ("noun", _NOUNS)):
-        words |= {simplify(word): Sense(what) for word in text.split()}  # type: ignore[arg-type]
+    for sense in (Sense("unit"), Sense("degree"), Sense("noun")):
+        words |= {simplify(word): sense for word in table[sense.what, "", ""]}
     for language in read_languages().values():
         for column, sense in _SENSES.items():
             for rank, phrase in enumerate(_list_phrases(language[column])):
@@ -186,7 +134,9 @@ def _make_vocabulary() -> dict[str, Sense]:
 
 @cache
 def _make_languages() -> dict[str, frozenset[str]]:
-    english = {word for text in _ROLES.values() for word in text.split()} | {*_NOUNS.split()}
+    english = {
+        word for key, words in read_table().items() if key[0] in ("role", "noun") for word in words
+    }
     found: dict[str, set[str]] = {}
     for name, language in read_languages().items():
         for column in _SENSES:
@@ -220,7 +170,17 @@ def _list_phrases(text: str) -> Iterator[str]:
 
 @cache
 def _simplify_affixes() -> tuple[str, ...]:
-    return tuple(map(simplify, _AFFIXES))
+    return tuple(map(simplify, read_table()["affix", "", ""]))
+
+
+@cache
+def _compile_patterns() -> tuple[re.Pattern[str], re.Pattern[str]]:
+    """Return the patterns of datums and of systems."""
+    datum, zoned, system = (
+        "|".join(read_table()[f"{what} pattern", "", ""])
+        for what in ("datum", "zoned system", "system")
+    )
+    return re.compile(datum), re.compile(f"({zoned}){_ZONE}|{system}")
 
 
 def find_sense(phrase: str) -> list[Sense]:
@@ -236,9 +196,10 @@ def find_sense(phrase: str) -> list[Sense]:
     known = _make_vocabulary().get(phrase)
     if known is not None:
         return [known]
-    if _DATUMS.fullmatch(phrase):
+    datum, system = _compile_patterns()
+    if datum.fullmatch(phrase):
         return [Sense("datum")]
-    if _SYSTEMS.fullmatch(phrase):
+    if system.fullmatch(phrase):
         return [Sense("system", phrase)]
     for affix in _simplify_affixes():
         is_behind = phrase.endswith(affix)
