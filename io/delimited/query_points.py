@@ -127,7 +127,10 @@ def _read_table(path: Path, delimiter: str | None) -> _Table:
     except csv.Error as error:
         raise ReadError(f"'{path}', line {reader.line_num}: {error}.", path=path) from error
     header = [name.strip() for name in found[0][1]]
-    _require_names(header)
+    for one in header:
+        if not one or header.count(one) > 1:
+            what = f"'{one}' twice" if one else "a column without a name"
+            raise ReadError(f"The header of {FILE} has {what}: names must differ.")
     rows, numbers = [row for _, row in found[1:]], [number for number, _ in found[1:]]
     uneven = [n for n, row in zip(numbers, rows, strict=True) if len(row) != len(header)]
     if uneven:
@@ -150,13 +153,6 @@ def _find_delimiter(header: str, given: str | None) -> str:
         return found[0]
     what = " and ".join(_DELIMITERS[mark] for mark in found) or "no delimiter"
     raise ReadError(f"The header of {FILE} has {what}: name what separates its columns.")
-
-
-def _require_names(header: Sequence[str]) -> None:
-    for name in header:
-        if not name or header.count(name) > 1:
-            what = f"'{name}' twice" if name else "a column without a name"
-            raise ReadError(f"The header of {FILE} has {what}: names must differ.")
 
 
 def _find_coordinates(

@@ -20,7 +20,7 @@ import numpy as np
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
 
-__all__ = ["MOST_VERTICES", "Arc", "densify", "fit_arcs", "fit_tangent_arc"]
+__all__ = ["MOST_VERTICES", "Arc", "densify", "fit_arcs", "fit_tangent_arc", "measure_turn"]
 
 MOST_VERTICES = 10_000
 """Vertices of one arc that are made at most."""
@@ -107,7 +107,7 @@ def fit_arcs(points: Float64Array) -> list[list[Arc]]:
 
 def fit_tangent_arc(start: Float64Array, end: Float64Array, direction: Float64Array) -> Arc:
     """Fit the arc that leaves a point in a direction and reaches another one."""
-    return Arc(start, end, _measure_turn(direction, end - start))
+    return Arc(start, end, measure_turn(direction, end - start))
 
 
 def _reflect(tangent: Float64Array, chord: Float64Array) -> Float64Array:
@@ -116,7 +116,7 @@ def _reflect(tangent: Float64Array, chord: Float64Array) -> Float64Array:
     return mirrored
 
 
-def _measure_turn(from_: Float64Array, to: Float64Array) -> float:
+def measure_turn(from_: Float64Array, to: Float64Array) -> float:
     """Return the angle from one direction to another, -pi to pi."""
     return math.atan2(from_[0] * to[1] - from_[1] * to[0], float(from_ @ to))
 
@@ -137,8 +137,8 @@ def _join_by_biarc(
         return [Arc(start, end, 0.0)]
     length = squared / reach
     joint = (start + end + length * (leaving - arriving)) / 2.0
-    one = Arc(start, joint, _measure_turn(leaving, joint - start))
-    other = Arc(joint, end, _measure_turn(end - joint, arriving))
+    one = Arc(start, joint, measure_turn(leaving, joint - start))
+    other = Arc(joint, end, measure_turn(end - joint, arriving))
     return [one, other]
 
 

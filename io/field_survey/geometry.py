@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.errors import LinesError
-from .curves import MOST_VERTICES, Arc, densify, fit_arcs, fit_tangent_arc
+from .curves import MOST_VERTICES, Arc, densify, fit_arcs, fit_tangent_arc, measure_turn
 from .figures import Curve, Fault, find_curves
 
 if TYPE_CHECKING:
@@ -133,11 +133,11 @@ class _Line:
             arc = fit_tangent_arc(start, end, arriving)
             if (
                 leaving is not None
-                and abs(_measure(_rotate(end - start, arc.angle), leaving)) > _KINK
+                and abs(measure_turn(_rotate(end - start, arc.angle), leaving)) > _KINK
             ):
                 self._note("curve not tangent to the leg behind it", first, last)
         elif leaving is not None:
-            arc = Arc(start, end, _measure(end - start, leaving))
+            arc = Arc(start, end, measure_turn(end - start, leaving))
         else:
             self._note("curve without a leg", first, last)
             return None
@@ -193,11 +193,6 @@ def _rotate(vector: Float64Array, angle: float) -> Float64Array:
     return np.array([cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1]])
 
 
-def _measure(from_: Float64Array, to: Float64Array) -> float:
-    """Return the angle from one direction to another, -pi to pi."""
-    return math.atan2(from_[0] * to[1] - from_[1] * to[0], float(from_ @ to))
-
-
 def _find_corner(
     figure: Figure, shots: Float64Array, note: Callable[[Fault], None]
 ) -> list[Float64Array]:
@@ -206,7 +201,7 @@ def _find_corner(
     if len(shots) < 3:
         return []
     first, last = shots[1, :2] - shots[0, :2], shots[-1, :2] - shots[-2, :2]
-    angle = abs(_measure(first, last))
+    angle = abs(measure_turn(first, last))
     if min(angle, math.pi - angle) < _KINK:
         note(Fault("no rectangle", figure.name, rows))
         return []

@@ -30,7 +30,13 @@ def serve_requests(module: str) -> None:
     """
     requests = os.fdopen(os.dup(0), "rb", buffering=0)
     answers = os.fdopen(os.dup(1), "wb", buffering=0)
-    _silence()
+    with open(os.devnull, "r+b", buffering=0) as nothing:  # noqa: PTH123 - a device
+        for number in (0, 1, 2):
+            os.dup2(nothing.fileno(), number)
+    with contextlib.suppress(ImportError, ValueError, OSError):
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     with contextlib.suppress(Exception):
         getattr(import_module(module), "prepare", int)()
     with contextlib.suppress(BrokenMessageError, BrokenPipeError, KeyboardInterrupt):
@@ -51,16 +57,6 @@ class _Buffered:
 
     def flush(self) -> None:
         """Nothing is kept back."""
-
-
-def _silence() -> None:
-    with open(os.devnull, "r+b", buffering=0) as nothing:  # noqa: PTH123 - a device
-        for number in (0, 1, 2):
-            os.dup2(nothing.fileno(), number)
-    with contextlib.suppress(ImportError, ValueError, OSError):
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 def _serve(request: dict[str, Any], answers: Any) -> None:

@@ -107,18 +107,13 @@ def cut_strips(
     for first, last in rows:
         window = ((first, last + 1), (column, column + width))
         values = dataset.read(band, window=window)[::stride, ::stride]
-        valid = _find_valid(dataset, band, window, values, stride)
+        valid = dataset.read_masks(band, window=window)[::stride, ::stride] != 0
+        if values.dtype.kind == "f":
+            valid &= np.isfinite(values)
+        nodata = dataset.nodatavals[band - 1]
+        if nodata is not None and not np.isnan(nodata):
+            valid &= values != nodata
         yield Answer(None, {"values": values, "valid": valid.astype(np.uint8)})
-
-
-def _find_valid(dataset: Any, band: int, window: Any, values: Any, stride: int) -> Any:
-    valid = dataset.read_masks(band, window=window)[::stride, ::stride] != 0
-    if values.dtype.kind == "f":
-        valid &= np.isfinite(values)
-    nodata = dataset.nodatavals[band - 1]
-    if nodata is not None and not np.isnan(nodata):
-        valid &= values != nodata
-    return valid
 
 
 @contextmanager

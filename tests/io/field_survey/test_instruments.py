@@ -13,13 +13,13 @@ import pytest
 from support.refusals import refuse
 
 import tinsmith as ts
+from tinsmith.io.field_survey.formats import is_dc, is_gsi, is_jobxml, is_sdr
 from tinsmith.io.field_survey.instruments.reduction import (
     Shot,
     Station,
     reduce_shot,
     to_radians,
 )
-from tinsmith.io.field_survey.signatures import is_dc, is_gsi, is_jobxml, is_sdr
 
 
 def read(tmp_path, name, text, **options):
