@@ -123,3 +123,30 @@ def test_the_cells_of_a_source_hold_every_point_once():
     source = PointCells(points, [3.0, 6.0], [4.0])
     numbers = np.concatenate([cell.numbers for cell in source.cells.values()])
     assert sorted(numbers.tolist()) == list(range(81))
+
+
+@pytest.mark.parametrize("name", ["uniform", "lattice with duplicates", "scan lines"])
+def test_the_order_in_which_triangles_are_found_holds_the_same_triangles(name):
+    points = lift(CLOUDS[name])
+    source = divide(points, 3)
+    one, other = (
+        triangulate_box(source, source.box_of((1, 1)), ordered=ordered) for ordered in (True, False)
+    )
+    order = np.lexsort(other.triangles.T[1::-1])
+    np.testing.assert_array_equal(one.points, other.points)
+    np.testing.assert_array_equal(one.numbers, other.numbers)
+    np.testing.assert_array_equal(one.triangles, other.triangles[order])
+    np.testing.assert_array_equal(one.owned, other.owned[order])
+    place = np.append(np.argsort(order), -1)
+    np.testing.assert_array_equal(one.neighbors, place[other.neighbors[order]])
+
+
+def test_discs_whose_products_of_sides_overflow_are_not_taken_for_small():
+    places = np.array([[-1.9e59, 0.0], [0.0, -1e57], [0.0, -1.25e55]])
+    triangles = np.array([[0, 1, 2]], np.int32)
+    found = _kernel.find_in_box(
+        places, triangles, (-np.inf, -np.inf, -5e57, np.inf), (-np.inf, -np.inf, -5e57, np.inf)
+    )
+    assert found.chosen.tolist() == found.open.tolist() == [0]
+    assert found.firsts.tolist() == [0]
+    assert found.owned.tolist() == [True]
