@@ -1,1 +1,8 @@
 """From checked inputs to a triangulated surface: rows merged, lines forced, parts cut away."""
+
+from .assembly import find_ring_groups
+from .duplicates import merge_rows
+from .inputs import BuildInputs
+from .options import BuildOptions
+
+__all__ = ["BuildInputs", "BuildOptions", "find_ring_groups", "merge_rows"]

@@ -10,12 +10,8 @@ import numpy as np
 
 from ...base.errors import LinesError, OptionError
 from .. import _kernel
-from ..building.assembly import find_ring_groups
-from ..building.duplicates import merge_rows
-from ..constraints.clipping import HOLES
-from ..constraints.constraint_set import ABOVE_ALL, BELOW_ALL
-from ..constraints.noding import node
-from ..constraints.polylines import Polylines
+from ..building import find_ring_groups, merge_rows
+from ..constraints import ABOVE_ALL, BELOW_ALL, HOLES, Polylines, node
 from .rings import Rings
 from .skeleton import reduce_to_hull
 from .sources import NumberedPoints, NumberedSegments
@@ -23,9 +19,8 @@ from .sources import NumberedPoints, NumberedSegments
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
     from ...base.types import Bounds
-    from ..building.inputs import BuildInputs
-    from ..building.options import BuildOptions
-    from ..constraints.constraint_set import LineSet
+    from ..building import BuildInputs, BuildOptions
+    from ..constraints import LineSet
     from .circles import Discs
 
 __all__ = ["NodedLines", "node_lines", "require_local"]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .. import _kernel
-from ..building.duplicates import merge_rows
+from ..building import merge_rows
 from ..topology import edge_keys, ends
 from .boxes import list_sides
 from .circles import bound_discs

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import _kernel
-from ..constraints.clipping import in_rings
+from ..constraints import in_rings
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
