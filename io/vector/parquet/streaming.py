@@ -228,7 +228,9 @@ def describe(
     half = len(box) // 2 if box else 0
     corners = None if half < 2 else (np.array(box[:2]), np.array(box[half : half + 2]))
     unit = _find_unit(value["elevation_unit"], source, Unit.of(elevation_unit))
-    middle = np.zeros((0, 3)) if corners is None else np.array([[*sum(corners) / 2, 0.0]])
+    middle = np.zeros((0, 3))
+    if corners is not None:
+        middle = np.append(corners[0] / 2 + corners[1] / 2, 0.0)[None, :]
     placed = place(middle, source=source, target=target, unit=unit)
     return make_source_header(
         path,
