@@ -83,7 +83,7 @@ def _are_met(part: LocalTriangulation, options: LineOptions) -> BoolArray:
     for segments in (options.segments, *move_aside(options.segments, options.rim[:, :2])):
         starts, ends = segments.starts, segments.ends
         near = (np.minimum(starts, ends) <= high) & (np.maximum(starts, ends) >= low)
-        rows = near.all(axis=1)
+        rows = near.all(axis=1) & (starts != ends).any(axis=1)
         traced = locator.trace(np.ascontiguousarray(starts[rows]), np.ascontiguousarray(ends[rows]))
         for triangles in (traced.triangles, traced.edges // 3):
             is_corner[part.triangles[triangles[triangles >= 0]]] = True
