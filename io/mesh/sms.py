@@ -77,13 +77,13 @@ def read(path: Path) -> Mesh:
     strings: list[Chain] = []
     open_nodes: list[int] = []
     for i, (text, line) in enumerate(zip(rows.texts, rows.lines, strict=True)):
-        row = text.split()
-        for at, word in enumerate(row[1:], start=1):
+        words = text.split()
+        for at, word in enumerate(words[1:], start=1):
             node = parse_integers([word], line)[0]
             called = np.array([[abs(node)]], np.int64)
             open_nodes.append(int(_find_nodes(called, numbers, rows.cut(i, i + 1))[0, 0]))
             if node < 0:
-                name = row[at + 1] if at + 1 < len(row) else ""
+                name = words[at + 1] if at + 1 < len(words) else ""
                 strings.append(Chain(np.array(open_nodes), None, name))
                 open_nodes = []
                 break

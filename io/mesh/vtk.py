@@ -62,8 +62,8 @@ def read(path: Path) -> Mesh:
             raise ReadError(f"{FILE} is a damaged VTK XML file: it cannot hold {shown}.")
     kind = re.search(rb'<VTKFile\b[^>]*\btype="(\w+)"', content[:2000])
     if kind is None or kind[1].decode() not in _KINDS:
-        found = "of no type" if kind is None else f"of type {kind[1].decode()}"
-        raise ReadError(f"{FILE} is a VTK file {found}: PolyData and UnstructuredGrid can be read.")
+        what = "of no type" if kind is None else f"of type {kind[1].decode()}"
+        raise ReadError(f"{FILE} is a VTK file {what}: PolyData and UnstructuredGrid can be read.")
     value, arrays = run_isolated(
         f"{__package__}.vtk_child:read_mesh",
         {"path": str(path.absolute()), "kind": kind[1].decode()},

@@ -570,16 +570,15 @@ def folder(tmp_path, monkeypatch):
 @pytest.fixture
 def figures(monkeypatch):
     """Return the list of figures that commands write, filled as they do."""
-    from tinsmith.cli import files, job
+    from tinsmith.cli import outputs
 
-    drawn, write = [], files.write_figure
+    drawn, write = [], outputs.write_figure
 
     def keep(figure, path, **how):
         drawn.append(figure)
         write(figure, path, **how)
 
-    for module in (files, job):
-        monkeypatch.setattr(module, "write_figure", keep)
+    monkeypatch.setattr(outputs, "write_figure", keep)
     return drawn
 
 

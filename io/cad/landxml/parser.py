@@ -20,6 +20,7 @@ from .content import Content, Line, Surface
 from .numbers import fault, parse_list, parse_rows, parse_words
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
 __all__ = ["parse"]
@@ -80,7 +81,7 @@ class _Parser:
         self._groups: list[str] = []
         self._fed = 0
         self._batches = {"P": _Batch(), "F": _Batch()}
-        self._starts = {
+        self._starts: dict[str, Callable[[dict[str, str]], None]] = {
             "P": self._start_point,
             "F": self._start_face,
             **dict.fromkeys(_LIST_WIDTHS, self._start_list),

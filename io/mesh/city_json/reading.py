@@ -152,7 +152,7 @@ def _collect(
             f"TINRelief '{name[:40]}' has {len(fitting)} levels of detail: "
             f"{str(fitting[-1].get('lod'))[:20]} was read."
         )
-    boundaries = fitting[-1].get("boundaries")
+    boundaries: Any = fitting[-1].get("boundaries")
     try:
         rings = [ring for (ring,) in boundaries]
         lengths = np.array([len(ring) for ring in rings], np.int64)

@@ -82,12 +82,12 @@ def read(path: Path, *, crs: CrsLike | None = None, elevation_unit: UnitLike | N
     text = answer.value["document"]
     if digest_arrays(*record.arrays.values(), text=text) != digests.get("record"):
         raise ReadError(f"{FILE} is damaged: its record of the TIN is not as written.")
-    found = {}
+    stored = {}
     for name, key in (("crs", "crs"), ("elevation_unit", "unit")):
         tree = record.document.get(name)
-        found[key] = tree.get(key) if isinstance(tree, dict) else None
+        stored[key] = tree.get(key) if isinstance(tree, dict) else None
     reference = choose_reference(
-        crs, elevation_unit, found_crs=found["crs"], found_unit=found["unit"]
+        crs, elevation_unit, found_crs=stored["crs"], found_unit=stored["unit"]
     )
     mesh = digest_arrays(points, triangles, constrained)
     if (mesh, answer.value["lines"]) != (digests.get("mesh"), digests.get("lines")):

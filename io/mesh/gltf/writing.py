@@ -162,8 +162,8 @@ def _make_mesh(
         warn(f"{FILE} does not hold {flat}.")
     corners = tin.triangles[has_area]
     used = np.unique(corners)
-    number = np.zeros(len(tin.points), np.int64)
-    number[used] = np.arange(len(used))
+    number = np.zeros(len(tin.points), np.int32)
+    number[used] = np.arange(len(used), dtype=np.int32)
     places, triangles = every[used], number[corners]
     positions = _turn_up(places).astype(np.float32)
     a, b, c = (places[triangles[:, k]] for k in range(3))

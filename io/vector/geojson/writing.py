@@ -109,11 +109,12 @@ def write(
             f"{'is' if count == 1 else 'are'} not finite (first: point "
             f"{row}, {surface.points[row].tolist()}), and JSON has only finite numbers."
         )
-    is_points = isinstance(surface, Survey) or chosen == "points"
-    parts = None if is_points else list_parts(surface, chosen)
+    parts = None
+    if not isinstance(surface, Survey) and chosen != "points":
+        parts = list_parts(surface, chosen)
     place = keep_in_crs if projected else project_to_wgs84
     places = place(surface.points, surface.crs, surface.elevation_unit)
-    if parts is None:
+    if parts is None or isinstance(surface, Survey):
         used, texts = places.xyz, _format_points(surface, places)
     else:
         corners = surface.triangles

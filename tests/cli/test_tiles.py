@@ -1,0 +1,133 @@
+"""Commands that compute in tiles write and say what they do in memory."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from click.testing import CliRunner
+from support.many_files import write_lidar
+
+from tinsmith.cli import main, tiling
+from tinsmith.cli.command_list import SUMMARIES
+
+COMMANDS = {
+    "raster": ["--spacing", "5", "-o", "out.tif"],
+    "contours": ["--interval", "5", "-o", "out.csv"],
+    "volume": ["--base", "300", "-o", "out.csv"],
+    "profile": ["--from", "500010", "4000010", "--to", "500290", "4000190", "-o", "out.csv"],
+}
+"""Of each command the options with which it computes in tiles."""
+
+WHOLE = {
+    "raster": (["--max-edge", "9"], ["--snap", "0.1"], ["--to-crs", "EPSG:32617"]),
+    "contours": (["--smooth", "0.1"], ["--simplify", "0.1"], ["--labels"], ["-o", "out.png"]),
+    "volume": (["-o", "out.gpkg"], ["-o", "out.png"]),
+    "profile": (["--sections", "10", "20"], ["-o", "out.png"]),
+}
+"""Further options that need all points at a time."""
+
+
+@pytest.fixture(scope="module")
+def lidar(tmp_path_factory):
+    """Return a folder of lidar tiles."""
+    return write_lidar(tmp_path_factory.mktemp("lidar"))
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """Work in a new folder, and return it."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(command, *words):
+    """Run a command in this process."""
+    return CliRunner().invoke(main, [command, *map(str, words)])
+
+
+def test_every_command_with_tiles_is_here():
+    with_tiles = set()
+    for name in SUMMARIES:
+        options = main.get_command(None, name).params
+        if "--tiles" in [flag for one in options for flag in one.opts]:
+            with_tiles.add(name)
+    assert with_tiles == set(COMMANDS) == set(WHOLE)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_outputs_and_records_are_those_in_memory(command, lidar, here):
+    options = [lidar, "--classes", "2", "--json", *COMMANDS[command]]
+    whole = run(command, *options)
+    assert whole.exit_code == 0, whole.output
+    (path,) = here.iterdir()
+    content = path.read_bytes()
+    path.unlink()
+    tiled = run(command, *options, "--tiles", "3", "--workers", "2", "-q")
+    assert tiled.exit_code == 0, tiled.output
+    assert [one.name for one in here.iterdir()] == [path.name]
+    if command != "raster":  # which has the notes, that name the files one by one in tiles
+        assert path.read_bytes() == content
+    told, wanted = json.loads(tiled.stdout), json.loads(whole.stdout)
+    apart = ("notes", "input", "inputs")
+    for name in wanted:
+        if name not in apart:
+            assert told[name] == wanted[name], name
+    assert any("Classes of the points" in note for note in told["notes"])
+
+
+@pytest.mark.parametrize(("command", "words"), [(c, w) for c in WHOLE for w in WHOLE[c]])
+def test_what_needs_all_points_is_refused_with_tiles(command, words, lidar, here):
+    done = run(command, lidar, "--classes", "2", *COMMANDS[command], *words, "--tiles", "3")
+    assert done.exit_code == 1, done.output
+    assert "Tiles cannot be computed with" in done.output
+    assert list(here.iterdir()) == []
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_plans_do_nothing(command, lidar, here):
+    done = run(command, lidar, *COMMANDS[command], "--plan", "--json", "--workers", "2")
+    assert done.exit_code == 0, done.output
+    told = json.loads(done.stdout)
+    assert told["points"] == 6_000
+    assert told["workers"] == 2
+    assert list(here.iterdir()) == []
+
+
+def test_tiles_are_chosen_where_memory_is_short(lidar, here, monkeypatch):
+    monkeypatch.setattr(tiling, "_SMALL", 0)
+    options = [lidar, "--classes", "2", *COMMANDS["volume"]]
+    assert "computed in tiles" not in run("volume", *options).output
+    monkeypatch.setattr("tinsmith.io.isolated.limits.measure_free_memory", lambda: 10**6)
+    done = run("volume", *options)
+    assert done.exit_code == 0, done.output
+    assert "it was computed in tiles, with the same result" in " ".join(done.output.split())
+
+
+def test_a_run_goes_on_with_the_same_options_only(lidar, here):
+    options = [lidar, "--classes", "2", "--spacing", "5", "-o", "out.tif"]
+    (here / "out.tif.run").mkdir()
+    (here / "out.tif.run" / "mine.txt").write_text("mine")
+    done = run("raster", *options, "--tiles", "2")
+    assert done.exit_code == 1
+    assert "it holds something else" in done.output
+    assert [one.name for one in (here / "out.tif.run").iterdir()] == ["mine.txt"]
+    done = run("raster", *options, "--tiles", "2", "--run", "elsewhere")
+    assert done.exit_code == 0, done.output
+    assert not (here / "elsewhere").exists()
+    assert run("raster", *options, "--tiles", "2", "--dask", "tcp://127.0.0.1:9").exit_code == 1
+
+
+@pytest.mark.parametrize("words", [["--tiles", "0"], ["--workers", "x"], ["--memory", "1"]])
+def test_wrong_values_of_options(words, lidar, here):
+    done = run("raster", lidar, *COMMANDS["raster"], *words)
+    assert done.exit_code == 2, done.output
+    assert words[0] in done.output
+    assert list(here.iterdir()) == []
+
+
+def test_points_from_standard_input_and_without_output_are_refused(lidar, here):
+    done = run("raster", "-", *COMMANDS["raster"], "--tiles", "2")
+    assert (done.exit_code, "standard input" in done.output) == (1, True)
+    done = run("volume", lidar, "--base", "5", "--tiles", "2")
+    assert (done.exit_code, "need an output file" in done.output) == (1, True)

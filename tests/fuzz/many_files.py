@@ -1,0 +1,98 @@
+"""Campaign: products of points in several files, in tiles, against those of the whole in memory."""
+
+from __future__ import annotations
+
+import filecmp
+import warnings
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from support.many_files import Shuffled
+from support.point_sets import points
+
+import tinsmith as ts
+
+from .campaign import Campaign, Case
+
+_MOST_POINTS = 200
+_LARGEST = 1e12
+"""Of a coordinate: text is written with digits that hold it, and rasters have cells."""
+
+
+def generate(rng: np.random.Generator) -> Case:
+    """Points dealt out to files at random or by easting, and the tiles of each product."""
+    cloud = points(rng, int(rng.integers(3, _MOST_POINTS)))
+    return {
+        "points": cloud,
+        "files": int(rng.integers(1, 5)),
+        "is_sorted": bool(rng.random() < 0.5),
+        "tiles": int(rng.integers(1, 20)),
+        "duplicates": str(rng.choice(["mean", "first", "last", "lowest", "highest"])),
+        "seed": int(rng.integers(0, 10**6)),
+    }
+
+
+def examine(case: Case) -> str:
+    """Write a raster, contours, volumes and a profile of tiles."""
+    cloud = np.array(case["points"], np.float64).reshape(-1, 3)
+    extent = float(np.ptp(cloud[:, :2], axis=0).max())
+    if not np.abs(cloud).max() <= _LARGEST or extent < 1e-9 * np.abs(cloud[:, :2]).max():
+        return "left out"
+    order = np.argsort(cloud[:, 0], kind="stable") if case["is_sorted"] else np.arange(len(cloud))
+    parts = np.array_split(cloud[order], min(case["files"], len(cloud)))
+    try:
+        tin = ts.triangulate(np.concatenate(parts), duplicates=case["duplicates"])
+    except ts.PointsError:
+        return "refused"
+    with TemporaryDirectory() as folder, warnings.catch_warnings():
+        warnings.simplefilter("ignore", ts.LossWarning)
+        files = [
+            ts.write(ts.Survey(points=part), Path(folder, f"part{k}.ply"))
+            for k, part in enumerate(parts)
+        ]
+        cloud_of_files = ts.tiles(files, duplicates=case["duplicates"])
+        return _compare(case, tin, cloud_of_files, Path(folder))
+
+
+def _compare(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> str:
+    low, high = tin.points[:, 2].min(), tin.points[:, 2].max()
+    level = float(low + (high - low) * 0.4)
+    bounds = tin.bounds
+    line = [[bounds.xmin, bounds.ymin], [bounds.xmax, bounds.ymax]]
+    spacing = max(bounds.width, bounds.height) / 7
+    products = {
+        "contours": ((), {"levels": [level]}, ts.contours, ".shp"),
+        "volume": ((), {"base": level}, ts.volume, ".csv"),
+        "profile": ((line,), {}, ts.profile, ".csv"),
+        "rasterize": ((), {"spacing": spacing}, ts.rasterize, ".tif"),
+    }
+    found = []
+    for name, (given, options, make, suffix) in products.items():
+        try:
+            whole = make(tin, *given, **options)
+        except ts.TinsmithError:
+            found.append("refused")
+            continue
+        if name == "contours" and not len(whole):
+            continue
+        wanted = ts.write(replace(whole, notes=()), folder / f"whole{suffix}")
+        way = {"tiles": case["tiles"], "executor": Shuffled(case["seed"])}
+        path = getattr(cloud, name)(folder / f"tiled{suffix}", *given, **options, **way)
+        if name == "rasterize":
+            _require_same_cells(path, whole)
+        else:
+            assert filecmp.cmp(path, wanted, shallow=False), name
+        found.append(name)
+    return f"{len(found) - found.count('refused')} products"
+
+
+def _require_same_cells(path: Path, whole: ts.Raster) -> None:
+    import rasterio
+
+    with rasterio.open(path) as dataset:
+        np.testing.assert_array_equal(dataset.read(1), whole.bands["elevation"])
+
+
+CAMPAIGNS = (Campaign("many files", "products of files in tiles", generate, examine),)
