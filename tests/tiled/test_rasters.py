@@ -177,3 +177,41 @@ def test_text_tiles_and_a_plan(tmp_path):
     plan = cloud.plan(workers=3, tiles=4)
     assert (plan.tiles, plan.workers) == (4, 3)
     assert 1_000 < plan.count < 6_000
+
+
+def test_points_at_one_place_are_named_by_file_and_row(tmp_path):
+    points = np.array([[0, 0, 1], [9, 0, 2], [0, 9, 3], [9, 9, 4], [5, 5, 5]], float)
+    others = np.array([[9, 7, 4], [5, 5, 5], [20, 0, 0]], float)
+    files = [
+        ts.write(ts.Survey(points=one, crs="EPSG:32616"), tmp_path / name)
+        for name, one in (("a.laz", points), ("b.laz", others))
+    ]
+    cloud = ts.tiles(files, duplicates="error", check_crs=False)
+    with pytest.raises(ts.ReadError, match=r"row 4 of 'a\.laz', row 1 of 'b\.laz'"):
+        cloud.rasterize(tmp_path / "a.tif", spacing=1.0, executor=Shuffled())
+
+
+def test_rasters_with_voids_are_refused(tmp_path):
+    grid = ts.Grid(ts.Bounds(500_000.0, 4_000_000.0, 500_006.0, 4_000_006.0), (6, 6), 1.0)
+    cells = np.arange(36.0).reshape(6, 6)
+    path = ts.write(ts.Raster({"elevation": cells}, grid, crs="EPSG:32616"), tmp_path / "a.tif")
+    made = ts.tiles(path).rasterize(tmp_path / "b.tif", spacing=0.5, tiles=4, executor=Shuffled())
+    tin = ts.triangulate(ts.read(path))
+    np.testing.assert_array_equal(read(made), ts.rasterize(tin, spacing=0.5).bands["elevation"])
+    cells[2:4, 2:4] = np.nan
+    path = ts.write(ts.Raster({"elevation": cells}, grid, crs="EPSG:32616"), tmp_path / "c.tif")
+    with pytest.raises(ts.ReadError, match=r"c\.tif' has cells without data"):
+        ts.tiles(path).rasterize(tmp_path / "d.tif", spacing=0.5, executor=Shuffled())
+
+
+def test_rows_far_apart_are_kept_apart():
+    from tinsmith.tiled.chunks import split_numbers
+    from tinsmith.tin.tiling import NumberedPoints
+
+    numbers = np.array([0, 5, 2**32 - 1, 2**32, 2**32 + 7, 2**33 + 1])
+    parts = split_numbers(NumberedPoints(np.zeros((6, 3)), numbers))
+    assert [part.numbers.tolist() for part in parts] == [
+        [0, 5, 2**32 - 1],
+        [2**32, 2**32 + 7],
+        [2**33 + 1],
+    ]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from ..base.arrays import AnyArray, Float64Array, Int64Array
 
-__all__ = ["BYTES_ON_DISK", "Chunk", "load_chunks", "save_chunks", "write_chunk"]
+__all__ = ["BYTES_ON_DISK", "Chunk", "load_chunks", "save_chunks", "split_numbers", "write_chunk"]
 
 _POINT = np.dtype([("xyz", "<f8", 3), ("row", "<u4")])
 """A point on disk: its coordinates, and its row behind the first one of the chunk."""
@@ -168,6 +168,16 @@ def write_chunk(
     _save(chunk.path.with_suffix(".cells.npy"), offsets)
     _save(chunk.path, records)
     return chunk
+
+
+def split_numbers(points: NumberedPoints) -> list[NumberedPoints]:
+    """Return points in parts whose numbers are less than 2^32 apart: one, but for sparse rows."""
+    parts, start = [], 0
+    while start < len(points.numbers):
+        stop = int(np.searchsorted(points.numbers, points.numbers[start] + 2**32))
+        parts.append(points.choose(slice(start, stop)))
+        start = stop
+    return parts
 
 
 def _save(path: Path, values: AnyArray) -> None:

@@ -19,8 +19,9 @@ from ..base.notes import join_notes
 from ..base.sentences import counted
 from ..base.types import Bounds
 from ..io.streaming import stream_points
+from ..tin.report import describe_skipped
 from ..tin.tiling import NumberedPoints, find_skeleton
-from .chunks import Chunk, load_chunks, save_chunks, write_chunk
+from .chunks import Chunk, load_chunks, save_chunks, split_numbers, write_chunk
 from .runs import Fingerprint, Record, Run, hash_file
 from .store import PointStore, join_skeletons
 
@@ -30,7 +31,15 @@ if TYPE_CHECKING:
     from ..base.arrays import AnyArray, BoolArray
     from .workers import Phase
 
-__all__ = ["CHUNK_POINTS", "ReadJob", "StoredPoints", "open_store", "read_input", "read_inputs"]
+__all__ = [
+    "CHUNK_POINTS",
+    "ReadJob",
+    "StoredPoints",
+    "name_rows",
+    "open_store",
+    "read_input",
+    "read_inputs",
+]
 
 CHUNK_POINTS = 1_000_000
 """Points that are held at a time while a file is read."""
@@ -111,12 +120,18 @@ def _read(job: ReadJob, started: float) -> Record:
             if not len(points):
                 continue
             numbers = rows + np.int64(job.number) * ROWS_OF_A_FILE
-            chunk = write_chunk(job.folder, job.number, len(chunks), points, numbers)
-            chunks.append(chunk)
             low, high = min(low, points[:, 2].min()), max(high, points[:, 2].max())
-            skeletons.append(find_skeleton(NumberedPoints(points, numbers)))
+            for part in split_numbers(NumberedPoints(points, numbers)):
+                chunks.append(write_chunk(job.folder, job.number, len(chunks), *part))
+                skeletons.append(find_skeleton(part))
         crs, unit = stream.crs, stream.elevation_unit
-        notes = list(stream.notes)
+        notes = [*stream.notes, *describe_skipped(stream.skipped)]
+        if stream.has_voids:
+            raise ReadError(
+                f"'{path}' has cells without data, at which its surface ends: it cannot be "
+                "computed in tiles, whose surface is that of all points.",
+                path=path,
+            )
     job.source.require_same()
     if left_out:
         notes.append(_describe_left_out(left_out, path, job.where))
@@ -214,6 +229,15 @@ def open_store(folder: Path) -> PointStore:
     """Return the points in a folder; what is known of its chunks is kept for the next task."""
     chunks = load_chunks(folder / _CHUNKS, folder)
     return PointStore(chunks, _load_points(folder / _SKELETON))
+
+
+def name_rows(folder: Path, numbers: Sequence[int]) -> str:
+    """Write which rows of which files some points are, from their numbers among all."""
+    inputs = (Run(folder).manifest or {})["inputs"]
+    return ", ".join(
+        f"row {number % ROWS_OF_A_FILE} of '{Path(inputs[number // ROWS_OF_A_FILE]['path']).name}'"
+        for number in numbers
+    )
 
 
 def read_inputs(

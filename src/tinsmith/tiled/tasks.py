@@ -14,7 +14,7 @@ from ..base.atomic import replacing
 from ..base.errors import TinsmithError, WriteError
 from ..tin.tiling import LocalTriangulation, triangulate_box, widen
 from .division import Tile, quarter
-from .reading import open_store
+from .reading import name_rows, open_store
 from .runs import Record, Run, hash_file
 
 if TYPE_CHECKING:
@@ -87,7 +87,9 @@ class Part(NamedTuple):
         """Where files of the tile are written."""
         return self.job.folder / PHASE
 
-    def triangulate(self, box: Bounds, *, rings: int = 0) -> LocalTriangulation:
+    def triangulate(
+        self, box: Bounds, *, rings: int = 0, ordered: bool = True
+    ) -> LocalTriangulation:
         """Return all triangles of the whole surface that meet a closed box, and rings of others."""
         return triangulate_box(
             self.store,
@@ -95,6 +97,7 @@ class Part(NamedTuple):
             around=widen(box, self._halo),
             duplicates=self.job.duplicates,
             rings=rings,
+            ordered=ordered,
         )
 
     @property
@@ -170,7 +173,9 @@ def compute_tile(job: TileJob) -> Record:
     except MemoryError:
         return Record(job.key, "no memory", f"Tile {job.key} needs more memory than there is.")
     except TinsmithError as error:
-        record = Record(job.key, "failed", f"Tile {job.key}: {error}", perf_counter() - started)
+        rows = getattr(error, "rows", ())
+        what = f"points lie at one place: {name_rows(job.points, rows)}." if rows else str(error)
+        record = Record(job.key, "failed", f"Tile {job.key}: {what}", perf_counter() - started)
     run.add(PHASE, record)
     return record
 

@@ -73,7 +73,7 @@ def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     """Return the triangles of a tile that lines meet."""
     box = part.job.tile.box
     options = _make_options(part.job.options, part.store)
-    local = part.triangulate(box, rings=lines.RINGS)
+    local = part.triangulate(box, rings=lines.RINGS, ordered=False)
     if not len(local.triangles):
         return 0, {}, []
     found = lines.compute_part(local, box, options)

@@ -34,7 +34,7 @@ def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str
 
 def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     """Write the triangles that a tile owns, their vertices with the numbers of the whole."""
-    local = part.triangulate(part.job.tile.box)
+    local = part.triangulate(part.job.tile.box, ordered=False)
     owned = local.triangles[local.owned]
     if not len(owned):
         return 0, {}, []

@@ -117,7 +117,8 @@ def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     rows, columns = find_cells(options.grid, tile.box)
     if rows.start == rows.stop:
         return 0, {}, []
-    local = part.triangulate(find_reach(options, rows, columns), rings=count_rings(options))
+    reach, rings = find_reach(options, rows, columns), count_rings(options)
+    local = part.triangulate(reach, rings=rings, ordered=False)
     if not len(local.triangles):
         return 0, {}, []
     values = compute_block(local, rows, columns, options).values

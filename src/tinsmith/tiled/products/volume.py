@@ -73,7 +73,7 @@ def _make_options(options: Mapping[str, Any]) -> volumes.VolumeOptions:
 def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     """Sum the triangles of a tile."""
     box = part.job.tile.box
-    local = part.triangulate(box)
+    local = part.triangulate(box, ordered=False)
     if not len(local.triangles):
         return 0, {}, []
     found = volumes.compute_part(local, box, _make_options(part.job.options))
