@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import Any, NamedTuple, get_args
 
 from ....base.errors import ReadError
+from ....base.policies import LineKind
 from ....base.sentences import FILE
 from ...registry.signatures import is_ply
-from .lines import parse_line_comment
 
-if TYPE_CHECKING:
-    from .lines import LineComment
-
-__all__ = ["SCALARS", "Element", "Header", "Property", "parse_header"]
+__all__ = ["SCALARS", "Element", "Header", "LineComment", "Property", "parse_header"]
 
 SCALARS = {
     "char": "i1",
@@ -42,6 +40,8 @@ LONGEST_HEADER = 1 << 24
 _COUNT = re.compile(r"[0-9]{1,100}")  # all that a disk holds, and a sentence about more
 _LONGEST_FIRST_LINE = 200
 
+_INT32 = 2**31
+_COMMENT = re.compile(r'(hard|soft|boundary|hole|water) (-?[0-9]{1,10}) ([0-9]{1,10}) (".*")')
 _BYTE_ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 
 
@@ -63,6 +63,15 @@ class Element:
     name: str
     count: int
     properties: list[Property] = field(default_factory=list)
+
+
+class LineComment(NamedTuple):
+    """What the header says of a line."""
+
+    kind: LineKind
+    source: int
+    n_edges: int
+    name: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +148,7 @@ def _read_comments(lines: list[str]) -> tuple[str | None, str | None, list[LineC
             case ["comment", "edges:", "constrained"]:
                 stated = []
             case ["comment", "line:", *_] if stated is not None:
-                found = parse_line_comment(line.split("line:", 1)[1].strip())
+                found = _parse_line_comment(line.split("line:", 1)[1].strip())
                 if found is None:
                     raise ReadError(
                         f"{FILE}, line {number}: '{line[:60]}' tells no line of a TIN.",
@@ -147,6 +156,22 @@ def _read_comments(lines: list[str]) -> tuple[str | None, str | None, list[LineC
                     )
                 stated.append(found)
     return crs, unit, stated
+
+
+def _parse_line_comment(text: str) -> LineComment | None:
+    """Return what a comment says of a line; None if it says nothing that can be understood."""
+    found = _COMMENT.fullmatch(text)
+    if found is None or found[1] not in get_args(LineKind):
+        return None
+    try:
+        name = json.loads(found[4])
+    except ValueError:
+        return None
+    kind: Any = found[1]
+    source, n_edges = int(found[2]), int(found[3])
+    if not 0 <= source < _INT32:
+        return None
+    return LineComment(kind, source, n_edges, name)
 
 
 def _require_new(added: Property, element: Element, number: int) -> None:

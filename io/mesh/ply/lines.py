@@ -10,49 +10,27 @@ are refused.
 from __future__ import annotations
 
 import json
-import re
-from typing import TYPE_CHECKING, NamedTuple, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ....base.errors import ReadError
-from ....base.policies import LineKind
 from ....base.sentences import FILE
 from ....tin import topology
 from ....tin.constraints.breaklines import Lines
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from typing import Any
 
     from ....base.arrays import Int32Array, Int64Array
     from ....tin import TIN
     from .body import Table
+    from .header import LineComment
 
-__all__ = [
-    "ENDS",
-    "LineComment",
-    "format_line_comments",
-    "parse_line_comment",
-    "read_lines",
-    "require_edges",
-    "take_edges",
-]
+__all__ = ["ENDS", "format_line_comments", "read_lines", "require_edges", "take_edges"]
 
 ENDS = ("vertex1", "vertex2")
 """Properties of an edge, as other programs call them."""
-
-_INT32 = 2**31
-_COMMENT = re.compile(r'(hard|soft|boundary|hole|water) (-?[0-9]{1,10}) ([0-9]{1,10}) (".*")')
-
-
-class LineComment(NamedTuple):
-    """What the header says of a line."""
-
-    kind: LineKind
-    source: int
-    n_edges: int
-    name: str
 
 
 def take_edges(tin: TIN) -> Int32Array:
@@ -75,22 +53,6 @@ def format_line_comments(tin: TIN) -> list[str]:
         f"comment line: {kind} {source} {n} {json.dumps(name)}" for kind, source, n, name in rows
     ]
     return ["comment edges: constrained", *stated]
-
-
-def parse_line_comment(text: str) -> LineComment | None:
-    """Return what a comment says of a line; None if it says nothing that can be understood."""
-    found = _COMMENT.fullmatch(text)
-    if found is None or found[1] not in get_args(LineKind):
-        return None
-    try:
-        name = json.loads(found[4])
-    except ValueError:
-        return None
-    kind: Any = found[1]
-    source, n_edges = int(found[2]), int(found[3])
-    if not 0 <= source < _INT32:
-        return None
-    return LineComment(kind, source, n_edges, name)
 
 
 def require_edges(table: Table, n_vertices: int) -> Int64Array:
