@@ -8,7 +8,7 @@ reason. Where several are left a convention may decide, else the table is refuse
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Float64Array
     from ...tin.screening.area_of_use import AreaOfUse
+    from .parsing import Column
 
 __all__ = [
-    "Column",
     "are_plausible_elevations",
     "find_columns_by_content",
     "is_too_steep",
@@ -48,37 +48,6 @@ _DISTINCT_SHARE = 0.5
 _ODD_SHARE = 0.1
 _DECIMAL_DIGITS = 4
 _WHOLE = re.compile(r"[+-]?[0-9]+([eE][+-]?[0-9]+)?")
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Column:
-    """What is in a column."""
-
-    values: Float64Array
-    """(n,), NaN where a cell is no number."""
-    is_text: bool = False
-    """Whether most cells are no numbers."""
-    is_whole: bool = False
-    """Whether all numbers are whole, none below zero, and written without a decimal mark."""
-    is_padded: bool = False
-    """Whether numbers have leading zeros."""
-    text_share: float = 0.0
-    """Of the cells, those that are no numbers and not empty."""
-    distinct_share: float = 1.0
-    """Of the values, those that differ."""
-    text: str = ""
-    """The first cell of a column of text."""
-
-    @property
-    def counts_rows(self) -> bool:
-        """Whether the values are whole and grow by one from row to row."""
-        return self.is_whole and bool((np.diff(self.values) == 1.0).all())
-
-    def without(self, nodata: Float64Array) -> Column:
-        """Return the same column with NaN in the place of values that stand for no data."""
-        if not np.isin(self.values, nodata).any():
-            return self
-        return replace(self, values=np.where(np.isin(self.values, nodata), np.nan, self.values))
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...base.arrays import Float64Array
-    from .content import Column
+    from .parsing import Column
 
 __all__ = ["are_angles_in_parts", "find_doubt", "have_no_elevations"]
 

@@ -8,6 +8,7 @@ of every cell at a time; what is longer or has an exponent is read by Python, on
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int8Array, Int64Array
     from .cell_bounds import CellBounds
 
-__all__ = ["parse_column"]
+__all__ = ["Column", "parse_column"]
 
 _BLOCK_ROWS = 1 << 15
 """Rows at a time, whose numbers stay in the cache of a core."""
@@ -32,6 +33,37 @@ _TRUTHS = {
     **dict.fromkeys(("True", "TRUE", "true"), True),
     **dict.fromkeys(("False", "FALSE", "false"), False),
 }
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Column:
+    """What is in a column."""
+
+    values: Float64Array
+    """(n,), NaN where a cell is no number."""
+    is_text: bool = False
+    """Whether most cells are no numbers."""
+    is_whole: bool = False
+    """Whether all numbers are whole, none below zero, and written without a decimal mark."""
+    is_padded: bool = False
+    """Whether numbers have leading zeros."""
+    text_share: float = 0.0
+    """Of the cells, those that are no numbers and not empty."""
+    distinct_share: float = 1.0
+    """Of the values, those that differ."""
+    text: str = ""
+    """The first cell of a column of text."""
+
+    @property
+    def counts_rows(self) -> bool:
+        """Whether the values are whole and grow by one from row to row."""
+        return self.is_whole and bool((np.diff(self.values) == 1.0).all())
+
+    def without(self, nodata: Float64Array) -> Column:
+        """Return the same column with NaN in the place of values that stand for no data."""
+        if not np.isin(self.values, nodata).any():
+            return self
+        return replace(self, values=np.where(np.isin(self.values, nodata), np.nan, self.values))
 
 
 class _Digits(NamedTuple):

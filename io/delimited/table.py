@@ -29,8 +29,7 @@ from .cells import (
     split_line,
 )
 from .columns import COORDINATES, find_unit_word
-from .content import Column
-from .parsing import parse_column
+from .parsing import Column, parse_column
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -19,10 +19,9 @@ from .dem import (
     find_middle,
     make_choice,
     plan_cells,
-    read_header,
     read_strips,
-    stream_strips,
 )
+from .header import read_header, stream_strips
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -13,7 +12,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...base import optional
 from ...base.checks import require_count
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError
@@ -24,12 +22,11 @@ from ...tin import Bounds, Survey
 from ...tin.screening.elevation_summary import ElevationSummary
 from ...tin.screening.nodata import parse_nodata
 from ..door import names_its_file
-from ..isolated import Limits, choose_limits, run_isolated, stream_isolated
 from ..isolated.limits import measure_free_memory
 from ..registry import PointChunk, StreamEnd, StreamHead, gather
 from ..reprojection import Placing, place, settle_unit
+from .header import Affine, Header, read_header, stream_strips
 from .meaning import Meaning, find_meaning, settle_axes
-from .virtual import is_virtual, require_plain_sources
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -46,10 +43,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "LEFT_OUT",
-    "Affine",
     "Cells",
     "Choice",
-    "Header",
     "Plan",
     "Strip",
     "choose_band",
@@ -62,11 +57,9 @@ __all__ = [
     "plan_cells",
     "read",
     "read_georeference",
-    "read_header",
     "read_strips",
     "require_elevation_band",
     "stream",
-    "stream_strips",
 ]
 
 _STRIP_CELLS = 4_000_000
@@ -440,94 +433,8 @@ def is_raster(path: Path) -> bool:
 # ------------------------------------------------------------------ the dataset
 
 
-class Affine(NamedTuple):
-    """Easting is ``a * column + b * row + c``, northing ``d * column + e * row + f``."""
-
-    a: float
-    b: float
-    c: float
-    d: float
-    e: float
-    f: float
-
-    def apply(self, column: Any, row: Any) -> tuple[Any, Any]:
-        """Return easting and northing of places counted in columns and rows."""
-        return (
-            column * self.a + row * self.b + self.c,
-            column * self.d + row * self.e + self.f,
-        )
-
-    def invert(self) -> Affine:
-        """Return the transform from easting and northing to columns and rows."""
-        a, b, c, d, e, f = self
-        area = a * e - b * d
-        return Affine(
-            *(e / area, -b / area, (b * f - c * e) / area),
-            *(-d / area, a / area, (c * d - a * f) / area),
-        )
-
-
 _NOWHERE = Affine(1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 """What GDAL tells of a raster without a georeference."""
-
-
-@dataclass(frozen=True, slots=True)
-class Header:
-    """What a raster says of itself, and how its cells are read; see raster_gdal.header."""
-
-    path: Path
-    count: int
-    subdatasets: list[str]
-    colours: list[str]
-    dtypes: list[str]
-    width: int
-    height: int
-    transform: Affine
-    block_height: int
-    block_width: int
-    scales: list[float]
-    offsets: list[float]
-    units: list[str | None]
-    crs: str | None
-    meanings: list[dict[str, str]]
-    """Of the first bands: what names and describes them."""
-    tags: dict[str, str]
-    """Units and standard names of the variables of netCDF."""
-    limits: Limits | None
-
-    @property
-    def bounds(self) -> tuple[float, float, float, float]:
-        """West, south, east, north of an upright box around all cells."""
-        columns = np.array([0, self.width, 0, self.width])
-        with np.errstate(over="ignore", invalid="ignore"):
-            x, y = self.transform.apply(columns, np.array([0, 0, self.height, self.height]))
-        return float(x.min()), float(y.min()), float(x.max()), float(y.max())
-
-
-def read_header(path: Path) -> Header:
-    """Let a child open a raster, and return what it says of itself."""
-    optional.require("rasterio", "Reading a raster")
-    limits = choose_limits(_measure_files(path))
-    found = run_isolated(
-        f"{_choose_reader(path)}:read_header", _name_for_gdal(path), path=path, limits=limits
-    ).value
-    transform = Affine(*found.pop("transform"))
-    return Header(path=path, transform=transform, limits=limits, **found)
-
-
-def _choose_reader(path: Path) -> str:
-    return f"{__package__}.virtual_child" if is_virtual(path) else f"{__package__}.gdal_child"
-
-
-def _name_for_gdal(path: Path) -> dict[str, Any]:
-    """Return what names the file to GDAL: an absolute path is never a scheme or a prefix."""
-    return {"path": os.path.abspath(path), "is_virtual": is_virtual(path)}  # noqa: PTH100 - links stay
-
-
-def _measure_files(path: Path) -> int:
-    """Return the bytes of a raster, those of the sources of a virtual one included."""
-    sources = require_plain_sources(path) if is_virtual(path) else []
-    return sum(one.stat().st_size for one in [path, *sources] if one.is_file())
 
 
 def choose_elevations(dataset: Header, band: int | None) -> Meaning:
@@ -754,18 +661,6 @@ def _require_few_cells(cells: Cells) -> None:
 
 
 # ------------------------------------------------------------------ points
-
-
-def stream_strips(
-    dataset: Header, where: dict[str, Any]
-) -> AbstractContextManager[Iterator[Answer]]:
-    """Let a child read the strips of a file."""
-    return stream_isolated(
-        f"{_choose_reader(dataset.path)}:read_strips",
-        {**_name_for_gdal(dataset.path), **where},
-        path=dataset.path,
-        limits=dataset.limits,
-    )
 
 
 class Strip(NamedTuple):

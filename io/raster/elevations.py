@@ -17,14 +17,8 @@ from ...tin.screening.nodata import parse_nodata
 from ..door import names_its_file
 from ..isolated.spooling import is_pipe, require_local, require_readable
 from ..reprojection import place
-from .dem import (
-    Header,
-    choose_elevations,
-    find_elevation_unit,
-    find_middle,
-    read_header,
-    stream_strips,
-)
+from .dem import choose_elevations, find_elevation_unit, find_middle
+from .header import Header, read_header, stream_strips
 from .meaning import settle_axes
 
 if TYPE_CHECKING:

@@ -16,8 +16,9 @@ from ...base.checks import require_type
 from ...base.errors import OptionError
 from ...base.results import Raster
 from ..door import naming_file
-from .dem import Affine, Choice, Header, make_survey
+from .dem import Choice, make_survey
 from .gdal_child import cut_strips, describe
+from .header import Affine, Header
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

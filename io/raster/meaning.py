@@ -14,7 +14,7 @@ from ...base.sentences import FILE, counted
 from ...tin.screening.area_of_use import AreaOfUse
 
 if TYPE_CHECKING:
-    from .dem import Header
+    from .header import Header
 
 __all__ = ["Meaning", "find_meaning", "settle_axes"]
 

@@ -9,13 +9,13 @@ import tinsmith as ts
 from tinsmith.base.crs import CRS
 from tinsmith.io import ReadError
 from tinsmith.io.delimited.content import (
-    Column,
     are_plausible_elevations,
     find_columns_by_content,
     is_too_steep,
     measure_relief_and_extent,
     require_no_split_decimals,
 )
+from tinsmith.io.delimited.parsing import Column
 from tinsmith.tin.screening.area_of_use import AreaOfUse
 
 RNG = np.random.default_rng(5)
