@@ -19,6 +19,8 @@ WORKED_ON = {
     "io.delimited.layout._Top", "io.delimited.names._Found",
     "io.field_survey.figures.Figure", "io.field_survey.geometry._Line",
     "io.field_survey.instruments.gsi._Block", "io.field_survey.instruments.records.Book",
+    "io.delimited.table_reader._Head", "io.delimited.table_reader._Account",
+    "io.lidar.reading._Seen", "io.vector.parquet.streaming._Missing",
     "io.lidar.selection.Tally", "io.cad.landxml.content.Content", "io.cad.landxml.content.Line",
     "io.cad.landxml.content.Points", "io.cad.landxml.content.Surface",
     "terrain.plans.mapping.Drawn", "tin.screening.heights._Search",

@@ -111,7 +111,7 @@ class _Head:
     unit: Unit | None = None
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class _Account:
     """What became of the rows so far, and what is to be told, in the order in which it is."""
 

@@ -14,7 +14,7 @@ from support.commands import run_command
 from support.processes import run
 
 from tinsmith.cli import main
-from tinsmith.cli.command import OF_BUILDING, Command
+from tinsmith.cli.command import LISTED_BY, Command
 from tinsmith.cli.command_list import SECTIONS, SUMMARIES
 from tinsmith.io import known_formats
 
@@ -114,11 +114,11 @@ def test_every_command_has_its_line_in_the_help():
 def test_every_option_is_listed_once_under_a_subject(name):
     command = main.get_command(click.Context(main), name)
     output = run_command(name, "--help").output
-    of_building = run_command("build", "--help").output
     for option in command.params:
         if isinstance(option, click.Option):
-            is_elsewhere = getattr(option, "subject", "") in OF_BUILDING and name != "build"
-            place = of_building if is_elsewhere else output
+            lister = LISTED_BY.get(getattr(option, "subject", ""), name)
+            is_elsewhere = lister != name
+            place = run_command(lister, "--help").output if is_elsewhere else output
             assert option.opts[-1] in place
             assert any(
                 re.match(rf" *(-\w, )?{option.opts[-1]}( |$)", one) for one in place.splitlines()

@@ -17,9 +17,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 _OWN = "Options"
-_BUILDER = "build"
-OF_BUILDING = ("Triangulation", "Lines and areas", "Codes of points")
-"""Subjects of options that only the help of one command lists: of points that become a TIN."""
+LISTED_BY = {
+    **dict.fromkeys(("Triangulation", "Lines and areas", "Codes of points"), "build"),
+    "Tiles, for more points than memory holds": "raster",
+}
+"""Subjects of options that only the help of one of the commands lists that have them."""
 _OF_FORMATS = "tinsmith.options_of_formats"
 _CONTEXT = "tinsmith.context"
 _VERBATIM = re.compile(r"^(?=(?:Example|A script):$)", re.MULTILINE)
@@ -64,7 +66,7 @@ class Command(click.Command):
         for one in self.get_params(ctx):
             record = one.get_help_record(ctx) if isinstance(one, click.Option) else None
             subject = getattr(one, "subject", _OWN)
-            if record is not None and (subject not in OF_BUILDING or self.name == _BUILDER):
+            if record is not None and LISTED_BY.get(subject, self.name) == self.name:
                 sections.setdefault(subject, []).append(record)
         for heading in sections:
             with formatter.section(heading):
@@ -73,13 +75,14 @@ class Command(click.Command):
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Tell where the options are listed that this help leaves out."""
         subjects = dict.fromkeys(getattr(one, "subject", _OWN) for one in self.params)
-        left = [one for one in subjects if one in OF_BUILDING and self.name != _BUILDER]
-        text = ""
-        if left:
-            text = (
-                f"Taken too, for points from which a TIN is built: {', '.join(left).lower()}, as "
-                f"'tinsmith {_BUILDER} --help' lists them. "
-            )
+        elsewhere: dict[str, list[str]] = {}
+        for one in subjects:
+            if LISTED_BY.get(one, self.name) != self.name:
+                elsewhere.setdefault(LISTED_BY[one], []).append(one.lower())
+        text = "".join(
+            f"Taken too: {', '.join(left)}, as 'tinsmith {name} --help' lists them. "
+            for name, left in elsewhere.items()
+        )
         if self.format_ways:
             text += (
                 f"A format has options of its own: 'tinsmith {self.name} FILE --help' lists those "

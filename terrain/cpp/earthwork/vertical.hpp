@@ -46,7 +46,8 @@ inline double height_of_segment(const Facet& facet, std::uint32_t edge, Point p,
   if (lexicographically_before(facet.corner[to], facet.corner[from])) std::swap(from, to);
   const Point start = facet.corner[from], end = facet.corner[to];
   const bool is_steep = std::fabs(end.y - start.y) > std::fabs(end.x - start.x);
-  const TwoDoubles before = is_steep ? exact_difference(p.y, start.y) : exact_difference(p.x, start.x);
+  const TwoDoubles before =
+      is_steep ? exact_difference(p.y, start.y) : exact_difference(p.x, start.x);
   const TwoDoubles behind = is_steep ? exact_difference(end.y, p.y) : exact_difference(end.x, p.x);
   const double at_start = behind.high * (facet.elevation[from] - elevation);
   const double at_end = before.high * (facet.elevation[to] - elevation);

@@ -171,7 +171,7 @@ class BandFiller {
 
   const LevelSurface& surface_;
   Team& team_;
-  const bool* is_owned_;  // null for all
+  const bool* is_owned_;            // null for all
   std::vector<std::size_t> first_;  // of each band
   std::vector<Triangle> listed_;
 };

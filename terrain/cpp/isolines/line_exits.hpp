@@ -147,7 +147,7 @@ class LineExits {
   void swap_ways(ExitId one, ExitId other) { std::swap(rows_[number(one)], rows_[number(other)]); }
 
   const LevelSurface& surface_;
-  const bool* is_owned_;  // null for all
+  const bool* is_owned_;               // null for all
   ScratchVector<std::uint32_t> base_;  // of each triangle, its first exit less its lowest level
   ScratchVector<Row> rows_;
   std::vector<Start> starts_;

@@ -82,8 +82,7 @@ inline SumTable hand_over(const std::vector<earthwork::Sums>& sums) {
   return copy_over<SumTable, double>(rows, {rows.size(), earthwork::Sums::kColumns});
 }
 
-inline std::vector<earthwork::Sums> sum_cells(const GivenXyz& points,
-                                              const GivenTriples& triangles,
+inline std::vector<earthwork::Sums> sum_cells(const GivenXyz& points, const GivenTriples& triangles,
                                               const GivenNumbers& groups, std::int32_t group_count,
                                               const GivenXyz& other_points,
                                               const GivenTriples& other_triangles, double up,
@@ -147,8 +146,8 @@ inline std::vector<ExactSum> add_areas(const GivenXyz& points, const GivenTriple
                                        const GivenNumbers& groups, std::int32_t group_count) {
   const Surface given = exact_surface_of(points, triangles);
   require_groups(groups, triangles.shape(0), group_count);
-  return unlocked(
-      1, [&](Team&) { return earthwork::sum_areas(given, groups.data(), group_count); });
+  return unlocked(1,
+                  [&](Team&) { return earthwork::sum_areas(given, groups.data(), group_count); });
 }
 
 inline Elevations sum_areas(const GivenXyz& points, const GivenTriples& triangles,

@@ -184,8 +184,7 @@ struct BandBoundaries {
 };
 
 inline BandBoundaries list_band_boundaries(const GivenXyz& points, const GivenTriples& triangles,
-                                           const GivenTriples& neighbors,
-                                           const GivenValues& levels,
+                                           const GivenTriples& neighbors, const GivenValues& levels,
                                            const Given<bool, -1>& is_owned) {
   const Surface surface = joined_surface_of(points, triangles, neighbors);
   const isolines::Levels wanted = levels_of(levels);
