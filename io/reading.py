@@ -20,7 +20,7 @@ from ..base.errors import (
 )
 from ..base.plug_ins import describe_failure, warn_of_plug_in
 from ..base.progress import Progress
-from ..base.sentences import counted, inflect, printable
+from ..base.sentences import FILE, counted, inflect, printable
 from ..tin import TIN, Survey
 from .door import naming_file
 from .isolated.archives import unpack
@@ -439,7 +439,7 @@ def _read_file(
         require_unit(found.crs, call.stated, options)
         return _name_source(found, file)
     reason = f"it gives a {type(found).__name__}, no Survey and no TIN"
-    raise _blame_plug_in(call.format, file, reason)
+    raise _blame_plug_in(call.format, reason)
 
 
 class Call(NamedTuple):
@@ -473,7 +473,7 @@ def prepare_call(
     chosen = _choose_format(file, name, options)
     if chosen.read is None:
         raise FormatError(
-            f"'{file}' is {chosen.description}, a format that is written, not read: "
+            f"{FILE} is {chosen.description}, a format that is written, not read: "
             f"{lookup.list_suffixes('read')} can be read.",
             known=lookup.find_suffixes("read"),
         )
@@ -495,7 +495,7 @@ def blaming(chosen: Format, file: Path) -> Iterator[None]:
     except Exception as error:
         if chosen.is_built_in or isinstance(error, TinsmithError):
             raise
-        raise _blame_plug_in(chosen, file, describe_failure(error)) from error
+        raise _blame_plug_in(chosen, describe_failure(error)) from error
 
 
 def _take_options(
@@ -533,11 +533,10 @@ def _name_source(found: Survey | TIN, file: Path) -> Survey | TIN:
     return found if isinstance(found, Survey) else found.with_source(file.name)
 
 
-def _blame_plug_in(one: Format, file: Path, reason: str) -> ReadError:
+def _blame_plug_in(one: Format, reason: str) -> ReadError:
     return ReadError(
-        f"Cannot read '{file}': the reader of the format {one.name}, of the plug-in "
-        f"{one.distribution}, fails ({reason}).",
-        path=file,
+        f"Cannot read {FILE}: the reader of the format {one.name}, of the plug-in "
+        f"{one.distribution}, fails ({reason})."
     )
 
 
@@ -698,7 +697,7 @@ def detect(path: Path, head: bytes, options: Iterable[str] = ()) -> Format:
         return _choose_recognised(able or shown, path)
     if is_virtual(path):
         return lookup.find_format("raster")
-    _require_not_foreign(path, head)
+    _require_not_foreign(head)
     by_suffix = lookup.choose_format(path, "read")
     if by_suffix is not None and (by_suffix.sniff is None or not _is_table(head)):
         return by_suffix
@@ -713,7 +712,7 @@ def _choose_recognised(shown: Sequence[Format], path: Path) -> Format:
     """Return the first built-in format, else the only one of plug-ins."""
     first = shown[0]
     if not first.is_built_in:
-        return lookup.choose_clear(shown, f"The content of '{path}'")
+        return lookup.choose_clear(shown, f"The content of {FILE}")
     for other in shown[1:]:
         if not other.is_built_in:
             reason = f"it claims '{path}' too, which is read as {first.name}; format= chooses"
@@ -737,11 +736,11 @@ def _recognises(one: Format, sniff: Callable[[Any], bool] | None, content: objec
         return False
 
 
-def _require_not_foreign(path: Path, head: bytes) -> None:
+def _require_not_foreign(head: bytes) -> None:
     kind = signatures.find_foreign_kind(head)
     if kind is not None:
         raise FormatError(
-            f"'{path}' is {kind}, which cannot be read: {lookup.list_suffixes('read')} can.",
+            f"{FILE} is {kind}, which cannot be read: {lookup.list_suffixes('read')} can.",
             known=lookup.find_suffixes("read"),
         )
 
@@ -773,7 +772,7 @@ def _read_head(path: Path) -> bytes:
             with path.open("rb") as file:
                 head = file.read(signatures.HEAD_BYTES)
         except ValueError as error:
-            raise ReadError(f"Cannot read {str(path)!r}: {error}.", path=path) from error
+            raise ReadError(f"Cannot read {FILE}: {error}.") from error
     if not head:
-        raise ReadError(f"'{path}' is empty: there are no points in it.", path=path)
+        raise ReadError(f"{FILE} is empty: there are no points in it.")
     return head

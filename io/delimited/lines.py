@@ -185,10 +185,10 @@ def read_lines(path: Path, *, encoding: str | None = None) -> TextLines:
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
+        raise ReadError(f"Cannot read {FILE}: {error.strerror or error}.") from error
     text = _convert_to_utf8(data, encoding)
     if b"\x00" in text:
-        raise ReadError(f"'{path}' holds binary data, not delimited text.", path=path)
+        raise ReadError(f"{FILE} holds binary data, not delimited text.")
     lines = TextLines.of(text.rstrip(b"\x1a"))
     _require_short(lines)
     return lines
@@ -299,7 +299,7 @@ def iterate_lines(
             decoder = decoder or _Decoder(content, encoding)
             text = decoder.decode(content, first, is_last=is_last)
             if b"\x00" in text:
-                raise ReadError(f"'{path}' holds binary data, not delimited text.", path=path)
+                raise ReadError(f"{FILE} holds binary data, not delimited text.")
             lines = _number_lines(text.rstrip(b"\x1a") if is_last else text, first, is_last)
             _require_short(lines)
             if len(lines) or is_last:

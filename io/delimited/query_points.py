@@ -113,19 +113,17 @@ def _read_table(path: Path, delimiter: str | None) -> _Table:
         with path.open(encoding="utf-8-sig", newline="") as file:
             text = file.read()
     except OSError as error:
-        raise ReadError(f"Cannot read '{path}': {error.strerror}.", path=path) from error
+        raise ReadError(f"Cannot read {FILE}: {error.strerror}.") from error
     except UnicodeDecodeError as error:
-        raise ReadError(f"Cannot read '{path}': it is no text in UTF-8.", path=path) from error
+        raise ReadError(f"Cannot read {FILE}: it is no text in UTF-8.") from error
     if not text.strip():
-        raise ReadError(
-            f"'{path}' is empty: a line with the names of columns is needed.", path=path
-        )
+        raise ReadError(f"{FILE} is empty: a line with the names of columns is needed.")
     mark = _find_delimiter(text.partition("\n")[0], delimiter)
     reader = csv.reader(StringIO(text, newline=""), delimiter=mark, strict=True)
     try:
         found = [(reader.line_num, row) for row in reader if any(cell.strip() for cell in row)]
     except csv.Error as error:
-        raise ReadError(f"'{path}', line {reader.line_num}: {error}.", path=path) from error
+        raise ReadError(f"{FILE}, line {reader.line_num}: {error}.") from error
     header = [name.strip() for name in found[0][1]]
     for one in header:
         if not one or header.count(one) > 1:
@@ -135,9 +133,8 @@ def _read_table(path: Path, delimiter: str | None) -> _Table:
     uneven = [n for n, row in zip(numbers, rows, strict=True) if len(row) != len(header)]
     if uneven:
         raise ReadError(
-            f"'{path}' has {counted(len(uneven), 'row')} with more or fewer cells than the "
+            f"{FILE} has {counted(len(uneven), 'row')} with more or fewer cells than the "
             f"{len(header)} of the header (first: line {uneven[0]}).",
-            path=path,
             lines=uneven[:_SHOWN],
         )
     return _Table(header, rows, numbers)

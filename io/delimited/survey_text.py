@@ -197,7 +197,7 @@ def write(
     table = _choose_written_columns(obj, columns, is_bare)
     separator = delimiter or _SUFFIX_DELIMITERS.get(path.suffix.lower(), ",")
     if len(separator) != 1 or separator in '"\n\r.' or separator.isalnum():
-        raise WriteError(f"Cannot write '{path}': '{delimiter}' is no delimiter.", path=path)
+        raise WriteError(f"Cannot write {FILE}: '{delimiter}' is no delimiter.")
     names = (
         [] if (is_bare if header is None else not header) else [_name_written_columns(table, obj)]
     )

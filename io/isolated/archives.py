@@ -18,8 +18,9 @@ from typing import IO, TYPE_CHECKING
 
 from ...base.atomic import scratch_folder
 from ...base.errors import ReadError, TinsmithError
-from ...base.sentences import counted
-from .spooling import rename_in_error, translate_system_errors
+from ...base.notes import naming_copy, naming_file
+from ...base.sentences import FILE, counted
+from .spooling import translate_system_errors
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -81,18 +82,18 @@ def unpack(path: Path) -> Iterator[Path]:
         return
     with scratch_folder() as folder:
         unpacker = _unpack_gzip if start.startswith(_GZIP) else _unpack_zip
-        with translate_system_errors(path):
+        with naming_file(path), translate_system_errors(path):
             try:
                 inner = unpacker(path, Path(folder))
             except TinsmithError:
                 raise
             except _DAMAGES as error:
-                raise _describe_damage(path, error) from error
-        try:
+                reason = " ".join(str(error).split()).rstrip(".") or type(error).__name__
+                raise ReadError(
+                    f"{FILE} cannot be unpacked, it may be damaged: {reason}."
+                ) from error
+        with naming_copy(inner, path):
             yield inner
-        except TinsmithError as error:
-            rename_in_error(error, inner, path)
-            raise
 
 
 def _read_start(path: Path) -> bytes:
@@ -104,16 +105,10 @@ def _read_start(path: Path) -> bytes:
         return b""
 
 
-def _describe_damage(path: Path, error: Exception) -> ReadError:
-    reason = " ".join(str(error).split()).rstrip(".") or type(error).__name__
-    return ReadError(f"'{path}' cannot be unpacked, it may be damaged: {reason}.", path=path)
-
-
 class _Budget:
     """How many bytes may still be unpacked."""
 
     def __init__(self, path: Path) -> None:
-        self._path = path
         self._most = max(_LEAST, _LARGEST_RATIO * path.stat().st_size)
         self._left = self._most
 
@@ -130,9 +125,8 @@ class _Budget:
         free = shutil.disk_usage(tempfile.gettempdir()).free
         if self._left < 0 or count > free:
             raise ReadError(
-                f"'{self._path}' unpacks to more than {self._most / 1e6:,.0f} MB, the limit for an "
+                f"{FILE} unpacks to more than {self._most / 1e6:,.0f} MB, the limit for an "
                 "archive of this size: unpack it first, if it is sound.",
-                path=self._path,
             )
 
 
@@ -147,8 +141,8 @@ def _unpack_gzip(path: Path, folder: Path) -> Path:
 
 def _unpack_zip(path: Path, folder: Path) -> Path:
     with zipfile.ZipFile(path) as archive:
-        members = _list_members(archive, path)
-        chosen = _choose_member(members, path)
+        members = _list_members(archive)
+        chosen = _choose_member(members)
         budget = _Budget(path)
         stem = _strip(PurePosixPath(chosen.filename))
         for member in members:
@@ -158,24 +152,22 @@ def _unpack_zip(path: Path, folder: Path) -> Path:
     return folder / PurePosixPath(chosen.filename).name
 
 
-def _list_members(archive: zipfile.ZipFile, path: Path) -> list[zipfile.ZipInfo]:
+def _list_members(archive: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
     """Return the files of an archive; refuse what reaches outside of it, and what is encrypted."""
     members = [one for one in archive.infolist() if not one.is_dir()]
     if len(members) > _MOST_FILES:
         raise ReadError(
-            f"'{path}' holds {len(members):,} files: unpack it, and name the one to read.",
-            path=path,
+            f"{FILE} holds {len(members):,} files: unpack it, and name the one to read.",
         )
     for one in members:
         name = PurePosixPath(one.filename.replace("\\", "/"))
         is_link = stat.S_ISLNK(one.external_attr >> 16)
         if name.is_absolute() or ".." in name.parts or ":" in one.filename or is_link:
             raise ReadError(
-                f"'{path}' holds {one.filename!a}, a place outside of it: it is not unpacked.",
-                path=path,
+                f"{FILE} holds {one.filename!a}, a place outside of it: it is not unpacked.",
             )
         if one.flag_bits & 1:
-            raise ReadError(f"'{path}' is encrypted: unpack it first with its password.", path=path)
+            raise ReadError(f"{FILE} is encrypted: unpack it first with its password.")
     return [one for one in members if not _is_hidden(one)]
 
 
@@ -190,12 +182,11 @@ def _strip(name: PurePosixPath) -> str:
     return str(name.parent / name.name.partition(".")[0]).casefold()
 
 
-def _choose_member(members: Sequence[zipfile.ZipInfo], path: Path) -> zipfile.ZipInfo:
+def _choose_member(members: Sequence[zipfile.ZipInfo]) -> zipfile.ZipInfo:
     """Return the only file that others stand beside, if there is only one."""
     if any(one.filename == _OFFICE for one in members):
         raise ReadError(
-            f"'{path}' is an Office document (such as an Excel workbook): save it as CSV.",
-            path=path,
+            f"{FILE} is an Office document (such as an Excel workbook): save it as CSV.",
         )
     suffixes = [PurePosixPath(one.filename).suffix.lower() for one in members]
     main = [one for one, suffix in zip(members, suffixes, strict=True) if suffix not in _SIDE_FILES]
@@ -204,10 +195,9 @@ def _choose_member(members: Sequence[zipfile.ZipInfo], path: Path) -> zipfile.Zi
     if len(main) == 1:
         return main[0]
     if not main:
-        raise ReadError(f"'{path}' holds no data: there is no file in it to read.", path=path)
+        raise ReadError(f"{FILE} holds no data: there is no file in it to read.")
     names = ", ".join(one.filename for one in main[:5])
     more = f" and {counted(len(main) - 5, 'more', 'more')}" if len(main) > 5 else ""
     raise ReadError(
-        f"'{path}' holds several files ({names}{more}): unpack it, and name the one to read.",
-        path=path,
+        f"{FILE} holds several files ({names}{more}): unpack it, and name the one to read.",
     )

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote, urlsplit
 
 from ...base.atomic import scratch_folder
-from ...base.errors import ReadError, TinsmithError
-from .spooling import rename_in_error
+from ...base.errors import ReadError
+from ...base.notes import naming_copy
 
 if TYPE_CHECKING:
     import os
@@ -66,11 +66,8 @@ def download(path: str | os.PathLike[str]) -> Iterator[Path]:
                 error.close()  # it is the answer, too
             reason = getattr(error, "reason", None) or getattr(error, "strerror", None) or error
             raise ReadError(f"Cannot read '{address}': {reason}.", path=Path(copy.name)) from error
-        try:
+        with naming_copy(copy, Path(copy.name)):
             yield copy
-        except TinsmithError as error:
-            rename_in_error(error, copy, Path(copy.name))
-            raise
 
 
 def _find_name(address: str) -> str:

@@ -11,6 +11,7 @@ from typing import IO, TYPE_CHECKING
 
 from ...base.atomic import scratch_folder
 from ...base.errors import ReadError, TinsmithError
+from ...base.notes import naming_copy
 
 if TYPE_CHECKING:
     import os
@@ -20,7 +21,6 @@ __all__ = [
     "describe_system_error",
     "is_pipe",
     "open_ordinary_file",
-    "rename_in_error",
     "require_local",
     "require_readable",
     "spool",
@@ -78,11 +78,8 @@ def spool(stream: IO[bytes], path: Path) -> Iterator[Path]:
         copy = Path(folder) / f"piped{path.suffix or '.txt'}"
         with translate_system_errors(path), copy.open("wb") as file:
             shutil.copyfileobj(stream, file, _CHUNK)
-        try:
+        with naming_copy(copy, path):
             yield copy
-        except TinsmithError as error:
-            rename_in_error(error, copy, path)
-            raise
 
 
 def describe_system_error(path: Path, error: OSError) -> ReadError:
@@ -127,16 +124,6 @@ def is_pipe(path: Path) -> bool:
         what = "a socket" if stat.S_ISSOCK(mode) else "a device or a terminal"
         raise ReadError(f"'{path}' is {what}: a file or a pipe is needed.", path=path)
     return stat.S_ISFIFO(mode)
-
-
-def rename_in_error(error: TinsmithError, copy: Path, path: Path) -> None:
-    """Let an error about the copy speak of the original."""
-    if error.args and isinstance(error.args[0], str):
-        parts = error.args[0].split(str(copy))  # the new name may hold the old one
-        text = str(path).join(part.replace(copy.name, path.name) for part in parts)
-        error.args = (text, *error.args[1:])
-    if error.file == copy:
-        error.file = path
 
 
 _ELSEWHERE = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:/|/vsi[a-z0-9_]+/|\\vsi")

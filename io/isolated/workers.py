@@ -98,7 +98,18 @@ class _Worker:
         self.module = module
         self.is_sound = True
         self._timed_out = False
-        self._process = _start_child(module)
+        from importlib import import_module
+
+        wanted: dict[str, str] = getattr(import_module(module), "ENVIRONMENT", {})
+        self._process = subprocess.Popen(
+            [_find_interpreter(), "-P", "-c", _START, _search_path(), module],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            bufsize=0,
+            env={**os.environ, **wanted},
+            start_new_session=True,  # Ctrl-C is for the program, which then ends the child
+        )
 
     def ask(self, request: dict[str, Any], limits: Limits) -> Generator[Answer, None, None]:
         """Yield the parts of the answer; anything but a sound end leaves the child unsound."""
@@ -207,18 +218,6 @@ if hasattr(os, "register_at_fork"):
 # ---------------------------------------------------------------------- starting a child
 
 
-def _start_child(module: str) -> subprocess.Popen[bytes]:
-    return subprocess.Popen(
-        [_find_interpreter(), "-P", "-c", _START, _search_path(), module],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        bufsize=0,
-        env={**os.environ, **_choose_environment(module)},
-        start_new_session=True,  # Ctrl-C is for the program, which then ends the child
-    )
-
-
 def _find_interpreter() -> str:
     """Return the path of Python; a program that embeds it is not one."""
     places = [Path(sys.executable or "."), Path(sys.exec_prefix, "bin", "python3")]
@@ -234,14 +233,6 @@ def _search_path() -> str:
     import json
 
     return json.dumps([str(Path(place).absolute()) for place in sys.path if place])
-
-
-def _choose_environment(module: str) -> dict[str, str]:
-    """Return the variables that a module wants to be set before its library is loaded."""
-    from importlib import import_module
-
-    wanted: dict[str, str] = getattr(import_module(module), "ENVIRONMENT", {})
-    return wanted
 
 
 # ---------------------------------------------------------------------------- sentences

@@ -78,7 +78,22 @@ def write(
     with replacing_data_set(path, "geotiff") as new, _translate_faults():
         _write_tiles(raster, new, compression, progress)
         factors = [] if resampling == "none" else _list_factors(raster)
-        _add_overviews(raster, new, resampling, factors, compression)
+        rasterio = optional.load("rasterio", "Writing overviews")
+        if factors:
+            packing = {
+                "COMPRESS_OVERVIEW": "DEFLATE",
+                "PREDICTOR_OVERVIEW": str(_choose_predictor(_choose_dtype(raster))),
+                "ZLEVEL_OVERVIEW": str(_LEVEL),
+            }
+            with (
+                rasterio.Env(
+                    BIGTIFF_OVERVIEW="IF_SAFER",
+                    GDAL_NUM_THREADS=_ALL,
+                    **(packing if compression == "deflate" else {}),
+                ),
+                rasterio.open(new, "r+") as dataset,
+            ):
+                dataset.build_overviews(factors, rasterio.enums.Resampling[resampling])
         _require_complete(new, factors)
         _require_crs(raster, new)
 
@@ -104,8 +119,9 @@ def write_cog(
     resampling = _choose_resampling(raster, overviews)
     with replacing_data_set(path, "cog") as new, _translate_faults():
         plain = new.with_name(f"plain-{new.name}")
-        _write_tiles(raster, plain, _choose_draft_compression(raster), progress)
-        optional.load("rasterio.shutil", f"Writing '{path}'").copy(
+        size = math.prod(raster.shape) * len(raster.bands) * _choose_dtype(raster).itemsize
+        _write_tiles(raster, plain, "none" if size <= _LARGEST_DRAFT else "deflate", progress)
+        optional.load("rasterio.shutil", f"Writing {FILE}").copy(
             os.fspath(plain),
             os.fspath(new),
             driver="COG",
@@ -127,12 +143,6 @@ def _choose_resampling(raster: Raster, overviews: str | None) -> str:
         return choice("overviews", overviews, OverviewMethod)
     is_circular = any("aspect" in name.casefold() for name in raster.bands)
     return "nearest" if is_circular or _choose_dtype(raster).kind != "f" else "average"
-
-
-def _choose_draft_compression(raster: Raster) -> RasterCompression:
-    """Choose none for what is copied and removed at once, unless it takes much of a disk."""
-    size = math.prod(raster.shape) * len(raster.bands) * _choose_dtype(raster).itemsize
-    return "none" if size <= _LARGEST_DRAFT else "deflate"
 
 
 def _choose_dtype(raster: Raster) -> np.dtype[Any]:
@@ -169,7 +179,12 @@ def _write_tiles(
     rasterio = optional.load("rasterio", f"Writing {FILE}")
     with rasterio.open(new, "w", **_make_profile(raster, compression)) as dataset:
         for number, name in enumerate(raster.bands, 1):
-            _describe(dataset, number, raster, name)
+            dataset.set_band_description(number, name)
+            unit = unit_text(raster.units, name)
+            if unit == UNKNOWN_UNIT:
+                dataset.update_tags(number, unit=unit)
+            elif unit:
+                dataset.set_band_unit(number, unit)
         if raster.notes:
             dataset.update_tags(notes=" ".join(raster.notes))
         blocks = list(_iterate_blocks(*raster.shape))
@@ -242,31 +257,20 @@ def _require_complete(new: Path, factors: Sequence[int] | None = None) -> None:
         raise _describe_missing("overviews")
     for options in ({}, *({"overview_level": level} for level in range(levels))):
         with rasterio.open(new, num_threads=_ALL, **options) as dataset:
-            _require_blocks(dataset)
+            # Refuse a file without the place of a block, which reads as cells without data.
+            for number in dataset.indexes:
+                for (row, column), _ in dataset.block_windows(number):
+                    place = dataset.get_tag_item(
+                        f"BLOCK_OFFSET_{column}_{row}", "TIFF", bidx=number
+                    )
+                    if place is None:
+                        raise _describe_missing("cells")
             for rows, columns in _iterate_blocks(*dataset.shape):
                 dataset.read(window=rasterio.windows.Window.from_slices(rows, columns))
 
 
-def _require_blocks(dataset: Any) -> None:
-    """Refuse a file without the place of a block, which reads as cells without data."""
-    for number in dataset.indexes:
-        for (row, column), _ in dataset.block_windows(number):
-            place = dataset.get_tag_item(f"BLOCK_OFFSET_{column}_{row}", "TIFF", bidx=number)
-            if place is None:
-                raise _describe_missing("cells")
-
-
 def _describe_missing(what: str) -> WriteError:
     return WriteError(f"Cannot write {FILE}: {what} are missing in the file; is the disk full?")
-
-
-def _describe(dataset: Any, number: int, raster: Raster, name: str) -> None:
-    dataset.set_band_description(number, name)
-    unit = unit_text(raster.units, name)
-    if unit == UNKNOWN_UNIT:
-        dataset.update_tags(number, unit=unit)
-    elif unit:
-        dataset.set_band_unit(number, unit)
 
 
 def _iterate_blocks(rows: int, columns: int) -> Iterator[tuple[slice, slice]]:
@@ -282,32 +286,6 @@ def _list_factors(raster: Raster) -> list[int]:
     """Return how many cells make one of each overview, in each direction."""
     largest = max(raster.shape)
     return [2**k for k in range(1, 32) if largest / 2 ** (k - 1) > _SMALLEST_OVERVIEW * 2]
-
-
-def _add_overviews(
-    raster: Raster,
-    new: Path,
-    resampling: str,
-    factors: Sequence[int],
-    compression: RasterCompression,
-) -> None:
-    rasterio = optional.load("rasterio", "Writing overviews")
-    if not factors:
-        return
-    packing = {
-        "COMPRESS_OVERVIEW": "DEFLATE",
-        "PREDICTOR_OVERVIEW": str(_choose_predictor(_choose_dtype(raster))),
-        "ZLEVEL_OVERVIEW": str(_LEVEL),
-    }
-    with (
-        rasterio.Env(
-            BIGTIFF_OVERVIEW="IF_SAFER",
-            GDAL_NUM_THREADS=_ALL,
-            **(packing if compression == "deflate" else {}),
-        ),
-        rasterio.open(new, "r+") as dataset,
-    ):
-        dataset.build_overviews(factors, rasterio.enums.Resampling[resampling])
 
 
 @contextmanager

@@ -61,13 +61,25 @@ def require_plain_sources(path: Path) -> list[Path]:
     """
     root = _parse_text(path)
     for element in root.iter():
-        _require_mosaic(element)
+        if element.tag not in _MOSAIC:
+            raise _describe_refused_mosaic(f"has the element '{str(element.tag)[:60]}'")
+        if element.get("subClass") not in _CLASSES:
+            raise _describe_refused_mosaic(f"is of the class '{str(element.get('subClass'))[:60]}'")
+        if element.tag == "MDI" and element.get("key") == "OVERVIEW_FILE":
+            raise _describe_refused_mosaic("names a file of overviews")
     names = [
         (one.text or "", one.get("relativeToVRT") == "1") for one in root.iter("SourceFilename")
     ]
     sources = [_find_source(name, relative, path) for name, relative in dict.fromkeys(names)]
     for file in [path, *sources]:
-        _require_nothing_beside(file)
+        # Refuse files beside a raster (overviews, masks, metadata) that name other files.
+        for beside in _find_files_beside(file):
+            head = _read_start(beside)
+            is_text = beside.suffix != ".xml" and head.lstrip().startswith(b"<")
+            if is_text or any(reference in head for reference in _REFERENCES):
+                raise _describe_refused_mosaic(
+                    f"has the file '{beside.name}' beside it, which names other files"
+                )
     return sources
 
 
@@ -79,27 +91,18 @@ def _parse_text(path: Path) -> ET.Element:
             raise _describe_refused_mosaic(f"is larger than {LARGEST_TEXT:,} bytes")
         content = path.read_bytes()
     except OSError as error:
-        raise ReadError(f"Cannot read '{path}': {error.strerror or error}.", path=path) from error
+        raise ReadError(f"Cannot read {FILE}: {error.strerror or error}.") from error
     if b"<!DOCTYPE" in content or b"<!ENTITY" in content:
         raise _describe_refused_mosaic("declares entities")
     try:
         root = ET.fromstring(content)
     except (ET.ParseError, ValueError, LookupError) as error:
         raise ReadError(
-            f"'{path}' is no virtual raster, or a damaged one: {str(error).rstrip('.')}.", path=path
+            f"{FILE} is no virtual raster, or a damaged one: {str(error).rstrip('.')}."
         ) from error
     if root.tag != "VRTDataset":
-        raise ReadError(f"'{path}' is no virtual raster: it is a '{root.tag[:60]}'.", path=path)
+        raise ReadError(f"{FILE} is no virtual raster: it is a '{root.tag[:60]}'.")
     return root
-
-
-def _require_mosaic(element: ET.Element) -> None:
-    if element.tag not in _MOSAIC:
-        raise _describe_refused_mosaic(f"has the element '{str(element.tag)[:60]}'")
-    if element.get("subClass") not in _CLASSES:
-        raise _describe_refused_mosaic(f"is of the class '{str(element.get('subClass'))[:60]}'")
-    if element.tag == "MDI" and element.get("key") == "OVERVIEW_FILE":
-        raise _describe_refused_mosaic("names a file of overviews")
 
 
 def _find_source(name: str, is_relative: bool, path: Path) -> Path:
@@ -114,25 +117,12 @@ def _find_source(name: str, is_relative: bool, path: Path) -> Path:
     if not inside:
         raise _describe_refused_mosaic(f"names '{name[:200]}', which is not in its folder or below")
     if not is_file:
-        raise ReadError(
-            f"'{path}' is made of '{name[:200]}', and there is no such file.", path=path
-        )
+        raise ReadError(f"{FILE} is made of '{name[:200]}', and there is no such file.")
     if is_virtual(file) or _read_start(file).lstrip().startswith((b"<", b"{", b"\xef\xbb\xbf<")):
         raise _describe_refused_mosaic(
             f"names '{name[:200]}', which is itself a text of references"
         )
     return file
-
-
-def _require_nothing_beside(file: Path) -> None:
-    """Refuse files beside a raster (overviews, masks, metadata) that name other files."""
-    for beside in _find_files_beside(file):
-        head = _read_start(beside)
-        is_text = beside.suffix != ".xml" and head.lstrip().startswith(b"<")
-        if is_text or any(reference in head for reference in _REFERENCES):
-            raise _describe_refused_mosaic(
-                f"has the file '{beside.name}' beside it, which names other files"
-            )
 
 
 def _find_files_beside(file: Path) -> Iterator[Path]:

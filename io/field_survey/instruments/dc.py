@@ -46,12 +46,7 @@ class _Reader:
 
     def __init__(self, lines: TextLines, path: Path) -> None:
         self.book = Book(path, "Trimble")
-        self.is_east_first = self._read_header(lines)
-        self._known: set[str] = set()
-        self._waiting: list[tuple[int, str, str]] = []
-
-    def _read_header(self, lines: TextLines) -> bool:
-        """Read units and the order of coordinates, and return whether eastings come first."""
+        # Read units and the order of coordinates, and return whether eastings come first.
         head = find_head(lines)
         if not head.startswith("00"):
             what = f" begins with '{head[:20]}', and a Trimble DC file with the record 00."
@@ -64,7 +59,9 @@ class _Reader:
                 "coordinates (1 or 2) and direction of angles.",
             )
         self.book.unit = METRE if length == "1" else None
-        return order == "2"
+        self.is_east_first = order == "2"
+        self._known: set[str] = set()
+        self._waiting: list[tuple[int, str, str]] = []
 
     def may_be_cut(self, line: str) -> bool:
         """Whether the last number of a record may go on."""
@@ -74,18 +71,17 @@ class _Reader:
         """Take one record; of kinds that say nothing of points none."""
         kind = line[:2]
         if kind in _POINTS:
-            self._read_point(line, number)
+            name, *cells, code = (
+                line[at : at + _WIDTH].strip() for at in range(4, _END_OF_CODE, _WIDTH)
+            )
+            first, second, z = (parse_coordinate(cell, number) for cell in cells)
+            x, y = (first, second) if self.is_east_first else (second, first)
+            self._known.add(name)
+            self.book.add(
+                name, (x, y, z), code, number, line[_END_OF_CODE : _END_OF_CODE + 2].strip()
+            )
         elif kind in _POSITIONS or kind in _OBSERVATIONS:
             self._waiting.append((number, kind, line[4 : 4 + _WIDTH].strip()))
-
-    def _read_point(self, line: str, number: int) -> None:
-        name, *cells, code = (
-            line[at : at + _WIDTH].strip() for at in range(4, _END_OF_CODE, _WIDTH)
-        )
-        first, second, z = (parse_coordinate(cell, number) for cell in cells)
-        x, y = (first, second) if self.is_east_first else (second, first)
-        self._known.add(name)
-        self.book.add(name, (x, y, z), code, number, line[_END_OF_CODE : _END_OF_CODE + 2].strip())
 
     def finish(self) -> None:
         """Account for positions and observations of points that have no coordinates."""

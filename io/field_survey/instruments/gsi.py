@@ -83,7 +83,7 @@ def read_book(
     coefficient = require_refraction(refraction)
     blocks = list(_iterate_blocks(read_lines(path, encoding=encoding)))
     if not any(11 in block.words for block in blocks):
-        raise ReadError(f"'{path}' has no block of a point (word 11).", path=path)
+        raise ReadError(f"{FILE} has no block of a point (word 11).")
     reader = _Reader(Book(path, "Leica"), oriented=oriented, refraction=coefficient)
     codes = _assign_codes(blocks, code_blocks, reader.book)
     reader.find_unit(blocks)
@@ -161,7 +161,12 @@ def _assign_codes(blocks: list[_Block], where: str | None, book: Book) -> dict[i
     coded = [i for i, block in enumerate(blocks) if block.is_code]
     if not coded:
         return found
-    step = _find_step(blocks, where)
+    # 1 if codes stand before their points, -1 if after, 0 if nothing shows it.
+    if where is not None:
+        step = 1 if where == "before" else -1
+    else:
+        first, last = blocks[0].is_code, blocks[-1].is_code
+        step = 0 if first == last else (1 if first else -1)
     if step == 0:
         book.notes.append(
             inflect(
@@ -176,14 +181,6 @@ def _assign_codes(blocks: list[_Block], where: str | None, book: Book) -> dict[i
         if 0 <= beside < len(blocks) and not blocks[beside].is_code:
             found.setdefault(beside, _join(blocks[i], range(41, 50)))
     return found
-
-
-def _find_step(blocks: list[_Block], where: str | None) -> int:
-    """Return 1 if codes stand before their points, -1 if after, 0 if nothing shows it."""
-    if where is not None:
-        return 1 if where == "before" else -1
-    first, last = blocks[0].is_code, blocks[-1].is_code
-    return 0 if first == last else (1 if first else -1)
 
 
 def _join(block: _Block, indices: range) -> str:
@@ -216,9 +213,8 @@ class _Reader:
                     units.setdefault(_LENGTHS[word.unit][1], block.line)
         if len(units) > 1:
             raise ReadError(
-                f"'{self.book.path}' has lengths in metres (line {units[True]}) and in feet (line "
+                f"{FILE} has lengths in metres (line {units[True]}) and in feet (line "
                 f"{units[False]}): all must be in one unit.",
-                path=self.book.path,
                 lines=sorted(units.values()),
             )
         self.book.unit = None if False in units else METRE
@@ -250,18 +246,17 @@ class _Reader:
         if math.isfinite(x) and math.isfinite(y):
             self.book.add(name, (x, y, z), code, block.line, "coordinates")
         elif {21, 22, 31} & block.words.keys():
-            self._reduce(block, name, code)
-
-    def _reduce(self, block: _Block, name: str, code: str) -> None:
-        station, shot = self._find_station(), self._find_shot(block)
-        if not (station.is_known and shot.is_known):
-            self.book.leave_out("shots without station, heights, angles or distance", block.line)
-        elif not (self.oriented or self._station in self.proved):
-            self._without_orientation += 1
-            self.book.leave_out("shots without orientation", block.line)
-        else:
-            xyz = reduce_shot(station, shot, refraction=self.refraction, metres=self._metres)
-            self.book.add(name, xyz, code, block.line, "reduced")
+            station, shot = self._find_station(), self._find_shot(block)
+            if not (station.is_known and shot.is_known):
+                self.book.leave_out(
+                    "shots without station, heights, angles or distance", block.line
+                )
+            elif not (self.oriented or self._station in self.proved):
+                self._without_orientation += 1
+                self.book.leave_out("shots without orientation", block.line)
+            else:
+                xyz = reduce_shot(station, shot, refraction=self.refraction, metres=self._metres)
+                self.book.add(name, xyz, code, block.line, "reduced")
 
     def note_missing(self) -> None:
         """Say what is missing for shots that were left out."""
@@ -323,8 +318,7 @@ class _Reader:
 
     def _fail_value(self, block: _Block, word: _Word, allowed: str) -> ReadError:
         return ReadError(
-            f"'{self.book.path}', line {block.line}: word {word.number} is "
+            f"{FILE}, line {block.line}: word {word.number} is "
             f"'{word.unit}{word.sign}{word.data}', and it must have {allowed}.",
-            path=self.book.path,
             lines=[block.line],
         )

@@ -54,15 +54,14 @@ def read_book(path: Path) -> Book:
             parser.Parse(b"", True)
     except expat.ExpatError as error:
         raise ReadError(
-            f"'{path}', line {error.lineno}: it is no well-formed XML, "
+            f"{FILE}, line {error.lineno}: it is no well-formed XML, "
             f"{expat.ErrorString(error.code)}.",
-            path=path,
             lines=[error.lineno],
         ) from error
     except (ValueError, LookupError) as error:
         if isinstance(error, ReadError):
             raise
-        raise ReadError(f"'{path}' is in an encoding that is not read.", path=path) from error
+        raise ReadError(f"{FILE} is in an encoding that is not read.") from error
     return reader.finish()
 
 
@@ -121,33 +120,36 @@ class _Reader:
         name = self._tags[-1]
         text = "".join(self._text or ()).strip()
         if self._record is not None:
-            self._keep(self._record, self._tags[self._depth :], text)
+            tags = self._tags[self._depth :]
+            if len(tags) == 1 and tags[0] in _LEAVES:
+                self._record.texts.setdefault(tags[0], text)
+            elif len(tags) == 2 and tags[0] in _GRIDS and tags[1] in _AXES:
+                self._record.grids.setdefault(tags[0], {}).setdefault(tags[1], text)
             if len(self._tags) == self._depth:
                 self.records[_RECORDS[tuple(self._tags)]].append(self._record)
                 self._record = None
-        elif name == "GridOrientation":
-            self._require_north_east(text)
+        elif name == "GridOrientation" and text and text != "IncreasingNorthEast":
+            raise ReadError(f"its grid is '{text[:40]}', and only IncreasingNorthEast is read.")
         self._text = None
         self._tags.pop()
-
-    def _keep(self, record: _Record, tags: list[str], text: str) -> None:
-        if len(tags) == 1 and tags[0] in _LEAVES:
-            record.texts.setdefault(tags[0], text)
-        elif len(tags) == 2 and tags[0] in _GRIDS and tags[1] in _AXES:
-            record.grids.setdefault(tags[0], {}).setdefault(tags[1], text)
-
-    def _require_north_east(self, text: str) -> None:
-        if text and text != "IncreasingNorthEast":
-            raise ReadError(
-                f"its grid is '{text[:40]}', and only IncreasingNorthEast is read.",
-            )
 
     def finish(self) -> Book:
         """Return the points of the reductions, or of the field book where there are none."""
         book = Book(self.path, "Trimble")
         reduced, observed = self.records["reductions"], self.records["field book"]
         for record in reduced or observed:
-            self._add(book, record)
+            if record.texts.get("Deleted", "").lower() == "true":
+                book.leave_out("points deleted in the field", record.line)
+            else:
+                grid = next((record.grids[one] for one in _GRIDS if record.grids.get(one)), None)
+                if grid is None:
+                    book.leave_out("points without a position in the grid", record.line)
+                else:
+                    x, y, z = (parse_coordinate(grid.get(axis, ""), record.line) for axis in _AXES)
+                    texts = record.texts
+                    method = texts.get("SurveyMethod") or texts.get("Method") or ""
+                    name = texts.get("Name", "")
+                    book.add(name, (x, y, z), texts.get("Code", ""), record.line, method)
         names = {record.texts.get("Name", "") for record in reduced}
         lost = [one for one in observed if reduced and one.texts.get("Name", "") not in names]
         lost = [one for one in lost if one.texts.get("Deleted", "").lower() != "true"]
@@ -159,17 +161,3 @@ class _Reader:
                 f"{' ...' if len(lost) > 5 else ''}."
             )
         return book
-
-    def _add(self, book: Book, record: _Record) -> None:
-        if record.texts.get("Deleted", "").lower() == "true":
-            book.leave_out("points deleted in the field", record.line)
-            return
-        grid = next((record.grids[one] for one in _GRIDS if record.grids.get(one)), None)
-        if grid is None:
-            book.leave_out("points without a position in the grid", record.line)
-            return
-        x, y, z = (parse_coordinate(grid.get(axis, ""), record.line) for axis in _AXES)
-        texts = record.texts
-        method = texts.get("SurveyMethod") or texts.get("Method") or ""
-        name = texts.get("Name", "")
-        book.add(name, (x, y, z), texts.get("Code", ""), record.line, method)

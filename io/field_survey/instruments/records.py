@@ -90,18 +90,31 @@ class Book:
             If there are no points, or they are in feet of which nobody says which.
         """
         if not self.points:
-            raise ReadError(self._describe_nothing())
+            lost = ", ".join(_count(what, len(lines)) for what, lines in self.left_out.items())
+            why = f": {lost}" if lost else ""
+            first = self.notes[0] if self.notes else ""
+            hint = f" ({first[:-1]})" if first else ""
+            raise ReadError(f"{FILE} holds no point with coordinates{why}{hint}.")
         target, source = CRS.of(crs), CRS.of(source_crs)
-        self._sort()
+        # Bring points into the order of the file, in which lines run.
+        order = sorted(range(len(self.lines)), key=self.lines.__getitem__)
+        for name in ("names", "points", "codes", "lines", "methods"):
+            column = getattr(self, name)
+            setattr(self, name, [column[i] for i in order])
         points = np.array(self.points, np.float64)
         unit = self._settle(source or target, Unit.of(elevation_unit))
         points[:, :2] = self._scale(points[:, :2], source or target, unit)
         placed = place(points, source=source, target=target, unit=unit, looks_at_order=False)
         numbers = parse_names(self.names)
         rows = np.array(self.lines, np.int64) - 1
+        attributes: dict[str, Any] = {"number": numbers}
+        if any(self.codes):
+            attributes["description"] = np.array(self.codes, object)
+        if len(set(self.methods)) > 1:
+            attributes["method"] = np.array(self.methods, object)
         return Survey(
             points=placed.points,
-            attributes=self._make_attributes(numbers),
+            attributes=attributes,
             crs=placed.crs,
             elevation_unit=placed.elevation_unit,
             source=self.path.name,
@@ -118,28 +131,6 @@ class Book:
                 *placed.notes,
             ],
         )
-
-    def _sort(self) -> None:
-        """Bring points into the order of the file, in which lines run."""
-        order = sorted(range(len(self.lines)), key=self.lines.__getitem__)
-        for name in ("names", "points", "codes", "lines", "methods"):
-            column = getattr(self, name)
-            setattr(self, name, [column[i] for i in order])
-
-    def _make_attributes(self, numbers: np.ndarray[Any, Any]) -> dict[str, Any]:
-        attributes: dict[str, Any] = {"number": numbers}
-        if any(self.codes):
-            attributes["description"] = np.array(self.codes, object)
-        if len(set(self.methods)) > 1:
-            attributes["method"] = np.array(self.methods, object)
-        return attributes
-
-    def _describe_nothing(self) -> str:
-        lost = ", ".join(_count(what, len(lines)) for what, lines in self.left_out.items())
-        why = f": {lost}" if lost else ""
-        first = self.notes[0] if self.notes else ""
-        hint = f" ({first[:-1]})" if first else ""
-        return f"{FILE} holds no point with coordinates{why}{hint}."
 
     def _settle(self, crs: CRS | None, declared: Unit | None) -> Unit:
         """Return the unit of the file's lengths: feet are those of the CRS, or as declared."""

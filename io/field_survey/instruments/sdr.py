@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from ....base.crs import METRE
 from ....base.errors import ReadError
+from ....base.sentences import FILE
 from ...delimited.cells import is_number
 from ...delimited.lines import read_lines
 from .record_lines import describe_head_fault, find_head, read_records
@@ -70,25 +71,6 @@ class _Reader:
     def __init__(self, lines: TextLines, path: Path, refraction: float | None) -> None:
         self.book = Book(path, "SDR")
         self.refraction = refraction
-        self.columns, self.is_east_first, self.angle = self._read_header(lines)
-        self.is_from_horizon = False
-        self.scale = 1.0
-        self.stations: dict[str, tuple[float, float, float, float]] = {}
-        self.orientations: dict[str, float] = {}
-        self.target_height = math.nan
-        self._waiting: list[tuple[int, str, str, Station | None, Shot]] = []
-        self._known: set[str] = set()
-        self._readers = {
-            "01": self._read_instrument,
-            "02": self._read_station,
-            "03": self._read_target_height,
-            "06": self._read_scale,
-            "07": self._read_back_bearing,
-            "08": self._read_coordinates,
-            "09": self._read_observation,
-        }
-
-    def _read_header(self, lines: TextLines) -> tuple[_Columns, bool, str]:
         head = find_head(lines)
         version = head[4:20].strip().upper()
         columns = next((one for name, one in _VERSIONS.items() if version.startswith(name)), None)
@@ -105,7 +87,23 @@ class _Reader:
                 "coordinates (1 or 2).",
             )
         self.book.unit = METRE if length == "1" else None
-        return columns, order == "2", _ANGLES[angle]
+        self.columns, self.is_east_first, self.angle = columns, order == "2", _ANGLES[angle]
+        self.is_from_horizon = False
+        self.scale = 1.0
+        self.stations: dict[str, tuple[float, float, float, float]] = {}
+        self.orientations: dict[str, float] = {}
+        self.target_height = math.nan
+        self._waiting: list[tuple[int, str, str, Station | None, Shot]] = []
+        self._known: set[str] = set()
+        self._readers = {
+            "01": self._read_instrument,
+            "02": self._read_station,
+            "03": self._read_target_height,
+            "06": self._read_scale,
+            "07": self._read_back_bearing,
+            "08": self._read_coordinates,
+            "09": self._read_observation,
+        }
 
     def may_be_cut(self, line: str) -> bool:
         """Whether the last number of a record may go on."""
@@ -199,15 +197,13 @@ class _Reader:
             return math.nan
         if not is_number(cell, "."):
             raise ReadError(
-                f"'{self.book.path}', line {line}: '{cell[:30]}' stands where a number must be.",
-                path=self.book.path,
+                f"{FILE}, line {line}: '{cell[:30]}' stands where a number must be.",
                 lines=[line],
             )
         value = float(cell)
         if math.isinf(value):
             raise ReadError(
-                f"'{self.book.path}', line {line}: '{cell[:30]}' is no finite number.",
-                path=self.book.path,
+                f"{FILE}, line {line}: '{cell[:30]}' is no finite number.",
                 lines=[line],
             )
         return value

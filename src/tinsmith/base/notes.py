@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from .errors import LossWarning, OptionError, TinsmithError
@@ -21,18 +23,54 @@ _PACKAGE = __name__.partition(".")[0]
 _FILE: ContextVar[Path | None] = ContextVar("file", default=None)
 """The file that is read or written."""
 
+_ORIGINALS: ContextVar[Mapping[Path, Path]] = ContextVar("originals", default=MappingProxyType({}))
+"""Files as the user names them, by the copies of them that are read."""
+
 
 @contextmanager
 def naming_file(file: Path) -> Iterator[None]:
-    """Let every error and warning of a reader or writer speak of its file."""
-    token = _FILE.set(file)
+    """Let every error and warning of a reader or writer speak of its file, not of a copy of it."""
+    original = _find_original(file)
+    token = _FILE.set(original)
     try:
         yield
     except TinsmithError as error:
-        error.add_file(file)
+        error.add_file(original)
         raise
     finally:
         _FILE.reset(token)
+
+
+@contextmanager
+def naming_copy(copy: Path, file: Path) -> Iterator[None]:
+    """Let errors and warnings about a copy of a file, such as an unpacked one, name the file."""
+    original = _find_original(file)
+    token = _ORIGINALS.set({**_ORIGINALS.get(), copy: original})
+    try:
+        yield
+    except TinsmithError as error:
+        _rename(error, copy, original)
+        raise
+    finally:
+        _ORIGINALS.reset(token)
+
+
+def _find_original(file: Path) -> Path:
+    """Return the file of which a path is a copy, itself if it is none."""
+    originals = _ORIGINALS.get()
+    return originals.get(file, file) if originals else file  # it may be no path, and no key
+
+
+def _rename(error: TinsmithError, copy: Path, file: Path) -> None:
+    """Put the name of a file in the place of that of its copy, as libraries tell it."""
+    if error.args and isinstance(error.args[0], str):
+        # What names the file already may hold the name of the copy.
+        kept = {name: name for name in (str(file), file.name)}
+        names = {str(copy): str(file), **kept, copy.name: file.name}
+        text = re.sub("|".join(map(re.escape, names)), lambda found: names[found[0]], error.args[0])
+        error.args = (text, *error.args[1:])
+    if error.file == copy:
+        error.file = file
 
 
 def warn(sentence: str, category: type[Warning] = LossWarning) -> None:
