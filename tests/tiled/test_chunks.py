@@ -108,3 +108,40 @@ def test_cells_of_chunks_are_counted_where_they_lie(tmp_path):
     assert counts.sum() == 20_000
     west = (points[:, 0] < made.bounds.xmin + made.bounds.width / 4).sum()
     assert abs(counts[:, 0].sum() - west) < 0.1 * west
+
+
+def test_large_discs(tmp_path, monkeypatch):
+    monkeypatch.setattr("tinsmith.tiled.store._MANY", 100)
+    rng = np.random.default_rng(8)
+    points = rng.random((20_000, 3)) * [1e3, 1e3, 10] + [5e5, 4e6, 0]
+    made = store(tmp_path, points)
+    centers = [[500_500.0, 4_000_500.0], [499_000.0, 4_000_500.0], [499_000.0, 4_000_500.0]]
+    discs = Discs(np.array(centers), np.array([400.0, 1_200.0, 999.0]))
+    far = np.hypot(*(points[:, None, :2] - discs.centers[None]).transpose(2, 0, 1))
+    some = made.read_some(discs)
+    chosen = far[some.numbers - 2**40]
+    assert 0 < len(some.numbers) <= 128
+    assert (chosen < discs.radii).any(axis=1).all()
+    assert (chosen < discs.radii).any(axis=0).tolist() == [True, True, False]
+    found = made.read_discs(discs)
+    inside = np.flatnonzero((far <= discs.radii).any(axis=1)) + 2**40
+    assert set(inside.tolist()) <= set(found.numbers.tolist())
+    assert len(found.numbers) < 1.1 * len(inside)
+    assert len(made.read_some(discs.choose([2])).numbers) == 0
+
+
+@pytest.mark.parametrize("kind", sorted(KINDS))
+def test_large_discs_of_any_points(tmp_path, monkeypatch, kind):
+    monkeypatch.setattr("tinsmith.tiled.store._MANY", 10)
+    rng = np.random.default_rng(9)
+    points = np.asarray(KINDS[kind](rng, 3_000), np.float64).reshape(-1, 3)
+    made = store(tmp_path, points)
+    rows = rng.integers(0, len(points), 20)
+    centers = points[rows, :2]
+    radii = np.hypot(*(centers - points[np.roll(rows, 1), :2]).T)
+    found = made.read_discs(Discs(centers, radii))
+    far = np.hypot(*(points[:, None, :2] - centers[None]).transpose(2, 0, 1))
+    inside = np.flatnonzero((far <= radii).any(axis=1)) + 2**40
+    assert set(inside.tolist()) <= set(found.numbers.tolist())
+    some = made.read_some(Discs(centers, radii))
+    assert set(some.numbers.tolist()) <= set(inside.tolist())

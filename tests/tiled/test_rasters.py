@@ -215,3 +215,19 @@ def test_rows_far_apart_are_kept_apart():
         [2**32, 2**32 + 7],
         [2**33 + 1],
     ]
+
+
+def test_data_around_a_bay(tmp_path, monkeypatch):
+    """Triangles across the bay have discs that hold most of the points."""
+    monkeypatch.setattr("tinsmith.tiled.store._MANY", 50)
+    rng = np.random.default_rng(11)
+    points = np.round(rng.random((6_000, 3)) * [300, 300, 5] + [500_000, 4_000_000, 100], 2)
+    x, y = points[:, 0] - 500_000, points[:, 1] - 4_000_000
+    points = points[(x < 60) | (y < 60) | (np.abs(x - y) < 4)]
+    path = ts.write(ts.Survey(points=points, crs="EPSG:32616"), tmp_path / "a.laz")
+    wanted = ts.rasterize(ts.triangulate(ts.read(path)), spacing=2.0).bands["elevation"]
+    for tiles in (1, 12):
+        made = ts.tiles(path).rasterize(
+            tmp_path / "b.tif", spacing=2.0, tiles=tiles, executor=Shuffled()
+        )
+        np.testing.assert_array_equal(read(made), wanted)

@@ -139,6 +139,12 @@ class PointSource(Protocol):
     def read_box(self, box: Bounds) -> NumberedPoints:
         """Return all points in a closed box; what is in order of numbers costs less."""
 
+    def read_some(self, discs: Discs) -> NumberedPoints:
+        """Return points in those of some discs that hold very many, maybe none.
+
+        They are taken before whole discs are read, which is spared for those that hold one.
+        """
+
     def read_discs(self, discs: Discs) -> NumberedPoints:
         """Return all points in any of some closed discs, and maybe others."""
 

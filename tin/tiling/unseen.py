@@ -56,6 +56,12 @@ class Question(NamedTuple):
     discs: Discs
     screens: Float64Array
 
+    def choose(self, which: BoolArray) -> Question:
+        """Return some of the triangles."""
+        return Question(
+            self.corners[which], self.hiding[which], self.discs.choose(which), self.screens
+        )
+
     def find_hidden(self, k: int, figures: Float64Array) -> BoolArray:
         """Tell what is hidden from a triangle, of the hulls of (f, p, 2) places each, exactly."""
         is_hidden = _are_beyond_edges(self.corners[k], self.hiding[k], figures)
@@ -82,11 +88,22 @@ def find_unseen_points(
 
     Of a disc that holds many, those are taken that lie deepest.
     """
+    if not len(question.corners):
+        return NumberedPoints.none(), np.ones(0, np.bool_)
+    some, is_open = _examine(question, source.read_some(question.discs), seen)
+    left = question.choose(is_open)
+    rest, is_clear = _examine(left, source.read_discs(left.discs), seen)
+    is_safe = is_open.copy()
+    is_safe[is_open] = is_clear
+    return NumberedPoints.join([some, rest]), is_safe
+
+
+def _examine(
+    question: Question, found: NumberedPoints, seen: Int64Array
+) -> tuple[NumberedPoints, BoolArray]:
+    """Return which of some points may change triangles, and of which triangles none may."""
     discs = question.discs
     is_safe = np.ones(len(discs.radii), np.bool_)
-    if not len(is_safe):
-        return NumberedPoints.none(), is_safe
-    found = source.read_discs(discs)
     found = found.choose(seen[np.searchsorted(seen, found.numbers) % len(seen)] != found.numbers)
     found = found.choose(np.argsort(found.points[:, 0], kind="stable"))
     reach = discs.radii + _SLACK * (np.abs(discs.centers[:, 0]) + discs.radii)

@@ -19,6 +19,7 @@ from ..base.types import Bounds
 from ..tin.tiling import NumberedPoints
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from ..base.arrays import AnyArray, Float64Array, Int64Array
@@ -43,6 +44,7 @@ _ENTRY = np.dtype(
 """A chunk in the list of all."""
 
 _POINTS_OF_A_CELL = 1_000
+_CELLS_AT_A_TIME = 8
 _MOST_CELLS = 2**16 - 1
 """Cells are sorted as numbers of 16 bits, in linear time."""
 
@@ -96,6 +98,25 @@ class Chunk:
             self._slice(row * columns + west, row * columns + east + 1)
             for row in range(south, north + 1)
         ]
+
+    def list_cells_near(self, center: Float64Array, radius: float) -> Iterator[list[slice]]:
+        """Yield where the points of some cells lie, those nearest to a place first."""
+        rows, columns = self.shape
+        gaps = []
+        for low, extent, count, value in (
+            (self.bounds.ymin, self.bounds.height, rows, center[1]),
+            (self.bounds.xmin, self.bounds.width, columns, center[0]),
+        ):
+            starts = low + np.arange(count) * (extent / count)
+            slack = extent * 2.0**-20
+            gap = np.maximum(starts - value, value - (starts + extent / count)) - slack
+            gaps.append(np.maximum(gap, 0.0))
+        distances = np.hypot(gaps[0][:, None], gaps[1]).ravel()
+        near = np.flatnonzero((distances <= radius) & (np.diff(self.offsets) > 0))
+        near = near[np.argsort(distances[near], kind="stable")]
+        for start in range(0, len(near), _CELLS_AT_A_TIME):
+            some = np.sort(near[start : start + _CELLS_AT_A_TIME]).tolist()
+            yield [self._slice(cell, cell + 1) for cell in some]
 
     def _slice(self, start: int, stop: int) -> slice:
         return slice(int(self.offsets[start]), int(self.offsets[stop]))
@@ -175,7 +196,7 @@ def split_numbers(points: NumberedPoints) -> list[NumberedPoints]:
     parts, start = [], 0
     while start < len(points.numbers):
         stop = int(np.searchsorted(points.numbers, points.numbers[start] + 2**32))
-        parts.append(points.choose(slice(start, stop)))
+        parts.append(points.choose(np.arange(start, stop)))
         start = stop
     return parts
 

@@ -11,9 +11,9 @@ from ..base.types import Bounds
 from ..tin.tiling import NumberedPoints, are_in_box, find_outermost, reduce_to_hull
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
-    from ..base.arrays import Float64Array, Int64Array
+    from ..base.arrays import BoolArray, Float64Array, Int64Array
     from ..tin.tiling import Discs
     from .chunks import Chunk
 
@@ -21,6 +21,13 @@ __all__ = ["PointStore", "count_by_cells", "join_skeletons"]
 
 _SIDE_OF_SKELETON = 32
 """Rows and columns of the cells each of which keeps its outermost points, however many chunks."""
+_MANY = 50_000
+"""Points near a disc, above which only some of the deepest are read."""
+_SOME = 64
+_ABOUT = 1 + 2.0**-20
+"""Factor within which distances are not told apart where points are only chosen to be looked at."""
+_CLEARLY = 0.99
+"""Of the radius: what lies further out is not worth taking before the others were looked at."""
 _NO_POINTS = NumberedPoints(np.empty((0, 3)), np.empty(0, np.int64))
 
 
@@ -60,25 +67,84 @@ class PointStore:
         found = self._read([box])
         return found.choose(are_in_box(found.points, box))
 
+    def read_some(self, discs: Discs) -> NumberedPoints:
+        """Return some of the deepest points of discs near which there are very many.
+
+        Such are the discs of triangles across a bay of the data; read as wholes they would be a
+        large part of all points.
+        """
+        found = [_NO_POINTS]
+        for k in np.flatnonzero(self._are_large(discs)).tolist():
+            for points, far in self._read_from_middle(discs.centers[k], float(discs.radii[k])):
+                inside = np.flatnonzero(far < discs.radii[k] * _CLEARLY)
+                if len(inside):
+                    deepest = inside[np.argsort(far[inside], kind="stable")[:_SOME]]
+                    found.append(points.choose(np.sort(deepest)))
+                    break
+        return NumberedPoints.join(found)
+
     def read_discs(self, discs: Discs) -> NumberedPoints:
         """Return all points in any of some closed discs, and others near them."""
-        reach = discs.radii[:, None] * (1 + 2.0**-40) + 2.0**-40 * np.abs(discs.centers)
-        boxes = np.column_stack([discs.centers - reach, discs.centers + reach])
-        return self._read([Bounds(*box) for box in boxes.tolist()])
+        is_large = self._are_large(discs)
+        found = [self._read(_list_boxes(discs.choose(~is_large)))]
+        for k in np.flatnonzero(is_large).tolist():
+            radius = float(discs.radii[k]) * _ABOUT
+            found += [
+                points.choose(far <= radius)
+                for points, far in self._read_from_middle(discs.centers[k], radius)
+            ]
+        return NumberedPoints.join(found)
+
+    def _are_large(self, discs: Discs) -> BoolArray:
+        """Tell near which discs there are very many points, as far as cells tell."""
+        is_large = np.zeros(len(discs.radii), np.bool_)
+        for k, box in enumerate(_list_boxes(discs)):
+            count = sum(part.stop - part.start for _, parts in self._find(box) for part in parts)
+            is_large[k] = count > _MANY and np.isfinite(discs.radii[k])
+        return is_large
+
+    def _read_from_middle(
+        self, center: Float64Array, radius: float
+    ) -> Iterator[tuple[NumberedPoints, Float64Array]]:
+        """Yield the points of all cells that meet a disc, with their distances from its middle.
+
+        Chunks that lie nearest to it come first, and of each the nearest cells.
+        """
+        west, south, east, north = self._corners.T
+        x, y = center.tolist()
+        gaps = [np.maximum(west - x, x - east), np.maximum(south - y, y - north)]
+        distances = np.hypot(*np.maximum(gaps, 0.0))
+        for k in np.argsort(distances, kind="stable").tolist():
+            if distances[k] > radius * _ABOUT:
+                return
+            chunk = self.chunks[k]
+            for slices in chunk.list_cells_near(center, radius * _ABOUT):
+                points = chunk.read(slices)
+                yield points, np.hypot(*(points.points[:, :2] - center).T)
+
+    def _find(self, box: Bounds) -> list[tuple[int, list[slice]]]:
+        """Return the chunks that a box meets, and where in each the points of its cells lie."""
+        west, south, east, north = self._corners.T
+        meets = (west <= box.xmax) & (east >= box.xmin)
+        meets &= (south <= box.ymax) & (north >= box.ymin)
+        return [(k, self.chunks[k].list_slices(box)) for k in np.flatnonzero(meets).tolist()]
 
     def _read(self, boxes: list[Bounds]) -> NumberedPoints:
         """Return the points of the chunks' cells that some closed boxes meet, each once."""
-        west, south, east, north = self._corners.T
         wanted: dict[int, list[slice]] = {}
         for box in boxes:
-            meets = (west <= box.xmax) & (east >= box.xmin)
-            meets &= (south <= box.ymax) & (north >= box.ymin)
-            for number in np.flatnonzero(meets).tolist():
-                slices = self.chunks[number].list_slices(box)
+            for number, slices in self._find(box):
                 wanted.setdefault(number, []).extend(slices)
         return _sort(
             [self.chunks[key].read(_join_slices(parts)) for key, parts in sorted(wanted.items())]
         )
+
+
+def _list_boxes(discs: Discs) -> list[Bounds]:
+    """Return boxes that hold discs."""
+    reach = discs.radii[:, None] * _ABOUT + 2.0**-40 * np.abs(discs.centers)
+    boxes = np.column_stack([discs.centers - reach, discs.centers + reach])
+    return [Bounds(*box) for box in boxes.tolist()]
 
 
 def _sort(parts: list[NumberedPoints]) -> NumberedPoints:
