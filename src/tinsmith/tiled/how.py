@@ -14,6 +14,7 @@ from ..base.atomic import as_path
 from ..base.checks import as_flag, as_number, require_count
 from ..base.errors import OptionError
 from ..io.isolated.limits import measure_free_memory
+from ..tin.validation import available_cores
 from .executors import Processes, connect_to_dask
 from .workers import Phase, Status
 
@@ -122,7 +123,7 @@ class How:
         require_count("tiles", tiles)
         if progress is not None and not callable(progress):
             raise OptionError("progress", progress, "a function of a Status", or_none=True)
-        count = workers or len(os.sched_getaffinity(0))
+        count = workers or available_cores()
         return cls(
             executor=executor,
             dask=dask,

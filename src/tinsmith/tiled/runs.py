@@ -257,6 +257,8 @@ def _is_held(lock: Path) -> bool:
         return True
     if host != socket.gethostname() or not process.isdecimal():
         return host != ""
+    if os.name != "posix":  # where signals are none that can be asked with
+        return True
     try:
         os.kill(int(process), 0)
     except (ProcessLookupError, OverflowError):
