@@ -133,6 +133,12 @@ def _read(job: ReadJob, started: float) -> Record:
                 path=path,
             )
     job.source.require_same()
+    if unit is not None and not unit.text:
+        raise ReadError(
+            f"The elevations of '{path}' are in {unit}, a unit without a name by which tiles find "
+            "it again: declare the unit (`elevation_unit`).",
+            path=path,
+        )
     if left_out:
         notes.append(_describe_left_out(left_out, path, job.where))
     index, outline = f"{job.key}.chunks.npy", f"{job.key}.skeleton.npz"
