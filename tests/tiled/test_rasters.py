@@ -231,3 +231,14 @@ def test_data_around_a_bay(tmp_path, monkeypatch):
             tmp_path / "b.tif", spacing=2.0, tiles=tiles, executor=Shuffled()
         )
         np.testing.assert_array_equal(read(made), wanted)
+
+
+def test_cells_of_another_raster_are_in_the_same_crs(lidar, wanted, tmp_path):
+    tin = ts.triangulate(ts.read(lidar, classes=2))
+    like = ts.rasterize(tin, spacing=1.0)
+    cloud = ts.tiles(lidar, classes=2)
+    path = cloud.rasterize(tmp_path / "a.tif", like=like, tiles=3, executor=Shuffled())
+    np.testing.assert_array_equal(read(path), wanted)
+    other = ts.Raster(like.bands, like.grid, crs="EPSG:32617")
+    with pytest.raises(ts.CrsError, match="the other raster"):
+        cloud.rasterize(tmp_path / "b.tif", like=other, executor=Shuffled())

@@ -11,7 +11,7 @@ from ...base.atomic import replacing
 from ...base.checks import as_flag, as_length
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, PointsError, choice
-from ...base.georeference import describe_unknown
+from ...base.georeference import describe_unknown, require_same_crs
 from ...base.policies import RasterSample, RasterValue
 from ...base.results import Raster
 from ...base.types import Bounds, Grid
@@ -73,9 +73,12 @@ def check_options(
     if smooth and at == "mean":
         raise OptionError("smooth", smooth, "False for means, which are those of triangles")
     as_light(azimuth, altitude)
+    cells = None if like is None else as_cells(like)
+    like_crs = None if cells is None else cells.crs
     return {
         "spacing": spacing,
-        "like": None if like is None else asdict(as_cells(like).grid),
+        "like": None if cells is None else asdict(cells.grid),
+        "like_crs": None if like_crs is None else str(like_crs),
         "value": value,
         "azimuth": azimuth,
         "altitude": altitude,
@@ -89,9 +92,13 @@ def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str
     grid = options["like"] or asdict(cover(points.bounds, options["spacing"]))
     smooth = points.is_raster if options["smooth"] is None else options["smooth"]
     crs, unit = points.crs, points.elevation_unit
+    notes: tuple[str, ...] = ()
+    if options["like"]:
+        notes = require_same_crs(CRS.of(options["like_crs"]), crs, "the other raster")
     return {
         **options,
         "grid": grid,
+        "notes": list(notes),
         "smooth": smooth and options["value"] != "elevation" and options["at"] == "center",
         "crs": None if crs is None else str(crs),
         "elevation_unit": None if unit is None else unit.text,
@@ -192,6 +199,7 @@ def join(
         notes=[
             *points.notes,
             *describe_unknown(crs, points.elevation_unit),
+            *options["notes"],
             *([] if is_elevation else [_describe_slopes(options)]),
         ],
     )
