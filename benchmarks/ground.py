@@ -5,7 +5,8 @@ of a folder whose class 2 is ground, such as the ISPRS filter test (Sithole and 
 ISPRS comparison of filters", 2003). ``--changed`` prints the errors on the same files turned,
 thinned and cut, ``--leave-one-out N`` those with the best of N random sets of parameters, chosen
 for each file by the others. ``--points N`` times N points of a terrain that is made, with houses,
-trees and low noise.
+trees and low noise. ``--reach N`` prints how many labels of N such points differ in tiles that look
+at the points up to some distance around them, from those of all points at once.
 
 Each filter has one set of parameters for all files: its own defaults, for CSF those that its paper
 gives for steep slopes with post-processing.
@@ -26,6 +27,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 import tinsmith as ts
+from tinsmith.terrain.ground_filter import Frame, Parameters, Units
+from tinsmith.terrain.parts.ground import GroundWindow, choose_reach
+from tinsmith.terrain.parts.surfaces import are_owned
+from tinsmith.tin.tiling import are_in_box
 
 from .measure import is_installed
 from .report.tables import TEXT, Table, add_option
@@ -294,6 +299,33 @@ def print_time(count: int) -> None:
     print(f"{count:,} points: {seconds:.2f} s of processor time; {told}")
 
 
+def compare_reaches(count: int, side: float = 250.0) -> Table:
+    """Show how many labels differ in square tiles, by how far points around them are looked at."""
+    points, _ = make_terrain(count)
+    whole = ts.ground(points)
+    parameters = Parameters(**whole.parameters)
+    units = Units(points.min(axis=0), 1.0, 1.0)
+    width, height, _ = np.ptp(points, axis=0).tolist()
+    frame = Frame.of_all((width, height), parameters.cell, count)
+    low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+    boxes = [
+        ts.Bounds(x, y, x + side, y + side)
+        for x in np.arange(low[0], high[0], side).tolist()
+        for y in np.arange(low[1], high[1], side).tolist()
+    ]
+    table = Table({"reach, m": "{:g}", "labels that differ": "{:,}", "per million": "{:.1f}"})
+    for reach in (0.0, 10.0, 20.0, 40.0, 80.0, choose_reach(parameters)):
+        different = 0
+        for box in boxes:
+            window = GroundWindow.around(box, frame, units, parameters, reach)
+            rows = np.flatnonzero(are_in_box(points, window.bounds))
+            classes = window.classify(points[rows])
+            own = are_owned(points[rows], box)
+            different += int((classes[own] != whole.classification[rows[own]]).sum())
+        table.show(reach, different, different / count * 1e6)
+    return table
+
+
 def main(arguments: list[str] | None = None) -> None:
     """Measure what the command line asks for."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.ground", description=__doc__)
@@ -301,6 +333,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--points", type=int, metavar="N", help="time a terrain of N points")
     parser.add_argument("--changed", action="store_true", help="turn, thin and cut the files")
     parser.add_argument("--leave-one-out", type=int, metavar="N", help="draw N sets of parameters")
+    parser.add_argument("--reach", type=int, metavar="N", help="tiles of a terrain of N points")
     add_option(parser)
     given = parser.parse_args(arguments)
     if (given.changed or given.leave_one_out) and given.folder is None:
@@ -311,6 +344,8 @@ def main(arguments: list[str] | None = None) -> None:
         print_leave_one_out(given.folder, given.leave_one_out)
     if given.folder is not None and not (given.changed or given.leave_one_out):
         compare_filters(given.folder).write(given.json)
+    if given.reach is not None:
+        compare_reaches(given.reach).write(given.json)
     if given.points is not None:
         print_time(given.points)
 

@@ -31,7 +31,7 @@ from .isolated.spooling import (
     spool,
     translate_system_errors,
 )
-from .lidar.signatures import is_virtual_cloud
+from .lidar.signatures import is_virtual_cloud, list_named_files
 from .lidar.signatures import list_tiles as list_lidar_tiles
 from .raster.virtual import is_virtual
 from .registry import lookup, signatures
@@ -612,6 +612,8 @@ def _drop_packing(file: Path) -> Path:
 def list_files(path: Path, name: str | None = None) -> list[Path]:
     """Return the files of points that a path stands for: itself, or those in a folder.
 
+    A virtual point cloud stands for those that it names.
+
     Parameters
     ----------
     path : Path
@@ -624,7 +626,8 @@ def list_files(path: Path, name: str | None = None) -> list[Path]:
         If it is a folder without files of points, or with files of several formats.
     """
     if not is_folder(path):
-        return [path]
+        with naming_file(path):
+            return list_named_files(path) if is_virtual_cloud(path) else [path]
     found = list_tiles(path, name) or list_lidar_tiles(path)
     if not found:
         raise ReadError(f"The folder '{path}' has no files of points.", path=path)

@@ -27,7 +27,14 @@ if TYPE_CHECKING:
     from ...base.crs import CRS
     from ...base.progress import Tell
 
-__all__ = ["write"]
+__all__ = [
+    "Scaling",
+    "choose_columns",
+    "make_header",
+    "require_crs",
+    "write",
+    "write_points",
+]
 
 _FINEST = 6
 """Decimals that are written at most: a millionth of a CRS unit is below what anyone surveys."""
@@ -67,7 +74,7 @@ _NAME_BYTES = 32
 _EXTRA_TYPES = frozenset(("u1", "u2", "u4", "u8", "i1", "i2", "i4", "i8", "f4", "f8"))
 
 
-class _Scaling(NamedTuple):
+class Scaling(NamedTuple):
     """How coordinates become whole numbers."""
 
     scales: Float64Array
@@ -115,14 +122,14 @@ def write(
     _require_points(surface.points)
     scaling = _choose_scaling(surface.points, _parse_scale(scale))
     attributes = surface.attributes if isinstance(surface, Survey) else {}
-    columns = _choose_columns(attributes)
-    header = _make_header(laspy, scaling, columns, surface.crs)
+    columns = choose_columns(attributes)
+    header = make_header(laspy, scaling, columns, surface.crs)
     _warn_of_unit(surface)
     with replacing(path) as file:
         is_compressed = path.suffix.lower() == ".laz"
         with laspy.LasWriter(file, header, do_compress=is_compressed, closefd=False) as writer:
-            _write_points(laspy, writer, surface.points, columns, Progress(progress))
-    _require_crs(surface.crs, path)
+            write_points(laspy, writer, surface.points, columns, Progress(progress))
+    require_crs(surface.crs, path)
 
 
 def _parse_scale(scale: float | None) -> float | None:
@@ -144,9 +151,9 @@ def _require_points(points: Float64Array) -> None:
 # ---------------------------------------------------------------------------- scales
 
 
-def _choose_scaling(points: Float64Array, scale: float | None) -> _Scaling:
+def _choose_scaling(points: Float64Array, scale: float | None) -> Scaling:
     axes = [_scale_axis(points[:, k], scale, "xyz"[k]) for k in range(3)]
-    return _Scaling(*(np.array(column) for column in zip(*axes, strict=True)))
+    return Scaling(*(np.array(column) for column in zip(*axes, strict=True)))
 
 
 def _scale_axis(values: Float64Array, scale: float | None, axis: str) -> tuple[float, float, float]:
@@ -195,7 +202,7 @@ def _round_to_whole(values: Float64Array, scale: float, offset: float) -> Int32A
 # ------------------------------------------------------------------------ attributes
 
 
-def _choose_columns(attributes: Mapping[str, AnyArray]) -> dict[str, AnyArray]:
+def choose_columns(attributes: Mapping[str, AnyArray]) -> dict[str, AnyArray]:
     """Return the attributes that the format holds, and tell of the others."""
     columns, texts = {}, []
     for name, given in attributes.items():
@@ -242,9 +249,10 @@ def _warn_of_unit(surface: TIN | Survey) -> None:
 # ---------------------------------------------------------------------------- the file
 
 
-def _make_header(
-    laspy: Any, scaling: _Scaling, columns: Mapping[str, AnyArray], crs: CRS | None
+def make_header(
+    laspy: Any, scaling: Scaling, columns: Mapping[str, AnyArray], crs: CRS | None
 ) -> Any:
+    """Return a header of laspy, with places for the attributes."""
     has_colours = any(name in columns for name in _COLOURS)
     header = laspy.LasHeader(
         version="1.4",
@@ -268,13 +276,14 @@ def _format_crs(crs: CRS) -> str:
     return text if text is not None and crs.is_same(text) else crs.to_wkt()
 
 
-def _write_points(
+def write_points(
     laspy: Any,
     writer: Any,
     points: Float64Array,
     columns: Mapping[str, AnyArray],
     done: Progress,
 ) -> None:
+    """Write points with their attributes behind those that are written already."""
     header = writer.header
     for start in range(0, len(points), _CHUNK):
         part = slice(start, start + _CHUNK)
@@ -291,7 +300,7 @@ def _write_points(
         done((start + len(record)) / len(points))
 
 
-def _require_crs(crs: CRS | None, path: Path) -> None:
+def require_crs(crs: CRS | None, path: Path) -> None:
     """Read the CRS back as another program would, so that none is lost in silence."""
     if crs is None:
         return

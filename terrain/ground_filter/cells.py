@@ -7,17 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...base.errors import PointsError
-from ...base.sentences import counted
-
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array
+    from .frame import Frame
 
 __all__ = ["Cells", "lay_cells"]
-
-_CELLS_PER_POINT = 100
-_FEWEST = 4_000_000
-"""Cells that there may be whatever the number of points: their memory is some 40 MB."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,22 +46,9 @@ class Cells:
         return grid.reshape(-1)[self.number[rows]]
 
 
-def lay_cells(points: Float64Array, side: float) -> Cells:
-    """Lay square cells over points whose least easting and northing are 0.
-
-    Raises PointsError if there would be far more cells than points.
-    """
-    counts = np.floor(points[:, :2].max(axis=0) / side) + 1
-    most = max(_FEWEST, _CELLS_PER_POINT * len(points))
-    if counts.prod() > most:
-        width, height = points[:, :2].max(axis=0)
-        raise PointsError(
-            f"{counted(len(points), 'point')} on {width:.6g} by {height:.6g} m make "
-            f"{counts.prod():,.0f} cells of {side:g} m, and {most:,} are the most for so many: "
-            "leave points far from the others out, or give larger cells."
-        )
-    columns, rows = counts.astype(np.int64).tolist()
-    place = np.floor(points[:, :2] / side).astype(np.int64)
-    number = place[:, 0] * rows + place[:, 1]
+def lay_cells(points: Float64Array, frame: Frame) -> Cells:
+    """Lay the square cells of a frame over points that lie in it, in metres."""
+    place = frame.locate(points)
+    number = place[:, 0] * frame.shape[1] + place[:, 1]
     x, y, z = points.T
-    return Cells((columns, rows), number, np.lexsort((y, x, z, number)))
+    return Cells(frame.shape, number, np.lexsort((y, x, z, number)))

@@ -17,8 +17,9 @@ from ...tin import TIN, Survey, triangulate
 from ...tin.validation.points import as_points
 from .. import _kernel
 from .cells import lay_cells
+from .frame import Frame, Units
 from .parameters import Parameters
-from .returns import are_noise, may_be_ground
+from .returns import Candidates, are_noise
 from .seeds import find_low_noise, find_seeds
 from .segments import link, list_continuing
 from .surroundings import surround
@@ -29,17 +30,15 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ...base.arrays import BoolArray, Float64Array, UInt8Array
+    from ...base.crs import CRS, Unit
     from ...base.policies import GroundReturns
     from ...base.progress import Tell
     from .cells import Cells
 
-__all__ = ["GroundPoints", "ground"]
+__all__ = ["GroundPoints", "classify", "find_units", "ground", "require_candidates"]
 
 UNCLASSIFIED, GROUND, LOW_NOISE = 1, 2, 7
 """Classes of the ASPRS LAS specification 1.4."""
-
-_SMALLEST = 2.0**-100
-"""Coordinates nearer to the least than this, which nobody measures, count as equal to it."""
 
 _ROUNDS = ((0.2, 0.6), (0.6, 1.0))
 """Stages of the whole in which the surface is made; in the second, above that of the first."""
@@ -192,7 +191,7 @@ def ground(
 
     Notes
     -----
-    1. Points below all around them are low noise.
+    1. Points below all around them are low noise, of those that may be ground.
     2. Seeds are the lowest points of cells that openings by growing windows leave in place.
     3. Segments of other lowest points that continue them without a step are seeds, too.
     4. The TIN of the seeds is densified: of each triangle the point nearest to its plane becomes a
@@ -236,28 +235,39 @@ def ground(
         returns=returns,
     )
     survey = points if isinstance(points, Survey) else Survey(points=as_points(points))
-    across, up, unit_notes = _find_units(survey)
+    across, up, unit_notes = find_units(survey.crs, survey.elevation_unit)
     metric = _make_metric(as_points(survey.points), across, up)
-    may_be, return_notes = may_be_ground(survey, parameters.returns)
-    classes, heights = _classify(metric, may_be, are_noise(survey), parameters, done)
+    candidates = Candidates(parameters.returns)
+    is_candidate = candidates.find(survey.attributes, len(survey))
+    require_candidates(int(np.count_nonzero(is_candidate)), len(survey))
+    width, height = metric[:, :2].max(axis=0).tolist()
+    frame = Frame.of_all((width, height), parameters.cell, len(metric))
+    classes, heights = classify(metric, is_candidate, frame, parameters, done)
     _keep_noise(classes, survey)
     found = GroundPoints(
         given=survey,
         classification=classes,
         heights=heights / up,
         parameters=parameters.to_dict(),
-        notes=(*unit_notes, *return_notes),
+        notes=(*unit_notes, *candidates.notes),
     )
     done.end()
     return found
 
 
-def _find_units(survey: Survey) -> tuple[float, float, tuple[str, ...]]:
-    """Return metres of the unit of eastings and of that of elevations, and what was assumed."""
-    crs = survey.crs
+def find_units(
+    crs: CRS | None, elevation_unit: Unit | None
+) -> tuple[float, float, tuple[str, ...]]:
+    """Return metres of the unit of eastings and of that of elevations, and what was assumed.
+
+    Raises
+    ------
+    CrsError
+        If the CRS measures in degrees, or in an unknown unit.
+    """
     if crs is None:
         note = "The CRS is not known: coordinates are taken to be in metres, as the parameters are."
-        across, up = 1.0, 1.0 if survey.elevation_unit is None else survey.elevation_unit.metres
+        across, up = 1.0, 1.0 if elevation_unit is None else elevation_unit.metres
         return across, up or 1.0, (note,)
     if crs.is_geographic:
         raise CrsError(
@@ -273,8 +283,8 @@ def _find_units(survey: Survey) -> tuple[float, float, tuple[str, ...]]:
             "declare a CRS whose unit is.",
             crs=crs,
         )
-    vertical = assume_elevation_unit(crs, survey.elevation_unit)
-    notes = describe_unknown(crs, survey.elevation_unit)
+    vertical = assume_elevation_unit(crs, elevation_unit)
+    notes = describe_unknown(crs, elevation_unit)
     up = metres if vertical is None or vertical.metres is None else vertical.metres
     if metres != 1.0:
         notes = (*notes, f"The parameters are in metres: converted to the {unit.name}.")
@@ -285,30 +295,47 @@ def _make_metric(points: Float64Array, across: float, up: float) -> Float64Array
     """Return fresh points in metres from the least easting, northing and elevation."""
     if len(points) == 0:
         raise PointsError("There are no points: the ground is found among some.")
-    metric: Float64Array = points - points.min(axis=0)
-    metric *= (across, across, up)
-    metric[metric < _SMALLEST] = 0.0
-    return metric
+    return Units(points.min(axis=0), across, up).to_metric(points)
 
 
-def _classify(
+def require_candidates(count: int, total: int) -> None:
+    """Refuse points none of which may be ground.
+
+    Raises
+    ------
+    PointsError
+    """
+    if count == 0:
+        raise PointsError(
+            f"None of {counted(total, 'point')} may be ground: all are marked as noise or "
+            "are not the last of their pulse."
+        )
+
+
+def classify(
     points: Float64Array,
-    may_be_ground: BoolArray,
-    is_noise: BoolArray,
+    is_candidate: BoolArray,
+    frame: Frame,
     parameters: Parameters,
     done: Progress,
 ) -> tuple[UInt8Array, Float64Array]:
-    """Return the class of each point in metres, and its height above the ground."""
-    is_taken = may_be_ground & ~is_noise
-    if not is_taken.any():
-        raise PointsError(
-            f"None of {counted(len(points), 'point')} may be ground: all are marked as noise or "
-            "are not the last of their pulse."
-        )
-    cells = lay_cells(points, parameters.cell)
+    """Return the class of each point, and its height above the ground.
+
+    Parameters
+    ----------
+    points : (n, 3) float64 array
+        In metres, in the cells of the frame.
+    is_candidate : (n,) bool array
+        Which may be ground; at least one.
+    frame : Frame
+    parameters : Parameters
+    done : Progress
+    """
+    is_taken = is_candidate.copy()
+    cells = lay_cells(points, frame)
     is_low = find_low_noise(points, cells, is_taken, parameters, done.stage(0.0, 0.1))
     is_taken &= ~is_low
-    heights, slopes = _find_surface(points, cells, is_taken, parameters, done)
+    heights, slopes = _find_surface(points, cells, is_taken, parameters, done, frame)
     sideways = parameters.horizontal_tolerance * slopes
     is_low |= is_taken & (heights < -(parameters.noise_depth + sideways))
     is_ground = is_taken & ~is_low & _lie_on(heights, slopes, parameters)
@@ -323,10 +350,11 @@ def _find_surface(
     is_taken: BoolArray,
     parameters: Parameters,
     done: Progress,
+    frame: Frame,
 ) -> tuple[Float64Array, Float64Array]:
     """Return the height of each point above the surface of the ground, and its slope there."""
     lowest = cells.find_lowest(is_taken)
-    ring = surround(points, points[lowest], parameters.cell)
+    ring = surround(frame, points[lowest])
     links = link(points[lowest], ring, parameters)
     is_seed, is_ground = np.zeros((2, len(lowest)), bool)
     heights = points[:, 2]
@@ -336,8 +364,9 @@ def _find_surface(
         is_ground |= is_seed
         is_seed |= list_continuing(links, is_ground)
         seeds = points[lowest[is_seed]]
+        around = np.concatenate([seeds, surround(frame, seeds)])
         heights, slopes = _densify(
-            points, cells, is_taken, seeds, parameters, stage.stage(0.4, 1.0)
+            points, cells, is_taken, around, parameters, stage.stage(0.4, 1.0)
         )
         is_ground = _lie_on(heights[lowest], slopes[lowest], parameters)
     return heights, slopes
@@ -354,7 +383,7 @@ def _densify(
     order = cells.order
     heights, slopes = np.empty(len(points)), np.empty(len(points))
     heights[order], slopes[order] = _kernel.densify(
-        np.concatenate([seeds, surround(points, seeds, parameters.cell)]),
+        seeds,
         points[order],
         is_taken[order],
         float(np.sin(np.radians(parameters.iteration_angle))),
@@ -373,6 +402,6 @@ def _lie_on(heights: Float64Array, slopes: Float64Array, parameters: Parameters)
 
 def _keep_noise(classes: UInt8Array, survey: Survey) -> None:
     """Leave points that were given as noise in their class."""
-    is_noise = are_noise(survey)
+    is_noise = are_noise(survey.attributes, len(survey))
     if is_noise.any():
         classes[is_noise] = survey.attributes["classification"][is_noise]

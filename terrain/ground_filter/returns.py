@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,49 +10,77 @@ import numpy as np
 from ...base.sentences import counted
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from ...base.arrays import AnyArray, BoolArray
     from ...base.policies import GroundReturns
-    from ...tin import Survey
 
-__all__ = ["are_noise", "may_be_ground"]
+__all__ = ["ATTRIBUTES", "Candidates", "are_noise"]
+
+ATTRIBUTES = ("return_number", "number_of_returns", "classification")
+"""Attributes that are looked at."""
 
 _NOISE = (7, 18)
 """Low noise and high noise, by the ASPRS LAS specification 1.4."""
 
 
-def are_noise(survey: Survey) -> BoolArray:
-    """Tell which points are given as noise."""
-    classes = _find_numbers(survey, "classification")
-    return np.zeros(len(survey), bool) if classes is None else np.isin(classes, _NOISE)
-
-
-def may_be_ground(survey: Survey, returns: GroundReturns) -> tuple[BoolArray, tuple[str, ...]]:
-    """Tell which points may be ground by their returns, and what is to be said of them.
+@dataclass
+class Candidates:
+    """Which points may be ground, of a survey or of its parts one after the other.
 
     A pulse that went through leaves has several returns, and only the last can be the ground.
-    Numbers that make no sense tell nothing.
+    Numbers that make no sense tell nothing. Points that are given as noise are none.
+
+    Attributes
+    ----------
+    returns : {"last", "all"}
+    total : int
+        Points so far.
+    odd, others : int
+        Those whose numbers of returns make no sense, and those of returns that are not the last.
     """
-    everyone = np.ones(len(survey), bool)
-    own = _find_numbers(survey, "return_number")
-    of = _find_numbers(survey, "number_of_returns")
-    if returns == "all" or own is None or of is None:
-        return everyone, ()
-    is_sound = (own >= 1) & (own <= of)
-    notes = []
-    if not is_sound.all():
-        notes.append(
-            f"{counted(int((~is_sound).sum()), 'point')} of {len(survey):,} had a number of return "
-            "that does not fit the number of returns: they were taken as last ones."
-        )
-    may_be = ~is_sound | (own == of)
-    if not may_be.all():
-        notes.append(
-            f"{counted(int((~may_be).sum()), 'point')} of {len(survey):,} were no last return: "
-            "they were not taken as ground."
-        )
-    return may_be, tuple(notes)
+
+    returns: GroundReturns
+    total: int = 0
+    odd: int = 0
+    others: int = 0
+
+    def find(self, attributes: Mapping[str, AnyArray], count: int) -> BoolArray:
+        """Tell which of some points may be ground; (count,) array."""
+        self.total += count
+        may_be = ~are_noise(attributes, count)
+        own, of = (_find_numbers(attributes, name) for name in ATTRIBUTES[:2])
+        if self.returns == "last" and own is not None and of is not None:
+            is_sound = (own >= 1) & (own <= of)
+            is_last = ~is_sound | (own == of)
+            self.odd += int((~is_sound).sum())
+            self.others += int((~is_last).sum())
+            may_be &= is_last
+        return may_be
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be said of them."""
+        notes = []
+        if self.odd:
+            notes.append(
+                f"{counted(self.odd, 'point')} of {self.total:,} had a number of return that does "
+                "not fit the number of returns: they were taken as last ones."
+            )
+        if self.others:
+            notes.append(
+                f"{counted(self.others, 'point')} of {self.total:,} were no last return: they were "
+                "not taken as ground."
+            )
+        return tuple(notes)
 
 
-def _find_numbers(survey: Survey, name: str) -> AnyArray | None:
-    values = survey.attributes.get(name)
+def are_noise(attributes: Mapping[str, AnyArray], count: int) -> BoolArray:
+    """Tell which points are given as noise."""
+    classes = _find_numbers(attributes, "classification")
+    return np.zeros(count, bool) if classes is None else np.isin(classes, _NOISE)
+
+
+def _find_numbers(attributes: Mapping[str, AnyArray], name: str) -> AnyArray | None:
+    values = attributes.get(name)
     return values if values is not None and values.dtype.kind in "iuf" else None

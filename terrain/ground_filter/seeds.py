@@ -46,7 +46,7 @@ def find_low_noise(
     parameters: Parameters,
     progress: Tell | None = None,
 ) -> BoolArray:
-    """Find points that lie deeper than all around them, alone or in a small group."""
+    """Find points of those taken that lie deeper than all around, alone or in a small group."""
     done = Progress(progress)
     is_noise = np.zeros(len(points), bool)
     z = np.ascontiguousarray(points[:, 2])
@@ -55,8 +55,9 @@ def find_low_noise(
         is_low = np.zeros(len(points), bool)
         for k, frame in enumerate(_FRAMES, 1):
             least = _find_least_around(grid, *frame).reshape(-1)[cells.number]
-            is_low |= (z < least - parameters.noise_depth) & np.isfinite(least) & ~is_noise
+            is_low |= (z < least - parameters.noise_depth) & np.isfinite(least)
             done((number + k / len(_FRAMES)) / _ROUNDS)
+        is_low &= is_taken & ~is_noise
         if not is_low.any():
             break
         is_noise |= is_low
@@ -95,7 +96,6 @@ def _find_objects(
 ) -> BoolArray:
     is_empty = np.isinf(grid)
     is_object = np.zeros(grid.shape, bool)
-    rounding = np.finfo(float).eps * np.abs(grid[~is_empty]).max(initial=0.0)
     is_covered = np.empty(grid.shape, bool)
     for wide, inner, own in split_columns(grid.shape, 2 * _GAP):
         is_covered[own] = find_covered(~is_empty[wide], _GAP)[inner]
@@ -104,9 +104,10 @@ def _find_objects(
         for wide, inner, own in split_columns(grid.shape, 2 * window):
             opened[own] = open_grid(grid[wide], window, is_covered[wide])[inner]
         opened[is_empty] = np.inf
-        rise = parameters.terrain_slope * window * parameters.cell + rounding
+        rise = parameters.terrain_slope * window * parameters.cell
         with np.errstate(invalid="ignore"):  # cells that are empty, which compare as false
-            is_object |= grid - opened > rise
+            rounding = np.finfo(float).eps * np.maximum(np.abs(grid), np.abs(opened))
+            is_object |= grid - opened > rise + rounding
         grid = opened
         done(number / len(windows))
     return is_object

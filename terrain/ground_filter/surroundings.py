@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from ...base.arrays import BoolArray, Float64Array, Int64Array
+    from .frame import Frame
 
     Doubles = Float64Array
 
@@ -30,30 +33,54 @@ class _Side(NamedTuple):
     axis: int
     edge: float
     places: Doubles
+    start: float
+    """Of the places along the side of all points, of which these are the ones from ``first`` on."""
+    step: float
+    first: int = 0
 
 
-def surround(points: Doubles, seeds: Doubles, margin: float) -> Doubles:
-    """Return points around all others, on planes through the seeds that are nearest to them.
+def surround(frame: Frame, seeds: Doubles) -> Doubles:
+    """Return points around a frame, on planes through the seeds that are nearest to them.
 
-    All are (n, 3), in metres; ``margin`` is between the outermost points and those that are made.
+    All are (n, 3), in metres. They are as far away from the outermost points as a cell is wide.
     """
-    low, high = points[:, :2].min(axis=0) - margin, points[:, :2].max(axis=0) + margin
-    sides = []
-    for axis in (0, 1):
-        along = 1 - axis
-        count = max(2, int(np.ceil((high - low)[along] / _STEP)) + 1)
-        places = np.linspace(low[along], high[along], count)
-        sides += [_Side(axis, float(edge[axis]), places) for edge in (low, high)]
-    ring = np.concatenate([_raise_side(side, seeds) for side in sides])
+    sides = [side for axis in (0, 1) for side in _list_sides(frame, axis)]
+    ring = np.concatenate([_raise_side(side, seeds) for side in sides if len(side.places)])
     _, first = np.unique(ring[:, :2], axis=0, return_index=True)
     return ring[first]
+
+
+def _list_sides(frame: Frame, axis: int) -> Iterator[_Side]:
+    """Yield the two sides at which a coordinate is constant.
+
+    At the rim of all points places are those that all points have; at other sides, which lie far
+    from what is looked for, they begin at the corner.
+    """
+    along, margin = 1 - axis, frame.side
+    low, high = frame.corners
+    low, high = low - margin, high + margin
+    whole, whole_step = _divide(-margin, frame.size[along] + margin)
+    first, end = np.searchsorted(whole, [low[along], high[along]], side="left").tolist()
+    own, step = _divide(float(low[along]), float(high[along]))
+    for edge, is_rim in zip((low, high), frame.ends_at_rim, strict=True):
+        if is_rim[axis]:
+            yield _Side(axis, float(edge[axis]), whole[first : end + 1], -margin, whole_step, first)
+        else:
+            yield _Side(axis, float(edge[axis]), own, float(low[along]), step)
+
+
+def _divide(low: float, high: float) -> tuple[Doubles, float]:
+    """Return places from one end to the other, and the step between them."""
+    count = max(2, int(np.ceil((high - low) / _STEP)) + 1)
+    places = np.linspace(low, high, count)
+    return places, float(places[1] - places[0])
 
 
 def _raise_side(side: _Side, seeds: Doubles) -> Doubles:
     """Return the points of a side with their elevations."""
     count, along = len(side.places), 1 - side.axis
-    step = side.places[1] - side.places[0]
-    stretch = np.rint((seeds[:, along] - side.places[0]) / step).astype(np.int64)
+    stretch = np.rint((seeds[:, along] - side.start) / side.step).astype(np.int64) - side.first
+    stretch = np.clip(stretch, 0, count - 1)
     away = np.abs(seeds[:, side.axis] - side.edge)
     nearest = _find_nearest(stretch, away, seeds, count)
     elevations = seeds[nearest, 2]

@@ -27,6 +27,9 @@ WHOLE = {
 }
 """Further options that need all points at a time."""
 
+OF_FOLDERS = {"ground"}
+"""Commands whose tiles are a folder of files, which memory makes no other way."""
+
 
 @pytest.fixture(scope="module")
 def lidar(tmp_path_factory):
@@ -52,7 +55,8 @@ def test_every_command_with_tiles_is_here():
         options = main.get_command(None, name).params
         if "--tiles" in [flag for one in options for flag in one.opts]:
             with_tiles.add(name)
-    assert with_tiles == set(COMMANDS) == set(WHOLE)
+    assert with_tiles - OF_FOLDERS == set(COMMANDS) == set(WHOLE)
+    assert with_tiles >= OF_FOLDERS
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -131,3 +135,34 @@ def test_points_from_standard_input_and_without_output_are_refused(lidar, here):
     assert (done.exit_code, "standard input" in done.output) == (1, True)
     done = run("volume", lidar, "--base", "5", "--tiles", "2")
     assert (done.exit_code, "need an output file" in done.output) == (1, True)
+
+
+def test_ground_of_a_folder_is_a_folder(lidar, here):
+    planned = run("ground", lidar, "-o", "out", "--plan", "--json")
+    assert (planned.exit_code, json.loads(planned.stdout)["points"]) == (0, 6_000)
+    assert list(here.iterdir()) == []
+    done = run("ground", lidar, "-o", "out", "--tiles", "3", "--workers", "1", "--json")
+    assert done.exit_code == 0, done.output
+    told = json.loads(done.stdout)
+    assert told["outputs"] == ["out/out.vpc"]
+    whole = json.loads(run("ground", lidar, "-o", "whole.laz", "--json").stdout)
+    assert told["classes"] == whole["classes"]
+    assert sorted(one.name for one in (here / "out").iterdir()) == [
+        *("out.vpc", "tile0.laz", "tile1.laz", "tile2.laz")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--tiles", "2", "-o", "a", "-o", "b"], "name one by -o"),
+        (["--tiles", "2", "-o", "out.laz"], "has a suffix of files"),
+        (["--tiles", "2", "-o", "out", "--as-points"], "with --as-points"),
+        (["-o", "out.laz", "--reach", "9"], "--reach is for tiles"),
+    ],
+)
+def test_ground_refuses_what_tiles_have_not(words, sentence, lidar, here):
+    done = run("ground", lidar, *words)
+    assert done.exit_code == 1, done.output
+    assert sentence in " ".join(done.output.split())
+    assert list(here.iterdir()) == []

@@ -208,6 +208,18 @@ def folder_beside(path: Path) -> Iterator[Path]:
         shutil.rmtree(folder, ignore_errors=True)
 
 
+def make_folder(path: Path) -> None:
+    """Make a folder if there is none; a WriteError is raised where that cannot be."""
+    with _translate_faults(path):
+        target = _find_target(path)
+        _require_parent(path, target)
+        if target.exists() and not target.is_dir():
+            raise WriteError(
+                f"Cannot write '{path}': a file is there, and a folder is written.", path=path
+            )
+        target.mkdir(exist_ok=True)
+
+
 @contextmanager
 def replacing_files(path: Path, *, parts: Sequence[str] = ()) -> Iterator[Path]:
     """Yield a path of the same name in a new folder, for libraries that write several files.

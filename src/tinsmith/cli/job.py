@@ -26,7 +26,7 @@ from .options import (
     Writing,
 )
 from .output.failures import Failure
-from .outputs import plan_products, require_format
+from .outputs import describe_file, plan_products, require_format
 from .paths import STANDARD, Named, name_file
 
 if TYPE_CHECKING:
@@ -103,12 +103,15 @@ class Job:
 
     def finish(self, planned: Products, facts: Facts) -> None:
         """Tell what was done: a summary for people, and a record as JSON if it was asked for."""
-        written = [("Written", planned.text)] if planned.paths else []
+        self.tell(planned.paths, facts)
+
+    def tell(self, paths: Sequence[Path], facts: Facts) -> None:
+        """Tell what was done, and which files were written."""
+        written = [("Written", "\n".join(map(describe_file, paths)))] if paths else []
         seconds = ("Time", f"{perf_counter() - self.started:.2f} s")
         self.console.summarise([*facts.lines, *written, seconds])
         if self.console.as_json:
-            outputs = [str(path) for path in planned.paths]
-            self.console.emit_record({"outputs": outputs} | facts.values)
+            self.console.emit_record({"outputs": [str(path) for path in paths]} | facts.values)
 
     # ------------------------------------------------------------ points and surfaces
 

@@ -95,11 +95,6 @@ class Products:
         """All of them."""
         return [one.path for group in self.outputs.values() for one in group] + self.pictures
 
-    @property
-    def text(self) -> str:
-        """What was written, a line each."""
-        return "\n".join(map(describe_file, self.paths))
-
 
 def describe_file(path: Path) -> str:
     """Return the name of a file that was written, with its size, for people."""

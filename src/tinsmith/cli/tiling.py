@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -20,6 +20,7 @@ from .paths import STANDARD
 
 if TYPE_CHECKING:
     from ..tiled.cloud import TiledPoints
+    from ..tiled.how import How
     from ..tiled.workers import Status
     from .outputs import Products
     from .parameters import Decorator
@@ -100,7 +101,9 @@ def tiled_options() -> Decorator:
     return surface_options(READING, TRIANGULATING, TILING, WRITING, CONSOLE)
 
 
-def choose_tiles(job: Job, *files: Path, whole: str = "") -> TiledPoints | None:
+def choose_tiles(
+    job: Job, *files: Path, whole: str = "", joins: bool = False
+) -> TiledPoints | None:
     """Return the points of a file or folder, if they are to be taken in tiles; else None.
 
     That is where an option of tiles was given, or the headers tell of more points than there is
@@ -112,12 +115,14 @@ def choose_tiles(job: Job, *files: Path, whole: str = "") -> TiledPoints | None:
     *files : Path
     whole : str
         What else was asked for that needs all points at a time, if anything.
+    joins : bool
+        Whether the points of several files are one survey.
     """
     tiling, how = job.tiling, job.building
     given = {name: value for name, value in job.reading.given.items() if name != "remote"}
     needs = {
         "points from standard input": STANDARD in files,
-        "several surfaces": len(files) != 1,
+        "several surfaces": len(files) != 1 and not joins,
         "--remote": job.reading.remote,
         "--to-crs": job.reading.to_crs,
         "--snap": how.snap,
@@ -131,13 +136,13 @@ def choose_tiles(job: Job, *files: Path, whole: str = "") -> TiledPoints | None:
                 f"Tiles cannot be computed with {asked}: all points are needed at a time."
             )
         return None
-    if not tiling.given and not _may_be_large(files[0]):
+    if not tiling.given and not _may_be_large(files):
         return None
     from ..io.isolated.limits import measure_free_memory
     from ..tiled import tiles
 
     duplicates: Any = how.duplicates
-    cloud = tiles(files[0], duplicates=duplicates, **given)
+    cloud = tiles(files, duplicates=duplicates, **given)
     if not tiling.given:
         count, free = cloud.count_about, measure_free_memory()
         if count * _BYTES_IN_MEMORY <= free:
@@ -152,9 +157,9 @@ def choose_tiles(job: Job, *files: Path, whole: str = "") -> TiledPoints | None:
     return cloud
 
 
-def _may_be_large(file: Path) -> bool:
+def _may_be_large(files: Sequence[Path]) -> bool:
     try:
-        parts = [*file.iterdir()] if file.is_dir() else [file]
+        parts = [one for file in files for one in (file.iterdir() if file.is_dir() else [file])]
         return sum(one.stat().st_size for one in parts) > _SMALL
     except OSError:
         return False  # the reader tells better
@@ -183,16 +188,22 @@ def compute_tiles(
 ) -> Iterator[Any]:
     """Yield a product of tiles, showing how far each step is."""
     from ..tiled.computing import computing
-    from ..tiled.how import How
 
     output = next((path for path in planned.paths if path != STANDARD), None)
     if output is None:
         raise Failure("Tiles need an output file, beside which the run is kept: name it by -o.")
-    shown = _Shown(job)
-    how = How.of(**job.tiling.way, progress=shown.take)
-    with shown.stack, computing(cloud, product, output, how, **asked) as made:
-        shown.stack.close()
+    with showing_tiles(job) as how, computing(cloud, product, output, how, **asked) as made:
         yield made
+
+
+@contextmanager
+def showing_tiles(job: Job) -> Iterator[How]:
+    """Yield how a run is carried out, showing how far each step is."""
+    from ..tiled.how import How
+
+    shown = _Shown(job)
+    with shown.stack:
+        yield How.of(**job.tiling.way, progress=shown.take)
 
 
 class _Shown:

@@ -10,9 +10,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from .. import __version__
-from ..base.atomic import replacing, require_writable
+from ..base.atomic import make_folder, replacing, require_writable
+from ..base.errors import ReadError, WriteError
 from ..base.types import Bounds
+from ..terrain.ground_filter import ATTRIBUTES
 from .division import Tile, divide
+from .products.ground import name_files
 from .reading import StoredPoints, read_inputs
 from .runs import Fingerprint, Run
 from .store import count_by_cells
@@ -23,8 +26,9 @@ if TYPE_CHECKING:
 
     from .cloud import TiledPoints
     from .how import How
+    from .products.ground import GroundTiles
 
-__all__ = ["computing"]
+__all__ = ["computing", "labelling"]
 
 _LATTICE = 1024
 """Rows and columns of the cells in which points are counted before tiles are cut."""
@@ -68,7 +72,12 @@ def computing(
     ):
         with how.started() as start:
             points = read_inputs(
-                points_run, sources, start("Reading"), options=cloud.options, where=cloud.where
+                points_run,
+                sources,
+                start("Reading"),
+                options=cloud.options,
+                where=cloud.where,
+                candidates=cloud.candidates,
             )
             points = replace(points, is_raster=cloud.is_raster)
             settled = module.settle_options(points, options)
@@ -78,9 +87,56 @@ def computing(
             ]
             step = start("Triangulating")
             records = step.run(run, PHASE, compute_tile, jobs, divide=divide_job)
+            if hasattr(module, "list_file_jobs"):
+                file_jobs = module.list_file_jobs(run, points_run, cloud.options, settled, records)
+                records = start("Writing").run(run, module.FILES, module.write_file, file_jobs)
         yield module.join(points, settled, records, run.folder)
     if not how.keep:
         run.remove()
+
+
+@contextmanager
+def labelling(cloud: TiledPoints, folder: Path, how: How, **asked: Any) -> Iterator[GroundTiles]:
+    """Find the ground among points, and yield the files that have its classes.
+
+    Parameters
+    ----------
+    cloud : TiledPoints
+    folder : Path
+        Is made if need be.
+    how : How
+    **asked
+        Options of :mod:`tinsmith.tiled.products.ground`.
+
+    Yields
+    ------
+    GroundTiles
+        Whose files lie in the folder of the run until they are moved.
+    """
+    for header in cloud.headers:
+        if header.format != "las":
+            raise ReadError(
+                f"'{header.path}' is no lidar file (LAS, LAZ): the ground of many files is written "
+                "as classes of such.",
+                path=header.path,
+            )
+    inputs = {file.resolve(): file for file in cloud.files}
+    for name in name_files(list(cloud.files)):
+        if (folder / name).resolve() in inputs:
+            raise WriteError(
+                f"Cannot write '{folder / name}': it is read. Name another folder.", path=folder
+            )
+    make_folder(folder)
+    wanted = [*dict.fromkeys([*cloud.options.get("attributes", ()), *ATTRIBUTES])]
+    chosen = replace(
+        cloud,
+        candidates=asked["returns"],
+        options={**cloud.options, "attributes": wanted},
+    )
+    with computing(
+        chosen, "ground", folder / f"{folder.absolute().name}.vpc", how, **asked
+    ) as made:
+        yield made
 
 
 def _describe(
@@ -88,6 +144,8 @@ def _describe(
 ) -> dict[str, Any]:
     """Return what a run computes, and from what."""
     reading = {"duplicates": cloud.duplicates, "where": dict(cloud.where), **cloud.options}
+    if cloud.candidates is not None:
+        reading["candidates"] = cloud.candidates
     return {
         "version": __version__,
         "product": product,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, field
-from functools import lru_cache
+from dataclasses import asdict, dataclass, field
+from functools import lru_cache, reduce
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,7 @@ from ..base.notes import join_notes
 from ..base.sentences import counted
 from ..base.types import Bounds
 from ..io.streaming import stream_points
+from ..terrain.ground_filter import Candidates
 from ..tin.report import describe_skipped
 from ..tin.tiling import NumberedPoints, find_skeleton
 from .chunks import Chunk, load_chunks, save_chunks, split_numbers, write_chunk
@@ -28,11 +29,15 @@ from .store import PointStore, join_skeletons
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ..base.arrays import AnyArray, BoolArray
+    from ..base.arrays import AnyArray, BoolArray, Float64Array
+    from ..base.policies import GroundReturns
+    from ..io.streaming import PointStream
     from .workers import Phase
 
 __all__ = [
     "CHUNK_POINTS",
+    "ROWS_OF_A_FILE",
+    "Extent",
     "ReadJob",
     "StoredPoints",
     "name_rows",
@@ -67,6 +72,8 @@ class ReadJob:
         Of the reader, plain values.
     where : mapping of str to sequence of float
         Values of attributes that points must have.
+    candidates : {"last", "all"} or None
+        Returns of a pulse, where only those points are wanted that may be ground.
     """
 
     folder: Path
@@ -74,6 +81,7 @@ class ReadJob:
     source: Fingerprint
     options: Mapping[str, Any] = field(default_factory=dict)
     where: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    candidates: GroundReturns | None = None
 
     @property
     def key(self) -> str:
@@ -109,14 +117,19 @@ def _read(job: ReadJob, started: float) -> Record:
     chunks: list[Chunk] = []
     skeletons: list[NumberedPoints] = []
     low, high = math.inf, -math.inf
+    extent = Extent()
+    candidates = None if job.candidates is None else Candidates(job.candidates)
     with stream_points(path, chunk_points=CHUNK_POINTS, **job.options) as stream:
         left_out = 0
         for found in stream:
             wanted = _choose(found.attributes, job.where, len(found.points))
-            points, rows = found.points, found.rows
             if wanted is not None:
-                points, rows = points[wanted], rows[wanted]
-                left_out += len(wanted) - len(points)
+                found = found.take(wanted)
+                left_out += len(wanted) - len(found)
+            extent = extent.with_points(found.points)
+            if candidates is not None:
+                found = found.take(candidates.find(found.attributes, len(found)))
+            points, rows = found.points, found.rows
             if not len(points):
                 continue
             numbers = rows + np.int64(job.number) * ROWS_OF_A_FILE
@@ -126,19 +139,9 @@ def _read(job: ReadJob, started: float) -> Record:
                 skeletons.append(find_skeleton(part))
         crs, unit = stream.crs, stream.elevation_unit
         notes = [*stream.notes, *describe_skipped(stream.skipped)]
-        if stream.has_voids:
-            raise ReadError(
-                f"'{path}' has cells without data, at which its surface ends: it cannot be "
-                "computed in tiles, whose surface is that of all points.",
-                path=path,
-            )
+        notes += () if candidates is None else candidates.notes
+        _require_tiles(stream, path)
     job.source.require_same()
-    if unit is not None and not unit.text:
-        raise ReadError(
-            f"The elevations of '{path}' are in {unit}, a unit without a name by which tiles find "
-            "it again: declare the unit (`elevation_unit`).",
-            path=path,
-        )
     if left_out:
         notes.append(_describe_left_out(left_out, path, job.where))
     index, outline = f"{job.key}.chunks.npy", f"{job.key}.skeleton.npz"
@@ -157,9 +160,58 @@ def _read(job: ReadJob, started: float) -> Record:
             "elevation_unit": None if unit is None else unit.text,
             "elevations": [float(low), float(high)] if chunks else [],
             "notes": notes,
+            "extent": asdict(extent),
         },
         files={name: hash_file(job.folder / name) for name in files},
     )
+
+
+def _require_tiles(stream: PointStream, path: Path) -> None:
+    """Refuse points that are not those of a surface that tiles can compute."""
+    if stream.has_voids:
+        raise ReadError(
+            f"'{path}' has cells without data, at which its surface ends: it cannot be "
+            "computed in tiles, whose surface is that of all points.",
+            path=path,
+        )
+    unit = stream.elevation_unit
+    if unit is not None and not unit.text:
+        raise ReadError(
+            f"The elevations of '{path}' are in {unit}, a unit without a name by which tiles find "
+            "it again: declare the unit (`elevation_unit`).",
+            path=path,
+        )
+
+
+@dataclass(frozen=True)
+class Extent:
+    """How many points there are, and their bounds in space, before candidates are chosen.
+
+    Attributes
+    ----------
+    count : int
+    low, high : tuple of three float
+    """
+
+    count: int = 0
+    low: tuple[float, ...] = (math.inf,) * 3
+    high: tuple[float, ...] = (-math.inf,) * 3
+
+    def with_points(self, points: Float64Array) -> Extent:
+        """Return the extent with further points, (n, 3)."""
+        if not len(points):
+            return self
+        return self.join(
+            Extent(len(points), tuple(points.min(axis=0).tolist()), tuple(points.max(0).tolist()))
+        )
+
+    def join(self, other: Extent) -> Extent:
+        """Return that of both."""
+        return Extent(
+            self.count + other.count,
+            tuple(map(min, self.low, other.low)),
+            tuple(map(max, self.high, other.high)),
+        )
 
 
 def _describe_left_out(count: int, path: Path, where: Mapping[str, Sequence[float]]) -> str:
@@ -212,6 +264,8 @@ class StoredPoints:
     bounds : Bounds
     elevations : (float, float)
         The lowest and the highest.
+    extent : Extent
+        Of all points that were read, of which these may be those alone that can be ground.
     is_raster : bool
         Whether they are the cells of one raster.
     """
@@ -223,6 +277,7 @@ class StoredPoints:
     count: int
     bounds: Bounds
     elevations: tuple[float, float]
+    extent: Extent = Extent()
     is_raster: bool = False
 
     def open(self) -> PointStore:
@@ -295,6 +350,7 @@ def read_inputs(
             min(record.values["elevations"][0] for record in filled),
             max(record.values["elevations"][1] for record in filled),
         ),
+        reduce(Extent.join, (Extent(**one.values["extent"]) for one in records.values())),
     )
 
 

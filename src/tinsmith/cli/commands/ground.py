@@ -9,14 +9,16 @@ import click
 
 from ...base.sentences import counted
 from ..command import command
-from ..job import Job, surface_options
+from ..job import Job
 from ..output.facts import Facts
-from ..parameters import input_files, output_files
-from ..paths import describe_inputs, name_files
+from ..output.failures import Failure
+from ..parameters import input_files, number_option, output_files
+from ..paths import describe_inputs, name_file, name_files
 from ..product_options import product_options
+from ..tiling import choose_tiles, describe_points, showing_tiles, tell_plan, tiled_options
 
 if TYPE_CHECKING:
-    from ...base.policies import GroundReturns
+    from ...tiled.cloud import TiledPoints
     from ..outputs import Output
 
 _PARAMETERS = (
@@ -47,19 +49,36 @@ _PARAMETERS = (
     is_flag=True,
     help="Write ground points instead of their TIN.",
 )
-@surface_options()
+@number_option(
+    "--reach",
+    "METRES",
+    "How far around a tile points are looked at; default three times --building.",
+)
+@tiled_options()
 def ground(points: tuple[Path, ...], job: Job, **options: Any) -> None:
     """Classify the ground among POINTS by progressive densification of a TIN.
 
     LAS and LAZ files get all points with their classes (2 ground, 1 others, 7 low noise) and
-    attributes, other files of points those of the ground, and files of TINs their TIN.
+    attributes, other files of points those of the ground, and files of TINs their TIN. In tiles
+    every lidar file is written again to the folder of -o, with a virtual point cloud of all.
 
     Example:
       tinsmith ground cloud.laz -o classified.laz -o ground.gpkg
+      tinsmith ground lidar/ -o classified/ --tiles 4
     """
     from ...terrain import ground as find_ground
     from ..output.summaries import describe_survey, summarise_reading
 
+    given = {name: options[name] for name in _PARAMETERS.split()}
+    given["returns"] = "all" if options["any_return"] else "last"
+    whole = "--as-points" if options["as_points"] else ""
+    cloud = choose_tiles(job, *points, whole=whole, joins=True)
+    if cloud is not None:
+        more = {"reach": options["reach"], "ground_only": options["ground_only"]}
+        _label_tiles(cloud, points, job, given | more)
+        return
+    if options["reach"] is not None:
+        raise Failure("--reach is for tiles: here all points are looked at.")
     is_points = options["as_points"]
     planned = job.plan(
         job.list_inputs(*points), "TIN", "Survey", choose=lambda one: _choose(one, is_points)
@@ -68,9 +87,7 @@ def ground(points: tuple[Path, ...], job: Job, **options: Any) -> None:
     survey = job.add_lines(job.read_survey(*points, need=": the ground is found among points."))
     job.note_found(survey)
     with job.step(f"Finding the ground among {counted(len(survey), 'point')}") as progress:
-        given = {name: options[name] for name in _PARAMETERS.split()}
-        returns: GroundReturns = "all" if options["any_return"] else "last"
-        made = find_ground(survey, **given, returns=returns, progress=progress)
+        made = find_ground(survey, **given, progress=progress)
     planned.write("classes", lambda: made.survey if options["ground_only"] else made.classified)
     planned.write("Survey", lambda: made.survey)
     planned.write("TIN", lambda: job.build_tin(made.survey))
@@ -83,6 +100,36 @@ def ground(points: tuple[Path, ...], job: Job, **options: Any) -> None:
         facts.add(what.capitalize(), f"{counted(count, 'point')}, {count / total:.1%}")
     facts.note(made.notes)
     job.finish(planned, facts)
+
+
+def _label_tiles(
+    cloud: TiledPoints, points: tuple[Path, ...], job: Job, given: dict[str, Any]
+) -> None:
+    """Write all files again with their classes, in a folder."""
+    from ...tiled.computing import labelling
+
+    if job.tiling.plan:
+        tell_plan(cloud, job, points[0])
+        return
+    if len(job.outputs) != 1:
+        raise Failure("Tiles are written to a folder: name one by -o.")
+    (folder,) = job.outputs
+    if folder.suffix and not folder.is_dir():
+        raise Failure(f"Tiles are written to a folder, and '{folder}' has a suffix of files.")
+    with showing_tiles(job) as how, labelling(cloud, folder, how, **given) as made:
+        written = made.move(folder)
+    names = {2: "ground", 7: "low noise"}
+    counts = {"ground": 0, "others": 0, "low noise": 0}
+    for number, count in made.counts.items():
+        counts[names.get(number, "others")] += count
+    facts = Facts(input=describe_inputs(points), classes=counts)
+    facts.add("Points", describe_points(cloud))
+    total = sum(counts.values())
+    for what, count in counts.items():
+        facts.add(what.capitalize(), f"{counted(count, 'point')}, {count / total:.1%}")
+    facts.add("Files", f"{len(made.files)} in {name_file(folder)}", files=len(made.files))
+    facts.note(made.notes)
+    job.tell([written], facts)
 
 
 def _choose(output: Output, is_points: bool) -> str:
