@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 from support.point_cells import PointCells
@@ -10,6 +11,7 @@ from support.point_sets import points
 from support.tiled import require_triangles_of_the_whole
 
 import tinsmith as ts
+from tinsmith.tin.tiling import local_triangulation
 
 from .campaign import Campaign, Case
 
@@ -35,6 +37,7 @@ def generate(rng: np.random.Generator) -> Case:
         "ys": cuts[1],
         "margin": float(rng.choice([0.0, 0.01, 0.1, 1.0])) * extent,
         "duplicates": str(rng.choice(["mean", "first", "lowest"])),
+        "looks_first": bool(rng.random() < 0.5),
     }
 
 
@@ -79,9 +82,11 @@ def examine(case: Case) -> str:
     except ts.TinsmithError as error:
         return f"refused: {type(error).__name__}"
     source = PointCells(xyz, case["xs"], case["ys"])
-    rounds = require_triangles_of_the_whole(
-        xyz, source, margin=case["margin"], duplicates=case["duplicates"], **lines
-    )
+    least = 0 if case.get("looks_first") else local_triangulation._WORTH_LOOKING
+    with patch.object(local_triangulation, "_WORTH_LOOKING", least):
+        rounds = require_triangles_of_the_whole(
+            xyz, source, margin=case["margin"], duplicates=case["duplicates"], **lines
+        )
     return f"{rounds} rounds" if rounds < 4 else "more rounds"
 
 

@@ -1,6 +1,6 @@
 """Parts of a triangulation that is never in memory as a whole, each of them exact."""
 
-from .boxes import are_in_box, widen
+from .boxes import are_in_box, list_sides, widen
 from .circles import Discs
 from .local_triangulation import LocalTriangulation, find_around, find_triangles_at, triangulate_box
 from .proof import TilesProof, TileTriangles, check_tiles
@@ -20,6 +20,7 @@ __all__ = [
     "find_outermost",
     "find_skeleton",
     "find_triangles_at",
+    "list_sides",
     "reduce_to_hull",
     "triangulate_box",
     "widen",

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ...base.errors import PointsError
 from .. import _kernel
 from ..building import merge_rows
 from ..topology import edge_keys, ends
-from .boxes import list_sides
+from .boxes import are_in_box, list_sides, widen
 from .circles import bound_discs
 from .rings import find_inside
 from .sources import NumberedPoints, NumberedSegments
@@ -32,6 +33,11 @@ if TYPE_CHECKING:
 __all__ = ["LocalTriangulation", "find_around", "find_triangles_at", "triangulate_box"]
 
 _EVERYWHERE = (-np.inf, -np.inf, np.inf, np.inf)
+
+_WORTH_LOOKING = 20_000
+"""Points from which on it is worth while to look at some of them first."""
+_THINNING = 16
+"""Of the points far inside one of so many is enough to tell what those at the rim will ask for."""
 
 
 class LocalTriangulation(NamedTuple):
@@ -108,6 +114,8 @@ def triangulate_box(
     around = box if around is None else around
     seen = _Seen(source, lines, around)
     proven = np.empty((0, 3), np.int64)
+    if lines is None:
+        proven = _look_beyond(seen, box, around, threads)
     rounds = 0
     while True:
         made = _triangulate(seen, threads)
@@ -125,6 +133,31 @@ def triangulate_box(
     if lines is None or lines.rings is None:
         return local
     return _cut(local, seen.segments, lines.rings)
+
+
+def _look_beyond(seen: _Seen, box: Bounds, around: Bounds, threads: int) -> Int64Array:
+    """Ask for what most triangles at the rim of a large box will ask for, before all are made.
+
+    They are about the same with few of the points far inside, and are had for a fraction of the
+    time. What is found more than needed does no harm. Returns the names of triangles in whose discs
+    nothing unseen lies, whether they are made of all points or not.
+    """
+    nothing = np.empty((0, 3), np.int64)
+    points = seen.points
+    sides = zip(list_sides(box), list_sides(around), strict=True)
+    margins = [abs(own - outer) for own, outer in sides if np.isfinite(own)]
+    if len(points.points) < _WORTH_LOOKING or not margins:
+        return nothing
+    is_taken = ~are_in_box(points.points, widen(box, -max(margins)))
+    is_taken[::_THINNING] = True
+    some = points.choose(np.flatnonzero(is_taken))
+    try:
+        made = _sweep(some, threads)
+    except PointsError:  # all in line: those of all may not be
+        return nothing
+    found = _find(made, box, around, 0)
+    names, question = _find_open(made, found, around, nothing, seen.segments)
+    return names[seen.ask(question)[0]]
 
 
 class _Found(NamedTuple):
@@ -221,11 +254,14 @@ class _Made(NamedTuple):
 
 
 def _triangulate(seen: _Seen, threads: int) -> _Made:
-    points = np.ascontiguousarray(seen.points.points)
     if len(seen.segments.are_rings):
-        return _triangulate_constrained(points, seen, threads)
-    grown = _kernel.sweep(points, threads=threads)
-    first = _choose_kept(seen.points.numbers, grown.kept_row)
+        return _triangulate_constrained(np.ascontiguousarray(seen.points.points), seen, threads)
+    return _sweep(seen.points, threads)
+
+
+def _sweep(known: NumberedPoints, threads: int) -> _Made:
+    grown = _kernel.sweep(np.ascontiguousarray(known.points), threads=threads)
+    first = _choose_kept(known.numbers, grown.kept_row)
     return _Made(
         grown.places, grown.triangles, grown.neighbors, None, grown.rows, grown.kept_row, first
     )

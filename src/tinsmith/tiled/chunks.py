@@ -9,8 +9,8 @@ chunks that each cover all of it with fewer points a cell. Nothing is merged or 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -45,8 +45,19 @@ _ENTRY = np.dtype(
 
 _POINTS_OF_A_CELL = 1_000
 _CELLS_AT_A_TIME = 8
+_MAPPED = 128
+"""Files that are kept mapped: a process may have some hundred open."""
 _MOST_CELLS = 2**16 - 1
 """Cells are sorted as numbers of 16 bits, in linear time."""
+
+
+class CellBlocks(NamedTuple):
+    """Rectangles of cells of a chunk: first and last row, first and last column of each, (k,)."""
+
+    south: AnyArray
+    north: AnyArray
+    west: AnyArray
+    east: AnyArray
 
 
 @dataclass(frozen=True)
@@ -86,18 +97,45 @@ class Chunk:
         found: Int64Array = np.load(self.path.with_suffix(".cells.npy"))
         return found
 
-    def list_slices(self, box: Bounds) -> list[slice]:
-        """Return where the points of a closed box lie, with others of the same cells."""
+    @cached_property
+    def _sums(self) -> Int64Array:
+        """Points in the cells south-west of each corner of cells, (rows + 1, columns + 1) array."""
+        rows, columns = self.shape
+        found = np.zeros((rows + 1, columns + 1), np.int64)
+        found[1:, 1:] = np.diff(self.offsets).reshape(self.shape).cumsum(axis=0).cumsum(axis=1)
+        return found
+
+    def locate(self, boxes: Float64Array) -> CellBlocks:
+        """Return the cells that closed boxes meet; (k, 4), west, south, east, north."""
         own, (rows, columns) = self.bounds, self.shape
-        xs, ys = np.array([box.xmin, box.xmax]), np.array([box.ymin, box.ymax])
-        west, east = _find_cells(xs, own.xmin, own.xmax, columns).tolist()
-        south, north = _find_cells(ys, own.ymin, own.ymax, rows).tolist()
-        if (west, east) == (0, columns - 1):
-            return [self._slice(south * columns, (north + 1) * columns)]
-        return [
-            self._slice(row * columns + west, row * columns + east + 1)
-            for row in range(south, north + 1)
-        ]
+        return CellBlocks(
+            *(_find_cells(boxes[:, k], own.ymin, own.ymax, rows) for k in (1, 3)),
+            *(_find_cells(boxes[:, k], own.xmin, own.xmax, columns) for k in (0, 2)),
+        )
+
+    def count_points(self, blocks: CellBlocks) -> Int64Array:
+        """Return how many points lie in the cells of each block."""
+        south, north, west, east = (np.asarray(one, np.int64) for one in blocks)
+        sums = self._sums
+        inner = sums[north + 1, east + 1] - sums[south, east + 1]
+        return np.asarray(inner - sums[north + 1, west] + sums[south, west])
+
+    def list_slices(self, blocks: CellBlocks) -> list[slice]:
+        """Return where the points of the cells of blocks lie, those of each cell once."""
+        rows, columns = self.shape
+        south, north, west, east = (np.asarray(one, np.int64) for one in blocks)
+        marks = np.zeros((rows + 1, columns + 1), np.int32)
+        for row, column, step in (
+            (south, west, 1),
+            (south, east + 1, -1),
+            (north + 1, west, -1),
+            (north + 1, east + 1, 1),
+        ):
+            np.add.at(marks, (row, column), step)
+        is_met = (marks.cumsum(axis=0).cumsum(axis=1) > 0)[:rows, :columns].ravel()
+        edges = np.flatnonzero(np.diff(is_met.astype(np.int8), prepend=0, append=0))
+        ends = self.offsets[edges].reshape(-1, 2).tolist()
+        return [slice(start, stop) for start, stop in ends if start < stop]
 
     def list_cells_near(self, center: Float64Array, radius: float) -> Iterator[list[slice]]:
         """Yield where the points of some cells lie, those nearest to a place first."""
@@ -123,7 +161,7 @@ class Chunk:
 
     def read(self, slices: list[slice]) -> NumberedPoints:
         """Read parts of the file."""
-        records = np.load(self.path, mmap_mode="r")
+        records = _map(self.path, self.path.stat().st_mtime_ns)
         count = sum(part.stop - part.start for part in slices)
         points, numbers = np.empty((count, 3)), np.empty(count, np.int64)
         start = 0
@@ -135,6 +173,14 @@ class Chunk:
             start = end
         numbers += self.first
         return NumberedPoints(points, numbers)
+
+
+@lru_cache(maxsize=_MAPPED)
+def _map(path: Path, changed: int) -> AnyArray:
+    """Map a file, those used last kept; one that was written anew is mapped anew."""
+    del changed
+    mapped: AnyArray = np.load(path, mmap_mode="r")
+    return mapped
 
 
 def save_chunks(path: Path, chunks: list[Chunk]) -> None:

@@ -285,9 +285,15 @@ class StoredPoints:
         return open_store(self.folder)
 
 
-@lru_cache(maxsize=2)
 def open_store(folder: Path) -> PointStore:
     """Return the points in a folder; what is known of its chunks is kept for the next task."""
+    return _open_store(folder, (folder / _CHUNKS).stat().st_mtime_ns)
+
+
+@lru_cache(maxsize=2)
+def _open_store(folder: Path, changed: int) -> PointStore:
+    """Open points; those that were read anew since, as of another run in the folder, anew."""
+    del changed
     chunks = load_chunks(folder / _CHUNKS, folder)
     return PointStore(chunks, _load_points(folder / _SKELETON))
 
@@ -338,7 +344,6 @@ def read_inputs(
     outlines = [_load_points(run.folder / f"{record.key}.skeleton.npz") for record in filled]
     save_chunks(run.folder / _CHUNKS, chunks)
     _save_points(run.folder / _SKELETON, join_skeletons(outlines, bounds))
-    open_store.cache_clear()
     return StoredPoints(
         run.folder,
         crs,

@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.types import Bounds
-from ..tin.tiling import NumberedPoints, are_in_box, find_outermost, reduce_to_hull
+from ..tin.tiling import (
+    NumberedPoints,
+    are_in_box,
+    find_outermost,
+    list_sides,
+    reduce_to_hull,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -64,7 +70,7 @@ class PointStore:
 
     def read_box(self, box: Bounds) -> NumberedPoints:
         """Return all points in a closed box, in order of their numbers."""
-        found = self._read([box])
+        found = self._read(np.array([list_sides(box)]))
         return found.choose(are_in_box(found.points, box))
 
     def read_some(self, discs: Discs) -> NumberedPoints:
@@ -86,7 +92,7 @@ class PointStore:
     def read_discs(self, discs: Discs) -> NumberedPoints:
         """Return all points in any of some closed discs, and others near them."""
         is_large = self._are_large(discs)
-        found = [self._read(_list_boxes(discs.choose(~is_large)))]
+        found = [self._read(_bound(discs.choose(~is_large)))]
         for k in np.flatnonzero(is_large).tolist():
             radius = float(discs.radii[k]) * _ABOUT
             found += [
@@ -97,11 +103,12 @@ class PointStore:
 
     def _are_large(self, discs: Discs) -> BoolArray:
         """Tell near which discs there are very many points, as far as cells tell."""
-        is_large = np.zeros(len(discs.radii), np.bool_)
-        for k, box in enumerate(_list_boxes(discs)):
-            count = sum(part.stop - part.start for _, parts in self._find(box) for part in parts)
-            is_large[k] = count > _MANY and np.isfinite(discs.radii[k])
-        return is_large
+        counts = np.zeros(len(discs.radii), np.int64)
+        boxes = _bound(discs)
+        for number, met in self._find(boxes):
+            chunk = self.chunks[number]
+            counts[met] += chunk.count_points(chunk.locate(boxes[met]))
+        return (counts > _MANY) & np.isfinite(discs.radii)
 
     def _read_from_middle(
         self, center: Float64Array, radius: float
@@ -122,29 +129,34 @@ class PointStore:
                 points = chunk.read(slices)
                 yield points, np.hypot(*(points.points[:, :2] - center).T)
 
-    def _find(self, box: Bounds) -> list[tuple[int, list[slice]]]:
-        """Return the chunks that a box meets, and where in each the points of its cells lie."""
-        west, south, east, north = self._corners.T
-        meets = (west <= box.xmax) & (east >= box.xmin)
-        meets &= (south <= box.ymax) & (north >= box.ymin)
-        return [(k, self.chunks[k].list_slices(box)) for k in np.flatnonzero(meets).tolist()]
-
-    def _read(self, boxes: list[Bounds]) -> NumberedPoints:
-        """Return the points of the chunks' cells that some closed boxes meet, each once."""
-        wanted: dict[int, list[slice]] = {}
-        for box in boxes:
-            for number, slices in self._find(box):
-                wanted.setdefault(number, []).extend(slices)
-        return _sort(
-            [self.chunks[key].read(_join_slices(parts)) for key, parts in sorted(wanted.items())]
+    def _find(self, boxes: Float64Array) -> Iterator[tuple[int, Int64Array]]:
+        """Yield chunks, and which of some closed boxes, (k, 4), meet their bounds."""
+        low, high = (
+            boxes[:, :2].min(axis=0, initial=np.inf),
+            boxes[:, 2:].max(axis=0, initial=-np.inf),
         )
+        corners = self._corners
+        is_met = ((corners[:, :2] <= high) & (corners[:, 2:] >= low)).all(axis=1)
+        for number in np.flatnonzero(is_met).tolist():
+            west, south, east, north = corners[number]
+            meets = (boxes[:, 0] <= east) & (boxes[:, 2] >= west)
+            meets &= (boxes[:, 1] <= north) & (boxes[:, 3] >= south)
+            if meets.any():
+                yield number, np.flatnonzero(meets)
+
+    def _read(self, boxes: Float64Array) -> NumberedPoints:
+        """Return the points of the chunks' cells that some closed boxes meet, each once."""
+        found = []
+        for number, met in self._find(boxes):
+            chunk = self.chunks[number]
+            found.append(chunk.read(chunk.list_slices(chunk.locate(boxes[met]))))
+        return _sort(found)
 
 
-def _list_boxes(discs: Discs) -> list[Bounds]:
-    """Return boxes that hold discs."""
+def _bound(discs: Discs) -> Float64Array:
+    """Return boxes that hold discs, (k, 4)."""
     reach = discs.radii[:, None] * _ABOUT + 2.0**-40 * np.abs(discs.centers)
-    boxes = np.column_stack([discs.centers - reach, discs.centers + reach])
-    return [Bounds(*box) for box in boxes.tolist()]
+    return np.column_stack([discs.centers - reach, discs.centers + reach])
 
 
 def _sort(parts: list[NumberedPoints]) -> NumberedPoints:
@@ -155,19 +167,6 @@ def _sort(parts: list[NumberedPoints]) -> NumberedPoints:
     numbers = np.concatenate([one.numbers for one in parts])
     order = np.argsort(numbers, kind="stable")
     return NumberedPoints(points[order], numbers[order])
-
-
-def _join_slices(parts: list[slice]) -> list[slice]:
-    """Return slices in order, those that touch or overlap as one."""
-    joined: list[slice] = []
-    for part in sorted(parts, key=lambda one: (one.start, one.stop)):
-        if part.start == part.stop:
-            continue
-        if joined and part.start <= joined[-1].stop:
-            joined[-1] = slice(joined[-1].start, max(joined[-1].stop, part.stop))
-        else:
-            joined.append(part)
-    return joined
 
 
 def join_skeletons(parts: Sequence[NumberedPoints], bounds: Bounds) -> NumberedPoints:

@@ -9,6 +9,7 @@ from support.tiled import divide, find_triangles_at, require_triangles_of_the_wh
 
 import tinsmith as ts
 from tinsmith.tin import PointsError, _kernel
+from tinsmith.tin.tiling import local_triangulation
 from tinsmith.tin.tiling.boxes import list_sides, widen
 from tinsmith.tin.tiling.local_triangulation import triangulate_box
 
@@ -53,6 +54,15 @@ def test_the_parts_are_those_of_the_whole(name, side):
     points = lift(CLOUDS[name])
     source = divide(points, side)
     require_triangles_of_the_whole(points, source, margin=float(np.ptp(points[:, 0])) / 50)
+
+
+@pytest.mark.parametrize("name", CLOUDS)
+def test_looking_at_some_points_first_changes_nothing(name, monkeypatch):
+    """Which is done only of more points than are in these boxes."""
+    monkeypatch.setattr(local_triangulation, "_WORTH_LOOKING", 0)
+    points = lift(CLOUDS[name])
+    margin = float(np.ptp(points[:, 0])) / 50
+    require_triangles_of_the_whole(points, divide(points, 4), margin=margin)
 
 
 def test_few_points_are_read():
