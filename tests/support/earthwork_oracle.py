@@ -10,6 +10,8 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
+
 Place = tuple[Fraction, Fraction, Fraction]
 """Easting, northing, and the difference of the elevations."""
 
@@ -33,10 +35,18 @@ def exact_volume(tin: Any, other: Any) -> Exact:
     """Integrate ``other`` minus ``tin`` where both are."""
     total = Exact()
     ours, theirs = corners_of(tin), corners_of(other)
-    for one in ours:
-        for two in theirs:
-            add_cell(total, one, two)
+    low, high = boxes_of(other)
+    for one, lowest, highest in zip(ours, *boxes_of(tin), strict=True):
+        near = ((low < highest) & (high > lowest)).all(axis=1)  # the others share no area
+        for k in np.flatnonzero(near).tolist():
+            add_cell(total, one, theirs[k])
     return total
+
+
+def boxes_of(tin: Any) -> tuple[Any, Any]:
+    """Return the least and the largest coordinates of each triangle."""
+    corners = tin.points[tin.triangles, :2]
+    return corners.min(axis=1), corners.max(axis=1)
 
 
 def exact_heights(tin: Any, height: Any) -> Exact:

@@ -13,7 +13,7 @@ from tinsmith.tin.tiling.local_triangulation import triangulate_box
 from .point_cells import PointCells
 from .tiled import divide
 
-SIDES = (1, 2, 4, 8)
+SIDES = (1, 2, 4)
 
 
 def _rng(seed):
@@ -94,7 +94,7 @@ class Tiling:
 
 @cache
 def find_tilings(name):
-    """Return the points of a cloud in 1, 4, 16 and 64 tiles, even ones and through points."""
+    """Return the points of a cloud in 1, 4 and 16 tiles, even ones and through points."""
     points = CLOUDS[name]
     return [
         *(Tiling(divide(points, side)) for side in SIDES),

@@ -64,10 +64,14 @@ def _require_equal(survey: ts.Survey, found: list[PointChunk], count: int) -> No
         assert np.array_equal(rows, survey.row_sources.lines)
     for name, values in survey.attributes.items():
         parts = [one.attributes.get(name, np.zeros(len(one), values.dtype)) for one in found]
-        assert np.concatenate(parts).tolist() == as_expected(values.tolist()), name
+        _require_equal_values(np.concatenate(parts), values, name)
 
 
-def as_expected(values: list[Any]) -> Any:
-    """Return a list that equals another with NaN where it has NaN."""
-    is_number = all(isinstance(one, float | int) for one in values)
-    return pytest.approx(values, rel=0, abs=0, nan_ok=True) if is_number else values
+def _require_equal_values(found: Any, wanted: Any, name: str) -> None:
+    """Require the same values, of any type; NaN is NaN."""
+    if {found.dtype.kind, wanted.dtype.kind} <= set("biuf"):
+        np.testing.assert_array_equal(found, wanted, err_msg=name)
+    elif all(isinstance(one, float | int) for one in wanted.tolist()):
+        assert found.tolist() == pytest.approx(wanted.tolist(), rel=0, abs=0, nan_ok=True), name
+    else:
+        assert found.tolist() == wanted.tolist(), name

@@ -149,8 +149,8 @@ def _are_points(path: Path, options: dict[str, Any]) -> bool:
     """Whether the first features are single points."""
     if options.get("lines_as") is not None:
         return False
-    layer = next(_iterate_layers(path, options, [0], _Missing()), None)
-    return layer is not None and len(layer.numbers) > 0 and _holds_single_points(layer)
+    layers = list(_iterate_layers(path, options, [0], _Missing()))  # to the end: the child goes on
+    return bool(layers) and len(layers[0].numbers) > 0 and _holds_single_points(layers[0])
 
 
 def _holds_single_points(layer: Layer) -> bool:
