@@ -21,6 +21,9 @@ hypothesis.settings.register_profile("explore", deadline=None)
 hypothesis.settings.register_profile("tinsmith", deadline=None, derandomize=True, database=None)
 hypothesis.settings.load_profile("tinsmith")
 
+# Collecting makes millions of objects that stay: the collector would look through them in vain.
+gc.disable()
+
 
 @pytest.fixture(scope="session")
 def can_draw():
@@ -41,3 +44,4 @@ def pytest_collection_modifyitems(config, items):
 def pytest_collection_finish():
     """Keep the collector from searching thousands of tests through again and again."""
     gc.freeze()
+    gc.enable()

@@ -121,14 +121,9 @@ def test_an_unknown_campaign_is_refused():
 # ------------------------------------------------------------------ real campaigns
 
 
-def test_some_cases_of_every_campaign_find_nothing(tmp_path):
-    done = fuzz("--cases", 1, "--seed", 19, "--folder", tmp_path)
-    assert done.returncode == 0, done.stdout
-
-
 @pytest.mark.slow
 def test_a_slice_of_every_campaign_finds_nothing(tmp_path):
-    done = fuzz("--cases", 5, "--seed", 20, "--folder", tmp_path)
+    done = fuzz("--cases", 6, "--seed", 20, "--folder", tmp_path)
     assert done.returncode == 0, done.stdout
 
 
