@@ -448,89 +448,6 @@ class TiledPoints:
         asked = {"line": line, "interval": interval, "start": start}
         return self._write("profile", asked, path, (format, write), way)
 
-    def ground(
-        self,
-        folder: str | os.PathLike[str],
-        *,
-        building: float = 40.0,
-        cell: float = 1.0,
-        terrain_slope: float = 0.12,
-        iteration_angle: float = 20.0,
-        iteration_distance: float = 1.4,
-        edge_length: float = 5.0,
-        tolerance: float = 0.3,
-        horizontal_tolerance: float = 1.0,
-        noise_depth: float = 1.0,
-        returns: GroundReturns = "last",
-        reach: float | None = None,
-        ground_only: bool = False,
-        **way: Unpack[Way],
-    ) -> Path:
-        """Write every lidar file again with the classes that :func:`tinsmith.ground` tells.
-
-        Parameters
-        ----------
-        folder : path-like
-            Is made if need be. Files have the names of the inputs, and replace others of these
-            names; an input is never replaced.
-        building, cell, terrain_slope, iteration_angle, iteration_distance, edge_length, tolerance,
-        horizontal_tolerance, noise_depth, returns
-            As of :func:`tinsmith.ground`.
-        reach : float, optional
-            How far around a tile points are looked at, metres. Default three times ``building``.
-        ground_only : bool
-            Write ground points alone.
-        **way
-            How the run is carried out, see :class:`Way`.
-
-        Returns
-        -------
-        Path
-            The virtual point cloud (``.vpc``) in the folder, which names all files; the folder
-            where the CRS is not known.
-
-        Raises
-        ------
-        ReadError, WriteError
-            As :meth:`rasterize`. If the inputs are no lidar files, or their points were converted.
-        OptionError
-            If a parameter has a value that it cannot have.
-
-        Notes
-        -----
-        All files have the same bytes for any workers and interruptions. Other tiles may change a
-        label where the filter reaches further than ``reach``: docs/many-files.md tells how many.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import tinsmith as ts
-        >>> from pathlib import Path
-        >>> from tempfile import TemporaryDirectory
-        >>> points = np.random.default_rng(1).random((500, 3)) * [100, 100, 1]
-        >>> with TemporaryDirectory() as folder:
-        ...     path = ts.write(ts.Survey(points=points), Path(folder, "points.laz"))
-        ...     made = ts.tiles(path).ground(Path(folder, "ground"), workers=1)
-        ...     [one.name for one in made.iterdir()]
-        ['points.laz']
-        """
-        output = as_path(folder, "folder")
-        parameters = {
-            "building": building,
-            "cell": cell,
-            "terrain_slope": terrain_slope,
-            "iteration_angle": iteration_angle,
-            "iteration_distance": iteration_distance,
-            "edge_length": edge_length,
-            "tolerance": tolerance,
-            "horizontal_tolerance": horizontal_tolerance,
-            "noise_depth": noise_depth,
-            "returns": returns,
-        }
-        asked = {"reach": reach, "ground_only": ground_only, **parameters}
-        with labelling(self, output, How.of(**way), **asked) as made:
-            return made.move(output)
-
     def map(
         self, function: Callable[[TIN, Bounds], Any], *, run: str | os.PathLike[str], **way: Any
     ) -> list[Any]:
@@ -618,6 +535,89 @@ class TiledPoints:
         with computing(self, "proof", folder, How.of(**{**way, "run": folder})) as made:
             found: TilesProof = made
         return found
+
+    def ground(
+        self,
+        folder: str | os.PathLike[str],
+        *,
+        building: float = 40.0,
+        cell: float = 1.0,
+        terrain_slope: float = 0.12,
+        iteration_angle: float = 20.0,
+        iteration_distance: float = 1.4,
+        edge_length: float = 5.0,
+        tolerance: float = 0.3,
+        horizontal_tolerance: float = 1.0,
+        noise_depth: float = 1.0,
+        returns: GroundReturns = "last",
+        reach: float | None = None,
+        ground_only: bool = False,
+        **way: Unpack[Way],
+    ) -> Path:
+        """Write every lidar file again with the classes that :func:`tinsmith.ground` tells.
+
+        Parameters
+        ----------
+        folder : path-like
+            Is made if need be. Files have the names of the inputs, and replace others of these
+            names; an input is never replaced.
+        building, cell, terrain_slope, iteration_angle, iteration_distance, edge_length, tolerance,
+        horizontal_tolerance, noise_depth, returns
+            As of :func:`tinsmith.ground`.
+        reach : float, optional
+            How far around a tile points are looked at, metres. Default three times ``building``.
+        ground_only : bool
+            Write ground points alone.
+        **way
+            How the run is carried out, see :class:`Way`.
+
+        Returns
+        -------
+        Path
+            The virtual point cloud (``.vpc``) in the folder, which names all files; the folder
+            where the CRS is not known.
+
+        Raises
+        ------
+        ReadError, WriteError
+            As :meth:`rasterize`. If the inputs are no lidar files, or their points were converted.
+        OptionError
+            If a parameter has a value that it cannot have.
+
+        Notes
+        -----
+        All files have the same bytes for any workers and interruptions. Other tiles may change a
+        label where the filter reaches further than ``reach``: docs/many-files.md tells how many.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import tinsmith as ts
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> points = np.random.default_rng(1).random((500, 3)) * [100, 100, 1]
+        >>> with TemporaryDirectory() as folder:
+        ...     path = ts.write(ts.Survey(points=points), Path(folder, "points.laz"))
+        ...     made = ts.tiles(path).ground(Path(folder, "ground"), workers=1)
+        ...     [one.name for one in made.iterdir()]
+        ['points.laz']
+        """
+        output = as_path(folder, "folder")
+        parameters = {
+            "building": building,
+            "cell": cell,
+            "terrain_slope": terrain_slope,
+            "iteration_angle": iteration_angle,
+            "iteration_distance": iteration_distance,
+            "edge_length": edge_length,
+            "tolerance": tolerance,
+            "horizontal_tolerance": horizontal_tolerance,
+            "noise_depth": noise_depth,
+            "returns": returns,
+        }
+        asked = {"reach": reach, "ground_only": ground_only, **parameters}
+        with labelling(self, output, How.of(**way), **asked) as made:
+            return made.move(output)
 
     def _write(
         self,
