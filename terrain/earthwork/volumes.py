@@ -11,7 +11,7 @@ from ...base.products import product
 from ...base.progress import Progress
 from ...base.results import Table
 from ...base.sentences import inflect
-from ...tin.validation.threads import thread_count
+from ...tin.validation import thread_count
 from .. import _kernel
 from ..surface import (
     Pieces,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.results import locate_centers
-from ...tin.validation.threads import thread_count
+from ...tin.validation import thread_count
 from .. import _kernel
 from .grids import as_parts, locate_edges
 

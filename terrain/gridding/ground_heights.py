@@ -12,7 +12,7 @@ from ...base.products import product
 from ...base.results import Table
 from ...base.sentences import counted
 from ...tin import Survey
-from ...tin.validation.points import as_points
+from ...tin.validation import as_points
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

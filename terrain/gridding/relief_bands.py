@@ -10,7 +10,7 @@ import numpy as np
 from ...base.checks import as_flag
 from ...base.errors import OptionError
 from ...base.results import locate_centers
-from ...tin.validation.threads import thread_count
+from ...tin.validation import thread_count
 from ..surface import compute_normals, normalise, sum_at_vertices
 from .bands import SurfaceBand
 

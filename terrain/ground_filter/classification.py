@@ -14,7 +14,7 @@ from ...base.georeference import describe_unknown
 from ...base.progress import Progress
 from ...base.sentences import counted
 from ...tin import TIN, Survey, triangulate
-from ...tin.validation.points import as_points
+from ...tin.validation import as_points
 from .. import _kernel
 from .cells import lay_cells
 from .frame import Frame, Units

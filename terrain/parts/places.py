@@ -52,8 +52,16 @@ def compute_part(
     return PlacePart(chosen if rows is None else rows[chosen], elevations)
 
 
-def join(parts: Iterable[PlacePart], count: int) -> Float64Array:
+def join(parts: Iterable[PlacePart], count: int, *, known: int | None = None) -> Float64Array:
     """Return the elevations at all places, of the parts of all tiles in any order.
+
+    Parameters
+    ----------
+    parts : iterable of PlacePart
+    count : int
+        Of all places.
+    known : int, optional
+        How many of them lie anywhere; default all. The others, which are NaN, are in no tile.
 
     Raises
     ------
@@ -65,6 +73,7 @@ def join(parts: Iterable[PlacePart], count: int) -> Float64Array:
     for part in parts:
         found[part.rows] = part.elevations
         n_found += len(part.rows)
-    if n_found != count:
-        raise OptionError("places", n_found, f"all {count:,} places, once each")
+    wanted = count if known is None else known
+    if n_found != wanted:
+        raise OptionError("places", n_found, f"all {wanted:,} places, once each")
     return found

@@ -11,7 +11,7 @@ from ...base.errors import PointsError, choice
 from ...base.georeference.units import find_scales
 from ...base.policies import CurvatureKind, SurfacePart
 from ...base.products import product
-from ...tin.validation.threads import thread_count
+from ...tin.validation import thread_count
 from .. import _kernel
 
 if TYPE_CHECKING:

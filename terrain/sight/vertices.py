@@ -9,7 +9,7 @@ import numpy as np
 from ...base.products import product
 from ...base.types import seal
 from ...tin.predicates import EXACT_RANGE
-from ...tin.validation.threads import thread_count
+from ...tin.validation import thread_count
 from .. import _kernel
 from ..surface import find_reference
 from .eyes import as_view, measure_distances

@@ -23,7 +23,7 @@ from ...tin.meshing.surface_difference import choose_rows
 from ...tin.report import Simplification
 from ...tin.screening.nodata import describe_suspects, find_suspect_elevations
 from ...tin.topology import NO_NEIGHBOR
-from ...tin.validation.threads import thread_count
+from ...tin.validation import thread_count
 from .. import _kernel
 from ..surface import find_surface
 from .cell_crossings import cross_cells

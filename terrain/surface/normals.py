@@ -12,7 +12,7 @@ from ...base.errors import choice
 from ...base.georeference.axes import find_axes
 from ...base.georeference.units import find_scales
 from ...base.policies import SlopeUnit, SurfacePart
-from ...tin.validation.threads import thread_count
+from ...tin.validation import thread_count
 from .. import _kernel
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from ...base.errors import PointsError
 from ...base.georeference import require_same_crs
 from ...base.results import Features
 from ...base.sentences import counted
-from ...tin.validation.points import as_xy
+from ...tin.validation import as_xy
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array

@@ -16,14 +16,16 @@ COMMANDS = {
     "contours": ["--interval", "5", "-o", "out.csv"],
     "volume": ["--base", "300", "-o", "out.csv"],
     "profile": ["--from", "500010", "4000010", "--to", "500290", "4000190", "-o", "out.csv"],
+    "interpolate": ["--at", "PLACES", "-o", "out.csv"],
 }
-"""Of each command the options with which it computes in tiles."""
+"""Of each command the options with which it computes in tiles; PLACES is a file of points."""
 
 WHOLE = {
     "raster": (["--max-edge", "9"], ["--snap", "0.1"], ["--to-crs", "EPSG:32617"]),
     "contours": (["--smooth", "0.1"], ["--simplify", "0.1"], ["--labels"], ["-o", "out.png"]),
     "volume": (["-o", "out.gpkg"], ["-o", "out.png"]),
     "profile": (["--sections", "10", "20"], ["-o", "out.png"]),
+    "interpolate": (["--method", "natural"], ["--extrapolate", "nearest"]),
 }
 """Further options that need all points at a time."""
 
@@ -31,10 +33,27 @@ OF_FOLDERS = {"ground"}
 """Commands whose tiles are a folder of files, which memory makes no other way."""
 
 
+PLACES = "name,easting,northing\na,500100,4000100\nb,500123.4,4000077\nc,1,1\n"
+
+
 @pytest.fixture(scope="module")
 def lidar(tmp_path_factory):
     """Return a folder of lidar tiles."""
     return write_lidar(tmp_path_factory.mktemp("lidar"))
+
+
+@pytest.fixture(scope="module")
+def given(tmp_path_factory):
+    """Return the files that stand behind options, by the words for them."""
+    folder = tmp_path_factory.mktemp("given")
+    (folder / "places.csv").write_text(PLACES)
+    return {"PLACES": folder / "places.csv"}
+
+
+@pytest.fixture(scope="module")
+def commands(given):
+    """Return the options of each command, with the names of files."""
+    return {name: [given.get(word, word) for word in words] for name, words in COMMANDS.items()}
 
 
 @pytest.fixture
@@ -60,8 +79,8 @@ def test_every_command_with_tiles_is_here():
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_outputs_and_records_are_those_in_memory(command, lidar, here):
-    options = [lidar, "--classes", "2", "--json", *COMMANDS[command]]
+def test_outputs_and_records_are_those_in_memory(command, lidar, here, commands):
+    options = [lidar, "--classes", "2", "--json", *commands[command]]
     whole = run(command, *options)
     assert whole.exit_code == 0, whole.output
     (path,) = here.iterdir()
@@ -81,16 +100,16 @@ def test_outputs_and_records_are_those_in_memory(command, lidar, here):
 
 
 @pytest.mark.parametrize(("command", "words"), [(c, w) for c in WHOLE for w in WHOLE[c]])
-def test_what_needs_all_points_is_refused_with_tiles(command, words, lidar, here):
-    done = run(command, lidar, "--classes", "2", *COMMANDS[command], *words, "--tiles", "3")
+def test_what_needs_all_points_is_refused_with_tiles(command, words, lidar, here, commands):
+    done = run(command, lidar, "--classes", "2", *commands[command], *words, "--tiles", "3")
     assert done.exit_code == 1, done.output
     assert "Tiles cannot be computed with" in done.output
     assert list(here.iterdir()) == []
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_plans_do_nothing(command, lidar, here):
-    done = run(command, lidar, *COMMANDS[command], "--plan", "--json", "--workers", "2")
+def test_plans_do_nothing(command, lidar, here, commands):
+    done = run(command, lidar, *commands[command], "--plan", "--json", "--workers", "2")
     assert done.exit_code == 0, done.output
     told = json.loads(done.stdout)
     assert told["points"] == 6_000

@@ -85,7 +85,18 @@ def _compare(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> st
         else:
             assert filecmp.cmp(path, wanted, shallow=False), name
         found.append(name)
-    return f"{len(found) - found.count('refused')} products"
+    _compare_places(case, tin, cloud, folder)
+    return f"{len(found) - found.count('refused') + 1} products"
+
+
+def _compare_places(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> None:
+    """Require the elevations at vertices, on edges and beside the surface."""
+    xy = tin.points[:, :2]
+    places = np.concatenate([xy, 0.5 * xy[:-1] + 0.5 * xy[1:], xy[:5] + np.ptp(xy, axis=0)])
+    way = {"tiles": case["tiles"], "executor": Shuffled(case["seed"])}
+    path = cloud.interpolate(folder / "places.csv", places, **way)
+    found = [float(row.split(",")[2] or "nan") for row in path.read_text().splitlines()[1:]]
+    np.testing.assert_array_equal(found, tin.interpolate(places))
 
 
 def _require_same_cells(path: Path, whole: ts.Raster) -> None:

@@ -11,6 +11,7 @@ import rasterio
 from support.many_files import Shuffled, write_lidar
 
 import tinsmith as ts
+from tinsmith.tiled import given
 from tinsmith.tiled.products.mapped import measure_area
 
 SQUARES = {
@@ -94,6 +95,52 @@ def test_profiles(cloud, tin, tmp_path):
     require_same_files(tmp_path, ".csv", ts.profile(tin, LINE, interval=10.0, start=5.0), make)
 
 
+def list_places(tin):
+    """Return places in the surface and off it, at vertices, on edges, and nowhere."""
+    bounds = tin.bounds
+    low, size = np.array([bounds.xmin, bounds.ymin]), np.array([bounds.width, bounds.height])
+    free = low + (np.random.default_rng(2).random((2_000, 2)) * 1.2 - 0.1) * size
+    middle = tin.points[tin.edges[::7], :2].mean(axis=1)
+    return np.concatenate([free, tin.points[::5, :2], middle, [[np.nan, 0.0]]])
+
+
+def test_elevations_at_places(cloud, tin, tmp_path):
+    places = list_places(tin)
+    columns = {"easting": places[:, 0], "northing": places[:, 1]}
+    units = {"easting": "m", "northing": "m", "elevation": tin.elevation_unit}
+    wanted = ts.Table({**columns, "elevation": tin.interpolate(places)}, units=units)
+
+    def make(path, **way):
+        return cloud.interpolate(path, places, **way)
+
+    require_same_files(tmp_path, ".csv", wanted, make)
+
+
+def test_few_or_no_places(cloud, tin, tmp_path):
+    for places in (tin.points[:1, :2], [[0.0, 0.0]], np.zeros((0, 2))):
+        path = cloud.interpolate(tmp_path / "a.csv", places, tiles=4, executor=Shuffled())
+        found = [float(row.split(",")[2] or "nan") for row in path.read_text().splitlines()[1:]]
+        np.testing.assert_array_equal(found, tin.interpolate(places))
+
+
+def test_a_tile_reads_the_places_near_it_only(tmp_path, monkeypatch):
+    monkeypatch.setattr(given, "_PLACES_OF_A_CHUNK", 30_000)
+    xy = np.random.default_rng(5).random((100_000, 2)) * 100
+    xy[::1000] = np.nan
+    given.GivenPlaces(xy).store(tmp_path / "places")
+    box = ts.Bounds(20.0, 20.0, 30.0, 40.0)
+    found = given.read_places(tmp_path / "places", box)
+    inside = ((xy >= (20, 20)) & (xy <= (30, 40))).all(axis=1)
+    np.testing.assert_array_equal(found.numbers, np.flatnonzero(inside))
+    np.testing.assert_array_equal(found.points[:, :2], xy[inside])
+
+
+def test_places_in_another_crs_are_refused(cloud, tmp_path):
+    places = ts.Features.of_points([[500_010.0, 4_000_020.0]], crs="EPSG:32617")
+    with pytest.raises(ts.CrsError, match="EPSG:32617"):
+        cloud.interpolate(tmp_path / "a.csv", places, executor=Shuffled())
+
+
 @pytest.mark.parametrize("value", ["slope", "aspect", "hillshade"])
 @pytest.mark.parametrize("smooth", [False, True])
 def test_slopes_and_light(cloud, tin, tmp_path, value, smooth):
@@ -140,7 +187,7 @@ def test_tiles_are_proven_and_mapped(cloud, tin, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("method", "given"),
+    ("method", "options"),
     [
         ("contours", {}),
         ("contours", {"interval": -1.0}),
@@ -150,11 +197,12 @@ def test_tiles_are_proven_and_mapped(cloud, tin, tmp_path):
         ("volume", {"base": 5.0, "regions": {"a": [(0, 0), (1, 1)]}}),
         ("profile", {"line": [[0.0, 0.0]]}),
         ("profile", {"line": LINE, "interval": 0.0}),
+        ("interpolate", {"places": [[0.0, 0.0, 0.0]]}),
     ],
 )
-def test_options_that_are_none_are_refused_before_the_work(lidar, tmp_path, method, given):
+def test_options_that_are_none_are_refused_before_the_work(lidar, tmp_path, method, options):
     with pytest.raises(ts.TinsmithError):
-        getattr(ts.tiles(lidar), method)(tmp_path / "a.csv", executor=Shuffled(), **given)
+        getattr(ts.tiles(lidar), method)(tmp_path / "a.csv", executor=Shuffled(), **options)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -17,6 +17,7 @@ from ..io.reading import list_files
 from ..io.registry.lookup import find_format
 from ..io.streaming import SourceHeader, describe_source
 from ..io.writing import write as write_file
+from ..tin.validation import as_xy
 from .chunks import BYTES_ON_DISK
 from .computing import computing, labelling
 from .how import How, Way, estimate_memory
@@ -205,8 +206,8 @@ class TiledPoints:
 
     @property
     def crs(self) -> CRS | None:
-        """CRS of the points, as the first header names it."""
-        return self.headers[0].crs
+        """CRS of the points, as the first header names it, or as it was declared."""
+        return self.headers[0].crs or CRS.of(self.options.get("crs"))
 
     @property
     def is_raster(self) -> bool:
@@ -255,7 +256,7 @@ class TiledPoints:
 
     def __repr__(self) -> str:
         count = "an unknown number of points" if self.count is None else f"{self.count:,} points"
-        crs = shorten_crs(self.headers[0].crs)
+        crs = shorten_crs(self.crs)
         return f"<TiledPoints: {count} in {counted(len(self.headers), 'file')}, crs {crs}>"
 
     def rasterize(
@@ -447,6 +448,63 @@ class TiledPoints:
         """
         asked = {"line": line, "interval": interval, "start": start}
         return self._write("profile", asked, path, (format, write), way)
+
+    def interpolate(
+        self,
+        path: str | os.PathLike[str],
+        places: Any,
+        *,
+        format: str | None = None,  # noqa: A002 - as in write
+        write: Mapping[str, Any] | None = None,
+        **way: Unpack[Way],
+    ) -> Path:
+        """Write the elevations at places, as :meth:`tinsmith.TIN.interpolate` of the whole surface.
+
+        Parameters
+        ----------
+        path, format, write, **way
+            As of :meth:`rasterize`.
+        places : (k, 2) array, CRS units
+            Or a table, data frame or geometries of points. A tile reads those that lie in it.
+
+        Returns
+        -------
+        Path
+            A table of ``easting``, ``northing`` and ``elevation``, which is missing outside the
+            surface.
+
+        Raises
+        ------
+        ReadError, WriteError
+            As :meth:`rasterize`.
+        CrsError
+            If the places say that they are in another CRS.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+        >>> with TemporaryDirectory() as folder:
+        ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")))
+        ...     path = cloud.interpolate(Path(folder, "places.csv"), [[2, 0], [9, 9]], workers=1)
+        ...     print(path.read_text())
+        easting,northing,elevation
+        2.0,0.0,5.5
+        9.0,9.0,
+        <BLANKLINE>
+        """
+        output = as_path(path)
+        with computing(self, "places", output, How.of(**way), places=places) as made:
+            east, north = as_xy(places).T
+            unit = None if self.crs is None else self.crs.horizontal_unit
+            table = replace(
+                made,
+                columns={"easting": east, "northing": north, **made.columns},
+                units={"easting": unit, "northing": unit, **made.units},
+            )
+            return write_file(table, output, format=format, **(write or {}))
 
     def map(
         self, function: Callable[[TIN, Bounds], Any], *, run: str | os.PathLike[str], **way: Any

@@ -16,6 +16,7 @@ from ..base.types import Bounds
 from ..terrain.ground_filter import ATTRIBUTES
 from .division import Tile, divide
 from .products.ground import name_files
+from .given import Given
 from .reading import StoredPoints, read_inputs
 from .runs import Fingerprint, Run
 from .store import count_by_cells
@@ -80,7 +81,7 @@ def computing(
                 candidates=cloud.candidates,
             )
             points = replace(points, is_raster=cloud.is_raster)
-            settled = module.settle_options(points, options)
+            settled = module.settle_options(points, _store(options, run))
             jobs = [
                 TileJob(run.folder, points_run.folder, tile, product, settled, cloud.duplicates)
                 for tile in _find_tiles(run, points, how)
@@ -149,9 +150,25 @@ def _describe(
     return {
         "version": __version__,
         "product": product,
-        "options": {**reading, **options},
+        "options": {**reading, **_describe_given(options)},
         "inputs": [asdict(one) for one in sources],
     }
+
+
+def _describe_given(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return options as plain values."""
+    return {
+        name: value.describe() if isinstance(value, Given) else value
+        for name, value in options.items()
+    }
+
+
+def _store(options: Mapping[str, Any], run: Run) -> dict[str, Any]:
+    """Write arrays among options into folders of the run, named as these; return plain values."""
+    for name, value in options.items():
+        if isinstance(value, Given):
+            value.store(run.folder / name)
+    return _describe_given(options)
 
 
 def _find_tiles(run: Run, points: StoredPoints, how: How) -> list[Tile]:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ..tin.tiling import Discs
     from .chunks import Chunk
 
-__all__ = ["PointStore", "count_by_cells", "join_skeletons"]
+__all__ = ["NO_POINTS", "PointStore", "count_by_cells", "join_skeletons"]
 
 _SIDE_OF_SKELETON = 32
 """Rows and columns of the cells each of which keeps its outermost points, however many chunks."""
@@ -34,7 +34,7 @@ _ABOUT = 1 + 2.0**-20
 """Factor within which distances are not told apart where points are only chosen to be looked at."""
 _CLEARLY = 0.99
 """Of the radius: what lies further out is not worth taking before the others were looked at."""
-_NO_POINTS = NumberedPoints(np.empty((0, 3)), np.empty(0, np.int64))
+NO_POINTS = NumberedPoints(np.empty((0, 3)), np.empty(0, np.int64))
 
 
 class PointStore:
@@ -79,7 +79,7 @@ class PointStore:
         Such are the discs of triangles across a bay of the data; read as wholes they would be a
         large part of all points.
         """
-        found = [_NO_POINTS]
+        found = [NO_POINTS]
         for k in np.flatnonzero(self._are_large(discs)).tolist():
             for points, far in self._read_from_middle(discs.centers[k], float(discs.radii[k])):
                 inside = np.flatnonzero(far < discs.radii[k] * _CLEARLY)
@@ -162,7 +162,7 @@ def _bound(discs: Discs) -> Float64Array:
 def _sort(parts: list[NumberedPoints]) -> NumberedPoints:
     """Join the points of chunks in order of their numbers; no number is in two of them."""
     if not parts:
-        return _NO_POINTS
+        return NO_POINTS
     points = np.concatenate([one.points for one in parts])
     numbers = np.concatenate([one.numbers for one in parts])
     order = np.argsort(numbers, kind="stable")

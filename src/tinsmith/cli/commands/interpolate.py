@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,15 +11,18 @@ import click
 from ...base.policies import Extrapolation, InterpolationMethod
 from ...base.sentences import counted
 from ..command import command
-from ..job import Job, surface_options
+from ..job import Job
 from ..output.counts import mesh_counts
 from ..output.facts import Facts
 from ..output.failures import Failure
 from ..parameters import choice_option, crs_option, file_option, input_file, output_files
 from ..paths import Named
+from ..tiling import choose_tiles, compute_tiles, describe_points, tell_plan, tiled_options
 
 if TYPE_CHECKING:
+    from ...base.crs import CRS
     from ...io.delimited.query_points import QueryPoints
+    from ...terrain import Table
     from ...tin import TIN
 
 
@@ -54,7 +58,7 @@ if TYPE_CHECKING:
     show_default=True,
     help="Name of the column that is added.",
 )
-@surface_options()
+@tiled_options()
 def interpolate(file: Path, points_file: Path, job: Job, **asked: Any) -> None:
     """Interpolate elevations of the TIN in FILE, or built from its points, at other points.
 
@@ -62,71 +66,116 @@ def interpolate(file: Path, points_file: Path, job: Job, **asked: Any) -> None:
       tinsmith interpolate sample_data/site_survey.csv --crs EPSG:32616
         --at places.csv --method natural -o elevations.csv
     """
-    from ...base.crs import CRS
-    from ...base.georeference import describe_unknown
-    from ...io.delimited.query_points import read_query_points
-    from ...terrain import Table
-
     inputs = job.list_inputs(file, more=[Named(points_file, "the file of --at")])
     planned = job.plan(inputs, "Table")
-    tin = job.read_tin(file)
-    points = read_query_points(
-        points_file,
-        columns=asked["at_columns"] or None,
-        delimiter=asked["at_delimiter"],
-        crs=CRS.of(asked["at_crs"]) or tin.crs,
-    )
-    notes = [*describe_unknown(tin.crs, tin.elevation_unit), *points.notes]
+    cloud = choose_tiles(job, file, whole=_name_whole(asked))
+    if cloud is not None and job.tiling.plan:
+        tell_plan(cloud, job, file)
+        return
+    if cloud is not None:
+        points = _read_places(points_file, cloud.crs, asked)
+        with compute_tiles(cloud, "places", planned, job, places=points.xy) as made:
+            table = _add_columns(points, made["elevation"], made.units["elevation"], asked)
+            table = table.with_notes(made.notes)
+            planned.write("Table", table)
+        surface = describe_points(cloud)
+    else:
+        tin = job.read_tin(file)
+        points = _read_places(points_file, tin.crs, asked)
+        table = _interpolate(tin, points, asked, job)
+        planned.write("Table", table)
+        surface = mesh_counts(tin)
+    job.finish(planned, _list_facts(file, surface, table, asked))
+
+
+def _name_whole(asked: dict[str, Any]) -> str:
+    """Return the option that needs the whole surface, if one does."""
+    if asked["extrapolate"] is not None:
+        return "--extrapolate"
+    return "" if asked["method"] == "linear" else f"--method {asked['method']}"
+
+
+def _interpolate(tin: TIN, points: QueryPoints, asked: dict[str, Any], job: Job) -> Table:
+    from ...base.georeference import describe_unknown
+
     with job.step(f"Interpolating {counted(len(points.xy), 'point')}"):
-        column = asked["column"]
-        if column in points.columns:
-            raise Failure(
-                f"The points have a column '{column}' already: name another with --column."
-            )
         elevations = tin.interpolate(
-            _reproject(tin, points, asked["at_crs"], notes),
+            points.xy,
             method=asked["method"],
             extrapolate=asked["extrapolate"],
             threads=job.building.threads,
         )
-        table = Table(
-            {**points.columns, column: elevations},
-            units={column: tin.elevation_unit},
-            name="elevations",
-            notes=notes,
-        )
-    planned.write("Table", table)
+        table = _add_columns(points, elevations, tin.elevation_unit, asked)
+    return table.with_notes(describe_unknown(tin.crs, tin.elevation_unit))
+
+
+def _add_columns(points: QueryPoints, elevations: Any, unit: Any, asked: dict[str, Any]) -> Table:
+    """Return the table of the points with their elevations."""
+    from ...terrain import Table
+
+    column = asked["column"]
+    return Table(
+        {**points.columns, column: elevations},
+        units={column: unit},
+        name="elevations",
+        notes=points.notes,
+    )
+
+
+def _list_facts(file: Path, surface: str, table: Table, asked: dict[str, Any]) -> Facts:
+    elevations = table[asked["column"]]
     outside = int((elevations != elevations).sum())
     text = f"{outside:,} outside the surface, without elevation" if outside else "all inside"
     if asked["extrapolate"]:
         text = "elevations outside are those of the nearest point of the boundary"
     facts = Facts(file)
-    facts.add("Surface", mesh_counts(tin))
+    facts.add("Surface", surface)
     facts.add("Points", f"{len(table):,}, {text}", points=len(table), outside=outside)
     facts.add("Method", asked["method"], method=asked["method"])
-    facts.note(notes)
-    job.finish(planned, facts)
+    facts.note(table.notes)
+    return facts
 
 
-def _reproject(tin: TIN, points: QueryPoints, given: str | None, notes: list[str]) -> Any:
-    """Return the points in the TIN's CRS; degrees and lengths are never mixed."""
+# ---------------------------------------------------------------- the points
+
+
+def _read_places(path: Path, crs: CRS | None, asked: dict[str, Any]) -> QueryPoints:
+    """Read the points of --at, in the CRS of the surface."""
+    from ...base.crs import CRS
+    from ...io.delimited.query_points import read_query_points
+
+    given, column = asked["at_crs"], asked["column"]
+    points = read_query_points(
+        path,
+        columns=asked["at_columns"] or None,
+        delimiter=asked["at_delimiter"],
+        crs=CRS.of(given) or crs,
+    )
+    if column in points.columns:
+        raise Failure(f"The points have a column '{column}' already: name another with --column.")
+    return _reproject(points, crs, given)
+
+
+def _reproject(points: QueryPoints, crs: CRS | None, given: str | None) -> QueryPoints:
+    """Return the points in the surface's CRS; degrees and lengths are never mixed."""
     import numpy as np
 
     from ...base.crs import CRS
     from ...io import transform_points
 
     if given is None:
-        if points.is_degrees and not (tin.crs is not None and tin.crs.is_geographic):
+        if points.is_degrees and not (crs is not None and crs.is_geographic):
             raise Failure(
                 "The points are longitudes and latitudes by their header, and the surface is not: "
                 "name their CRS with --at-crs, such as EPSG:4326."
             )
-        return points.xy
+        return points
     source = CRS.of(given)
-    if tin.crs is None:
+    if crs is None:
         raise Failure("--at-crs needs a surface whose CRS is known: name it with --crs.")
-    if source.is_same(tin.crs):
-        return points.xy
-    notes.append(f"Points were transformed from {source.label} to {tin.crs.label}.")
+    if source.is_same(crs):
+        return points
+    note = f"Points were transformed from {source.label} to {crs.label}."
     flat = np.column_stack([points.xy, np.zeros(len(points.xy))])
-    return transform_points(flat, source.horizontal, tin.crs.horizontal)[:, :2]
+    moved = transform_points(flat, source.horizontal, crs.horizontal)[:, :2]
+    return replace(points, xy=moved, notes=(*points.notes, note))

@@ -1,0 +1,89 @@
+"""Elevations at places: each tile has those of the places in it, which are put in order."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...base.crs import CRS
+from ...base.errors import OptionError, choice
+from ...base.georeference import describe_unknown, require_same_crs
+from ...base.policies import Extrapolation, InterpolationMethod
+from ...base.results import Table
+from ...base.types import Bounds
+from ...terrain.parts import places, refusals
+from ...terrain.parts.surfaces import are_owned
+from ...tin.building.reference import find_crs
+from ...tin.validation import as_xy
+from ..given import GivenPlaces, read_places
+from ..tasks import load_arrays, save_arrays
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from ..reading import StoredPoints
+    from ..runs import Record
+    from ..tasks import Part
+
+__all__ = ["check_options", "compute", "join", "settle_options"]
+
+_PLACES = "places"
+"""Option and folder of the places."""
+
+
+def check_options(
+    *, places: Any, method: str = "linear", extrapolate: str | None = None
+) -> dict[str, Any]:
+    """Return options, or refuse what is none, or needs all triangles at a time."""
+    choice("method", method, InterpolationMethod)
+    if method != "linear":
+        raise OptionError("method", method, "linear where elevations are computed in tiles")
+    if extrapolate is not None:
+        choice("extrapolate", extrapolate, Extrapolation)
+        refusals.require_local("extrapolate")
+    xy, crs = as_xy(places) + 0.0, find_crs(places)
+    return {
+        _PLACES: GivenPlaces(xy),
+        "count": len(xy),
+        "known": int(np.count_nonzero(~np.isnan(xy).any(axis=1))),
+        "places_crs": None if crs is None else str(crs),
+    }
+
+
+def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Refuse places in another CRS than that of all points."""
+    require_same_crs(CRS.of(options["places_crs"]), points.crs, "the places", is_plain=True)
+    return dict(options)
+
+
+def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
+    """Interpolate at the places of a tile."""
+    box = part.job.tile.box
+    asked = read_places(part.job.folder / _PLACES, box)
+    is_owned = are_owned(asked.points, box)
+    if not is_owned.any():
+        return 0, {}, []
+    asked = asked.choose(is_owned)
+    local = part.triangulate(Bounds.of(asked.points))
+    found = places.compute_part(local, box, asked.points, asked.numbers)
+    return len(asked.points), {}, save_arrays(part, **found._asdict())
+
+
+def join(
+    points: StoredPoints, options: Mapping[str, Any], records: Mapping[str, Record], folder: Path
+) -> Table:
+    """Return the elevations at all places."""
+    parts = (
+        places.PlacePart(**load_arrays(folder, record))
+        for record in records.values()
+        if record.files
+    )
+    found = places.join(parts, options["count"], known=options["known"])
+    return Table(
+        {"elevation": found},
+        units={"elevation": points.elevation_unit},
+        name="elevations",
+        notes=[*points.notes, *describe_unknown(points.crs, points.elevation_unit)],
+    )
