@@ -1,7 +1,7 @@
 """Profiles and draping over a surface in parts: the triangles that lines meet are few.
 
-A tile returns those of the triangles that it owns which a line meets, and those around them. Joined
-they are a surface that has everything that lies on the lines: :func:`tinsmith.profile`,
+A tile returns the triangles that lines meet in it, and those around them. Joined they are a surface
+that has everything that lies on the lines: :func:`tinsmith.profile`,
 :func:`tinsmith.cross_sections` and :func:`tinsmith.drape` of it are those of the whole.
 """
 
@@ -11,21 +11,20 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...base.types import seal
-from ...tin import TIN
+from ...base.types import Bounds, seal
+from ...tin import TIN, triangulate
 from ..sections.rims import move_aside
-from .surfaces import are_owned_triangles, as_surface
+from ..surface import Segments
+from .surfaces import as_surface
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...base.crs import CRS, Unit
-    from ...base.types import Bounds
     from ...tin.tiling import LocalTriangulation
-    from ..surface import Segments
 
-__all__ = ["RINGS", "LineOptions", "SurfacePart", "compute_part", "join"]
+__all__ = ["RINGS", "LineOptions", "SurfacePart", "compute_part", "find_reach", "join"]
 
 RINGS = 1
 """Rings of triangles that a part needs: a line may meet a triangle in a vertex only."""
@@ -55,36 +54,73 @@ class SurfacePart(NamedTuple):
     triangles: Int32Array
 
 
+def find_reach(box: Bounds, options: LineOptions) -> Bounds | None:
+    """Return the box of which a part is needed, within that of a tile; None if no line is there."""
+    reach = None
+    for segments in _list_near(box, options):
+        ends = np.concatenate([segments.starts, segments.ends])
+        near = Bounds.of(ends)
+        reach = near if reach is None else _join(reach, near)
+    return None if reach is None else _intersect(reach, box)
+
+
+def _list_near(box: Bounds, options: LineOptions) -> Iterator[Segments]:
+    """Yield the segments whose bounds meet a box, and those beside a boundary that do, if any."""
+    low, high = (box.xmin, box.ymin), (box.xmax, box.ymax)
+    for segments in (options.segments, *move_aside(options.segments, options.rim[:, :2])):
+        starts, ends = segments.starts, segments.ends
+        near = (np.minimum(starts, ends) <= high) & (np.maximum(starts, ends) >= low)
+        rows = near.all(axis=1) & (starts != ends).any(axis=1)
+        if rows.any():
+            yield Segments._make(array[rows] for array in segments)
+
+
+def _join(one: Bounds, other: Bounds) -> Bounds:
+    return Bounds(
+        min(one.xmin, other.xmin),
+        min(one.ymin, other.ymin),
+        max(one.xmax, other.xmax),
+        max(one.ymax, other.ymax),
+    )
+
+
+def _intersect(one: Bounds, other: Bounds) -> Bounds:
+    return Bounds(
+        max(one.xmin, other.xmin),
+        max(one.ymin, other.ymin),
+        min(one.xmax, other.xmax),
+        min(one.ymax, other.ymax),
+    )
+
+
 def compute_part(part: LocalTriangulation, box: Bounds, options: LineOptions) -> SurfacePart:
-    """Return the triangles that lines meet, of those that a tile owns.
+    """Return the triangles that lines meet in a tile, and others.
 
     Parameters
     ----------
     part : LocalTriangulation
-        All triangles that meet the box, with :data:`RINGS` rings around them.
+        All triangles that meet :func:`find_reach`, with :data:`RINGS` rings around them.
     box : Bounds
-        Of the tile; of those that tile the plane each triangle is owned by one.
+        Of the tile; of those that tile the plane each place on a line is in one at least.
     options : LineOptions
     """
     chosen = np.zeros(len(part.triangles), np.bool_)
     if len(chosen):
-        chosen = are_owned_triangles(part, box) & _are_met(part, options)
+        chosen = _are_met(part, box, options)
     used, corners = np.unique(part.triangles[chosen], return_inverse=True)
     return SurfacePart(
         part.points[used], part.numbers[used], corners.reshape(-1, 3).astype(np.int32)
     )
 
 
-def _are_met(part: LocalTriangulation, options: LineOptions) -> BoolArray:
+def _are_met(part: LocalTriangulation, box: Bounds, options: LineOptions) -> BoolArray:
     """Tell which triangles lines meet, or have a vertex of one that they meet."""
-    low, high = part.points[:, :2].min(axis=0), part.points[:, :2].max(axis=0)
     is_corner = np.zeros(len(part.points), np.bool_)
     locator = as_surface(part).triangulation.locator
-    for segments in (options.segments, *move_aside(options.segments, options.rim[:, :2])):
-        starts, ends = segments.starts, segments.ends
-        near = (np.minimum(starts, ends) <= high) & (np.maximum(starts, ends) >= low)
-        rows = near.all(axis=1) & (starts != ends).any(axis=1)
-        traced = locator.trace(np.ascontiguousarray(starts[rows]), np.ascontiguousarray(ends[rows]))
+    for segments in _list_near(box, options):
+        traced = locator.trace(
+            np.ascontiguousarray(segments.starts), np.ascontiguousarray(segments.ends)
+        )
         for triangles in (traced.triangles, traced.edges // 3):
             is_corner[part.triangles[triangles[triangles >= 0]]] = True
         is_corner[traced.vertices[traced.vertices >= 0]] = True
@@ -101,16 +137,27 @@ def join(
 
     Its boundary is that of the whole, as far as products of lines ask for it.
     """
-    found = list(parts)
+    found = [one for one in parts if len(one.triangles)]
+    if found:
+        tin = _join_parts(found, options, crs, elevation_unit)
+        n_vertices = len(tin.points) - len(options.rim)
+        rim = np.arange(n_vertices, len(tin.points), dtype=np.int32)
+        tin.triangulation.__dict__["rings"] = (seal(rim),)  # the edges of the part are none
+        return tin
+    tin = triangulate(options.rim)  # lines beside the surface are beside this one
+    return TIN.from_triangles(tin.points, tin.triangles, crs=crs, elevation_unit=elevation_unit)
+
+
+def _join_parts(
+    found: list[SurfacePart], options: LineOptions, crs: CRS | None, unit: Unit | None
+) -> TIN:
+    """Return the triangles of all parts, each once, with the vertices of the rim behind theirs."""
     numbers, first = np.unique(np.concatenate([one.numbers for one in found]), return_index=True)
     points = np.concatenate([one.points for one in found])[first]
     corners = [np.searchsorted(numbers, one.numbers)[one.triangles] for one in found]
-    tin = TIN.from_triangles(
+    return TIN.from_triangles(
         np.concatenate([points, options.rim]),
-        np.concatenate(corners),
+        np.unique(np.concatenate(corners), axis=0),
         crs=crs,
-        elevation_unit=elevation_unit,
+        elevation_unit=unit,
     )
-    rim = np.arange(len(points), len(points) + len(options.rim), dtype=np.int32)
-    tin.triangulation.__dict__["rings"] = (seal(rim),)  # the edges of the part are none
-    return tin

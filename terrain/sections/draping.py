@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.errors import LinesError, OptionError, choice
-from ...base.georeference import require_same_crs
+from ...base.georeference import describe_unknown, require_same_crs
 from ...base.policies import OutsidePolicy
 from ...base.products import product
 from ...base.results import Features
@@ -21,10 +21,11 @@ from .surfaces import as_surfaces
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
+    from ...base.georeference import Referenced
     from ...tin import TIN
     from .rows import Rows
 
-__all__ = ["drape"]
+__all__ = ["check_features", "drape", "drape_points"]
 
 
 @product
@@ -76,24 +77,13 @@ def drape(tin: TIN, features: Any, *, outside: OutsidePolicy = "error") -> Featu
            [2., 2., 4.],
            [3., 2., 5.]])
     """
-    choice("outside", outside, OutsidePolicy)
+    given, is_plain = check_features(features, outside), not hasattr(features, "crs")
     surfaces = as_surfaces(tin)
-    given = as_features(features, "feature")
-    if given.kind == "polygons" and outside == "cut":
-        raise OptionError("outside", outside, allowed="error or nan for polygons")
-    notes = require_same_crs(
-        given.crs, surfaces.crs, "the features", is_plain=not hasattr(features, "crs")
-    )
-    given = replace(
-        given,
-        crs=surfaces.crs,
-        elevation_unit=surfaces.elevation_unit,
-        notes=(*given.notes, *surfaces.notes, *notes),
-    )
     if given.kind == "points":
-        return _drape_points(tin, given, outside)
-    xy = np.ascontiguousarray(given.coordinates[:, :2]) + 0.0
-    segments = as_segments(xy, given.offsets[0], what=given.kind[:-1])
+        elevations = tin.interpolate(_take_places(given))
+        return drape_points(tin, given, elevations, outside=outside, is_plain=is_plain)
+    given = _settle(given, surfaces, surfaces.notes, is_plain=is_plain)
+    segments = as_segments(_take_places(given), given.offsets[0], what=given.kind[:-1])
     rows = cut_rows(surfaces, segments)
     lines = segments.lines[rows.places.segments]
     is_outside = np.zeros(len(given.offsets[0]) - 1, np.bool_)
@@ -102,16 +92,50 @@ def drape(tin: TIN, features: Any, *, outside: OutsidePolicy = "error") -> Featu
     return _cut_runs(given, rows, lines) if outside == "cut" else _keep_whole(given, rows, lines)
 
 
-def _drape_points(tin: TIN, given: Features, outside: OutsidePolicy) -> Features:
-    xy = np.ascontiguousarray(given.coordinates[:, :2]) + 0.0
-    elevations = tin.interpolate(xy)
-    is_outside = np.isnan(elevations)
+def check_features(features: Any, outside: OutsidePolicy) -> Features:
+    """Return features of one kind, or refuse them, or an option that they cannot have."""
+    choice("outside", outside, OutsidePolicy)
+    given = as_features(features, "feature")
+    if given.kind == "polygons" and outside == "cut":
+        raise OptionError("outside", outside, allowed="error or nan for polygons")
+    return given
+
+
+def drape_points(
+    surface: Referenced,
+    given: Features,
+    elevations: Float64Array,
+    *,
+    outside: OutsidePolicy,
+    is_plain: bool,
+) -> Features:
+    """Return points as :func:`drape` does, of the elevations of a surface at them."""
+    notes = describe_unknown(surface.crs, surface.elevation_unit)
+    given = _settle(given, surface, notes, is_plain=is_plain)
+    xy, is_outside = _take_places(given), np.isnan(elevations)
     if is_outside.any():
         given = _note_outside(given, is_outside, outside, xy[np.argmax(is_outside)], "point")
     xyz = np.column_stack([xy, elevations])
     if outside != "cut":
         return replace(given, coordinates=xyz)
     return _choose(given, xyz[~is_outside], (), np.flatnonzero(~is_outside))
+
+
+def _settle(
+    given: Features, surface: Referenced, notes: tuple[str, ...], *, is_plain: bool
+) -> Features:
+    """Return features in the CRS and the unit of a surface, with its notes; refuse other CRSs."""
+    assumed = require_same_crs(given.crs, surface.crs, "the features", is_plain=is_plain)
+    return replace(
+        given,
+        crs=surface.crs,
+        elevation_unit=surface.elevation_unit,
+        notes=(*given.notes, *notes, *assumed),
+    )
+
+
+def _take_places(given: Features) -> Float64Array:
+    return np.ascontiguousarray(given.coordinates[:, :2]) + 0.0
 
 
 def _note_pieces(

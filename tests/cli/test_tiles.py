@@ -8,6 +8,7 @@ import pytest
 from click.testing import CliRunner
 from support.many_files import write_lidar
 
+import tinsmith as ts
 from tinsmith.cli import main, tiling
 from tinsmith.cli.command_list import SUMMARIES
 
@@ -17,8 +18,9 @@ COMMANDS = {
     "volume": ["--base", "300", "-o", "out.csv"],
     "profile": ["--from", "500010", "4000010", "--to", "500290", "4000190", "-o", "out.csv"],
     "interpolate": ["--at", "PLACES", "-o", "out.csv"],
+    "drape": ["ROADS", "--outside", "nan", "-o", "out.fgb"],
 }
-"""Of each command the options with which it computes in tiles; PLACES is a file of points."""
+"""Of each command the options with which it computes in tiles; PLACES and ROADS are files."""
 
 WHOLE = {
     "raster": (["--max-edge", "9"], ["--snap", "0.1"], ["--to-crs", "EPSG:32617"]),
@@ -26,6 +28,7 @@ WHOLE = {
     "volume": (["-o", "out.gpkg"], ["-o", "out.png"]),
     "profile": (["--sections", "10", "20"], ["-o", "out.png"]),
     "interpolate": (["--method", "natural"], ["--extrapolate", "nearest"]),
+    "drape": (["--snap", "0.1"],),
 }
 """Further options that need all points at a time."""
 
@@ -33,6 +36,7 @@ OF_FOLDERS = {"ground"}
 """Commands whose tiles are a folder of files, which memory makes no other way."""
 
 
+ROADS = [[500_010, 4_000_010], [500_290, 4_000_190], [500_100, 4_000_150], [500_100, 3_999_000]]
 PLACES = "name,easting,northing\na,500100,4000100\nb,500123.4,4000077\nc,1,1\n"
 
 
@@ -47,7 +51,9 @@ def given(tmp_path_factory):
     """Return the files that stand behind options, by the words for them."""
     folder = tmp_path_factory.mktemp("given")
     (folder / "places.csv").write_text(PLACES)
-    return {"PLACES": folder / "places.csv"}
+    roads = ts.Features.of_lines(ROADS, [0, 2, 4], columns={"name": ["a", "b"]}, crs="EPSG:32616")
+    ts.write(roads, folder / "roads.geojson")
+    return {"PLACES": folder / "places.csv", "ROADS": folder / "roads.geojson"}
 
 
 @pytest.fixture(scope="module")
@@ -89,7 +95,7 @@ def test_outputs_and_records_are_those_in_memory(command, lidar, here, commands)
     tiled = run(command, *options, "--tiles", "3", "--workers", "2", "-q")
     assert tiled.exit_code == 0, tiled.output
     assert [one.name for one in here.iterdir()] == [path.name]
-    if command != "raster":  # which has the notes, that name the files one by one in tiles
+    if command not in ("raster", "drape"):  # with notes, which name files one by one in tiles
         assert path.read_bytes() == content
     told, wanted = json.loads(tiled.stdout), json.loads(whole.stdout)
     apart = ("notes", "input", "inputs")

@@ -11,8 +11,11 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from support.many_files import Shuffled
 from support.point_sets import points
+from support.product_parts import require_same_features
 
 import tinsmith as ts
+from tinsmith.tiled.computing import computing
+from tinsmith.tiled.how import How
 
 from .campaign import Campaign, Case
 
@@ -86,7 +89,8 @@ def _compare(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> st
             assert filecmp.cmp(path, wanted, shallow=False), name
         found.append(name)
     _compare_places(case, tin, cloud, folder)
-    return f"{len(found) - found.count('refused') + 1} products"
+    _compare_draped(case, tin, cloud, folder)
+    return f"{len(found) - found.count('refused') + 2} products"
 
 
 def _compare_places(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> None:
@@ -97,6 +101,18 @@ def _compare_places(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path
     path = cloud.interpolate(folder / "places.csv", places, **way)
     found = [float(row.split(",")[2] or "nan") for row in path.read_text().splitlines()[1:]]
     np.testing.assert_array_equal(found, tin.interpolate(places))
+
+
+def _compare_draped(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> None:
+    """Require the points along lines through vertices, along the boundary and off the surface."""
+    xy, rim = tin.points[:, :2], tin.points[tin.boundary[0], :2]
+    far = xy.max(axis=0) + 2.0 * np.ptp(xy, axis=0)
+    lines = [[xy[0], xy[-1], far], [rim[0], rim[1], rim[2]], [far, far + np.ptp(xy, axis=0)]]
+    line = np.array(lines[case["seed"] % 3])
+    how = How.of(tiles=case["tiles"], executor=Shuffled(case["seed"]))
+    asked = {"features": line, "outside": "nan"}
+    with computing(cloud, "drape", folder / "lines.gpkg", how, **asked) as made:
+        require_same_features(made, ts.drape(tin, line, outside="nan"))
 
 
 def _require_same_cells(path: Path, whole: ts.Raster) -> None:

@@ -9,9 +9,12 @@ import numpy as np
 import pytest
 import rasterio
 from support.many_files import Shuffled, write_lidar
+from support.product_parts import require_same_features
 
 import tinsmith as ts
 from tinsmith.tiled import given
+from tinsmith.tiled.computing import computing
+from tinsmith.tiled.how import How
 from tinsmith.tiled.products.mapped import measure_area
 
 SQUARES = {
@@ -93,6 +96,69 @@ def test_profiles(cloud, tin, tmp_path):
         return cloud.profile(path, LINE, interval=10.0, start=5.0, **way)
 
     require_same_files(tmp_path, ".csv", ts.profile(tin, LINE, interval=10.0, start=5.0), make)
+
+
+def test_profiles_beside_the_surface_are_refused_as_in_memory(cloud, tin, tmp_path):
+    line = [[499_000.0, 4_000_000.0], [499_100.0, 4_000_100.0]]
+    with pytest.raises(ts.LinesError) as whole:
+        ts.profile(tin, line)
+    with pytest.raises(ts.LinesError) as tiled:
+        cloud.profile(tmp_path / "a.csv", line, tiles=4, executor=Shuffled())
+    assert str(tiled.value) == str(whole.value)
+
+
+FEATURES = {
+    "lines": ts.Features.of_lines(
+        [*LINE, [500_200.0, 3_999_900.0], [500_210.0, 4_000_300.0]],
+        [0, 3, 5],
+        columns={"name": ["axis", "across"]},
+        crs="EPSG:32616",
+    ),
+    "lines outside": ts.Features.of_lines([[0.0, 0.0], [9.0, 9.0]], [0, 2], crs="EPSG:32616"),
+    "polygons": ts.Features.of_polygons(
+        [*SQUARES["b"], SQUARES["b"][0]], [0, 5], [0, 1], columns={"plot": [7]}, crs="EPSG:32616"
+    ),
+    "points": ts.Features.of_points(
+        [*LINE, [0.0, 0.0]], columns={"name": list("abcd")}, crs="EPSG:32616"
+    ),
+    "a polyline": LINE,
+}
+
+
+@pytest.mark.parametrize("name", FEATURES)
+def test_draped_features(cloud, tin, tmp_path, name):
+    wanted = ts.drape(tin, FEATURES[name], outside="nan")
+    asked = {"features": FEATURES[name], "outside": "nan"}
+    for tiles in (1, 4, 16):
+        how = How.of(tiles=tiles, executor=Shuffled(tiles))
+        with computing(cloud, "drape", tmp_path / "a.gpkg", how, **asked) as made:
+            require_same_features(made, wanted)
+        assert made.crs == wanted.crs
+        assert {*made.notes} >= {note for note in wanted.notes if "outside" in note}
+
+
+@pytest.mark.filterwarnings("ignore:.* is a shapefile")
+@pytest.mark.parametrize("name", ["lines", "points"])
+def test_draped_features_are_cut_or_refused(cloud, tin, tmp_path, name):
+    features = FEATURES[name]
+
+    def make(path, **way):
+        return cloud.drape(path, features, outside="cut", **way)
+
+    require_same_files(tmp_path, ".shp", ts.drape(tin, features, outside="cut"), make)
+    with pytest.raises(ts.LinesError) as whole:
+        ts.drape(tin, features)
+    with pytest.raises(ts.LinesError) as tiled:
+        cloud.drape(tmp_path / "a.fgb", features, tiles=3, executor=Shuffled())
+    assert str(tiled.value) == str(whole.value)
+
+
+def test_only_tiles_that_lines_meet_are_triangulated(cloud, tmp_path):
+    told = []
+    line = [[500_010.0, 4_000_010.0], [500_030.0, 4_000_020.0]]
+    cloud.profile(tmp_path / "a.csv", line, tiles=64, executor=Shuffled(), progress=told.append)
+    assert told[-1].done == told[-1].total >= 64
+    assert told[-1].points < 500
 
 
 def list_places(tin):
@@ -198,6 +264,8 @@ def test_tiles_are_proven_and_mapped(cloud, tin, tmp_path):
         ("profile", {"line": [[0.0, 0.0]]}),
         ("profile", {"line": LINE, "interval": 0.0}),
         ("interpolate", {"places": [[0.0, 0.0, 0.0]]}),
+        ("drape", {"features": [[0.0, 0.0]]}),
+        ("drape", {"features": LINE, "outside": "away"}),
     ],
 )
 def test_options_that_are_none_are_refused_before_the_work(lidar, tmp_path, method, options):

@@ -11,7 +11,13 @@ from ..base.atomic import as_path
 from ..base.checks import as_flag, is_finite_number
 from ..base.crs import CRS, Unit, shorten_crs
 from ..base.errors import OptionError, choice
-from ..base.policies import DuplicatePolicy, GroundReturns, RasterSample, RasterValue
+from ..base.policies import (
+    DuplicatePolicy,
+    GroundReturns,
+    OutsidePolicy,
+    RasterSample,
+    RasterValue,
+)
 from ..base.sentences import counted
 from ..io.reading import list_files
 from ..io.registry.lookup import find_format
@@ -448,6 +454,48 @@ class TiledPoints:
         """
         asked = {"line": line, "interval": interval, "start": start}
         return self._write("profile", asked, path, (format, write), way)
+
+    def drape(
+        self,
+        path: str | os.PathLike[str],
+        features: Any,
+        *,
+        outside: OutsidePolicy = "error",
+        format: str | None = None,  # noqa: A002 - as in write
+        write: Mapping[str, Any] | None = None,
+        **way: Unpack[Way],
+    ) -> Path:
+        """Write points, lines or polygons laid on the surface, as :func:`tinsmith.drape` does.
+
+        Parameters
+        ----------
+        path, format, write, **way
+            As of :meth:`rasterize`.
+        features, outside
+            As of :func:`tinsmith.drape`.
+
+        Returns
+        -------
+        Path
+
+        Raises
+        ------
+        ReadError, WriteError
+            As :meth:`rasterize`.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+        >>> with TemporaryDirectory() as folder:
+        ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")))
+        ...     cloud.drape(Path(folder, "line.geojson"), [[0, 1], [2, 1]], workers=1).name
+        'line.geojson'
+        """
+        asked = {"features": features, "outside": outside}
+        return self._write("drape", asked, path, (format, write), way)
 
     def interpolate(
         self,

@@ -91,7 +91,8 @@ def computing(
             if hasattr(module, "list_file_jobs"):
                 file_jobs = module.list_file_jobs(run, points_run, cloud.options, settled, records)
                 records = start("Writing").run(run, module.FILES, module.write_file, file_jobs)
-        yield module.join(points, settled, records, run.folder)
+        given = {name: value for name, value in options.items() if isinstance(value, Given)}
+        yield module.join(points, {**settled, **given}, records, run.folder)
     if not how.keep:
         run.remove()
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -30,10 +30,13 @@ class Given:
 
     Parameters
     ----------
+    value : object
+        What they were taken from, for the process that joins tiles.
     **arrays
     """
 
-    def __init__(self, **arrays: AnyArray) -> None:
+    def __init__(self, value: Any = None, **arrays: AnyArray) -> None:
+        self.value = value
         self.arrays = arrays
 
     def describe(self) -> str:
@@ -67,10 +70,11 @@ class GivenPlaces(Given):
     ----------
     xy : (k, 2) float64 array
         NaN lies nowhere.
+    value : object
     """
 
-    def __init__(self, xy: Float64Array) -> None:
-        super().__init__(xy=xy)
+    def __init__(self, xy: Float64Array, value: Any = None) -> None:
+        super().__init__(value, xy=xy)
 
     def store(self, folder: Path) -> None:
         """Write the places that lie anywhere as chunks, unless they are there."""

@@ -7,12 +7,13 @@ from typing import Any
 
 from ...base.sentences import counted
 from ..command import command
-from ..job import Job, name_features, surface_options
+from ..job import Job, name_features
 from ..output.counts import mesh_counts
 from ..output.facts import Facts
 from ..parameters import input_file, output_files
 from ..paths import LINES
 from ..product_options import product_options
+from ..tiling import choose_tiles, compute_tiles, describe_points, tell_plan, tiled_options
 
 
 @command
@@ -20,7 +21,7 @@ from ..product_options import product_options
 @input_file("features", LINES)
 @output_files
 @product_options("terrain.sections.draping.drape", "outside")
-@surface_options()
+@tiled_options()
 def drape(file: Path, features: Path, outside: Any, job: Job) -> None:
     """Drape the FEATURES of a vector file on the TIN in FILE, or built from the points in it.
 
@@ -34,13 +35,25 @@ def drape(file: Path, features: Path, outside: Any, job: Job) -> None:
 
     inputs = job.list_inputs(file, more=name_features(features, "the file of features"))
     planned = job.plan(inputs, "Features")
-    tin = job.read_tin(file)
-    with job.step("Draping"):
-        given = job.read_features(features, tin)
-        draped = drape_features(tin, given, outside=outside)
-    planned.write("Features", draped)
+    cloud = choose_tiles(job, file)
+    if cloud is not None and job.tiling.plan:
+        tell_plan(cloud, job, file)
+        return
+    if cloud is not None:
+        given = job.read_features(features, cloud)
+        asked = {"features": given, "outside": outside}
+        with compute_tiles(cloud, "drape", planned, job, **asked) as draped:
+            planned.write("Features", draped)
+        surface = describe_points(cloud)
+    else:
+        tin = job.read_tin(file)
+        with job.step("Draping"):
+            given = job.read_features(features, tin)
+            draped = drape_features(tin, given, outside=outside)
+        planned.write("Features", draped)
+        surface = mesh_counts(tin)
     facts = Facts(file)
-    facts.add("Surface", mesh_counts(tin), features=str(features))
+    facts.add("Surface", surface, features=str(features))
     before, after = len(given.coordinates), len(draped.coordinates)
     facts.add(
         "Draped",

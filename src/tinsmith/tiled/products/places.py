@@ -23,13 +23,14 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
+    from ...base.arrays import Float64Array
     from ..reading import StoredPoints
     from ..runs import Record
     from ..tasks import Part
 
-__all__ = ["check_options", "compute", "join", "settle_options"]
+__all__ = ["PLACES", "check_options", "compute", "join", "join_elevations", "settle_options"]
 
-_PLACES = "places"
+PLACES = "places"
 """Option and folder of the places."""
 
 
@@ -45,7 +46,7 @@ def check_options(
         refusals.require_local("extrapolate")
     xy, crs = as_xy(places) + 0.0, find_crs(places)
     return {
-        _PLACES: GivenPlaces(xy),
+        PLACES: GivenPlaces(xy),
         "count": len(xy),
         "known": int(np.count_nonzero(~np.isnan(xy).any(axis=1))),
         "places_crs": None if crs is None else str(crs),
@@ -61,7 +62,7 @@ def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str
 def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     """Interpolate at the places of a tile."""
     box = part.job.tile.box
-    asked = read_places(part.job.folder / _PLACES, box)
+    asked = read_places(part.job.folder / PLACES, box)
     is_owned = are_owned(asked.points, box)
     if not is_owned.any():
         return 0, {}, []
@@ -75,15 +76,21 @@ def join(
     points: StoredPoints, options: Mapping[str, Any], records: Mapping[str, Record], folder: Path
 ) -> Table:
     """Return the elevations at all places."""
+    return Table(
+        {"elevation": join_elevations(options, records, folder)},
+        units={"elevation": points.elevation_unit},
+        name="elevations",
+        notes=[*points.notes, *describe_unknown(points.crs, points.elevation_unit)],
+    )
+
+
+def join_elevations(
+    options: Mapping[str, Any], records: Mapping[str, Record], folder: Path
+) -> Float64Array:
+    """Return the elevations at all places, NaN outside the surface."""
     parts = (
         places.PlacePart(**load_arrays(folder, record))
         for record in records.values()
         if record.files
     )
-    found = places.join(parts, options["count"], known=options["known"])
-    return Table(
-        {"elevation": found},
-        units={"elevation": points.elevation_unit},
-        name="elevations",
-        notes=[*points.notes, *describe_unknown(points.crs, points.elevation_unit)],
-    )
+    return places.join(parts, options["count"], known=options["known"])
