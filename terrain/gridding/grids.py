@@ -31,6 +31,8 @@ __all__ = [
     "cover",
     "describe_extent",
     "locate_edges",
+    "require_cells",
+    "require_overlap",
     "to_grid",
 ]
 
@@ -81,8 +83,8 @@ def as_grid(
         notes = require_same_crs(crs, tin.crs, "the other raster")
     else:
         found = as_one_grid(grid)
-    _require_cells(found, in_memory)
-    _require_overlap(found.bounds, tin.bounds)
+    require_cells(found, in_memory=in_memory)
+    require_overlap(found.bounds, tin.bounds)
     return found, notes
 
 
@@ -121,7 +123,8 @@ def _require_telling(spacing: float, bounds: Bounds) -> None:
         )
 
 
-def _require_cells(grid: Grid, in_memory: bool) -> None:
+def require_cells(grid: Grid, *, in_memory: bool) -> None:
+    """Refuse, by an OptionError, cells that are too many, or too small for the coordinates."""
     _require_telling(grid.spacing, grid.bounds)
     rows, columns = (int(side) for side in grid.shape)
     most = MOST_CELLS_IN_MEMORY if in_memory else MOST_CELLS
@@ -131,7 +134,8 @@ def _require_cells(grid: Grid, in_memory: bool) -> None:
         raise OptionError("spacing", rows * columns, allowed, what="number of cells")
 
 
-def _require_overlap(cells: Bounds, bounds: Bounds) -> None:
+def require_overlap(cells: Bounds, bounds: Bounds) -> None:
+    """Refuse, by a PointsError, cells that are not where a surface is."""
     apart = cells.xmax < bounds.xmin or bounds.xmax < cells.xmin
     if apart or cells.ymax < bounds.ymin or bounds.ymax < cells.ymin:
         raise PointsError(

@@ -242,3 +242,25 @@ def test_cells_of_another_raster_are_in_the_same_crs(lidar, wanted, tmp_path):
     other = ts.Raster(like.bands, like.grid, crs="EPSG:32617")
     with pytest.raises(ts.CrsError, match="the other raster"):
         cloud.rasterize(tmp_path / "b.tif", like=other, executor=Shuffled())
+
+
+def test_too_many_cells_are_refused_before_anything_is_read(lidar, tmp_path):
+    fine = {"spacing": 1e-5}
+    for cloud in (ts.tiles(lidar), ts.tiles(lidar, classes=2)):
+        with pytest.raises(ts.OptionError, match="number of cells") as tiled:
+            cloud.rasterize(tmp_path / "a.tif", executor=Shuffled(), **fine)
+        with pytest.raises(ts.OptionError, match="number of cells") as whole:
+            ts.rasterize(ts.triangulate(ts.read(lidar, **cloud.options)), lazy=True, **fine)
+        assert str(tiled.value) == str(whole.value)
+        assert (tmp_path / "a.tif.run").exists() == (cloud.bounds is None)
+    assert not (tmp_path / "a.tif").exists()
+
+
+def test_cells_beside_the_surface_are_refused_as_in_memory(lidar, tmp_path):
+    grid = ts.Grid(ts.Bounds(0.0, 0.0, 2.0, 2.0), (2, 2), 1.0)
+    away = ts.Raster({"a": np.zeros((2, 2))}, grid, crs="EPSG:32616")
+    with pytest.raises(ts.PointsError) as whole:
+        ts.rasterize(ts.triangulate(ts.read(lidar)), like=away)
+    with pytest.raises(ts.PointsError) as tiled:
+        ts.tiles(lidar).rasterize(tmp_path / "a.tif", like=away, executor=Shuffled())
+    assert str(tiled.value) == str(whole.value)

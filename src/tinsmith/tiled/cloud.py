@@ -27,6 +27,7 @@ from ..tin.validation import as_xy
 from .chunks import BYTES_ON_DISK
 from .computing import computing, labelling
 from .how import How, Way, estimate_memory
+from .reading import join_bounds
 
 if TYPE_CHECKING:
     import os
@@ -216,6 +217,17 @@ class TiledPoints:
         return self.headers[0].crs or CRS.of(self.options.get("crs"))
 
     @property
+    def bounds(self) -> Bounds | None:
+        """Bounds of the points, as the headers name them.
+
+        None where one does not tell, or points are chosen by their attributes.
+        """
+        boxes = [header.bounds for header in self.headers if header.bounds is not None]
+        if len(boxes) < len(self.headers) or self.where or "classes" in self.options:
+            return None
+        return join_bounds(boxes)
+
+    @property
     def is_raster(self) -> bool:
         """Whether the points are the cells of one raster."""
         formats = [find_format(header.format) for header in self.headers]
@@ -318,7 +330,7 @@ class TiledPoints:
         'dtm.tif'
         """
         light = {"azimuth": azimuth, "altitude": altitude, "smooth": smooth, "at": at}
-        asked = {"spacing": spacing, "like": like, "value": value, **light}
+        asked = {"spacing": spacing, "like": like, "value": value, "bounds": self.bounds, **light}
         return self._write("raster", asked, path, (format, write), way)
 
     def contours(

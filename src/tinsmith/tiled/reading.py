@@ -40,6 +40,7 @@ __all__ = [
     "Extent",
     "ReadJob",
     "StoredPoints",
+    "join_bounds",
     "name_rows",
     "open_store",
     "read_input",
@@ -340,7 +341,7 @@ def read_inputs(
         for record in filled
         for chunk in load_chunks(run.folder / f"{record.key}.chunks.npy", run.folder)
     ]
-    bounds = _join_bounds([chunk.bounds for chunk in chunks])
+    bounds = join_bounds([chunk.bounds for chunk in chunks])
     outlines = [_load_points(run.folder / f"{record.key}.skeleton.npz") for record in filled]
     save_chunks(run.folder / _CHUNKS, chunks)
     _save_points(run.folder / _SKELETON, join_skeletons(outlines, bounds))
@@ -377,7 +378,8 @@ def _join_notes(records: Mapping[str, Record]) -> tuple[str, ...]:
     return join_notes(joined)
 
 
-def _join_bounds(boxes: Sequence[Bounds]) -> Bounds:
+def join_bounds(boxes: Sequence[Bounds]) -> Bounds:
+    """Return the bounds of all that lies in some bounds."""
     return Bounds(
         min(box.xmin for box in boxes),
         min(box.ymin for box in boxes),

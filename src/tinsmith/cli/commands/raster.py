@@ -56,7 +56,7 @@ def raster(file: Path, spacing: float | None, like: Path | None, job: Job, **ask
         return
     facts = Facts(file)
     if cloud is not None:
-        with compute_tiles(cloud, "raster", planned, job, **asked) as made:
+        with compute_tiles(cloud, "raster", planned, job, bounds=cloud.bounds, **asked) as made:
             planned.write("Raster", made)
         facts.add("Points", describe_points(cloud))
     else:

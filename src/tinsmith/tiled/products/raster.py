@@ -22,6 +22,8 @@ from ...terrain.gridding import (
     describe_extent,
     describe_smooth,
     list_units,
+    require_cells,
+    require_overlap,
 )
 from ...terrain.parts.rasters import (
     RasterOptions,
@@ -54,8 +56,12 @@ def check_options(
     azimuth: float = 315.0,
     altitude: float = 45.0,
     smooth: bool | None = None,
+    bounds: Bounds | None = None,
 ) -> dict[str, Any]:
-    """Return plain options, or refuse what is none, or needs all points at a time."""
+    """Return plain options, or refuse what is none, or needs all points at a time.
+
+    ``bounds`` are those that headers name: too many cells are refused before anything is read.
+    """
     if (spacing is None) == (like is None):
         raise OptionError("grid", [spacing, like], "one of spacing and like")
     if spacing is not None:
@@ -75,6 +81,10 @@ def check_options(
     as_light(azimuth, altitude)
     cells = None if like is None else as_cells(like)
     like_crs = None if cells is None else cells.crs
+    if cells is not None:
+        require_cells(cells.grid, in_memory=False)
+    elif bounds is not None and spacing is not None:
+        require_cells(cover(bounds, spacing), in_memory=False)
     return {
         "spacing": spacing,
         "like": None if cells is None else asdict(cells.grid),
@@ -89,15 +99,18 @@ def check_options(
 
 def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
     """Settle the cells, when the bounds of all points are known."""
-    grid = options["like"] or asdict(cover(points.bounds, options["spacing"]))
+    like = options["like"]
+    cells = _make_grid(like) if like else cover(points.bounds, options["spacing"])
+    require_cells(cells, in_memory=False)
+    require_overlap(cells.bounds, points.bounds)
     smooth = points.is_raster if options["smooth"] is None else options["smooth"]
     crs, unit = points.crs, points.elevation_unit
     notes: tuple[str, ...] = ()
-    if options["like"]:
+    if like:
         notes = require_same_crs(CRS.of(options["like_crs"]), crs, "the other raster")
     return {
         **options,
-        "grid": grid,
+        "grid": asdict(cells),
         "notes": list(notes),
         "smooth": smooth and options["value"] != "elevation" and options["at"] == "center",
         "crs": None if crs is None else str(crs),
@@ -105,10 +118,13 @@ def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str
     }
 
 
+def _make_grid(cells: Mapping[str, Any]) -> Grid:
+    return Grid(Bounds(**cells["bounds"]), tuple(cells["shape"]), cells["spacing"])
+
+
 def _make_options(options: Mapping[str, Any]) -> RasterOptions:
-    grid = options["grid"]
     return RasterOptions(
-        grid=Grid(Bounds(**grid["bounds"]), tuple(grid["shape"]), grid["spacing"]),
+        grid=_make_grid(options["grid"]),
         value=options["value"],
         is_smooth=options["smooth"],
         at=options["at"],
