@@ -6,9 +6,8 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..base.progress import Progress
+from .building import BuildOptions, gather_inputs
 from .building.assembly import assemble
-from .building.inputs import gather_inputs
-from .building.options import BuildOptions
 from .building.survey import Survey
 from .surface import TIN
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     Source = str | os.PathLike[str]
 
-__all__ = ["note_nesting", "split_layer", "with_lines"]
+__all__ = ["note_nesting", "require_near", "split_layer", "with_lines"]
 
 _FAR = 10.0
 """Lines further from the points than this many diagonals of their extent are somewhere else."""
@@ -149,9 +149,16 @@ def _require_near(survey: Survey, coords: Sequence[Float64Array]) -> None:
     """Refuse lines that lie so far away that their CRS must be wrong."""
     if len(survey) == 0:
         return
-    ours = survey.bounds
-    xy = np.concatenate([line[:, :2] for line in coords])
-    theirs = Bounds.of(xy)
+    require_near(survey.bounds, Bounds.of(np.concatenate([line[:, :2] for line in coords])))
+
+
+def require_near(ours: Bounds, theirs: Bounds) -> None:
+    """Refuse bounds of lines that lie far away from those of points.
+
+    Raises
+    ------
+    ReadError
+    """
     reach = _FAR * ours.diagonal
     apart = max(
         theirs.xmin - ours.xmax,

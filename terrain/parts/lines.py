@@ -39,7 +39,8 @@ class LineOptions(NamedTuple):
         Of the lines.
     rim : (k, 3) float64 array
         The vertices on the boundary of the whole surface, of which the skeleton of its points has
-        all. Lines along it are followed as far beside it as its coordinates are rounded.
+        all where no ring cuts it. Lines along it are followed as far beside it as its coordinates
+        are rounded.
     """
 
     segments: Segments
@@ -47,11 +48,22 @@ class LineOptions(NamedTuple):
 
 
 class SurfacePart(NamedTuple):
-    """Some triangles of a surface; ``numbers`` (n,) are those of the vertices in the whole."""
+    """Some triangles of a surface.
+
+    Attributes
+    ----------
+    points : (n, 3) float64 array
+    numbers : (n,) int64 array
+        Of the vertices in the whole.
+    triangles : (m, 3) int32 array
+    constrained : (m, 3) bool array
+        Whether the edge opposite each corner is a segment of a line.
+    """
 
     points: Float64Array
     numbers: Int64Array
     triangles: Int32Array
+    constrained: BoolArray
 
 
 def find_reach(box: Bounds, options: LineOptions) -> Bounds | None:
@@ -109,7 +121,10 @@ def compute_part(part: LocalTriangulation, box: Bounds, options: LineOptions) ->
         chosen = _are_met(part, box, options)
     used, corners = np.unique(part.triangles[chosen], return_inverse=True)
     return SurfacePart(
-        part.points[used], part.numbers[used], corners.reshape(-1, 3).astype(np.int32)
+        part.points[used],
+        part.numbers[used],
+        corners.reshape(-1, 3).astype(np.int32),
+        part.constrained[chosen],
     )
 
 
@@ -155,9 +170,11 @@ def _join_parts(
     numbers, first = np.unique(np.concatenate([one.numbers for one in found]), return_index=True)
     points = np.concatenate([one.points for one in found])[first]
     corners = [np.searchsorted(numbers, one.numbers)[one.triangles] for one in found]
+    triangles, own = np.unique(np.concatenate(corners), axis=0, return_index=True)
     return TIN.from_triangles(
         np.concatenate([points, options.rim]),
-        np.unique(np.concatenate(corners), axis=0),
+        triangles,
+        constrained=np.concatenate([one.constrained for one in found])[own],
         crs=crs,
         elevation_unit=unit,
     )

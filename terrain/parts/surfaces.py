@@ -26,7 +26,7 @@ def as_surface(
         points=part.points,
         triangles=part.triangles,
         neighbors=part.neighbors,
-        constrained=np.zeros(part.triangles.shape, np.bool_),
+        constrained=part.constrained,
         vertex_of=np.arange(len(part.points), dtype=np.int32),
         report=Report(
             n_rows=len(part.points), n_vertices=len(part.points), n_triangles=len(part.triangles)

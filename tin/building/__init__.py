@@ -2,7 +2,7 @@
 
 from .assembly import find_ring_groups
 from .duplicates import merge_rows
-from .inputs import BuildInputs
+from .inputs import BuildInputs, gather_inputs
 from .options import BuildOptions
 
-__all__ = ["BuildInputs", "BuildOptions", "find_ring_groups", "merge_rows"]
+__all__ = ["BuildInputs", "BuildOptions", "find_ring_groups", "gather_inputs", "merge_rows"]

@@ -24,6 +24,8 @@ __all__ = [
     "clip",
     "in_rings",
     "is_inside",
+    "require_cut",
+    "require_triangles",
     "trim",
 ]
 
@@ -188,12 +190,34 @@ def _require_all_cut(bits: list[int], is_out: BoolArray, side: _Sides) -> None:
     for own, out in zip(bits, is_out.tolist(), strict=True):
         if not out and side.is_within(own):
             cut |= own
-    for number in range(side.n_holes):
-        if not cut >> (number + HOLES) & 1:
-            raise LinesError(
-                f"Hole {number} lies outside the surface: it must cut away a part of it.",
-                lines=[number],
-            )
+    require_cut(np.array([cut >> (number + HOLES) & 1 for number in range(side.n_holes)], bool))
+
+
+def require_cut(is_cutting: BoolArray) -> None:
+    """Refuse holes, (h,), of which one cuts nothing away.
+
+    Raises
+    ------
+    LinesError
+    """
+    for number in np.flatnonzero(~is_cutting)[:1].tolist():
+        raise LinesError(
+            f"Hole {number} lies outside the surface: it must cut away a part of it.",
+            lines=[number],
+        )
+
+
+def require_triangles(are_left: bool) -> None:
+    """Refuse rings that leave nothing.
+
+    Raises
+    ------
+    LinesError
+    """
+    if not are_left:
+        raise LinesError(
+            "The boundary and the holes leave no triangle of the surface: a TIN needs one at least."
+        )
 
 
 def trim(

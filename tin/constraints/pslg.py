@@ -15,7 +15,15 @@ from ...base.errors import LinesError
 from .. import _kernel
 from ..topology import edge_keys, edges_at
 from .breaklines import Lines
-from .clipping import BOUNDARY, OWN_BOUNDARY, RingSegments, clip, is_inside, trim
+from .clipping import (
+    BOUNDARY,
+    OWN_BOUNDARY,
+    RingSegments,
+    clip,
+    is_inside,
+    require_triangles,
+    trim,
+)
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
@@ -69,17 +77,16 @@ class Clip:
         keep = np.ones(len(surface.triangles), np.bool_)
         if self._has_rings:
             keep = is_inside(surface, ring_segments, self.boundary, self.extent, self.holes)
-            _require_triangles(keep, "The boundary and the holes leave no triangle of the surface")
+            require_triangles(keep.any())
         if self.max_edge is not None:
             everywhere = self.is_trimmed_everywhere
             keep = trim(surface, keep, self.max_edge, everywhere=everywhere)
-            _require_triangles(keep, f"No triangle is left with `max_edge` {self.max_edge:g}")
+            if not keep.any():
+                raise LinesError(
+                    f"No triangle is left with `max_edge` {self.max_edge:g}: a TIN needs one at "
+                    "least."
+                )
         return keep
-
-
-def _require_triangles(keep: BoolArray, sentence: str) -> None:
-    if not keep.any():
-        raise LinesError(f"{sentence}: a TIN needs one at least.")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -2,26 +2,37 @@
 
 from .boxes import are_in_box, list_sides, widen
 from .circles import Discs
+from .lines import NodedLines, choose_near, list_segments_near, node_lines, require_local
 from .local_triangulation import LocalTriangulation, find_around, find_triangles_at, triangulate_box
+from .outline import Outline, find_outline
 from .proof import TilesProof, TileTriangles, check_tiles
+from .rings import Rings
 from .skeleton import find_outermost, find_skeleton, reduce_to_hull
 from .sources import NumberedPoints, PointSource
 
 __all__ = [
     "Discs",
     "LocalTriangulation",
+    "NodedLines",
     "NumberedPoints",
+    "Outline",
     "PointSource",
+    "Rings",
     "TileTriangles",
     "TilesProof",
     "are_in_box",
     "check_tiles",
+    "choose_near",
     "find_around",
     "find_outermost",
+    "find_outline",
     "find_skeleton",
     "find_triangles_at",
+    "list_segments_near",
     "list_sides",
+    "node_lines",
     "reduce_to_hull",
+    "require_local",
     "triangulate_box",
     "widen",
 ]

@@ -9,21 +9,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.errors import LinesError, OptionError
+from ...base.types import Bounds
 from .. import _kernel
 from ..building import find_ring_groups, merge_rows
 from ..constraints import ABOVE_ALL, BELOW_ALL, HOLES, Polylines, node
+from .boxes import list_sides, widen
 from .rings import Rings
 from .skeleton import reduce_to_hull
 from .sources import NumberedPoints, NumberedSegments
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
-    from ...base.types import Bounds
     from ..building import BuildInputs, BuildOptions
     from ..constraints import LineSet
     from .circles import Discs
 
-__all__ = ["NodedLines", "node_lines", "require_local"]
+__all__ = ["NodedLines", "choose_near", "list_segments_near", "node_lines", "require_local"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -133,17 +134,29 @@ def choose_near(points: NumberedPoints, lines: LineSet) -> NumberedPoints:
     xy, rows = points.points[:, :2], len(points.numbers)
     if not rows or not len(lines.xy):
         return NumberedPoints.none()
-    together = np.ascontiguousarray(np.concatenate([xy, lines.xy]))
-    distance = _ROUNDINGS * float(np.abs(together).max())
-    segments = Polylines.whole(np.arange(len(lines.xy), dtype=np.int32), lines.offsets).segments()
-    touched = _kernel.touches(together, segments + np.int32(rows), distance)[:, 1]
+    distance = _ROUNDINGS * max(float(np.abs(one).max()) for one in (xy, lines.xy))
+    ends = list_segments_near(lines, widen(Bounds.of(xy), 4 * distance)).reshape(-1, 2)
+    if not len(ends):
+        return NumberedPoints.none()
+    together = np.ascontiguousarray(np.concatenate([xy, ends]))
+    segments = rows + np.arange(len(ends), dtype=np.int32).reshape(-1, 2)
+    touched = _kernel.touches(together, segments.astype(np.int32), distance)[:, 1]
     is_near = np.ones(rows, np.bool_)
     for axis in (0, 1):
-        ends = np.sort(lines.xy[:, axis])
-        low = np.searchsorted(ends, xy[:, axis] - 2 * distance, "left")
-        is_near &= low < np.searchsorted(ends, xy[:, axis] + 2 * distance, "right")
+        places = np.sort(ends[:, axis])
+        low = np.searchsorted(places, xy[:, axis] - 2 * distance, "left")
+        is_near &= low < np.searchsorted(places, xy[:, axis] + 2 * distance, "right")
     is_near[touched[touched < rows]] = True
     return points.choose(is_near)
+
+
+def list_segments_near(lines: LineSet, box: Bounds) -> Float64Array:
+    """Return the ends of all segments whose bounds meet a box, (k, 2, 2)."""
+    own = Polylines.whole(np.arange(len(lines.xy), dtype=np.int32), lines.offsets).segments()
+    ends: Float64Array = lines.xy[own]
+    west, south, east, north = list_sides(box)
+    meets = ((ends.min(axis=1) <= (east, north)) & (ends.max(axis=1) >= (west, south))).all(axis=1)
+    return ends[meets]
 
 
 def node_lines(near: NumberedPoints, inputs: BuildInputs, *, first_number: int) -> NodedLines:

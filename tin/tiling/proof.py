@@ -69,7 +69,12 @@ class TilesProof(NamedTuple):
     area: Fraction
 
 
-def check_tiles(tiles: Iterable[TileTriangles], *, hull: Float64Array | None = None) -> TilesProof:
+def check_tiles(
+    tiles: Iterable[TileTriangles],
+    *,
+    hull: Float64Array | None = None,
+    area: Fraction | None = None,
+) -> TilesProof:
     """Prove that the triangles of tiles are one surface without gaps and overlaps.
 
     Parameters
@@ -80,6 +85,8 @@ def check_tiles(tiles: Iterable[TileTriangles], *, hull: Float64Array | None = N
     hull : (k, 2 or more) float64 array, optional
         The corners of the convex hull of all points: the surface must fill it. Default it may
         have a boundary and holes.
+    area : Fraction, optional
+        What the surface must have, exactly: that within its boundary and outside its holes.
 
     Raises
     ------
@@ -89,7 +96,7 @@ def check_tiles(tiles: Iterable[TileTriangles], *, hull: Float64Array | None = N
     proof = _Proof()
     for tile in tiles:
         proof.take_up(tile)
-    return proof.finish(hull)
+    return proof.finish(hull, area)
 
 
 class _Side(NamedTuple):
@@ -148,7 +155,7 @@ class _Proof:
         self._open[edge] = side
         self._active.update(edge)
 
-    def finish(self, hull: Float64Array | None) -> TilesProof:
+    def finish(self, hull: Float64Array | None, area: Fraction | None) -> TilesProof:
         """Check the boundary, Euler's number and the area; return the counts."""
         if not self._open:
             raise CheckError("The tiles have no triangles.")
@@ -159,9 +166,13 @@ class _Proof:
         counts["boundary_edges"] = len(self._open)
         counts["edges"] += len(self._open)
         self._check_euler(len(rings), is_whole=hull is not None)
-        return TilesProof(
-            area=self._check_area(), boundary_rings=len(rings), **dict(_NO_COUNTS | counts)
-        )
+        found = self._check_area()
+        if area is not None and found != area:
+            raise CheckError(
+                f"The surface has an area of {float(found):.17g}, and its boundary and holes leave "
+                f"{float(area):.17g}."
+            )
+        return TilesProof(area=found, boundary_rings=len(rings), **dict(_NO_COUNTS | counts))
 
     def _check_euler(self, rings: int, *, is_whole: bool) -> None:
         """Check V - E + F + rings, which is 2 for each piece of a surface."""

@@ -28,6 +28,11 @@ if TYPE_CHECKING:
 _BYTES_IN_MEMORY = 400
 """Of a point, while its TIN is built in memory as a whole."""
 
+LINES_OF_TILES = ("breaklines", "soft_breaklines", "boundary", "holes")
+"""Options of files of lines that surfaces in tiles can have."""
+
+_LINES = [f"--{name.replace('_', '-')}" for name in LINES_OF_TILES]
+
 _SMALL = 200 << 20
 """Bytes of files whose headers are not looked at: they fit into any memory."""
 
@@ -126,7 +131,8 @@ def choose_tiles(
         "--remote": job.reading.remote,
         "--to-crs": job.reading.to_crs,
         "--snap": how.snap,
-        **dict.fromkeys(how.shaping, True),
+        "--drape": how.drape,
+        **dict.fromkeys((flag for flag in how.shaping if flag not in _LINES), True),
         whole: bool(whole),
     }
     asked = next((what for what, is_there in needs.items() if is_there), None)
@@ -141,8 +147,8 @@ def choose_tiles(
     from ..io.isolated.limits import measure_free_memory
     from ..tiled import tiles
 
-    duplicates: Any = how.duplicates
-    cloud = tiles(files, duplicates=duplicates, **given)
+    method: Any = {"duplicates": how.duplicates, "crossing": how.crossing}
+    cloud = tiles(files, **method, **given)
     if not tiling.given:
         count, free = cloud.count_about, measure_free_memory()
         if count * _BYTES_IN_MEMORY <= free:
@@ -154,7 +160,17 @@ def choose_tiles(
                 "are free: it was computed in tiles, with the same result."
             ]
         )
-    return cloud
+    return _add_lines(cloud, job)
+
+
+def _add_lines(cloud: TiledPoints, job: Job) -> TiledPoints:
+    """Add the lines of files, showing progress."""
+    how = job.building
+    files = {name: getattr(how, name) for name in LINES_OF_TILES if getattr(how, name)}
+    if not files:
+        return cloud
+    with job.step("Reading lines"):
+        return cloud.with_lines(**files, elevation_unit=how.lines_elevation_unit)
 
 
 def _may_be_large(files: Sequence[Path]) -> bool:

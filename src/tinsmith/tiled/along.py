@@ -12,6 +12,7 @@ from ..terrain.surface import as_segments
 from ..tin import triangulate
 from ..tin.tiling import reduce_to_hull
 from .given import Given, load_given
+from .lines import open_lines
 from .reading import open_store
 from .tasks import load_arrays, save_arrays
 
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from ..tin import TIN
     from .reading import StoredPoints
     from .runs import Record
-    from .store import PointStore
     from .tasks import Part
 
 __all__ = ["compute_along", "join_along", "keep_lines"]
@@ -36,23 +36,27 @@ def keep_lines(value: Any, features: Features) -> Given:
     return Given(value, xy=xy, offsets=np.asarray(features.offsets[0], np.int64))
 
 
-def _make_options(segments: Segments, store: PointStore) -> lines.LineOptions:
+def _make_options(segments: Segments, points: Path, breaklines: Path | None) -> lines.LineOptions:
     """Add the vertices on the boundary of the whole surface, counter-clockwise."""
-    tin = triangulate(reduce_to_hull(store.skeleton).points)
+    if breaklines is not None:
+        return lines.LineOptions(segments, open_lines(breaklines).rim)
+    tin = triangulate(reduce_to_hull(open_store(points).skeleton).points)
     return lines.LineOptions(segments, tin.points[tin.boundary[0]])
 
 
 @lru_cache(maxsize=1)
-def _load_options(folder: Path, description: str, points: Path) -> lines.LineOptions:
+def _load_options(
+    folder: Path, description: str, points: Path, breaklines: Path | None
+) -> lines.LineOptions:
     """Return the lines of a run, which are kept for the next task."""
     given = cast("Any", load_given(folder, description))
-    return _make_options(as_segments(given["xy"], given["offsets"]), open_store(points))
+    return _make_options(as_segments(given["xy"], given["offsets"]), points, breaklines)
 
 
 def compute_along(part: Part, name: str) -> tuple[int, dict[str, Any], list[str]]:
     """Return the triangles that lines meet in a tile; they are the option of this name."""
     job = part.job
-    options = _load_options(job.folder / name, job.options[name], job.points)
+    options = _load_options(job.folder / name, job.options[name], job.points, job.lines)
     reach = lines.find_reach(job.tile.box, options)
     if reach is None:
         return 0, {}, []
@@ -73,5 +77,5 @@ def join_along(
         for record in records.values()
         if record.files
     )
-    options = _make_options(segments, open_store(points.folder))
+    options = _make_options(segments, points.folder, points.lines)
     return lines.join(parts, options, points.crs, points.elevation_unit)

@@ -7,11 +7,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+import numpy as np
+
 from ..base.atomic import as_path
 from ..base.checks import as_flag, is_finite_number
 from ..base.crs import CRS, Unit, shorten_crs
 from ..base.errors import OptionError, choice
 from ..base.policies import (
+    CrossingPolicy,
     DuplicatePolicy,
     GroundReturns,
     OutsidePolicy,
@@ -21,12 +24,14 @@ from ..base.policies import (
 from ..base.sentences import counted
 from ..io.reading import list_files
 from ..io.registry.lookup import find_format
-from ..io.streaming import SourceHeader, describe_source
+from ..io.streaming import SourceHeader, describe_source, stream_points
 from ..io.writing import write as write_file
+from ..tin import Survey
 from ..tin.validation import as_xy
 from .chunks import BYTES_ON_DISK
 from .computing import computing, labelling
 from .how import How, Way, estimate_memory
+from .lines import KINDS, GivenLines, as_files
 from .reading import join_bounds
 
 if TYPE_CHECKING:
@@ -36,8 +41,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ..base.crs import CrsLike, UnitLike
-    from ..base.types import Bounds
-    from ..tin import TIN
+    from ..base.types import Bounds, GeometriesLike
+    from ..tin import TIN, Breakline
     from ..tin.tiling import TilesProof
 
 __all__ = ["Plan", "TiledPoints", "tiles"]
@@ -47,6 +52,14 @@ _BYTES_OF_A_POINT = 30
 _POINTS_PER_SECOND = 500_000.0
 """That a worker reads, triangulates and writes, about."""
 _CLASSES = "classification"
+_NOT_OF_TILES = {
+    "erase": "points are left out by their attributes only (`where`)",
+    "water": "points within it go, and lines around it change, which no tile can tell",
+    "max_edge": "what it drops from the rim inwards no tile can tell",
+    "snap": "points move one after the other, all over the surface",
+    "conforming": "vertices come one after the other, all over the surface",
+}
+"""Options of triangulation, and why tiles have them not."""
 
 
 @dataclass(frozen=True)
@@ -86,6 +99,10 @@ def tiles(
     crs: CrsLike | None = None,
     elevation_unit: UnitLike | None = None,
     duplicates: DuplicatePolicy = "mean",
+    breaklines: Sequence[Breakline | ArrayLike] | GeometriesLike = (),
+    boundary: Sequence[Any] | GeometriesLike = (),
+    holes: Sequence[Any] | GeometriesLike = (),
+    crossing: CrossingPolicy = "split",
     store: str | os.PathLike[str] | None = None,
     **options: Any,
 ) -> TiledPoints:
@@ -101,6 +118,11 @@ def tiles(
         As of :func:`tinsmith.read`, for every file.
     duplicates : {"mean", "first", "last", "lowest", "highest", "error"}
         As of :func:`tinsmith.triangulate`.
+    breaklines, boundary, holes : sequence of arrays, geometries, or paths of files
+        As of :func:`tinsmith.triangulate`; or one or several files, as of
+        :meth:`TiledPoints.with_lines`.
+    crossing : {"split", "error"}
+        As of :func:`tinsmith.triangulate`.
     store : path-like, optional
         Folder in which the points are kept for further products. Default they are read again for
         each.
@@ -115,7 +137,9 @@ def tiles(
         If a file is missing or damaged, as far as its header tells.
     CrsError
         If files are in several coordinate reference systems, and ``crs`` does not say which is
-        wanted.
+        wanted; if lines are in another one.
+    LinesError
+        If a line is none, or tiles cannot have it.
     OptionError
         If an option has a value that it cannot have.
 
@@ -133,6 +157,8 @@ def tiles(
     'dtm.tif'
     """
     choice("duplicates", duplicates, DuplicatePolicy)
+    choice("crossing", crossing, CrossingPolicy)
+    _require_lines_of_tiles(options)
     files = _list_files(paths, options.get("format"))
     wanted = {name: _as_values(name, values) for name, values in (where or {}).items()}
     read = {name: value for name, value in options.items() if value is not None}
@@ -141,13 +167,22 @@ def tiles(
     if elevation_unit is not None:
         read["elevation_unit"] = Unit.of(elevation_unit).text
     headers = tuple(describe_source(file, **read) for file in files)
-    return TiledPoints(
+    cloud = TiledPoints(
         headers=headers,
         where=wanted,
         duplicates=duplicates,
+        crossing=crossing,
         store=None if store is None else as_path(store, "store"),
         options=read | _choose_attributes(headers, wanted, read),
     )
+    return cloud._take_lines(breaklines=breaklines, boundary=boundary, holes=holes)
+
+
+def _require_lines_of_tiles(options: Mapping[str, Any]) -> None:
+    """Refuse options of :func:`tinsmith.triangulate` that need all points at a time."""
+    for name, why in _NOT_OF_TILES.items():
+        if options.get(name):
+            raise OptionError(name, options[name], f"left out for a surface in tiles: {why}")
 
 
 def _choose_attributes(
@@ -181,6 +216,10 @@ class TiledPoints:
         Of the reader.
     candidates : {"last", "all"} or None
         Returns of a pulse, where only points are taken that may be ground.
+    crossing : str
+        What becomes of lines that cross.
+    lines : GivenLines or None
+        Lines that are edges of the surface, and rings that cut it.
 
     Examples
     --------
@@ -199,6 +238,8 @@ class TiledPoints:
     store: Path | None = None
     options: Mapping[str, Any] = field(default_factory=dict)
     candidates: GroundReturns | None = None
+    crossing: CrossingPolicy = "split"
+    lines: GivenLines | None = None
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -241,6 +282,85 @@ class TiledPoints:
             for header in self.headers
         )
 
+    def with_lines(
+        self,
+        *,
+        breaklines: Sequence[str | os.PathLike[str]] = (),
+        soft_breaklines: Sequence[str | os.PathLike[str]] = (),
+        boundary: Sequence[str | os.PathLike[str]] = (),
+        holes: Sequence[str | os.PathLike[str]] = (),
+        elevation_unit: UnitLike | None = None,
+    ) -> TiledPoints:
+        """Add the lines of vector files, in the CRS of the points.
+
+        They are read here, and kept in the folder of each run; a file that has changed since is
+        refused.
+
+        Parameters
+        ----------
+        breaklines, soft_breaklines, boundary, holes, elevation_unit
+            As of :func:`tinsmith.with_lines`.
+
+        Returns
+        -------
+        TiledPoints
+
+        Raises
+        ------
+        MissingExtraError, ReadError, CrsError, LinesError
+            As :func:`tinsmith.with_lines`; LinesError also if lines have no elevations.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
+        >>> line = ts.Features.of_lines([[0.0, 0.0, 5.0], [4.0, 3.0, 7.0]], [0, 2])
+        >>> with TemporaryDirectory() as folder:
+        ...     kerb = ts.write(line, Path(folder, "kerb.gpkg"))
+        ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")))
+        ...     cloud.with_lines(breaklines=[kerb])
+        <TiledPoints: an unknown number of points in 1 file, crs unknown; with lines>
+        """
+        given = {
+            "breaklines": breaklines,
+            "soft_breaklines": soft_breaklines,
+            "boundary": boundary,
+            "holes": holes,
+        }
+        for name, several in given.items():
+            if several and (isinstance(several, str) or as_files(several) is None):
+                raise OptionError(name, several, "a list of files")
+        lines = self._start_lines().read(given, elevation_unit)
+        return self._check_lines(lines)
+
+    def _take_lines(self, **given: Any) -> TiledPoints:
+        """Add lines that callers gave, some of them as names of files."""
+        if all(isinstance(given[name], list | tuple) and not given[name] for name in KINDS):
+            return self
+        files = {name: as_files(given[name]) or [] for name in KINDS}
+        values = {name: given[name] for name in KINDS if not files[name]}
+        lines = self._start_lines().read(files, None)
+        return self._check_lines(replace(lines, values=values))
+
+    def _start_lines(self) -> GivenLines:
+        """Return the lines so far: none, but CRS and unit of the points, in which lines are."""
+        if self.lines is not None:
+            return self.lines
+        first = self.headers[0]
+        crs, unit = first.crs, first.elevation_unit
+        if find_format(first.format).describe is None:
+            with stream_points(first.path, **self.options) as stream:
+                crs, unit = stream.crs, stream.elevation_unit
+        survey = Survey(points=np.empty((0, 3)), crs=crs, elevation_unit=unit)
+        return GivenLines(survey=survey)
+
+    def _check_lines(self, lines: GivenLines) -> TiledPoints:
+        """Return the points with checked lines, if there are any."""
+        inputs = lines.gather(duplicates=self.duplicates, crossing=self.crossing)
+        return self if inputs is None else replace(self, lines=lines)
+
     def plan(self, **way: Unpack[Way]) -> Plan:
         """Tell what a run would do, by the headers alone.
 
@@ -275,7 +395,9 @@ class TiledPoints:
     def __repr__(self) -> str:
         count = "an unknown number of points" if self.count is None else f"{self.count:,} points"
         crs = shorten_crs(self.crs)
-        return f"<TiledPoints: {count} in {counted(len(self.headers), 'file')}, crs {crs}>"
+        with_lines = "" if self.lines is None else "; with lines"
+        files = counted(len(self.headers), "file")
+        return f"<TiledPoints: {count} in {files}, crs {crs}{with_lines}>"
 
     def rasterize(
         self,

@@ -15,8 +15,9 @@ from ..base.errors import ReadError, WriteError
 from ..base.types import Bounds
 from ..terrain.ground_filter import ATTRIBUTES
 from .division import Tile, divide
-from .products.ground import name_files
 from .given import Given
+from .lines import describe_lines, prepare_lines
+from .products.ground import name_files
 from .reading import StoredPoints, read_inputs
 from .runs import Fingerprint, Run
 from .store import count_by_cells
@@ -64,11 +65,22 @@ def computing(
         require_writable(output)
     module = import_module(f"{__package__}.products.{product}")
     options = module.check_options(**asked)
+    given = cloud.lines
+    inputs = None
+    if given is not None:
+        inputs = given.gather(duplicates=cloud.duplicates, crossing=cloud.crossing)
+    manifest = options
+    line_files: Sequence[Fingerprint] = ()
+    if given is not None and inputs is not None:
+        given.require_same()
+        manifest, line_files = {**options, **describe_lines(inputs)}, given.files
     sources = [Fingerprint.take(file) for file in cloud.files]
     run = Run(how.run or output.with_name(output.name + _SUFFIX))
     points_run = Run(cloud.store or run.folder / _POINTS)
     with (
-        run.opened(_describe(cloud, product, options, sources), restart=how.restart),
+        run.opened(
+            _describe(cloud, product, manifest, [*sources, *line_files]), restart=how.restart
+        ),
         points_run.opened(_describe(cloud, _POINTS, {}, sources), restart=how.restart),
     ):
         with how.started() as start:
@@ -81,18 +93,27 @@ def computing(
                 candidates=cloud.candidates,
             )
             points = replace(points, is_raster=cloud.is_raster)
+            tiles = _find_tiles(run, points, how)
+            if given is not None and inputs is not None:
+                points = prepare_lines(run, points, given, inputs, start("Looking for lines"))
             settled = module.settle_options(points, _store(options, run))
-            jobs = [
-                TileJob(run.folder, points_run.folder, tile, product, settled, cloud.duplicates)
-                for tile in _find_tiles(run, points, how)
-            ]
+            job = TileJob(
+                run.folder,
+                points_run.folder,
+                tiles[0],
+                product,
+                settled,
+                cloud.duplicates,
+                points.lines,
+            )
+            jobs = [replace(job, tile=tile) for tile in tiles]
             step = start("Triangulating")
             records = step.run(run, PHASE, compute_tile, jobs, divide=divide_job)
             if hasattr(module, "list_file_jobs"):
                 file_jobs = module.list_file_jobs(run, points_run, cloud.options, settled, records)
                 records = start("Writing").run(run, module.FILES, module.write_file, file_jobs)
-        given = {name: value for name, value in options.items() if isinstance(value, Given)}
-        yield module.join(points, {**settled, **given}, records, run.folder)
+        arrays = {name: value for name, value in options.items() if isinstance(value, Given)}
+        yield module.join(points, {**settled, **arrays}, records, run.folder)
     if not how.keep:
         run.remove()
 

@@ -41,10 +41,12 @@ __all__ = [
     "ReadJob",
     "StoredPoints",
     "join_bounds",
+    "load_points",
     "name_rows",
     "open_store",
     "read_input",
     "read_inputs",
+    "save_points",
 ]
 
 CHUNK_POINTS = 1_000_000
@@ -149,7 +151,7 @@ def _read(job: ReadJob, started: float) -> Record:
     files: list[str] = []
     if chunks:
         save_chunks(job.folder / index, chunks)
-        _save_points(job.folder / outline, NumberedPoints.join(skeletons))
+        save_points(job.folder / outline, NumberedPoints.join(skeletons))
         files = [index, outline, *(chunk.path.name for chunk in chunks)]
     return Record(
         job.key,
@@ -237,12 +239,14 @@ def _choose(
     return chosen
 
 
-def _save_points(path: Path, points: NumberedPoints) -> None:
+def save_points(path: Path, points: NumberedPoints) -> None:
+    """Write points with their numbers to a file."""
     with replacing(path) as file:
         np.savez(file, points=points.points, numbers=points.numbers)
 
 
-def _load_points(path: Path) -> NumberedPoints:
+def load_points(path: Path) -> NumberedPoints:
+    """Read what :func:`save_points` wrote."""
     with np.load(path) as found:
         return NumberedPoints(found["points"], found["numbers"])
 
@@ -252,7 +256,7 @@ def _load_points(path: Path) -> NumberedPoints:
 
 @dataclass(frozen=True)
 class StoredPoints:
-    """All points of a run, on disk.
+    """All points of a run, on disk, and what is known of their surface.
 
     Attributes
     ----------
@@ -262,13 +266,18 @@ class StoredPoints:
     notes : tuple of str
         What the readers tell.
     count : int
+    files : int
+        That they are from.
     bounds : Bounds
+        Of the surface: with lines those of what these leave.
     elevations : (float, float)
-        The lowest and the highest.
+        The lowest and the highest; those of lines count, too.
     extent : Extent
         Of all points that were read, of which these may be those alone that can be ground.
     is_raster : bool
-        Whether they are the cells of one raster.
+        Whether they are the cells of one raster, without lines among them.
+    lines : Path or None
+        File of the lines, cut where they meet.
     """
 
     folder: Path
@@ -276,10 +285,12 @@ class StoredPoints:
     elevation_unit: Unit | None
     notes: tuple[str, ...]
     count: int
+    files: int
     bounds: Bounds
     elevations: tuple[float, float]
     extent: Extent = Extent()
     is_raster: bool = False
+    lines: Path | None = None
 
     def open(self) -> PointStore:
         """Return the source of points for tasks."""
@@ -296,7 +307,7 @@ def _open_store(folder: Path, changed: int) -> PointStore:
     """Open points; those that were read anew since, as of another run in the folder, anew."""
     del changed
     chunks = load_chunks(folder / _CHUNKS, folder)
-    return PointStore(chunks, _load_points(folder / _SKELETON))
+    return PointStore(chunks, load_points(folder / _SKELETON))
 
 
 def name_rows(folder: Path, numbers: Sequence[int]) -> str:
@@ -342,15 +353,16 @@ def read_inputs(
         for chunk in load_chunks(run.folder / f"{record.key}.chunks.npy", run.folder)
     ]
     bounds = join_bounds([chunk.bounds for chunk in chunks])
-    outlines = [_load_points(run.folder / f"{record.key}.skeleton.npz") for record in filled]
+    outlines = [load_points(run.folder / f"{record.key}.skeleton.npz") for record in filled]
     save_chunks(run.folder / _CHUNKS, chunks)
-    _save_points(run.folder / _SKELETON, join_skeletons(outlines, bounds))
+    save_points(run.folder / _SKELETON, join_skeletons(outlines, bounds))
     return StoredPoints(
         run.folder,
         crs,
         unit,
         _join_notes(records),
         sum(chunk.count for chunk in chunks),
+        len(jobs),
         bounds,
         (
             min(record.values["elevations"][0] for record in filled),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, cast
@@ -12,8 +12,10 @@ import numpy as np
 
 from ..base.atomic import replacing
 from ..base.errors import TinsmithError, WriteError
+from ..terrain.parts.surfaces import are_owned_triangles
 from ..tin.tiling import LocalTriangulation, triangulate_box, widen
 from .division import Tile, quarter
+from .lines import open_lines
 from .reading import name_rows, open_store
 from .runs import Record, Run, hash_file
 
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
     from ..base.arrays import AnyArray
     from ..base.policies import DuplicatePolicy
     from ..base.types import Bounds
+    from .lines import StoredLines
     from .reading import StoredPoints
     from .store import PointStore
 
@@ -34,7 +37,9 @@ __all__ = [
     "TileProduct",
     "compute_tile",
     "divide_job",
+    "join_elevations",
     "load_arrays",
+    "measure_elevations",
     "save_arrays",
 ]
 
@@ -61,6 +66,8 @@ class TileJob:
         Plain values.
     duplicates : str
         What becomes of points at one place.
+    lines : Path or None
+        File of the lines of the surface.
     """
 
     folder: Path
@@ -69,6 +76,7 @@ class TileJob:
     product: str
     options: Mapping[str, Any] = field(default_factory=dict)
     duplicates: DuplicatePolicy = "mean"
+    lines: Path | None = None
 
     @property
     def key(self) -> str:
@@ -87,18 +95,34 @@ class Part(NamedTuple):
         """Where files of the tile are written."""
         return self.job.folder / PHASE
 
+    @property
+    def lines(self) -> StoredLines | None:
+        """The lines of the surface, if it has any."""
+        return None if self.job.lines is None else open_lines(self.job.lines)
+
     def triangulate(
         self, box: Bounds, *, rings: int = 0, ordered: bool = True
     ) -> LocalTriangulation:
         """Return all triangles of the whole surface that meet a closed box, and rings of others."""
+        lines = self.lines
         return triangulate_box(
             self.store,
             box,
             around=widen(box, self._halo),
+            lines=None if lines is None else lines.noded,
             duplicates=self.job.duplicates,
             rings=rings,
             ordered=ordered,
         )
+
+    @property
+    def may_have_surface(self) -> bool:
+        """Whether the tile meets the bounds that lines leave of the surface."""
+        if self.lines is None:
+            return True
+        box, bounds = self.job.tile.box, self.lines.bounds
+        is_across = box.xmin <= bounds.xmax and box.xmax >= bounds.xmin
+        return is_across and box.ymin <= bounds.ymax and box.ymax >= bounds.ymin
 
     @property
     def _halo(self) -> float:
@@ -122,6 +146,18 @@ def load_arrays(folder: Path, record: Record) -> dict[str, AnyArray]:
     (name,) = record.files
     with np.load(folder / name) as found:
         return dict(found)
+
+
+def measure_elevations(local: LocalTriangulation, box: Bounds) -> dict[str, Any]:
+    """Return the lowest and the highest elevation of the triangles that a tile owns."""
+    z = local.points[local.triangles[are_owned_triangles(local, box)], 2]
+    return {"elevations": [float(z.min()), float(z.max())]} if z.size else {}
+
+
+def join_elevations(records: Mapping[str, Record]) -> tuple[float, float]:
+    """Return those of the surface, of the records of all tiles."""
+    found = [one.values["elevations"] for one in records.values() if "elevations" in one.values]
+    return min(low for low, _ in found), max(high for _, high in found)
 
 
 class TileProduct(Protocol):
@@ -159,7 +195,8 @@ def compute_tile(job: TileJob) -> Record:
     (job.folder / PHASE).mkdir(exist_ok=True)
     try:
         product = cast("TileProduct", import_module(f"{__package__}.products.{job.product}"))
-        points, values, names = product.compute(Part(job, open_store(job.points)))
+        part = Part(job, open_store(job.points))
+        points, values, names = product.compute(part) if part.may_have_surface else (0, {}, [])
         record = Record(
             job.key,
             "done" if points else "empty",
@@ -185,10 +222,7 @@ def divide_job(job: TileJob) -> list[TileJob]:
     if job.tile.count < _FEWEST_TO_DIVIDE:
         return []
     bounds = open_store(job.points).bounds
-    return [
-        TileJob(job.folder, job.points, tile, job.product, job.options, job.duplicates)
-        for tile in quarter(job.tile, bounds)
-    ]
+    return [replace(job, tile=tile) for tile in quarter(job.tile, bounds)]
 
 
 _FEWEST_TO_DIVIDE = 1_000

@@ -11,7 +11,7 @@ from ...base.crs import CRS, Unit
 from ...terrain.isolines import LevelOptions, Levels, as_levels
 from ...terrain.parts import bands
 from ...terrain.surface import measure_rounding
-from ..tasks import load_arrays, save_arrays
+from ..tasks import join_elevations, load_arrays, measure_elevations, save_arrays
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -36,22 +36,25 @@ def check_options(
 
 def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
     """Settle the levels, when the elevations of all points are known."""
-    given = LevelOptions(*(options[name] for name in ("interval", "levels", "base")))
-    found = given.for_bands_between(*points.elevations)
+    found = _make_levels(options).for_bands_between(*points.elevations)
     box, crs, unit = points.bounds, points.crs, points.elevation_unit
     corners = np.array([[box.xmin, box.ymin], [box.xmax, box.ymax]])
     return {
+        **options,
         "values": found.values.tolist(),
-        "notes": list(found.notes),
         "rounding": measure_rounding(corners),
         "crs": None if crs is None else str(crs),
         "elevation_unit": None if unit is None else unit.text,
     }
 
 
+def _make_levels(options: Mapping[str, Any]) -> LevelOptions:
+    return LevelOptions(*(options[name] for name in ("interval", "levels", "base")))
+
+
 def _make_options(options: Mapping[str, Any]) -> bands.BandOptions:
     values = np.array(options["values"], np.float64)
-    levels = Levels(values, np.zeros(len(values), np.bool_), tuple(options["notes"]))
+    levels = Levels(values, np.zeros(len(values), np.bool_))
     return bands.BandOptions(
         levels,
         options["rounding"],
@@ -67,7 +70,8 @@ def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     if not len(local.triangles):
         return 0, {}, []
     found = bands.compute_part(local, box, _make_options(part.job.options))
-    return len(local.points), {}, save_arrays(part, **found._asdict())
+    names = save_arrays(part, **found._asdict())
+    return len(local.points), measure_elevations(local, box), names
 
 
 def join(
@@ -78,4 +82,5 @@ def join(
         bands.BandPart(**load_arrays(folder, record)) for record in records.values() if record.files
     ]
     made = bands.join(parts, _make_options(options))
-    return replace(made, notes=[*points.notes, *made.notes])
+    notes = _make_levels(options).for_bands_between(*join_elevations(records)).notes
+    return replace(made, notes=[*points.notes, *made.notes, *notes])

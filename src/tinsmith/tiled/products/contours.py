@@ -10,7 +10,7 @@ import numpy as np
 from ...base.crs import CRS, Unit
 from ...terrain.isolines import LevelOptions, Levels, as_levels
 from ...terrain.parts import contours, refusals
-from ..tasks import load_arrays, save_arrays
+from ..tasks import join_elevations, load_arrays, measure_elevations, save_arrays
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -44,23 +44,25 @@ def check_options(
 
 def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
     """Settle the levels, when the elevations of all points are known."""
-    names = ("interval", "levels", "base", "index")
-    found = LevelOptions(*(options[name] for name in names)).for_lines_between(*points.elevations)
+    found = _make_levels(options).for_lines_between(*points.elevations)
     crs, unit = points.crs, points.elevation_unit
     return {
+        **options,
         "values": found.values.tolist(),
         "is_index": found.is_index.tolist(),
-        "notes": list(found.notes),
         "crs": None if crs is None else str(crs),
         "elevation_unit": None if unit is None else unit.text,
     }
+
+
+def _make_levels(options: Mapping[str, Any]) -> LevelOptions:
+    return LevelOptions(*(options[name] for name in ("interval", "levels", "base", "index")))
 
 
 def _make_options(options: Mapping[str, Any]) -> contours.ContourOptions:
     levels = Levels(
         np.array(options["values"], np.float64),
         np.array(options["is_index"], np.bool_),
-        tuple(options["notes"]),
     )
     return contours.ContourOptions(
         levels, CRS.of(options["crs"]), Unit.of(options["elevation_unit"] or None)
@@ -77,7 +79,8 @@ def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     finished = {f"finished_{name}": value for name, value in found.finished._asdict().items()}
     pieces = found._asdict()
     del pieces["finished"]
-    return len(local.points), {}, save_arrays(part, **finished, **pieces)
+    names = save_arrays(part, **finished, **pieces)
+    return len(local.points), measure_elevations(local, box), names
 
 
 def join(
@@ -85,7 +88,8 @@ def join(
 ) -> Features:
     """Return all lines."""
     made = contours.join(_load(records, folder), _make_options(options))
-    return replace(made, notes=[*points.notes, *made.notes])
+    notes = _make_levels(options).for_lines_between(*join_elevations(records)).notes
+    return replace(made, notes=[*points.notes, *made.notes, *notes])
 
 
 def _load(records: Mapping[str, Record], folder: Path) -> Iterator[contours.ContourPart]:

@@ -1,4 +1,4 @@
-"""The proof of a surface in tiles: the triangles of all tiles fill the hull once."""
+"""The proof of a surface in tiles: its triangles fill the hull, or the boundary, once."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...tin.tiling import NumberedPoints, TilesProof, TileTriangles, check_tiles, reduce_to_hull
+from ...tin.tiling import TilesProof, TileTriangles, check_tiles, find_outline, reduce_to_hull
+from ..lines import open_lines
 from ..reading import open_store
 from ..tasks import load_arrays, save_arrays
 
@@ -59,8 +60,12 @@ def join(
         At the first fault.
     """
     del options
-    hull: NumberedPoints = reduce_to_hull(open_store(points.folder).skeleton)
-    return check_tiles(_load(records, folder), hull=hull.points)
+    skeleton = open_store(points.folder).skeleton
+    if points.lines is None:
+        return check_tiles(_load(records, folder), hull=reduce_to_hull(skeleton).points)
+    outline = find_outline(skeleton, open_lines(points.lines).noded)
+    hull = None if outline.is_clipped else outline.rim
+    return check_tiles(_load(records, folder), hull=hull, area=outline.area)
 
 
 def _load(records: Mapping[str, Record], folder: Path) -> Iterator[TileTriangles]:

@@ -1,0 +1,211 @@
+"""Lines of many files: products with them are those of the surface in memory, to the last byte."""
+
+from __future__ import annotations
+
+import filecmp
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import rasterio
+from support.many_files import Shuffled
+
+import tinsmith as ts
+from tinsmith.tiled.products.mapped import measure_area
+
+CRS = "EPSG:32616"
+ORIGIN = np.array([500_000.0, 4_000_000.0])
+AXIS = [[500_010.0, 4_000_020.0], [500_150.5, 4_000_180.0], [500_290.0, 4_000_030.0]]
+
+
+def lift(xy):
+    """Return places of the terrain of the points, with elevations of their own."""
+    xy = np.asarray(xy, np.float64) + ORIGIN
+    return np.column_stack([xy, 305.0 + 10 * np.sin(xy[:, 0] / 40)])
+
+
+def ring(x, y, radius, corners=16):
+    angles = 2 * np.pi * np.arange(corners) / corners
+    return lift(np.column_stack([x + radius * np.cos(angles), y + radius * np.sin(angles)]))
+
+
+WALL = lift([[5, 30], [120, 90], [210, 95], [295, 180]])
+KERBS = [WALL, lift([[150, 5], [150, 195]]), lift([[20, 150], [280, 60]])]
+
+LINES = {
+    "breaklines": {"breaklines": KERBS},
+    "lines that reach beyond the points": {"breaklines": [lift([[-40, 100], [340, 110]])]},
+    "boundary": {"boundary": [ring(150, 100, 90)]},
+    "boundary around the points": {
+        "boundary": [lift([[-9, -9], [309, -9], [309, 209], [-9, 209]])]
+    },
+    "two boundaries": {"boundary": [ring(60, 60, 50), ring(230, 120, 60)]},
+    "holes": {"holes": [ring(80, 80, 30), ring(220, 120, 40)]},
+    "all of them": {
+        "breaklines": KERBS,
+        "boundary": [ring(150, 100, 95, 40)],
+        "holes": [[ring(150, 100, 50), ring(150, 100, 20)]],
+    },
+}
+
+PRODUCTS = {
+    "contours": (ts.contours, "contours", ((1.3,), {}), ".shp"),
+    "bands": (ts.contour_bands, "contours", ((4.0,), {}), ".shp"),
+    "volume": (ts.volume, "volume", ((), {"base": 303.0}), ".csv"),
+    "profile": (ts.profile, "profile", ((AXIS,), {"interval": 7.0}), ".csv"),
+}
+
+RASTERS = {
+    "elevation": {"spacing": 3.0},
+    "slope": {"spacing": 3.0, "value": "slope"},
+    "smooth slope": {"spacing": 4.0, "value": "slope", "smooth": True},
+    "means": {"spacing": 5.0, "at": "mean"},
+}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Return a folder of files of points, some of which lie on the lines and at one place."""
+    found = tmp_path_factory.mktemp("points")
+    rng = np.random.default_rng(5)
+    xy = np.round(rng.random((2_500, 2)) * [300, 200], 1) + ORIGIN
+    on_lines = np.concatenate([line[:, :2] for line in KERBS] + [[[500_150.0, 4_000_077.0]]])
+    xy = np.concatenate([xy, on_lines, on_lines[:3]])
+    z = 300 + 10 * np.sin(xy[:, 0] / 50) + rng.normal(0, 0.5, len(xy))
+    points = np.column_stack([xy, np.round(z, 2)])
+    for number, part in enumerate(np.array_split(rng.permutation(points), 3)):
+        ts.write(ts.Survey(points=part), found / f"part{number}.ply")
+    return found
+
+
+@pytest.fixture(scope="module")
+def points(folder):
+    """Return all points in memory, in the order of the files."""
+    return np.concatenate([ts.read(one).points for one in sorted(folder.glob("*.ply"))])
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory):
+    """Return the folder in which points are kept for all tests."""
+    return tmp_path_factory.mktemp("store")
+
+
+def without_notes(made):
+    return replace(made, notes=())
+
+
+def tile(folder, store, **lines):
+    """Return the points with lines; ``sorted`` as the files of a folder are."""
+    files = sorted(folder.glob("*.ply"))
+    return ts.tiles(files, crs=CRS, store=store, **lines)
+
+
+@pytest.mark.filterwarnings("ignore:.* is a shapefile")
+@pytest.mark.parametrize("product", PRODUCTS)
+@pytest.mark.parametrize("kind", LINES)
+def test_products_are_those_in_memory(folder, store, points, tmp_path, kind, product):
+    make, method, (given, options), suffix = PRODUCTS[product]
+    tin = ts.triangulate(points, crs=CRS, **LINES[kind])
+    target = ts.write(without_notes(make(tin, *given, **options)), tmp_path / f"whole{suffix}")
+    cloud = tile(folder, store, **LINES[kind])
+    extra = {"bands": True} if product == "bands" else {}
+    for tiles in (1, 4, 16, 64) if product == "contours" else (7,):
+        way = {"tiles": tiles, "executor": Shuffled(tiles)}
+        path = getattr(cloud, method)(
+            tmp_path / f"tiles{suffix}", *given, **options, **extra, **way
+        )
+        assert filecmp.cmp(path, target, shallow=False), tiles
+
+
+@pytest.mark.parametrize("raster", RASTERS)
+@pytest.mark.parametrize("kind", LINES)
+def test_rasters_are_those_in_memory(folder, store, points, tmp_path, kind, raster):
+    options = RASTERS[raster]
+    wanted = ts.rasterize(ts.triangulate(points, crs=CRS, **LINES[kind]), **options)
+    cloud = tile(folder, store, **LINES[kind])
+    for tiles in (1, 16) if raster == "elevation" else (6,):
+        path = cloud.rasterize(
+            tmp_path / "tiles.tif", **options, tiles=tiles, executor=Shuffled(tiles)
+        )
+        with rasterio.open(path) as dataset:
+            np.testing.assert_array_equal(dataset.read(1), wanted.bands[wanted.name])
+            assert dataset.bounds[:2] == (wanted.grid.bounds.xmin, wanted.grid.bounds.ymin)
+
+
+@pytest.mark.parametrize("kind", LINES)
+def test_tiles_are_proven_and_mapped(folder, store, points, tmp_path, kind):
+    tin = ts.triangulate(points, crs=CRS, **LINES[kind])
+    cloud = tile(folder, store, **LINES[kind])
+    proof = cloud.check(run=tmp_path / "run", tiles=9, executor=Shuffled())
+    assert proof.triangles == len(tin.triangles)
+    assert proof.vertices == len(tin.points)
+    assert proof.edges == len(tin.edges)
+    assert float(proof.area) == pytest.approx(tin.area, rel=1e-12)
+    areas = cloud.map(measure_area, run=tmp_path / "run", tiles=9, executor=Shuffled())
+    assert sum(areas) == pytest.approx(tin.area, rel=1e-12)
+
+
+def test_files_of_lines_are_read_as_in_memory(folder, store, tmp_path):
+    """In the CRS of the points, with what their reader tells, and as inputs of the run."""
+    offsets = np.append(0, np.cumsum([len(line) for line in KERBS]))
+    kerbs = ts.Features.of_lines(np.concatenate(KERBS), offsets, crs=CRS)
+    file = ts.write(kerbs, tmp_path / "kerbs.gpkg")
+    with_kerbs = ts.with_lines(ts.read(sorted(folder.glob("*.ply")), crs=CRS), breaklines=[file])
+    wanted = ts.write(
+        without_notes(ts.volume(ts.triangulate(with_kerbs), base=300.0)), tmp_path / "whole.csv"
+    )
+    for cloud in (
+        tile(folder, store).with_lines(breaklines=[file]),
+        tile(folder, store, breaklines=file),
+        tile(folder, store, breaklines=kerbs),
+        tile(folder, store, breaklines=kerbs.to_geodataframe()),
+    ):
+        assert repr(cloud).endswith("with lines>")
+        path = cloud.volume(tmp_path / "a.csv", base=300.0, tiles=3, executor=Shuffled())
+        assert filecmp.cmp(path, wanted, shallow=False)
+    changed = tile(folder, store, breaklines=file)
+    ts.write(ts.Features.of_lines(WALL, [0, 4], crs=CRS), file)
+    with pytest.raises(ts.ReadError, match="changed since its lines were read"):
+        changed.volume(tmp_path / "b.csv", base=300.0, executor=Shuffled())
+    assert not (tmp_path / "b.csv.run").exists()
+
+
+def test_a_run_goes_on_with_the_same_lines_only(folder, store, tmp_path):
+    path = tmp_path / "a.csv"
+    with pytest.raises(KeyboardInterrupt):
+        tile(folder, store, breaklines=KERBS).volume(
+            path, base=300.0, tiles=4, executor=Shuffled(most=5)
+        )
+    with pytest.raises(ts.ReadError, match=r"`breaklines` was '3 lines \(.*', and is '2 lines"):
+        tile(folder, store, breaklines=KERBS[:2]).volume(path, base=300.0, executor=Shuffled())
+    with pytest.raises(ts.ReadError, match=r"`breaklines` was '3 lines .*, and is None"):
+        tile(folder, store).volume(path, base=300.0, executor=Shuffled())
+    cloud = tile(folder, store, breaklines=KERBS)
+    cloud.volume(path, base=300.0, tiles=4, executor=Shuffled())
+    assert [one.name for one in tmp_path.iterdir()] == ["a.csv"]
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "message"),
+    [
+        (
+            {"boundary": [ring(90, 90, 50)], "holes": [ring(250, 100, 20)]},
+            ts.LinesError,
+            "Hole 0 lies outside the surface",
+        ),
+        (
+            {"breaklines": [WALL, lift([[5, 95], [60, 5]]) * [1, 1, 2]], "crossing": "error"},
+            ts.LinesError,
+            "cross",
+        ),
+        ({"breaklines": [[[0, 0, 1]]]}, ts.LinesError, "breakline"),
+        ({"breaklines": ts.Features.of_lines(WALL, [0, 4], crs="EPSG:3857")}, ts.CrsError, "3857"),
+        ({"water": [1]}, ts.OptionError, "Invalid water"),
+        ({"max_edge": 5.0}, ts.OptionError, "Invalid max_edge"),
+        ({"crossing": "both"}, ts.OptionError, "Invalid crossing"),
+        ({"boundary": "nothing.shp"}, ts.ReadError, "nothing.shp"),
+    ],
+)
+def test_lines_that_cannot_be_are_refused(folder, store, tmp_path, given, error, message):
+    with pytest.raises(error, match=message):
+        tile(folder, store, **given).volume(tmp_path / "a.csv", base=300.0, executor=Shuffled())
