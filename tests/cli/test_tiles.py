@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
 import pytest
+import shapely
 from click.testing import CliRunner
 from support.many_files import write_lidar
 
@@ -23,7 +25,7 @@ COMMANDS = {
 """Of each command the options with which it computes in tiles; PLACES and ROADS are files."""
 
 WHOLE = {
-    "raster": (["--max-edge", "9"], ["--snap", "0.1"], ["--to-crs", "EPSG:32617"]),
+    "raster": (["--max-edge", "9"], ["--snap", "0.1"], ["--to-crs", "EPSG:32617"], ["--drape"]),
     "contours": (["--smooth", "0.1"], ["--simplify", "0.1"], ["--labels"], ["-o", "out.png"]),
     "volume": (["-o", "out.gpkg"], ["-o", "out.png"]),
     "profile": (["--sections", "10", "20"], ["-o", "out.png"]),
@@ -74,6 +76,23 @@ def run(command, *words):
     return CliRunner().invoke(main, [command, *map(str, words)])
 
 
+def write_lines(folder):
+    """Write a breakline and a boundary with elevations, and the boundary without; return them."""
+    origin = np.array([500_000.0, 4_000_000.0, 0.0])
+    line = origin + [[5, 30, 301], [120, 90, 309], [295, 180, 299]]
+    box = shapely.Polygon(origin + [[20, 20, 300], [280, 25, 303], [270, 180, 311], [25, 170, 305]])
+    lines = ts.Features.of_lines(line, [0, 3], crs="EPSG:32616")
+    files = [ts.write(lines, folder / "lines.gpkg")]
+    for name, shape in (("site", box), ("flat", shapely.force_2d(box))):
+        path = folder / f"{name}.geojson"
+        crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::32616"}}
+        feature = {"type": "Feature", "properties": {}, "geometry": shapely.geometry.mapping(shape)}
+        content = {"type": "FeatureCollection", "crs": crs, "features": [feature]}
+        path.write_text(json.dumps(content))
+        files.append(path)
+    return files
+
+
 def test_every_command_with_tiles_is_here():
     with_tiles = set()
     for name in SUMMARIES:
@@ -103,6 +122,34 @@ def test_outputs_and_records_are_those_in_memory(command, lidar, here, commands)
         if name not in apart:
             assert told[name] == wanted[name], name
     assert any("Classes of the points" in note for note in told["notes"])
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_lines_of_files_are_those_in_memory(command, lidar, here, tmp_path_factory):
+    line, site, flat = write_lines(tmp_path_factory.mktemp("lines"))
+    words = [lidar, "--classes", "2", "--json", *COMMANDS[command], "--breaklines", line]
+    words += ["--boundary", site, "--lines-elevation-unit", "m"]
+    whole = run(command, *words)
+    assert whole.exit_code == 0, whole.output
+    (path,) = here.iterdir()
+    content = path.read_bytes()
+    path.unlink()
+    tiled = run(command, *words, "--tiles", "3", "--workers", "2", "-q")
+    assert tiled.exit_code == 0, tiled.output
+    if command != "raster":  # which has the notes, that name the files one by one in tiles
+        assert path.read_bytes() == content
+    told, wanted = json.loads(tiled.stdout), json.loads(whole.stdout)
+    for name in wanted:
+        if name not in ("notes", "input", "inputs"):
+            assert told[name] == wanted[name], name
+    path.unlink()
+    refused = run(command, *words, "--holes", flat, "--tiles", "3")
+    assert refused.exit_code == 1
+    assert "has no elevations" in refused.output
+    wrong = [run(command, *words, "--holes", here, *more) for more in ((), ("--tiles", "3"))]
+    assert [one.exit_code for one in wrong] == [1, 1]
+    assert json.loads(wrong[0].stdout)["error"] == json.loads(wrong[1].stdout)["error"]
+    assert list(here.iterdir()) == []
 
 
 @pytest.mark.parametrize(("command", "words"), [(c, w) for c in WHOLE for w in WHOLE[c]])

@@ -77,7 +77,7 @@ class Clip:
         keep = np.ones(len(surface.triangles), np.bool_)
         if self._has_rings:
             keep = is_inside(surface, ring_segments, self.boundary, self.extent, self.holes)
-            require_triangles(keep.any())
+            require_triangles(bool(keep.any()))
         if self.max_edge is not None:
             everywhere = self.is_trimmed_everywhere
             keep = trim(surface, keep, self.max_edge, everywhere=everywhere)

@@ -156,7 +156,7 @@ def list_segments_near(lines: LineSet, box: Bounds) -> Float64Array:
     ends: Float64Array = lines.xy[own]
     west, south, east, north = list_sides(box)
     meets = ((ends.min(axis=1) <= (east, north)) & (ends.max(axis=1) >= (west, south))).all(axis=1)
-    return ends[meets]
+    return np.asarray(ends[meets])
 
 
 def node_lines(near: NumberedPoints, inputs: BuildInputs, *, first_number: int) -> NodedLines:

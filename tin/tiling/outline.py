@@ -53,10 +53,11 @@ class Outline(NamedTuple):
     has_inner_lines: bool
 
 
-class _Few(NamedTuple):
+class _Few:
     """Points that are all known from the start: a :class:`.PointSource`."""
 
-    skeleton: NumberedPoints
+    def __init__(self, skeleton: NumberedPoints) -> None:
+        self.skeleton = skeleton
 
     def read_box(self, box: Bounds) -> NumberedPoints:
         """Return all points: the box is the plane."""
@@ -68,7 +69,9 @@ class _Few(NamedTuple):
         del discs
         return NumberedPoints.none()
 
-    read_discs = read_some
+    def read_discs(self, discs: Discs) -> NumberedPoints:
+        """Return no further points."""
+        return self.read_some(discs)
 
 
 def find_outline(points: NumberedPoints, lines: SegmentSource) -> Outline:

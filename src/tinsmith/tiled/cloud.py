@@ -739,7 +739,8 @@ class TiledPoints:
         """Prove from outside that the triangles of all tiles are one surface.
 
         Every inner edge has two triangles, across tiles too, which see it in opposite directions;
-        the areas of all triangles add up to that of the convex hull, exactly.
+        the areas of all triangles add up to that of the convex hull, or of what boundary and holes
+        leave of it, exactly.
 
         Parameters
         ----------

@@ -97,10 +97,12 @@ class GivenLines:
         for name, several in sources.items():
             for source in several:
                 path = split_layer(source)[0]
-                files.append(Fingerprint.take(path))
+                found = [Fingerprint.take(path)] if path.is_file() else []  # else the reader tells
                 one: dict[str, Any] = {name: [source], "elevation_unit": elevation_unit}
                 before, survey = survey, with_lines(survey, **one)
-                files[-1].require_same()
+                for file in found:
+                    file.require_same()
+                files += found
                 boxes.append((path, _find_bounds(before, survey)))
         return replace(self, survey=survey, files=tuple(files), boxes=tuple(boxes))
 
@@ -166,9 +168,14 @@ def as_files(value: Any) -> list[Any] | None:
 def describe_lines(inputs: BuildInputs) -> dict[str, Any]:
     """Return plain values that differ for other lines, by the options that take them."""
     lines, found = inputs.lines, {}
-    kinds = {"breaklines": ("hard", "soft"), "boundary": ("boundary",), "holes": ("hole",)}
-    for name, some in kinds.items():
-        chosen = lines.choose(lines.table.is_kind(*some))
+    table = lines.table
+    kinds = {
+        "breaklines": table.is_kind("hard", "soft"),
+        "boundary": table.is_kind("boundary"),
+        "holes": table.is_kind("hole"),
+    }
+    for name, are_of_kind in kinds.items():
+        chosen = lines.choose(are_of_kind)
         if len(chosen.kinds):
             told = [chosen.xy, chosen.elevations, chosen.offsets, chosen.priorities]
             digest = hashlib.blake2b(digest_size=8)
