@@ -79,8 +79,9 @@ def run(command, *words):
 def write_lines(folder):
     """Write a breakline and a boundary with elevations, and the boundary without; return them."""
     origin = np.array([500_000.0, 4_000_000.0, 0.0])
-    line = origin + [[5, 30, 301], [120, 90, 309], [295, 180, 299]]
-    box = shapely.Polygon(origin + [[20, 20, 300], [280, 25, 303], [270, 180, 311], [25, 170, 305]])
+    line = origin + np.array([[5, 30, 301], [120, 90, 309], [295, 180, 299]])
+    ring = np.array([[20, 20, 300], [280, 25, 303], [270, 180, 311], [25, 170, 305]])
+    box = shapely.Polygon(origin + ring)
     lines = ts.Features.of_lines(line, [0, 3], crs="EPSG:32616")
     files = [ts.write(lines, folder / "lines.gpkg")]
     for name, shape in (("site", box), ("flat", shapely.force_2d(box))):

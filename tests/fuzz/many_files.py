@@ -7,6 +7,7 @@ import warnings
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 from support.many_files import Shuffled
@@ -25,8 +26,9 @@ _LARGEST = 1e12
 
 
 def generate(rng: np.random.Generator) -> Case:
-    """Points dealt out to files at random or by easting, and the tiles of each product."""
+    """Points dealt out to files at random or by easting, lines, and the tiles of each product."""
     cloud = points(rng, int(rng.integers(3, _MOST_POINTS)))
+    lines = _generate_lines(rng, np.asarray(cloud)) if rng.random() < 0.5 else {}
     return {
         "points": cloud,
         "files": int(rng.integers(1, 5)),
@@ -34,7 +36,32 @@ def generate(rng: np.random.Generator) -> Case:
         "tiles": int(rng.integers(1, 20)),
         "duplicates": str(rng.choice(["mean", "first", "last", "lowest", "highest"])),
         "seed": int(rng.integers(0, 10**6)),
+        "lines": lines,
     }
+
+
+def _generate_lines(rng: np.random.Generator, cloud: np.ndarray) -> dict[str, list[Any]]:
+    """Lines from point to point, or beside them, and a rectangle as boundary, hole, both or none.
+
+    Elevations are whole numbers, so that those of lines and points at one place differ.
+    """
+    low, high = cloud[:, :2].min(axis=0), cloud[:, :2].max(axis=0)
+
+    def lift(xy: np.ndarray) -> list[list[float]]:
+        return np.column_stack([xy, rng.integers(-9, 9, len(xy))]).tolist()
+
+    found: dict[str, list[Any]] = {"breaklines": [], "boundary": [], "holes": []}
+    for _ in range(int(rng.integers(0, 4))):
+        xy = cloud[rng.integers(0, len(cloud), int(rng.integers(2, 5))), :2]
+        if rng.random() < 0.5:
+            xy = low + (high - low) * rng.random((len(xy), 2))
+        found["breaklines"].append(lift(xy))
+    for name in ("boundary", "holes"):
+        if rng.random() < 0.4:
+            (west, east), (south, north) = np.sort(rng.random((2, 2)) * 1.2 - 0.1, axis=1)
+            corners = np.array([[west, south], [east, south], [east, north], [west, north]])
+            found[name].append(lift(low + (high - low) * corners))
+    return {name: lines for name, lines in found.items() if lines}
 
 
 def examine(case: Case) -> str:
@@ -46,8 +73,8 @@ def examine(case: Case) -> str:
     order = np.argsort(cloud[:, 0], kind="stable") if case["is_sorted"] else np.arange(len(cloud))
     parts = np.array_split(cloud[order], min(case["files"], len(cloud)))
     try:
-        tin = ts.triangulate(np.concatenate(parts), duplicates=case["duplicates"])
-    except ts.PointsError:
+        tin = ts.triangulate(np.concatenate(parts), duplicates=case["duplicates"], **case["lines"])
+    except (ts.PointsError, ts.LinesError):
         return "refused"
     with TemporaryDirectory() as folder, warnings.catch_warnings():
         warnings.simplefilter("ignore", ts.LossWarning)
@@ -55,7 +82,7 @@ def examine(case: Case) -> str:
             ts.write(ts.Survey(points=part), Path(folder, f"part{k}.ply"))
             for k, part in enumerate(parts)
         ]
-        cloud_of_files = ts.tiles(files, duplicates=case["duplicates"])
+        cloud_of_files = ts.tiles(files, duplicates=case["duplicates"], **case["lines"])
         return _compare(case, tin, cloud_of_files, Path(folder))
 
 
