@@ -103,6 +103,13 @@ def test_a_missing_tile_is_found():
             check_tiles(parts[:gone] + parts[gone + 1 :], hull=HULL)
 
 
+def test_another_area_than_wanted_is_found():
+    area = sum_areas(WHOLE.points[WHOLE.triangles])
+    assert check_tiles(tiles(), area=area).area == area
+    with pytest.raises(CheckError, match="and its boundary and holes leave"):
+        check_tiles(tiles(), area=area + Fraction(1, 2**60))
+
+
 def test_a_vertex_of_a_tile_twice_is_found():
     def repeat(part):
         numbers = part.numbers.copy()
