@@ -21,7 +21,7 @@ from .boxes import are_in_box, list_sides, widen
 from .circles import bound_discs
 from .rings import find_inside
 from .sources import NumberedPoints, NumberedSegments
-from .unseen import Question, find_unseen_points, find_unseen_segments
+from .unseen import Question, count_taken, find_unseen_points, find_unseen_segments
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
@@ -121,6 +121,7 @@ def triangulate_box(
         made = _triangulate(seen, threads)
         found = _find(made, box, around, rings)
         names, question = _find_open(made, found, around, proven, seen.segments)
+        question = question._replace(most=count_taken(rounds))
         is_safe, has_more = seen.ask(question)
         if not has_more:
             break
@@ -307,7 +308,7 @@ def _find_open(
     number, triangles = number[is_open], triangles[is_open]
     fixed = np.zeros(triangles.shape, np.bool_) if made.fixed is None else made.fixed[number]
     return names[is_open], Question(
-        made.places[triangles], fixed, discs.choose(is_open), segments.ends_in_plane
+        made.places[triangles], fixed, discs.choose(is_open), segments.ends_in_plane, count_taken(0)
     )
 
 

@@ -26,10 +26,14 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int8Array, Int64Array
     from .sources import PointSource, SegmentSource
 
-__all__ = ["Question", "find_unseen_points", "find_unseen_segments"]
+__all__ = ["Question", "count_taken", "find_unseen_points", "find_unseen_segments"]
 
-_MOST_OF_A_DISC = 64
-"""What is taken for one disc in a round: the deepest, which change the triangle most."""
+_FEW, _ROUNDS_OF_FEW = 64, 4
+"""What is taken for one disc in each of the first rounds; from then on twice as much each time.
+
+A triangle between several lines is of the whole though its disc holds any number of points that
+only all of these lines together hide: then nothing that is taken changes it.
+"""
 
 _MOST_SCREENS = 8
 
@@ -49,17 +53,24 @@ class Question(NamedTuple):
     discs : Discs
     screens : (s, 2, 2) float64 array
         The ends of all segments that are known.
+    most : int
+        What is taken for one disc: the deepest, which change the triangle most.
     """
 
     corners: Float64Array
     hiding: BoolArray
     discs: Discs
     screens: Float64Array
+    most: int
 
     def choose(self, which: BoolArray) -> Question:
         """Return some of the triangles."""
         return Question(
-            self.corners[which], self.hiding[which], self.discs.choose(which), self.screens
+            self.corners[which],
+            self.hiding[which],
+            self.discs.choose(which),
+            self.screens,
+            self.most,
         )
 
     def find_hidden(self, k: int, figures: Float64Array) -> BoolArray:
@@ -79,6 +90,11 @@ class Question(NamedTuple):
         lengths = np.hypot(*(near[:, 1] - near[:, 0]).T)
         chosen: Float64Array = near[np.argsort(-lengths, kind="stable")[:_MOST_SCREENS]]
         return chosen
+
+
+def count_taken(rounds: int) -> int:
+    """Return what is taken for one disc after so many rounds."""
+    return _FEW << max(0, rounds - _ROUNDS_OF_FEW)
 
 
 def find_unseen_points(
@@ -118,7 +134,7 @@ def _examine(
         places = found.points[near, :2]
         counts = _are_in_disc(question.corners[k], places)
         counts[counts] = ~question.find_hidden(k, places[counts][:, None])
-        is_wanted[_take_deepest(near[counts], distances[counts])] = True
+        is_wanted[_take_deepest(near[counts], distances[counts], question.most)] = True
         is_safe[k] = not counts.any()
     return found.choose(is_wanted).sort(), is_safe
 
@@ -141,13 +157,13 @@ def find_unseen_segments(
             (distances <= discs.radii[k] * (1 + _SLACK) + roundings) | np.isinf(discs.radii[k])
         )
         near = near[~question.find_hidden(k, ends[near])]
-        is_wanted[_take_deepest(near, distances[near])] = True
+        is_wanted[_take_deepest(near, distances[near], question.most)] = True
         is_safe[k] = not len(near)
     return found.choose(is_wanted), is_safe
 
 
-def _take_deepest(rows: Int64Array, distances: Float64Array) -> Int64Array:
-    return rows[np.argsort(distances, kind="stable")[:_MOST_OF_A_DISC]]
+def _take_deepest(rows: Int64Array, distances: Float64Array, most: int) -> Int64Array:
+    return rows[np.argsort(distances, kind="stable")[:most]]
 
 
 def _are_in_disc(corners: Float64Array, places: Float64Array) -> BoolArray:
