@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from ...base.crs import CRS, Unit
     from ...base.types import Bounds
     from ...tin.tiling import LocalTriangulation
+    from ..surface import Surface
 
 __all__ = ["are_inner", "are_owned", "are_owned_triangles", "as_surface"]
 
@@ -46,7 +47,7 @@ def are_owned(places: Float64Array, box: Bounds) -> BoolArray:
     return is_owned
 
 
-def are_owned_triangles(part: LocalTriangulation, box: Bounds) -> BoolArray:
+def are_owned_triangles(part: LocalTriangulation | Surface, box: Bounds) -> BoolArray:
     """Tell which triangles a tile owns: those whose vertex of least easting it does.
 
     Of several it is that of least northing. A triangle meets the box of its owner.

@@ -86,7 +86,7 @@ def compute_part(
     part: LocalTriangulation,
     box: Bounds,
     options: VolumeOptions,
-    other: LocalTriangulation | None = None,
+    other: LocalTriangulation | Surface | None = None,
 ) -> VolumePart:
     """Return the sums over the triangles that a tile owns.
 
@@ -97,7 +97,7 @@ def compute_part(
     box : Bounds
         Of the tile; of those that tile the plane each triangle is owned by one.
     options : VolumeOptions
-    other : LocalTriangulation, optional
+    other : LocalTriangulation or Surface, optional
         All triangles of the other surface that meet :func:`find_reach`.
     """
     groups = len(options.names)
@@ -119,7 +119,7 @@ def compute_part(
     return VolumePart(sums.terms, sums.extremes, areas, _measure_other(second, options))
 
 
-def _take(part: LocalTriangulation, which: BoolArray, scale: float) -> Surface:
+def _take(part: LocalTriangulation | Surface, which: BoolArray, scale: float) -> Surface:
     points = part.points if scale == 1.0 else part.points * (1.0, 1.0, scale)
     return Surface(
         np.ascontiguousarray(points), np.ascontiguousarray(part.triangles[which], np.int32)

@@ -38,6 +38,7 @@ from .polygons import (
 from .reference import (
     Reference,
     Surface,
+    agree_on_reference,
     find_common_reference,
     find_reference,
     make_reference,
@@ -67,6 +68,7 @@ __all__ = [
     "Reference",
     "Segments",
     "Surface",
+    "agree_on_reference",
     "as_features",
     "as_light",
     "as_parts",

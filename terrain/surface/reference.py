@@ -15,12 +15,13 @@ from ...base.georeference import agree, describe_unknown, find_plane_units
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array
     from ...base.crs import CRS, Unit
-    from ...base.georeference import PlaneUnits
+    from ...base.georeference import PlaneUnits, Referenced
     from ...tin import TIN
 
 __all__ = [
     "Reference",
     "Surface",
+    "agree_on_reference",
     "find_common_reference",
     "find_reference",
     "make_reference",
@@ -78,14 +79,26 @@ def find_common_reference(tin: TIN, other: TIN, purpose: str) -> tuple[Reference
     """
     for one in (tin, other):
         require_tin(one)
-        _require_lengths(one.crs, purpose)
-    found = agree((tin, other), ("the first surface", "the other surface"))
+    reference, factors = agree_on_reference(tin, other, purpose)
     first, second = (
         Surface(_scale_up(one.triangulation.points, factor), one.triangulation.triangles)
-        for one, factor in zip((tin, other), found.factors, strict=True)
+        for one, factor in zip((tin, other), factors, strict=True)
     )
+    return reference, first, second
+
+
+def agree_on_reference(
+    one: Referenced, other: Referenced, purpose: str
+) -> tuple[Reference, tuple[float, ...]]:
+    """Return the units of two surfaces, and the factors from the elevations of each to them.
+
+    Errors as of :func:`find_common_reference`.
+    """
+    for each in (one, other):
+        _require_lengths(each.crs, purpose)
+    found = agree((one, other), ("the first surface", "the other surface"))
     up = scale_elevations(found.crs, found.elevation_unit)
-    return Reference(found.crs, found.elevation_unit, up, found.notes), first, second
+    return Reference(found.crs, found.elevation_unit, up, found.notes), found.factors
 
 
 def _scale_up(points: Float64Array, factor: float) -> Float64Array:

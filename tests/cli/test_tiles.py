@@ -239,3 +239,18 @@ def test_ground_refuses_what_tiles_have_not(words, sentence, lidar, here):
     assert done.exit_code == 1, done.output
     assert sentence in " ".join(done.output.split())
     assert list(here.iterdir()) == []
+
+
+@pytest.mark.parametrize("is_folder", [True, False])
+def test_volumes_to_a_design_are_those_in_memory(is_folder, lidar, here, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("design")
+    points = ts.read(lidar).points[::9] + np.array([0.5, 0.25, 1.0])
+    design = ts.write(ts.Survey(points=points, crs="EPSG:32616"), folder / "design.laz")
+    options = [lidar, folder if is_folder else design, "--json"]
+    whole = run("volume", *options, "-o", "whole.csv")
+    assert whole.exit_code == 0, whole.output
+    tiled = run("volume", *options, "-o", "tiled.csv", "--tiles", "3", "--workers", "2", "-q")
+    assert tiled.exit_code == 0, tiled.output
+    assert (here / "tiled.csv").read_bytes() == (here / "whole.csv").read_bytes()
+    assert json.loads(tiled.stdout)["rows"] == json.loads(whole.stdout)["rows"]
+    assert len([*here.iterdir()]) == 2

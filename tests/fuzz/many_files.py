@@ -117,7 +117,25 @@ def _compare(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> st
         found.append(name)
     _compare_places(case, tin, cloud, folder)
     _compare_draped(case, tin, cloud, folder)
-    return f"{len(found) - found.count('refused') + 2} products"
+    made = _compare_surfaces(case, tin, cloud, folder)
+    return f"{len(found) - found.count('refused') + 2 + made} products"
+
+
+def _compare_surfaces(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> int:
+    """Require the volumes to another surface, that shares vertices, in memory and in a file."""
+    points = tin.points + np.where(np.arange(len(tin.points)) % 2, 0.0, 1.0)[:, None]
+    try:
+        other = ts.triangulate(points)
+        whole = ts.volume(tin, other)
+    except ts.TinsmithError:
+        return 0
+    wanted = ts.write(replace(whole, notes=()), folder / "whole.csv")
+    file = ts.write(ts.Survey(points=points), folder / "other.ply")
+    for one in (other, ts.tiles(file)):
+        way = {"tiles": case["tiles"], "executor": Shuffled(case["seed"])}
+        path = cloud.volume(folder / "tiled.csv", one, **way)
+        assert filecmp.cmp(path, wanted, shallow=False)
+    return 1
 
 
 def _compare_places(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> None:

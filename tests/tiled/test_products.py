@@ -91,6 +91,50 @@ def test_volumes(cloud, tin, tmp_path, regions):
     require_same_files(tmp_path, ".csv", ts.volume(tin, base=301.0, regions=regions), make)
 
 
+@pytest.fixture(scope="module")
+def design(tmp_path_factory):
+    """Return points of another surface, that reaches beyond, in two files, in feet."""
+    rng = np.random.default_rng(8)
+    xy = rng.random((900, 2)) * [340, 220] + [499_980, 3_999_990]
+    points = np.round(np.column_stack([xy, 990 + 30 * np.cos(xy[:, 1] / 40)]), 2)
+    folder = tmp_path_factory.mktemp("design")
+    for number, some in enumerate((points[:500], points[500:])):
+        survey = ts.Survey(points=some, crs="EPSG:32616", elevation_unit="ft")
+        ts.write(survey, folder / f"part{number}.ply")
+    return folder
+
+
+@pytest.mark.parametrize("regions", [None, SQUARES])
+@pytest.mark.parametrize("in_files", [False, True])
+def test_volumes_to_another_surface(lidar, design, tmp_path, regions, in_files):
+    how = {"crs": "EPSG:32616", "elevation_unit": "ft"}
+    files = sorted(design.iterdir())
+    other = ts.triangulate(np.concatenate([ts.read(file, **how).points for file in files]), **how)
+    tin = ts.triangulate(ts.read(lidar, classes=2, elevation_unit="m"))
+    cloud = ts.tiles(lidar, classes=2, elevation_unit="m", store=tmp_path / "points")
+    second = ts.tiles(files, store=tmp_path / "others", **how) if in_files else other
+
+    def make(path, **way):
+        return cloud.volume(path, second, regions=regions, **way)
+
+    require_same_files(tmp_path, ".csv", ts.volume(tin, other, regions=regions), make)
+
+
+def test_volumes_to_a_surface_of_another_crs_are_refused(cloud, design, tmp_path):
+    points = ts.read(next(design.iterdir())).points
+    others = [ts.triangulate(points, crs=crs) for crs in ("EPSG:32617", None)]
+    for number, crs in enumerate(("EPSG:32617", None)):
+        path = ts.write(ts.Survey(points=points, crs=crs), tmp_path / f"other{number}.ply")
+        others.append(ts.tiles(path))
+    for other in others:
+        with pytest.raises(ts.CrsError, match="the other surface"):
+            cloud.volume(tmp_path / "a.csv", other, executor=Shuffled(), restart=True)
+    with pytest.raises(ts.OptionError, match="one of them"):
+        cloud.volume(tmp_path / "a.csv", executor=Shuffled())
+    with pytest.raises(ts.TinsmithError):
+        cloud.volume(tmp_path / "a.csv", "design.ply", executor=Shuffled())
+
+
 def test_profiles(cloud, tin, tmp_path):
     def make(path, **way):
         return cloud.profile(path, LINE, interval=10.0, start=5.0, **way)

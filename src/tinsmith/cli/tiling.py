@@ -19,6 +19,8 @@ from .parameters import number_option, under
 from .paths import STANDARD
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ..tiled.cloud import TiledPoints
     from ..tiled.how import How
     from ..tiled.workers import Status
@@ -107,7 +109,7 @@ def tiled_options() -> Decorator:
 
 
 def choose_tiles(
-    job: Job, *files: Path, whole: str = "", joins: bool = False
+    job: Job, *files: Path, whole: str = "", joins: bool = False, others: Sequence[Path] = ()
 ) -> TiledPoints | None:
     """Return the points of a file or folder, if they are to be taken in tiles; else None.
 
@@ -122,9 +124,10 @@ def choose_tiles(
         What else was asked for that needs all points at a time, if anything.
     joins : bool
         Whether the points of several files are one survey.
+    others : sequence of Path
+        Surfaces that need not be in tiles: see :func:`choose_other`.
     """
     tiling, how = job.tiling, job.building
-    given = {name: value for name, value in job.reading.given.items() if name != "remote"}
     needs = {
         "points from standard input": STANDARD in files,
         "several surfaces": len(files) != 1 and not joins,
@@ -142,15 +145,14 @@ def choose_tiles(
                 f"Tiles cannot be computed with {asked}: all points are needed at a time."
             )
         return None
-    if not tiling.given and not _may_be_large(files):
+    if not tiling.given and not any(map(_may_be_large, (*files, *others))):
         return None
     from ..io.isolated.limits import measure_free_memory
-    from ..tiled import tiles
 
-    method: Any = {"duplicates": how.duplicates, "crossing": how.crossing}
-    cloud = tiles(files, **method, **given)
+    cloud = _take_points(job, *files)
     if not tiling.given:
         count, free = cloud.count_about, measure_free_memory()
+        count += sum(one.count_about for other in others if (one := choose_other(job, other)))
         if count * _BYTES_IN_MEMORY <= free:
             return None
         job.console.note(
@@ -163,6 +165,15 @@ def choose_tiles(
     return _add_lines(cloud, job)
 
 
+def _take_points(job: Job, *files: Path) -> TiledPoints:
+    """Return the points of files or folders, by their headers."""
+    from ..tiled import tiles
+
+    given = {name: value for name, value in job.reading.given.items() if name != "remote"}
+    method: Any = {"duplicates": job.building.duplicates, "crossing": job.building.crossing}
+    return tiles(files, **method, **given)
+
+
 def _add_lines(cloud: TiledPoints, job: Job) -> TiledPoints:
     """Add the lines of files, showing progress."""
     how = job.building
@@ -173,9 +184,16 @@ def _add_lines(cloud: TiledPoints, job: Job) -> TiledPoints:
         return cloud.with_lines(**files, elevation_unit=how.lines_elevation_unit)
 
 
-def _may_be_large(files: Sequence[Path]) -> bool:
+def choose_other(job: Job, file: Path) -> TiledPoints | None:
+    """Return a further surface in tiles, if it is a folder or a large file; None to read it."""
+    if file == STANDARD or not (file.is_dir() or _may_be_large(file)):
+        return None
+    return _take_points(job, file)
+
+
+def _may_be_large(file: Path) -> bool:
     try:
-        parts = [one for file in files for one in (file.iterdir() if file.is_dir() else [file])]
+        parts = [*file.iterdir()] if file.is_dir() else [file]
         return sum(one.stat().st_size for one in parts) > _SMALL
     except OSError:
         return False  # the reader tells better

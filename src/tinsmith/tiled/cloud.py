@@ -507,19 +507,22 @@ class TiledPoints:
     def volume(
         self,
         path: str | os.PathLike[str],
+        other: TIN | TiledPoints | None = None,
         *,
-        base: Any,
+        base: Any = None,
         regions: Any = None,
         format: str | None = None,  # noqa: A002 - as in write
         write: Mapping[str, Any] | None = None,
         **way: Unpack[Way],
     ) -> Path:
-        """Write cut and fill to a level or plane, as :func:`tinsmith.volume` of the whole surface.
+        """Write cut and fill to another surface or a base, as :func:`tinsmith.volume` of the whole.
 
         Parameters
         ----------
         path, format, write, **way
             As of :meth:`rasterize`.
+        other : TIN or TiledPoints, optional
+            Another surface, in memory or in files.
         base, regions
             As of :func:`tinsmith.volume`.
 
@@ -543,7 +546,7 @@ class TiledPoints:
         ...     cloud.volume(Path(folder, "volume.json"), base=5.0, workers=1).name
         'volume.json'
         """
-        asked = {"base": base, "regions": regions, "crs": self.crs}
+        asked = {"base": base, "other": other, "regions": regions, "crs": self.crs}
         return self._write("volume", asked, path, (format, write), way)
 
     def profile(

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, replace
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .. import __version__
 from ..base.atomic import make_folder, replacing, require_writable
-from ..base.errors import ReadError, WriteError
+from ..base.errors import OptionError, ReadError, WriteError
 from ..base.types import Bounds
 from ..terrain.ground_filter import ATTRIBUTES
 from .division import Tile, divide
@@ -26,9 +26,12 @@ from .tasks import PHASE, TileJob, compute_tile, divide_job
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ..tin.building import BuildInputs
     from .cloud import TiledPoints
     from .how import How
+    from .lines import GivenLines
     from .products.ground import GroundTiles
+    from .workers import Phase
 
 __all__ = ["computing", "labelling"]
 
@@ -36,6 +39,8 @@ _LATTICE = 1024
 """Rows and columns of the cells in which points are counted before tiles are cut."""
 _SUFFIX = ".run"
 _POINTS = "points"
+_OTHERS = "others"
+"""Folder of the points of another surface."""
 _TILES = "tiles.json"
 
 
@@ -65,41 +70,33 @@ def computing(
         require_writable(output)
     module = import_module(f"{__package__}.products.{product}")
     options = module.check_options(**asked)
-    given = cloud.lines
-    inputs = None
-    if given is not None:
-        inputs = given.gather(duplicates=cloud.duplicates, crossing=cloud.crossing)
-    manifest = options
-    line_files: Sequence[Fingerprint] = ()
-    if given is not None and inputs is not None:
-        given.require_same()
-        manifest, line_files = {**options, **describe_lines(inputs)}, given.files
-    sources = [Fingerprint.take(file) for file in cloud.files]
+    lines = None if cloud.lines is None else _Lines.of(cloud.lines, cloud)
+    sources = _look_at(cloud)
     run = Run(how.run or output.with_name(output.name + _SUFFIX))
-    points_run = Run(cloud.store or run.folder / _POINTS)
-    with (
-        run.opened(
-            _describe(cloud, product, manifest, [*sources, *line_files]), restart=how.restart
-        ),
-        points_run.opened(_describe(cloud, _POINTS, {}, sources), restart=how.restart),
-    ):
+    clouds = {_POINTS: cloud}
+    if hasattr(asked.get("other"), "headers"):
+        clouds[_OTHERS] = asked["other"]
+    with ExitStack() as stack:
+        told, line_files = ({}, ()) if lines is None else (lines.told, lines.given.files)
+        manifest = _describe(cloud, product, {**options, **told}, [*sources, *line_files])
+        if _OTHERS in clouds:
+            other = clouds[_OTHERS]
+            manifest[_OTHERS] = _describe(other, _POINTS, {}, _look_at(other))
+        stack.enter_context(run.opened(manifest, restart=how.restart))
         with how.started() as start:
-            points = read_inputs(
-                points_run,
-                sources,
-                start("Reading"),
-                options=cloud.options,
-                where=cloud.where,
-                candidates=cloud.candidates,
-            )
-            points = replace(points, is_raster=cloud.is_raster)
+            stored = [
+                stack.enter_context(_reading(one, run.folder / name, start("Reading"), how))
+                for name, one in clouds.items()
+            ]
+            points = stored[0]
             tiles = _find_tiles(run, points, how)
-            if given is not None and inputs is not None:
-                points = prepare_lines(run, points, given, inputs, start("Looking for lines"))
-            settled = module.settle_options(points, _store(options, run))
+            if lines is not None and lines.inputs is not None:
+                step = start("Looking for lines")
+                points = prepare_lines(run, points, lines.given, lines.inputs, step)
+            settled = module.settle_options(points, _store(options, run), *stored[1:])
             job = TileJob(
                 run.folder,
-                points_run.folder,
+                points.folder,
                 tiles[0],
                 product,
                 settled,
@@ -110,7 +107,9 @@ def computing(
             step = start("Triangulating")
             records = step.run(run, PHASE, compute_tile, jobs, divide=divide_job)
             if hasattr(module, "list_file_jobs"):
-                file_jobs = module.list_file_jobs(run, points_run, cloud.options, settled, records)
+                file_jobs = module.list_file_jobs(
+                    run, Run(points.folder), cloud.options, settled, records
+                )
                 records = start("Writing").run(run, module.FILES, module.write_file, file_jobs)
         arrays = {name: value for name, value in options.items() if isinstance(value, Given)}
         yield module.join(points, {**settled, **arrays}, records, run.folder)
@@ -143,7 +142,9 @@ def labelling(cloud: TiledPoints, folder: Path, how: How, **asked: Any) -> Itera
                 "as classes of such.",
                 path=header.path,
             )
-    inputs = {file.resolve(): file for file in cloud.files}
+    if cloud.lines is not None:
+        raise OptionError("lines", cloud.lines, "none where points are classified")
+    inputs = {file.resolve() for file in cloud.files}
     for name in name_files(list(cloud.files)):
         if (folder / name).resolve() in inputs:
             raise WriteError(
@@ -160,6 +161,43 @@ def labelling(cloud: TiledPoints, folder: Path, how: How, **asked: Any) -> Itera
         chosen, "ground", folder / f"{folder.absolute().name}.vpc", how, **asked
     ) as made:
         yield made
+
+
+class _Lines(NamedTuple):
+    """The lines of a surface, checked, and what the manifest tells of them."""
+
+    given: GivenLines
+    inputs: BuildInputs | None
+    told: Mapping[str, Any]
+
+    @classmethod
+    def of(cls, given: GivenLines, cloud: TiledPoints) -> _Lines:
+        inputs = given.gather(duplicates=cloud.duplicates, crossing=cloud.crossing)
+        if inputs is None:
+            return cls(replace(given, files=()), None, {})
+        given.require_same()
+        return cls(given, inputs, describe_lines(inputs))
+
+
+def _look_at(cloud: TiledPoints) -> list[Fingerprint]:
+    return [Fingerprint.take(file) for file in cloud.files]
+
+
+@contextmanager
+def _reading(cloud: TiledPoints, folder: Path, phase: Phase, how: How) -> Iterator[StoredPoints]:
+    """Read the points of files that are not read yet, and yield them; their folder is held."""
+    sources = _look_at(cloud)
+    run = Run(cloud.store or folder)
+    with run.opened(_describe(cloud, _POINTS, {}, sources), restart=how.restart):
+        points = read_inputs(
+            run,
+            sources,
+            phase,
+            options=cloud.options,
+            where=cloud.where,
+            candidates=cloud.candidates,
+        )
+        yield replace(points, is_raster=cloud.is_raster)
 
 
 def _describe(

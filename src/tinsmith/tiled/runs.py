@@ -291,6 +291,8 @@ def _list_differences(found: Mapping[str, Any], wanted: Mapping[str, Any]) -> It
         if old.get(name) != new.get(name):
             yield f"`{name}` was {old.get(name)!r}, and is {new.get(name)!r}"
     yield from _list_changed(found.get("inputs", []), wanted["inputs"])
+    if found.get("others") != wanted.get("others"):
+        yield "the other surface has changed"
 
 
 def _list_changed(old: Sequence[Mapping[str, Any]], new: Sequence[Mapping[str, Any]]) -> list[str]:

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from .store import PointStore
 
 __all__ = [
+    "HALO",
     "PHASE",
     "Part",
     "TileJob",
@@ -44,7 +45,7 @@ __all__ = [
 ]
 
 PHASE = "tiles"
-_HALO = 10.0
+HALO = 10.0
 """Mean distances between points that are read around a box at once: more does not settle more
 triangles (their circles leave any margin where points are sparse), less leads to more questions."""
 
@@ -130,7 +131,7 @@ class Part(NamedTuple):
         width = min(tile.box.xmax, bounds.xmax) - max(tile.box.xmin, bounds.xmin)
         height = min(tile.box.ymax, bounds.ymax) - max(tile.box.ymin, bounds.ymin)
         area = max(width, 0.0) * max(height, 0.0)
-        return _HALO * math.sqrt(area / max(tile.count, 1))
+        return HALO * math.sqrt(area / max(tile.count, 1))
 
 
 def save_arrays(part: Part, **arrays: AnyArray) -> list[str]:

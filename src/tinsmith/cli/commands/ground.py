@@ -71,7 +71,8 @@ def ground(points: tuple[Path, ...], job: Job, **options: Any) -> None:
 
     given = {name: options[name] for name in _PARAMETERS.split()}
     given["returns"] = "all" if options["any_return"] else "last"
-    whole = "--as-points" if options["as_points"] else ""
+    lines = next((flag for flag, files in job.building.line_files.items() if files), "")
+    whole = "--as-points" if options["as_points"] else lines
     cloud = choose_tiles(job, *points, whole=whole, joins=True)
     if cloud is not None:
         more = {"reach": options["reach"], "ground_only": options["ground_only"]}

@@ -13,7 +13,14 @@ from ..output.counts import mesh_counts
 from ..output.facts import Facts, list_rows, name_units
 from ..parameters import file_option, number_option, output_option
 from ..paths import INPUT, make_title
-from ..tiling import choose_tiles, compute_tiles, describe_points, tell_plan, tiled_options
+from ..tiling import (
+    choose_other,
+    choose_tiles,
+    compute_tiles,
+    describe_points,
+    tell_plan,
+    tiled_options,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,9 +79,9 @@ def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any
     planned = job.plan(inputs, *kinds)
     held = [kind for kind in ("Features", "picture") if planned.holds(kind)]
     whole = "--stage-storage" if asked["stage_storage"] else "a map" if held else ""
-    cloud = choose_tiles(job, *files, whole=whole)
+    cloud = choose_tiles(job, files[0], whole=whole, others=files[1:])
     if cloud is not None:
-        _measure_tiles(cloud, planned, regions, asked["base"], job)
+        _measure_tiles(cloud, planned, files, {"regions": regions, "base": asked["base"]}, job)
         return
     surfaces = job.read_tins(files)
     chosen = None if regions is None else job.read_features(regions, surfaces[0])
@@ -98,17 +105,23 @@ def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any
 
 
 def _measure_tiles(
-    cloud: TiledPoints, planned: Products, regions: Path | None, base: float, job: Job
+    cloud: TiledPoints, planned: Products, files: Sequence[Path], asked: dict[str, Any], job: Job
 ) -> None:
-    """Write the volumes of tiles to a level, or tell what would be done."""
+    """Write the volumes of tiles to a level or a design, or tell what would be done."""
     if job.tiling.plan:
-        tell_plan(cloud, job, cloud.files[0])
+        tell_plan(cloud, job, files[0])
         return
-    chosen = None if regions is None else job.read_features(regions, cloud)
-    given = {"base": base, "regions": chosen, "crs": cloud.crs}
+    chosen = None if asked["regions"] is None else job.read_features(asked["regions"], cloud)
+    rows: list[Row] = [("Ground", describe_points(cloud))]
+    other: Any = None
+    if len(files) == 2:
+        design = choose_other(job, files[1])
+        other = job.read_tin(files[1]) if design is None else design
+        rows.append(("Design", mesh_counts(other) if design is None else describe_points(design)))
+    given = {"base": asked["base"], "other": other, "regions": chosen, "crs": cloud.crs}
     with compute_tiles(cloud, "volume", planned, job, **given) as table:
         planned.write("Table", table)
-    job.finish(planned, _list_facts(cloud.files, table, [("Ground", describe_points(cloud))]))
+    job.finish(planned, _list_facts(files, table, rows))
 
 
 def _list_facts(files: Sequence[Path], table: Table, counts: list[Row]) -> Facts:

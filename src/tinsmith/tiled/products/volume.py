@@ -1,23 +1,33 @@
-"""Volumes to a level or plane: each tile sums its triangles exactly, and sums are added exactly."""
+"""Volumes: each tile sums its triangles exactly, and sums are added exactly."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ...base.checks import require_tin
 from ...base.crs import CRS, Unit
+from ...base.errors import OptionError
 from ...terrain.earthwork import as_plane, as_regions
 from ...terrain.parts import volumes
-from ...terrain.surface import Pieces, Surface, make_reference
-from ..tasks import load_arrays, save_arrays
+from ...terrain.surface import Pieces, Reference, Surface, agree_on_reference, make_reference
+from ...tin.tiling import find_triangles_at, triangulate_box, widen
+from ..cloud import TiledPoints
+from ..given import Given, load_given
+from ..reading import open_store
+from ..tasks import HALO, load_arrays, save_arrays
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from pathlib import Path
 
     from ...base.results import Table
+    from ...base.types import Bounds
+    from ...tin import TIN
+    from ...tin.tiling import LocalTriangulation
     from ..reading import StoredPoints
     from ..runs import Record
     from ..tasks import Part
@@ -25,16 +35,54 @@ if TYPE_CHECKING:
 __all__ = ["check_options", "compute", "join", "settle_options"]
 
 _PURPOSE = "Volumes"
+_OTHER = "other"
+"""Option and folder of another surface that is in memory."""
 
 
-def check_options(*, base: Any, regions: Any = None, crs: CRS | None = None) -> dict[str, Any]:
-    """Return plain options, or refuse what is none."""
-    as_plane(base)
-    plain = np.asarray(base, np.float64).tolist()
-    if regions is None:
-        return {"base": plain, "regions": None}
-    names, pieces, notes = as_regions(regions, crs)
-    return {"base": plain, "regions": _list_regions(tuple(names), pieces), "notes": list(notes)}
+class _Referenced(NamedTuple):
+    crs: CRS | None
+    elevation_unit: Unit | None
+
+
+def check_options(
+    *,
+    base: Any = None,
+    other: TIN | TiledPoints | None = None,
+    regions: Any = None,
+    crs: CRS | None = None,
+) -> dict[str, Any]:
+    """Return options, or refuse what is none."""
+    if (other is None) == (base is None):
+        given = "neither" if other is None else "both"
+        raise OptionError("base", given, "a level, a plane, or another surface, one of them")
+    found: dict[str, Any] = {"base": None, "regions": None}
+    if base is not None:
+        as_plane(base)
+        found["base"] = np.asarray(base, np.float64).tolist()
+    elif isinstance(other, TiledPoints):
+        if other.lines is not None:
+            raise OptionError("other", other, "points without lines, where it is in many files")
+        found["other_duplicates"] = other.duplicates
+    else:
+        found |= _keep_surface(other)
+    if regions is not None:
+        names, pieces, notes = as_regions(regions, crs)
+        found |= {"regions": _list_regions(tuple(names), pieces), "notes": list(notes)}
+    return found
+
+
+def _keep_surface(other: Any) -> dict[str, Any]:
+    """Return a surface in memory as options."""
+    require_tin(other)
+    surface, unit = other.snapshot().triangulation, other.elevation_unit
+    if unit is not None and not unit.text:
+        raise OptionError("elevation_unit", unit, "a unit with a name by which tiles find it again")
+    return {
+        _OTHER: Given(points=surface.points, triangles=surface.triangles),
+        "other_crs": None if other.crs is None else str(other.crs),
+        "other_unit": None if unit is None else unit.text,
+        "other_notes": list(other.notes),
+    }
 
 
 def _list_regions(names: tuple[str, ...], pieces: Pieces) -> dict[str, Any]:
@@ -46,14 +94,36 @@ def _list_regions(names: tuple[str, ...], pieces: Pieces) -> dict[str, Any]:
     }
 
 
-def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Add the units of all points."""
-    crs, unit = points.crs, points.elevation_unit
-    make_reference(crs, unit, _PURPOSE)
+def settle_options(
+    points: StoredPoints, options: Mapping[str, Any], other: StoredPoints | None = None
+) -> dict[str, Any]:
+    """Add the units of all points, and where those of the other surface are."""
+    more: dict[str, Any] = {}
+    factors: tuple[float, ...] = (1.0, 1.0)
+    if options["base"] is not None:
+        reference = make_reference(points.crs, points.elevation_unit, _PURPOSE)
+    else:
+        second: Any = other
+        if other is None:
+            own = Unit.of(options["other_unit"] or None)
+            second = _Referenced(CRS.of(options["other_crs"]), own)
+        reference, factors = agree_on_reference(points, second, _PURPOSE)
+    if other is not None:
+        box = other.bounds
+        more = {
+            "other_points": str(other.folder),
+            "other_halo": HALO * math.sqrt(box.width * box.height / other.count),
+            "other_notes": list(other.notes),
+        }
+    unit = reference.elevation_unit
     return {
         **options,
-        "crs": None if crs is None else str(crs),
+        **more,
+        "crs": None if reference.crs is None else str(reference.crs),
         "elevation_unit": None if unit is None else unit.text,
+        "up": reference.up,
+        "reference_notes": list(reference.notes),
+        "scales": list(factors),
     }
 
 
@@ -65,19 +135,40 @@ def _make_options(options: Mapping[str, Any]) -> volumes.VolumeOptions:
             np.array(given["points"], np.float64), np.array(given["triangles"], np.int32)
         )
         names, pieces = tuple(given["names"]), Pieces(surface, np.array(given["groups"], np.int32))
-    return volumes.VolumeOptions(
-        make_reference(crs, unit, _PURPOSE), as_plane(options["base"]), names, pieces
-    )
+    plane = None if options["base"] is None else as_plane(options["base"])
+    reference = Reference(crs, unit, options["up"], tuple(options["reference_notes"]))
+    first, second = options["scales"]
+    return volumes.VolumeOptions(reference, plane, names, pieces, (first, second))
 
 
 def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     """Sum the triangles of a tile."""
-    box = part.job.tile.box
+    box, options = part.job.tile.box, part.job.options
     local = part.triangulate(box, ordered=False)
-    if not len(local.triangles):
+    other = None
+    if options["base"] is None:
+        other = _find_other(part, volumes.find_reach(local, box))
+    count = len(local.points) + (0 if other is None else len(other.triangles))
+    if not count:
         return 0, {}, []
-    found = volumes.compute_part(local, box, _make_options(part.job.options))
-    return len(local.points), {}, save_arrays(part, **found._asdict())
+    found = volumes.compute_part(local, box, _make_options(options), other)
+    return count, {}, save_arrays(part, **found._asdict())
+
+
+def _find_other(part: Part, box: Bounds) -> Surface | LocalTriangulation:
+    """Return the triangles of the other surface that meet a box."""
+    job = part.job
+    if "other_points" in job.options:
+        return triangulate_box(
+            open_store(Path(job.options["other_points"])),
+            box,
+            around=widen(box, job.options["other_halo"]),
+            duplicates=job.options["other_duplicates"],
+            ordered=False,
+        )
+    given: Any = load_given(job.folder / _OTHER, job.options[_OTHER])
+    chosen = find_triangles_at(given["points"], given["triangles"], box)
+    return Surface(given["points"], np.ascontiguousarray(given["triangles"][chosen]))
 
 
 def join(
@@ -90,4 +181,5 @@ def join(
         if record.files
     )
     made = volumes.join(parts, _make_options(options))
-    return replace(made, notes=[*points.notes, *options.get("notes", ()), *made.notes])
+    others = [f"The other surface: {note}" for note in options.get("other_notes", ())]
+    return replace(made, notes=[*points.notes, *others, *options.get("notes", ()), *made.notes])
