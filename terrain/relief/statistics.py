@@ -16,12 +16,15 @@ from ..surface import compute_normals, measure_slopes
 from .moments import list_terms, summarise
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import ArrayLike
 
     from ...base.arrays import Float64Array
+    from ...base.georeference import Referenced
     from ...tin import TIN
 
-__all__ = ["SYMBOLS", "find_weighted_percentiles", "slope_statistics"]
+__all__ = ["SYMBOLS", "as_table", "find_weighted_percentiles", "slope_statistics"]
 
 SYMBOLS = {"degrees": "°", "percent": "%", "ratio": ""}
 """What stands behind a slope; nothing for a ratio."""
@@ -71,6 +74,7 @@ def slope_statistics(
     values, weights = measure_slopes(normals, unit), 0.5 * normals[:, 2]
     area, mean, deviation = summarise(list_terms(values, weights))
     measured = {
+        "area": area,
         "minimum": values.min(),
         "mean": mean,
         "standard deviation": deviation,
@@ -78,12 +82,17 @@ def slope_statistics(
     }
     found = find_weighted_percentiles(values, weights, shares)
     measured |= {f"p{share:g}": value for share, value in zip(shares, found, strict=True)}
-    symbol = SYMBOLS[unit] or "ratio"
+    return as_table(measured, unit, tin)
+
+
+def as_table(measured: Mapping[str, float], unit: SlopeUnit, surface: Referenced) -> Table:
+    """Return the area and slopes of a surface as a table of one row."""
+    symbols = dict.fromkeys(measured, SYMBOLS[unit] or "ratio")
     return Table(
-        {name: np.array([value]) for name, value in {"area": area, **measured}.items()},
-        units={"area": find_plane_units(tin.crs).area, **dict.fromkeys(measured, symbol)},
+        {name: np.array([value]) for name, value in measured.items()},
+        units={**symbols, "area": find_plane_units(surface.crs).area},
         name="slope_statistics",
-        notes=describe_unknown(tin.crs, tin.elevation_unit),
+        notes=describe_unknown(surface.crs, surface.elevation_unit),
     )
 
 

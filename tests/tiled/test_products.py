@@ -135,6 +135,15 @@ def test_volumes_to_a_surface_of_another_crs_are_refused(cloud, design, tmp_path
         cloud.volume(tmp_path / "a.csv", "design.ply", executor=Shuffled())
 
 
+@pytest.mark.parametrize("unit", ["degrees", "percent", "ratio"])
+def test_statistics_of_slopes(cloud, tin, tmp_path, unit):
+    def make(path, **way):
+        return cloud.slope_statistics(path, unit=unit, **way)
+
+    wanted = ts.slope_statistics(tin, unit=unit, percentiles=[])
+    require_same_files(tmp_path, ".csv", wanted, make)
+
+
 def test_profiles(cloud, tin, tmp_path):
     def make(path, **way):
         return cloud.profile(path, LINE, interval=10.0, start=5.0, **way)
@@ -309,6 +318,7 @@ def test_tiles_are_proven_and_mapped(cloud, tin, tmp_path):
         ("profile", {"line": LINE, "interval": 0.0}),
         ("interpolate", {"places": [[0.0, 0.0, 0.0]]}),
         ("drape", {"features": [[0.0, 0.0]]}),
+        ("slope_statistics", {"unit": "grads"}),
         ("drape", {"features": LINE, "outside": "away"}),
     ],
 )

@@ -20,6 +20,7 @@ from ..base.policies import (
     OutsidePolicy,
     RasterSample,
     RasterValue,
+    SlopeUnit,
 )
 from ..base.sentences import counted
 from ..io.reading import list_files
@@ -591,6 +592,49 @@ class TiledPoints:
         """
         asked = {"line": line, "interval": interval, "start": start}
         return self._write("profile", asked, path, (format, write), way)
+
+    def slope_statistics(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        unit: SlopeUnit = "degrees",
+        format: str | None = None,  # noqa: A002 - as in write
+        write: Mapping[str, Any] | None = None,
+        **way: Unpack[Way],
+    ) -> Path:
+        """Write the mean slope and its like, as :func:`tinsmith.slope_statistics`.
+
+        There are no percentiles, for which the slopes of all triangles are needed in order.
+
+        Parameters
+        ----------
+        path, format, write, **way
+            As of :meth:`rasterize`.
+        unit
+            As of :func:`tinsmith.slope_statistics`.
+
+        Returns
+        -------
+        Path
+            A table of ``area``, ``minimum``, ``mean``, ``standard deviation`` and ``maximum``.
+
+        Raises
+        ------
+        ReadError, WriteError
+            As :meth:`rasterize`.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+        >>> with TemporaryDirectory() as folder:
+        ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")))
+        ...     cloud.slope_statistics(Path(folder, "slopes.csv"), workers=1).name
+        'slopes.csv'
+        """
+        return self._write("slopes", {"unit": unit}, path, (format, write), way)
 
     def drape(
         self,
