@@ -6,3 +6,7 @@ and options, and ``join``, which makes the product of what it returned for boxes
 plane. It equals the product of the whole surface to the last bit, whatever the boxes are and in
 whatever order their parts are computed.
 """
+
+from .surfaces import are_owned, as_surface
+
+__all__ = ["are_owned", "as_surface"]

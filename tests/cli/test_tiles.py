@@ -34,7 +34,7 @@ WHOLE = {
 }
 """Further options that need all points at a time."""
 
-OF_FOLDERS = {"ground"}
+OF_FOLDERS = {"build", "ground"}
 """Commands whose tiles are a folder of files, which memory makes no other way."""
 
 
@@ -254,3 +254,37 @@ def test_volumes_to_a_design_are_those_in_memory(is_folder, lidar, here, tmp_pat
     assert (here / "tiled.csv").read_bytes() == (here / "whole.csv").read_bytes()
     assert json.loads(tiled.stdout)["rows"] == json.loads(whole.stdout)["rows"]
     assert len([*here.iterdir()]) == 2
+
+
+@pytest.mark.filterwarnings("ignore:The elevations are not known above")
+@pytest.mark.parametrize(
+    ("words", "index"), [([], "surface.json"), (["--output-format", "3dtiles"], "tileset.json")]
+)
+def test_surfaces_become_folders(words, index, lidar, here):
+    options = [lidar, "--classes", "2", "-o", "made", "--tiles", "3", "--workers", "2"]
+    done = run("build", *options, *words, "--json", "-q")
+    assert done.exit_code == 0, done.output
+    assert [one.name for one in here.iterdir()] == ["made"]
+    assert (here / "made" / index).is_file()
+    assert json.loads(done.stdout)["outputs"] == ["made"]
+    done = run("build", *options, *words, "--plan", "--json")
+    assert json.loads(done.stdout)["points"] == 6_000
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["-o", "out.ply"],
+        ["-o", "made", "--output-format", "obj"],
+        ["-o", "made", "--max-edge", "9"],
+        ["-o", "made", "--report", "report.json"],
+        ["-o", "made", "--from-contours"],
+        ["-o", "made", "-o", "other"],
+        [],
+    ],
+)
+def test_surfaces_that_cannot_be_folders_of_tiles_are_refused(words, lidar, here):
+    done = run("build", lidar, "--classes", "2", "--tiles", "3", *words)
+    assert done.exit_code in (1, 2), done.output
+    assert done.exception is None or isinstance(done.exception, SystemExit)
+    assert list(here.iterdir()) == []

@@ -42,6 +42,7 @@ __all__ = [
     "are_straight",
     "find_rounding",
     "insert_until_near",
+    "simplify_convex",
     "simplify_tin",
 ]
 
@@ -385,3 +386,63 @@ def _describe_overlap() -> PointsError:
         "The TIN cannot be simplified: parts of its boundary or of its lines overlap, or lie "
         "nearer to each other than coordinates are rounded."
     )
+
+
+def simplify_convex(
+    tin: TIN, required: Int64Array, barred: BoolArray, tolerance: float
+) -> tuple[Int64Array, Int32Array, float]:
+    """Return few vertices of a TIN that is convex but for rounding, and their triangulation.
+
+    Parameters
+    ----------
+    tin : TIN
+    required : (k,) int64 array
+        Vertices that stay, ascending; corners of the boundary do as well.
+    barred : (n,) bool array
+        Vertices on the boundary that are not to be among them, unless they are required: the
+        required ones hold them within the tolerance.
+    tolerance : float
+        Within which all vertices are held, and what lies between them as far as vertices can.
+
+    Returns
+    -------
+    rows : (n,) int64 array
+        Vertices of the TIN, ascending.
+    triangles : (m, 3) int32 array
+        The Delaunay triangulation of these, by their places among the rows.
+    error : float
+        The largest vertical difference of the two surfaces anywhere.
+    """
+    corners = [ring[~are_straight(tin.points[ring])] for ring in tin.rings]
+    required = np.unique(np.concatenate([required, *corners]))
+    points, rounding = np.ascontiguousarray(tin.points), find_rounding(tin.points[:, 2])
+    first = _kernel.grow(points[required], threads=1)
+    base = np.ascontiguousarray(points[required])
+    locator = _kernel.Locator(base, first.triangles, first.neighbors)
+    found, _ = _kernel.simplify(
+        points,
+        required.astype(np.int32),
+        locator.locate(np.ascontiguousarray(points[:, :2])),
+        base,
+        first.triangles,
+        first.neighbors,
+        first.neighbors == topology.NO_NEIGHBOR,
+        tolerance + rounding,
+        _kernel.MOST_POINTS,
+        True,
+    )
+    meter, is_barred = SurfaceMeter(tin), np.append(barred, True)
+    rows: Int64Array = np.sort(found).astype(np.int64)
+    while True:
+        made = _kernel.grow(np.ascontiguousarray(points[rows]), threads=1)
+        rough = TIN.from_triangles(points[rows], made.triangles)
+        error = np.abs(rough.interpolate(points[:, :2]) - points[:, 2])
+        edges = rows[topology.edges(made.triangles, made.neighbors)]
+        is_left = is_barred.copy()
+        is_left[rows] = True
+        beyond = meter.measure(edges, is_left, tolerance + rounding)
+        far = np.flatnonzero(~(error <= tolerance + rounding))
+        more = np.union1d(far, beyond.rows)
+        if not len(more):
+            return rows, made.triangles, max(float(error.max()), beyond.largest) + rounding
+        rows = np.union1d(rows, more)

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from ....tin import TIN
     from ..texture import Texture
 
-__all__ = ["write"]
+__all__ = ["MeshArrays", "choose_colors", "encode_glb", "turn_up", "write"]
 
 _MAGIC, _VERSION = 0x46546C67, 2
 _JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
@@ -55,14 +55,14 @@ _LARGEST_FILE = 2**32 - 1
 _GENERATOR = "tinsmith"
 
 
-class _Mesh(NamedTuple):
+class MeshArrays(NamedTuple):
     """What the file holds, in its own axes."""
 
     positions: Float32Array
-    normals: Float32Array
+    normals: Float32Array | None
     triangles: AnyArray
     colors: UInt16Array | None
-    texture: Texture | None
+    texture: Texture | None = None
 
 
 def write(
@@ -112,19 +112,38 @@ def write(
     origin = np.floor(tin.points.min(axis=0))
     scale = _choose_scale(tin) * (1.0, 1.0, exaggeration)
     mesh = _make_mesh(tin, origin, scale, draped)
-    node = {"translation": _turn_up((origin * scale)[None])[0].tolist(), "extras": _describe(
+    node = {"translation": turn_up((origin * scale)[None])[0].tolist(), "extras": _describe(
         tin, origin, scale, exaggeration)}  # fmt: skip
+    content = encode_glb(mesh, node)
+    with replacing(path) as file:
+        for chunk in content:
+            file.write(chunk)
+    if progress is not None:
+        progress(1.0)
+
+
+def encode_glb(mesh: MeshArrays, node: dict[str, Any]) -> list[bytes]:
+    """Return the parts of a file, one after the other.
+
+    Parameters
+    ----------
+    mesh : MeshArrays
+    node : dict
+        Properties of the node that has the mesh, such as its ``translation``.
+
+    Raises
+    ------
+    WriteError
+        If the file would be larger than 4 GiB.
+    """
     chunks = _pack(mesh, node)
     length = 12 + sum(8 + len(chunk) for _, chunk in chunks)
     if length > _LARGEST_FILE:
         raise WriteError(f"Cannot write {FILE}: GLB ends at 4 GiB.")
-    with replacing(path) as file:
-        file.write(struct.pack("<III", _MAGIC, _VERSION, length))
-        for kind, chunk in chunks:
-            file.write(struct.pack("<II", len(chunk), kind))
-            file.write(chunk)
-    if progress is not None:
-        progress(1.0)
+    parts = [struct.pack("<III", _MAGIC, _VERSION, length)]
+    for kind, chunk in chunks:
+        parts += [struct.pack("<II", len(chunk), kind), chunk]
+    return parts
 
 
 def _choose_scale(tin: TIN) -> Float64Array:
@@ -136,16 +155,16 @@ def _choose_scale(tin: TIN) -> Float64Array:
     return np.array([along, along, along if unit is None else unit.metres or along])
 
 
-def _turn_up(vectors: Float64Array) -> Float64Array:
+def turn_up(vectors: Float64Array) -> Float64Array:
     """Turn easting, northing, elevation to the axes of glTF: X, Y up, Z towards the viewer."""
     return np.column_stack([vectors[:, 0], vectors[:, 2], -vectors[:, 1]]) + 0.0
 
 
 def _make_mesh(
     tin: TIN, origin: Float64Array, scale: Float64Array, texture: Texture | None
-) -> _Mesh:
+) -> MeshArrays:
     every = (tin.points - origin) * scale
-    positions = _turn_up(every).astype(np.float32)
+    positions = turn_up(every).astype(np.float32)
     triangles = tin.triangles
     if not np.isfinite(positions[triangles]).all():
         raise WriteError(f"Cannot write {FILE}: the TIN is too large for float32.")
@@ -165,28 +184,28 @@ def _make_mesh(
     number = np.zeros(len(tin.points), np.int32)
     number[used] = np.arange(len(used), dtype=np.int32)
     places, triangles = every[used], number[corners]
-    positions = _turn_up(places).astype(np.float32)
+    positions = turn_up(places).astype(np.float32)
     a, b, c = (places[triangles[:, k]] for k in range(3))
     faces = np.cross(b - a, c - a)
     sums = np.column_stack(
         [np.bincount(triangles.ravel(), np.repeat(axis, 3), len(places)) for axis in faces.T]
     )
-    normals = _turn_up(np.asarray(sums / np.linalg.norm(sums, axis=1, keepdims=True))).astype(
+    normals = turn_up(np.asarray(sums / np.linalg.norm(sums, axis=1, keepdims=True))).astype(
         np.float32
     )
     is_short = len(used) <= _MOST_SHORT_VERTICES
-    colors = _choose_colors(places[:, 2]) if texture is None else None
+    heights = places[:, 2]
+    colors = choose_colors(heights, heights.min(), heights.max()) if texture is None else None
     if texture is not None:
         texture = type(texture)(texture.content, texture.kind, texture.places[used])
-    return _Mesh(
+    return MeshArrays(
         positions, normals, triangles.astype(np.uint16 if is_short else np.uint32), colors, texture
     )
 
 
-def _choose_colors(elevations: Float64Array) -> UInt16Array:
-    """Return hypsometric tints as glTF has colours, in linear light."""
-    low, extent = elevations.min(), np.ptp(elevations)
-    share = (elevations - low) / (extent if extent > 0 else 1.0)
+def choose_colors(elevations: Float64Array, low: float, high: float) -> UInt16Array:
+    """Return hypsometric tints between two elevations, as glTF has colours, in linear light."""
+    share = np.clip((elevations - low) / (high - low if high > low else 1.0), 0.0, 1.0)
     encoded = interpolate_tints(256)[np.rint(share * 255).astype(np.int64)] / 255.0
     linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
     colors = np.full((len(elevations), 4), 65_535, np.uint16)
@@ -246,12 +265,13 @@ class _Buffer:
         return len(self.accessors) - 1
 
 
-def _pack(mesh: _Mesh, node: dict[str, Any]) -> list[tuple[int, bytes]]:
+def _pack(mesh: MeshArrays, node: dict[str, Any]) -> list[tuple[int, bytes]]:
     buffer = _Buffer()
     attributes = {
         "POSITION": buffer.add_array(mesh.positions, target=_ARRAY_BUFFER, has_bounds=True),
-        "NORMAL": buffer.add_array(mesh.normals, target=_ARRAY_BUFFER),
     }
+    if mesh.normals is not None:
+        attributes["NORMAL"] = buffer.add_array(mesh.normals, target=_ARRAY_BUFFER)
     surface: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 1.0}
     document: dict[str, Any] = {"asset": {"version": "2.0", "generator": _GENERATOR}}
     if mesh.colors is not None:

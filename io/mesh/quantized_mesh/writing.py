@@ -10,20 +10,18 @@ from __future__ import annotations
 
 import gzip
 import json
-import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ....base.atomic import replacing_folder
 from ....base.checks import as_flag, require_count
-from ....base.crs import CRS
 from ....base.errors import CrsError, WriteError
 from ....base.notes import warn
 from ....base.sentences import FILE
 from ....tin import TIN
-from ...reprojection.transformation import reproject
 from ..common import require_tin
+from ..globe import describe_heights, has_heights, place_on_globe
 from .levels import GridMesh, cut_along_grid, simplify
 from .tile import STEPS, Tile, TileName, encode_tile, to_cartesian
 
@@ -55,7 +53,6 @@ _SHARE_OF_ERROR = 0.25
 _FINEST_HEIGHT_STEP = 2.0**-10
 """Metres: about a millimetre; a power of two, so that float32 holds the heights of a header."""
 
-_ELLIPSOIDAL = "EPSG:4979"
 _CORNER = np.array([180.0, 90.0])
 """What makes longitude and latitude count from the south-west corner of all tiles."""
 
@@ -151,32 +148,12 @@ def _place(tin: TIN) -> TIN:
     used = np.unique(tin.triangles)
     number = np.zeros(len(tin.points), np.int64)
     number[used] = np.arange(len(used))
-    target = CRS(_ELLIPSOIDAL)
-    if tin.crs.vertical_unit is None or not _has_vertical_transformation(tin.crs):
-        warn(
-            f"The elevations are not known above the ellipsoid in {tin.crs.label}: they are "
-            "written as if they were, and differ by the height of the geoid, up to 110 m."
-        )
-        source, unit = tin.crs.horizontal, tin.elevation_unit or tin.crs.usual_elevation_unit
-    else:
-        source, unit = tin.crs, tin.elevation_unit
-    places = reproject(tin.points[used], source, target, unit=unit).points
+    if not has_heights(tin.crs):
+        warn(describe_heights(tin.crs))
+    places = place_on_globe(tin.points[used], tin.crs, tin.elevation_unit)
     if np.ptp(places[:, 0]) > 180.0:
         raise WriteError(f"Cannot write {FILE}: the surface crosses the antimeridian.")
     return TIN.from_triangles(places, number[tin.triangles])
-
-
-def _has_vertical_transformation(crs: CRS) -> bool:
-    """Whether PROJ knows the way to the ellipsoid, and has the grid that it needs."""
-    from pyproj.transformer import TransformerGroup
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # of a missing grid, which is told otherwise
-        group = TransformerGroup(crs.to_pyproj(), CRS(_ELLIPSOIDAL).to_pyproj(), always_xy=True)
-    if not group.transformers:
-        return False
-    chosen = group.transformers[0]
-    return "ballpark vertical" not in chosen.description.lower()
 
 
 def _choose_finest(placed: TIN) -> int:

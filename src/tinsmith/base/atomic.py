@@ -259,18 +259,7 @@ def replacing_folder(path: Path, *, marker: str) -> Iterator[Path]:
     kind of writer wrote it: of another one nothing is touched, and a WriteError is raised.
     """
     with _translate_faults(path):
-        target = _find_target(path)
-        _require_parent(path, target)
-        if target.exists() and not target.is_dir():
-            raise WriteError(
-                f"Cannot write '{path}': a file is there, and a folder is written.", path=path
-            )
-        if target.is_dir() and any(target.iterdir()) and not (target / marker).is_file():
-            raise WriteError(
-                f"Cannot write '{path}': the folder is not empty, and holds no {marker} of an "
-                "earlier one; name a new folder.",
-                path=path,
-            )
+        target = _find_folder(path, marker)
         fresh, old = _name_beside(target), _name_beside(target)
         try:
             fresh.mkdir()
@@ -286,3 +275,31 @@ def replacing_folder(path: Path, *, marker: str) -> Iterator[Path]:
         finally:
             shutil.rmtree(fresh, ignore_errors=True)
             shutil.rmtree(old, ignore_errors=True)
+
+
+def require_writable_folder(path: Path, *, marker: str) -> None:
+    """Raise a WriteError, before any work is done, where :func:`replacing_folder` would."""
+    with _translate_faults(path):
+        target = _find_folder(path, marker)
+        if not os.access(target.parent, os.W_OK | os.X_OK):
+            raise WriteError(
+                f"Cannot write '{path}': the folder '{path.parent}' may not be written to.",
+                path=path,
+            )
+
+
+def _find_folder(path: Path, marker: str) -> Path:
+    """Return the folder that is replaced, if it may be."""
+    target = _find_target(path)
+    _require_parent(path, target)
+    if target.exists() and not target.is_dir():
+        raise WriteError(
+            f"Cannot write '{path}': a file is there, and a folder is written.", path=path
+        )
+    if target.is_dir() and any(target.iterdir()) and not (target / marker).is_file():
+        raise WriteError(
+            f"Cannot write '{path}': the folder is not empty, and holds no {marker} of an "
+            "earlier one; name a new folder.",
+            path=path,
+        )
+    return target

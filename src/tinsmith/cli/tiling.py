@@ -14,7 +14,7 @@ from ..base.sentences import counted
 from .job import Job, surface_options
 from .options import CONSOLE, READING, TRIANGULATING, WRITING, Group
 from .output.facts import Facts
-from .output.failures import Failure
+from .output.failures import Failure, note_written
 from .parameters import number_option, under
 from .paths import STANDARD
 
@@ -235,9 +235,43 @@ def showing_tiles(job: Job) -> Iterator[How]:
     """Yield how a run is carried out, showing how far each step is."""
     from ..tiled.how import How
 
+    with showing_progress(job) as way:
+        yield How.of(**way)
+
+
+@contextmanager
+def showing_progress(job: Job) -> Iterator[dict[str, Any]]:
+    """Yield the same as options, checked by whom they are handed to."""
     shown = _Shown(job)
     with shown.stack:
-        yield How.of(**job.tiling.way, progress=shown.take)
+        yield {**job.tiling.way, "progress": shown.take}
+
+
+def write_folder(cloud: TiledPoints, job: Job) -> Path:
+    """Write the surface of tiles as a folder, and return it."""
+    from ..io import find_format
+    from ..tiled.products.pyramid import FORMATS
+
+    name = (job.writing.output_format or "").strip().lower()
+    if len(job.outputs) != 1 or job.outputs[0] == STANDARD or job.writing.options:
+        raise Failure(
+            "The surface of tiles is written as one folder of files: name it by -o, and its "
+            "format by --output-format."
+        )
+    (output,) = job.outputs
+    if output.suffix and not output.is_dir():
+        raise Failure(
+            f"The surface of tiles is written as a folder of files, and '{output}' is named like a "
+            "file: name a folder, and its format by --output-format."
+        )
+    with showing_progress(job) as way:
+        if name in FORMATS:
+            cloud.write(output, format=name, **way)
+        else:
+            chosen: dict[str, Any] = {"format": find_format(name, "write").name} if name else {}
+            cloud.build(output, **chosen, **way)
+    note_written(output)
+    return output
 
 
 class _Shown:

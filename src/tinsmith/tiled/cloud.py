@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from ..base.atomic import as_path
+from ..base.atomic import as_path, replacing_folder
 from ..base.checks import as_flag, is_finite_number
 from ..base.crs import CRS, Unit, shorten_crs
 from ..base.errors import OptionError, choice
@@ -735,6 +735,133 @@ class TiledPoints:
             )
             return write_file(table, output, format=format, **(write or {}))
 
+    def build(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        format: str = "ply",  # noqa: A002 - as in write
+        write: Mapping[str, Any] | None = None,
+        **way: Unpack[Way],
+    ) -> Path:
+        """Write the surface that :func:`tinsmith.triangulate` makes as a folder, a file a tile.
+
+        Each triangle is in one file. Vertices have the numbers that they have in memory: of PLY
+        and TIN files they are the attribute ``vertex``; of GeoParquet and FlatGeobuf, whose
+        triangles are polygons, the columns ``a``, ``b`` and ``c`` of the corners.
+        ``surface.json`` lists the files with their bounds, counts and hashes, and names CRS and
+        units.
+
+        Parameters
+        ----------
+        path : path-like
+            A new or empty folder, or one that this wrote, which is replaced.
+        format : {"ply", "tin", "geoparquet", "flatgeobuf"}
+        write : mapping, optional
+            Options of the writer.
+        **way
+            As of :meth:`rasterize`. Which triangles are in one file depends on it; the triangles,
+            and the numbers of vertices, do not.
+
+        Returns
+        -------
+        Path
+
+        Raises
+        ------
+        ReadError, WriteError
+            As :meth:`rasterize`.
+        OptionError
+            If the format cannot hold the numbers of vertices.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+        >>> with TemporaryDirectory() as folder:
+        ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")))
+        ...     made = cloud.build(Path(folder, "surface"), workers=1)
+        ...     sorted(file.name for file in made.iterdir())
+        ['0.ply', 'surface.json']
+        """
+        return self._write_folder("surface", {"format": format, "write": write}, path, way)
+
+    def write(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        format: str = "3dtiles",  # noqa: A002 - as in write
+        tolerance: float = 0.0,
+        node_points: int = 8_192,
+        **way: Unpack[Way],
+    ) -> Path:
+        """Write the surface at several scales for globes: 3D Tiles 1.1 with GLB contents.
+
+        The finest squares are the surface, cut along their sides; each other one is simplified
+        from the four below it. What is on a side of two squares of a level is the same in both:
+        there are no cracks within a level. The geometric error of a square is measured: its
+        largest vertical distance from the surface anywhere, and by how much the globe is curved
+        under its longest edge.
+
+        Parameters
+        ----------
+        path : path-like
+            A new or empty folder, or one that this wrote, which is replaced.
+        format : {"3dtiles"}
+        tolerance : float
+            Within which vertices of the surface are left out on the finest level already, in the
+            unit of elevations. Default none are.
+        node_points : int
+            Points of a square of the finest level, about.
+        **way
+            As of :meth:`rasterize`; the files have the same bytes for any of it.
+
+        Returns
+        -------
+        Path
+
+        Raises
+        ------
+        CrsError
+            If the CRS is not known.
+        ReadError, WriteError
+            As :meth:`rasterize`.
+        OptionError
+            If an option has a value that it cannot have.
+
+        Warns
+        -----
+        LossWarning
+            If elevations are not known above the ellipsoid, see ``notes`` in ``tileset.json``.
+
+        Notes
+        -----
+        Positions are float32 from the middle of each content, in steps of about 2^-22 of its width.
+
+        References
+        ----------
+        Open Geospatial Consortium, 3D Tiles Specification 1.1, OGC 22-025r4 (2023).
+
+        Examples
+        --------
+        >>> import warnings
+        >>> import tinsmith as ts
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+        >>> with TemporaryDirectory() as folder, warnings.catch_warnings():
+        ...     warnings.simplefilter("ignore", ts.LossWarning)
+        ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")), crs="EPSG:32616")
+        ...     made = cloud.write(Path(folder, "terrain"), workers=1)
+        ...     sorted(file.name for file in made.iterdir())
+        ['0', 'tileset.json']
+        """
+        if self.lines is not None:
+            raise OptionError("lines", self.lines, "none for 3D Tiles, which are of points alone")
+        asked = {"format": format, "tolerance": tolerance, "node_points": node_points}
+        return self._write_folder("pyramid", asked, path, way)
+
     def map(
         self, function: Callable[[TIN, Bounds], Any], *, run: str | os.PathLike[str], **way: Any
     ) -> list[Any]:
@@ -919,6 +1046,17 @@ class TiledPoints:
         name, options = writing
         with computing(self, product, output, How.of(**way), **asked) as made:
             return write_file(made, output, format=name, **(options or {}))
+
+    def _write_folder(
+        self, product: str, asked: Mapping[str, Any], path: str | os.PathLike[str], way: Way
+    ) -> Path:
+        output = as_path(path)
+        with (
+            computing(self, product, output, How.of(**way), **asked) as made,
+            replacing_folder(output, marker=made.index) as folder,
+        ):
+            made.write(folder)
+        return output
 
 
 def _list_files(paths: Any, name: str | None) -> list[Path]:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, replace
+from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .. import __version__
-from ..base.atomic import make_folder, replacing, require_writable
+from ..base.atomic import make_folder, replacing, require_writable, require_writable_folder
 from ..base.errors import OptionError, ReadError, WriteError
 from ..base.types import Bounds
 from ..terrain.ground_filter import ATTRIBUTES
@@ -63,12 +64,14 @@ def computing(
 
     Yields
     ------
-    Features, Raster or Table
+    Features, Raster, Table, or what a product writes a folder of
         Whose blocks may lie in the folder of the run, which is removed at the end.
     """
-    if output != how.run:
-        require_writable(output)
     module = import_module(f"{__package__}.products.{product}")
+    if hasattr(module, "INDEX"):  # by which a folder that it wrote is known
+        require_writable_folder(output, marker=module.INDEX)
+    elif output != how.run:
+        require_writable(output)
     options = module.check_options(**asked)
     lines = None if cloud.lines is None else _Lines.of(cloud.lines, cloud)
     sources = _look_at(cloud)
@@ -89,11 +92,13 @@ def computing(
                 for name, one in clouds.items()
             ]
             points = stored[0]
-            tiles = _find_tiles(run, points, how)
             if lines is not None and lines.inputs is not None:
                 step = start("Looking for lines")
                 points = prepare_lines(run, points, lines.given, lines.inputs, step)
             settled = module.settle_options(points, _store(options, run), *stored[1:])
+            own = getattr(module, "divide_points", None)
+            cut = divide if own is None else partial(own, settled)
+            tiles = _find_tiles(run, stored[0], how, cut)
             job = TileJob(
                 run.folder,
                 points.folder,
@@ -104,13 +109,10 @@ def computing(
                 points.lines,
             )
             jobs = [replace(job, tile=tile) for tile in tiles]
-            step = start("Triangulating")
-            records = step.run(run, PHASE, compute_tile, jobs, divide=divide_job)
-            if hasattr(module, "list_file_jobs"):
-                file_jobs = module.list_file_jobs(
-                    run, Run(points.folder), cloud.options, settled, records
-                )
-                records = start("Writing").run(run, module.FILES, module.write_file, file_jobs)
+            step, divided = start("Triangulating"), getattr(module, "divide_job", divide_job)
+            records = step.run(run, PHASE, compute_tile, jobs, divide=divided)
+            if hasattr(module, "combine"):
+                records = module.combine(run, settled, records, start("Joining"))
         arrays = {name: value for name, value in options.items() if isinstance(value, Given)}
         yield module.join(points, {**settled, **arrays}, records, run.folder)
     if not how.keep:
@@ -231,12 +233,14 @@ def _store(options: Mapping[str, Any], run: Run) -> dict[str, Any]:
     return _describe_given(options)
 
 
-def _find_tiles(run: Run, points: StoredPoints, how: How) -> list[Tile]:
+def _find_tiles(
+    run: Run, points: StoredPoints, how: How, cut: Callable[..., list[Tile]]
+) -> list[Tile]:
     """Return the tiles of a run: those with which it was begun, else new ones."""
     path = run.folder / _TILES
     if not path.exists():
         counts = count_by_cells(points.open().chunks, points.bounds, _LATTICE)
-        found = divide(counts, points.bounds, most=how.tile_points, fewest_tiles=how.tiles)
+        found = cut(counts, points.bounds, most=how.tile_points, fewest_tiles=how.tiles)
         with replacing(path, binary=False) as file:
             json.dump([[one.key, list(asdict(one.box).values()), one.count] for one in found], file)
     entries = json.loads(path.read_text(encoding="utf-8"))

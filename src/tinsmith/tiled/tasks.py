@@ -162,7 +162,12 @@ def join_elevations(records: Mapping[str, Record]) -> tuple[float, float]:
 
 
 class TileProduct(Protocol):
-    """What a module of products has."""
+    """What a module of products has.
+
+    One that writes a folder names by ``INDEX`` the file in it by which such a folder is known. One
+    that needs tiles of its own has ``divide_points`` and ``divide_job``; ``combine``, if it is
+    there, does further steps with the records of all tiles.
+    """
 
     def check_options(self, **asked: Any) -> Mapping[str, Any]:
         """Return plain options, or refuse what is none."""

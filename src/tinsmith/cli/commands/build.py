@@ -10,12 +10,13 @@ import click
 
 from ...base.sentences import counted
 from ..command import command
-from ..job import Job, surface_options
+from ..job import Job
 from ..output.counts import describe_counts
 from ..output.facts import Facts
 from ..output.failures import Failure
 from ..parameters import input_files, output_files, report_option
 from ..paths import describe_inputs, name_files
+from ..tiling import choose_tiles, describe_points, tell_plan, tiled_options, write_folder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
     help="POINTS are contour lines, which become breaklines: where they leave the surface flat, "
     "points are added along ridges, valleys, peaks and pits, and marked.",
 )
-@surface_options()
+@tiled_options()
 def build(
     points: tuple[Path, ...],
     report: Path | None,
@@ -58,6 +59,9 @@ def build(
     and written. Breaklines, a boundary, holes and water are read from vector files, in any CRS, or
     made from the field codes of the points.
 
+    In tiles (--tiles N, or where memory is short) the surface is written as a folder: a file for
+    each tile, or 3D Tiles for globes with --output-format 3dtiles.
+
     Example:
       tinsmith build sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.geojson
       tinsmith build sample_data/jacksboro.tif --stride 4 -o hills.ply -o hills.stl
@@ -69,6 +73,8 @@ def build(
     from ..output.summaries import describe_report
     from ..outputs import write_text
 
+    if _is_built_in_tiles(points, job, report, drop=drop_blunders, is_contours=from_contours):
+        return
     planned = job.plan(job.list_inputs(*points), "TIN", report=report)
     survey = _read(points, job, is_contours=from_contours)
     tin, suspects = _find_blunders(job.build_tin(survey), job, drop=drop_blunders)
@@ -95,6 +101,32 @@ def build(
         seconds=lambda: round(perf_counter() - job.started, 3),
     )
     job.finish(planned, facts)
+
+
+def _is_built_in_tiles(
+    points: Sequence[Path], job: Job, report: Path | None, *, drop: bool, is_contours: bool
+) -> bool:
+    """Write the surface in tiles, if it is to be, and tell whether it is."""
+    whole = {
+        "--report": report is not None,
+        "--drop-blunders": drop,
+        "--from-contours": is_contours,
+    }
+    asked = next((flag for flag, is_given in whole.items() if is_given), "")
+    cloud = choose_tiles(job, *points, whole=asked)
+    if cloud is None:
+        return False
+    if job.tiling.plan:
+        tell_plan(cloud, job, points[0])
+        return True
+    output = write_folder(cloud, job)
+    facts = Facts(points[0])
+    facts.add("Points", describe_points(cloud))
+    facts.add("Written", f"{output}, a folder", outputs=[str(output)])
+    seconds = round(perf_counter() - job.started, 3)
+    facts.add("Time", f"{seconds:.2f} s", seconds=seconds)
+    job.console.answer(facts)
+    return True
 
 
 def _read(points: Sequence[Path], job: Job, *, is_contours: bool) -> Survey:

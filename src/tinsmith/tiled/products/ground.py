@@ -39,15 +39,15 @@ if TYPE_CHECKING:
     from ...io.registry import PointChunk
     from ..reading import StoredPoints
     from ..tasks import Part
+    from ..workers import Phase
 
 __all__ = [
-    "FILES",
     "FileJob",
     "GroundTiles",
     "check_options",
+    "combine",
     "compute",
     "join",
-    "list_file_jobs",
     "name_files",
     "settle_options",
     "write_file",
@@ -57,6 +57,8 @@ FILES = "files"
 """Step in which files are written, and their folder."""
 
 _UNCLASSIFIED, _GROUND = 1, 2
+_CHOOSING = ("where", "duplicates", "candidates")
+"""Options of the points that are none of the reader."""
 
 
 def check_options(
@@ -83,6 +85,7 @@ def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str
     frame = Frame.of_all((width, height), options["parameters"]["cell"], extent.count)
     return {
         **options,
+        "points": str(points.folder),
         "low": list(extent.low),
         "across": across,
         "up": up,
@@ -155,16 +158,19 @@ class FileJob:
         return f"{self.number:06d}"
 
 
-def list_file_jobs(
-    run: Run,
-    points: Run,
-    reading: Mapping[str, Any],
-    options: Mapping[str, Any],
-    records: Mapping[str, Record],
+def combine(
+    run: Run, options: Mapping[str, Any], records: Mapping[str, Record], phase: Phase
+) -> dict[str, Record]:
+    """Write all files, when all labels are known."""
+    return phase.run(run, FILES, write_file, _list_file_jobs(run, options, records))
+
+
+def _list_file_jobs(
+    run: Run, options: Mapping[str, Any], records: Mapping[str, Record]
 ) -> list[FileJob]:
-    """Return the files that are to be written, when all labels are known."""
-    manifest = points.manifest or {}
+    manifest = Run(Path(options["points"])).manifest or {}
     inputs = [Fingerprint(**one) for one in manifest["inputs"]]
+    reading = {name: value for name, value in manifest["options"].items() if name not in _CHOOSING}
     labels: dict[int, list[tuple[str, str]]] = {}
     for record in records.values():
         numbers, classes = sorted(record.files, reverse=True) if record.files else ("", "")

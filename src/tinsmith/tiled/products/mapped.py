@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ...base.atomic import replacing
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError
-from ...terrain.parts.surfaces import are_owned, as_surface
+from ...terrain.parts import are_owned, as_surface
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -1,0 +1,125 @@
+"""The surface in tiles as a folder of files: the triangles and numbers of the one in memory."""
+
+from __future__ import annotations
+
+import filecmp
+import json
+
+import numpy as np
+import pytest
+from support.many_files import Shuffled, write_lidar
+
+import tinsmith as ts
+from tinsmith.tiled.numbering import NUMBER, number_vertices
+from tinsmith.tiled.runs import hash_file
+
+
+@pytest.fixture(scope="module")
+def lidar(tmp_path_factory):
+    """Return a folder of tiles that overlap, with points at one place and of two classes."""
+    return write_lidar(tmp_path_factory.mktemp("lidar"))
+
+
+@pytest.fixture(scope="module")
+def tin(lidar):
+    """Return the surface in memory."""
+    return ts.triangulate(ts.read(lidar, classes=2))
+
+
+def turn(triangles):
+    """Return triangles as a set, from their least corner on."""
+    first = triangles.argmin(axis=1)
+    turned = np.take_along_axis(triangles, (first[:, None] + np.arange(3)) % 3, axis=1)
+    return set(map(tuple, turned.tolist()))
+
+
+def read_index(folder):
+    """Return what the index tells, every file of it held against the folder."""
+    index = json.loads((folder / "surface.json").read_text())
+    names = {one["file"] for one in index["files"]}
+    assert {path.name for path in folder.iterdir()} == {*names, "surface.json"}
+    for one in index["files"]:
+        assert one["blake2b"] == hash_file(folder / one["file"])
+        assert one["bytes"] == (folder / one["file"]).stat().st_size
+    return index
+
+
+@pytest.mark.parametrize("tiles", [1, 4, 16])
+@pytest.mark.parametrize("name", ["ply", "tin"])
+def test_triangles_and_numbers_are_those_in_memory(lidar, tin, tmp_path, tiles, name):
+    cloud = ts.tiles(lidar, classes=2)
+    folder = cloud.build(tmp_path / "made", format=name, tiles=tiles, executor=Shuffled(tiles))
+    index = read_index(folder)
+    assert [path.name for path in tmp_path.iterdir()] == ["made"]
+    assert (index["vertices"], index["triangles"]) == (len(tin.points), len(tin.triangles))
+    assert (index["crs"], index["elevation_unit"]) == ("EPSG:32616", None)
+    assert tiles // 2 < len(index["files"]) <= tiles
+    found = []
+    for one in index["files"]:
+        part = ts.read(folder / one["file"])
+        numbers = part.attributes["vertex"].astype(np.int64)
+        np.testing.assert_array_equal(part.points, tin.points[numbers])
+        assert one["bounds"] == [*part.points.min(axis=0), *part.points.max(axis=0)]
+        assert part.crs.is_same(tin.crs)
+        found.append(numbers[part.triangles])
+    every = np.concatenate(found)
+    assert len(every) == len(tin.triangles)
+    assert turn(every) == turn(tin.triangles)
+
+
+def test_triangles_as_polygons(lidar, tin, tmp_path):
+    pyarrow = pytest.importorskip("pyarrow.parquet")
+    cloud = ts.tiles(lidar, classes=2)
+    folder = cloud.build(tmp_path / "made", format="geoparquet", tiles=3, executor=Shuffled())
+    tables = [pyarrow.read_table(folder / one["file"]) for one in read_index(folder)["files"]]
+    corners = np.concatenate(
+        [np.column_stack([table[name].to_numpy() for name in "abc"]) for table in tables]
+    )
+    assert turn(corners) == turn(tin.triangles)
+
+
+def test_a_run_that_was_interrupted_gives_the_same_files(lidar, tmp_path):
+    cloud = ts.tiles(lidar, classes=2)
+    whole = cloud.build(tmp_path / "whole", tiles=4, executor=Shuffled())
+    with pytest.raises(KeyboardInterrupt):
+        cloud.build(tmp_path / "made", tiles=4, executor=Shuffled(1, most=5))
+    made = cloud.build(tmp_path / "made", executor=Shuffled(2))
+    names = [path.name for path in whole.iterdir()]
+    assert filecmp.cmpfiles(whole, made, names, shallow=False)[0] == names
+
+
+def test_a_folder_of_something_else_is_left_alone(lidar, tmp_path):
+    (tmp_path / "made").mkdir()
+    (tmp_path / "made" / "thesis.txt").write_text("mine")
+    with pytest.raises(ts.WriteError, match=r"holds no surface\.json"):
+        ts.tiles(lidar).build(tmp_path / "made", executor=Shuffled())
+    assert [path.name for path in tmp_path.iterdir()] == ["made"]
+
+
+@pytest.mark.parametrize("given", [{"format": "obj"}, {"format": "stl"}, {"write": {"size": 3}}])
+def test_formats_without_numbers_and_wrong_options_are_refused(lidar, tmp_path, given):
+    with pytest.raises(ts.OptionError):
+        ts.tiles(lidar).build(tmp_path / "made", executor=Shuffled(), **given)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_numbers_range_by_range(tmp_path):
+    rng = np.random.default_rng(2)
+    rows = np.sort(rng.choice(10_000, 900, replace=False)).astype(np.int64)
+    tile = rng.integers(0, 4, len(rows))
+    files = {name: [tmp_path / f"{name}{k}" for k in range(4)] for name in ("own", "used", "made")}
+    chosen = [np.sort(rng.choice(rows, 300, replace=False)) for _ in range(4)]
+    for k in range(4):
+        files["own"][k].write_bytes(rows[tile == k].tobytes())
+        files["used"][k].write_bytes(chosen[k].tobytes())
+    for firsts in ([0], [0, 1, 17, 5_000, 9_999, 20_000]):
+        assert number_vertices(*files.values(), np.array(firsts)) == len(rows)
+        for k in range(4):
+            found = np.fromfile(files["made"][k], NUMBER)
+            np.testing.assert_array_equal(rows[found], chosen[k])
+    files["own"][0].write_bytes(b"")
+    with pytest.raises(ts.CheckError, match="lies in no tile"):
+        number_vertices(*files.values(), np.array([0]))
+    files["own"][0].write_bytes(files["own"][1].read_bytes())
+    with pytest.raises(ts.CheckError, match="lies in two tiles"):
+        number_vertices(*files.values(), np.array([0]))
