@@ -17,8 +17,8 @@ from ..base.types import Bounds
 from ..terrain.ground_filter import ATTRIBUTES
 from .division import Tile, divide
 from .given import Given
+from .labelled import name_files
 from .lines import describe_lines, prepare_lines
-from .products.ground import name_files
 from .reading import StoredPoints, read_inputs
 from .runs import Fingerprint, Run
 from .store import count_by_cells
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from ..tin.building import BuildInputs
     from .cloud import TiledPoints
     from .how import How
+    from .labelled import GroundTiles
     from .lines import GivenLines
-    from .products.ground import GroundTiles
     from .workers import Phase
 
 __all__ = ["computing", "labelling"]

@@ -11,7 +11,6 @@ from ...base.sentences import counted
 from ..command import command
 from ..job import Job
 from ..output.facts import Facts
-from ..output.failures import Failure
 from ..parameters import input_files, number_option, output_files
 from ..paths import describe_inputs, name_file, name_files
 from ..product_options import product_options
@@ -79,7 +78,7 @@ def ground(points: tuple[Path, ...], job: Job, **options: Any) -> None:
         _label_tiles(cloud, points, job, given | more)
         return
     if options["reach"] is not None:
-        raise Failure("--reach is for tiles: here all points are looked at.")
+        raise click.UsageError("--reach is for tiles: here all points are looked at.")
     is_points = options["as_points"]
     planned = job.plan(
         job.list_inputs(*points), "TIN", "Survey", choose=lambda one: _choose(one, is_points)
@@ -113,10 +112,12 @@ def _label_tiles(
         tell_plan(cloud, job, points[0])
         return
     if len(job.outputs) != 1:
-        raise Failure("Tiles are written to a folder: name one by -o.")
+        raise click.UsageError("Tiles are written to a folder: name one by -o.")
     (folder,) = job.outputs
     if folder.suffix and not folder.is_dir():
-        raise Failure(f"Tiles are written to a folder, and '{folder}' has a suffix of files.")
+        raise click.UsageError(
+            f"Tiles are written to a folder, and '{folder}' has a suffix of files."
+        )
     with showing_tiles(job) as how, labelling(cloud, folder, how, **given) as made:
         written = made.move(folder)
     names = {2: "ground", 7: "low noise"}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections import Counter
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -16,7 +15,7 @@ from ...base.checks import as_flag, as_length
 from ...base.errors import ReadError, TinsmithError, WriteError
 from ...io.door import naming_file
 from ...io.lidar.labelling import LabelledFile, write_labelled
-from ...io.lidar.virtual_cloud import NamedFile, write_virtual_cloud
+from ...io.lidar.virtual_cloud import NamedFile
 from ...io.streaming import stream_points
 from ...terrain.ground_filter import (
     Frame,
@@ -28,6 +27,7 @@ from ...terrain.ground_filter import (
 )
 from ...terrain.parts.ground import GroundWindow, choose_reach
 from ...terrain.parts.surfaces import are_owned
+from ..labelled import GroundTiles, name_files
 from ..reading import ROWS_OF_A_FILE
 from ..runs import Fingerprint, Record, Run, hash_file
 
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from ...base.arrays import AnyArray, BoolArray, UInt8Array
-    from ...base.crs import CRS
     from ...io.registry import PointChunk
     from ..reading import StoredPoints
     from ..tasks import Part
@@ -43,12 +42,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FileJob",
-    "GroundTiles",
     "check_options",
     "combine",
     "compute",
     "join",
-    "name_files",
     "settle_options",
     "write_file",
 ]
@@ -192,22 +189,6 @@ def _list_file_jobs(
     ]
 
 
-def name_files(files: list[Path]) -> list[str]:
-    """Return names of files that are written, each once; an octree is written as plain LAZ."""
-    names: list[str] = []
-    taken: set[str] = set()
-    for file in files:
-        stem = file.stem.removesuffix(".copc").removesuffix(".COPC")
-        suffix = file.suffix.lower()
-        name, number = f"{stem}{suffix}", 1
-        while name.lower() in taken:
-            number += 1
-            name = f"{stem}-{number}{suffix}"
-        taken.add(name.lower())
-        names.append(name)
-    return names
-
-
 def write_file(job: FileJob) -> Record:
     """Write a file with its classes; what is wrong becomes the record's sentence.
 
@@ -288,58 +269,6 @@ class _Labels:
         if job.ground_only:
             chosen &= classes == _GROUND
         return chosen
-
-
-# ------------------------------------------------------------------------ the result
-
-
-@dataclass(frozen=True)
-class GroundTiles:
-    """Files of classified points, in the folder of a run until they are moved.
-
-    Attributes
-    ----------
-    files : tuple of NamedFile
-    counts : dict of int to int
-        Points of each class, of those that were written.
-    crs : CRS or None
-    notes : tuple of str
-    """
-
-    files: tuple[NamedFile, ...]
-    counts: dict[int, int]
-    crs: CRS | None
-    notes: tuple[str, ...]
-
-    def move(self, folder: Path) -> Path:
-        """Move the files to a folder, and write the virtual point cloud that names them.
-
-        Returns
-        -------
-        Path
-            The virtual point cloud; the folder where the CRS is not known, without which there is
-            none.
-
-        Raises
-        ------
-        WriteError
-        """
-        placed = [_move(one, folder) for one in self.files]
-        if self.crs is None:
-            return folder
-        path = folder / f"{folder.absolute().name}.vpc"
-        write_virtual_cloud(path, placed, self.crs)
-        return path
-
-
-def _move(one: NamedFile, folder: Path) -> NamedFile:
-    target = folder / one.path.name
-    try:
-        one.path.replace(target)
-    except OSError:  # on another disk
-        with replacing(target) as file, one.path.open("rb") as made:
-            shutil.copyfileobj(made, file)
-    return NamedFile(target, one.count, one.low, one.high)
 
 
 def join(
