@@ -11,8 +11,6 @@ from ..base.notes import naming_file
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["names_its_file", "naming_file"]
-
 F = TypeVar("F", bound="Callable[..., Any]")
 
 

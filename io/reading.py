@@ -18,11 +18,11 @@ from ..base.errors import (
     ReadError,
     TinsmithError,
 )
+from ..base.notes import naming_file
 from ..base.plug_ins import describe_failure, warn_of_plug_in
 from ..base.progress import Progress
 from ..base.sentences import FILE, counted, inflect, printable
 from ..tin import TIN, Survey
-from .door import naming_file
 from .isolated.archives import unpack
 from .isolated.spooling import (
     describe_system_error,
@@ -44,25 +44,6 @@ if TYPE_CHECKING:
 
     from ..base.crs import CrsLike, UnitLike
     from ..base.progress import Tell
-
-__all__ = [
-    "Call",
-    "blaming",
-    "collect_declared",
-    "detect",
-    "is_folder",
-    "join_files",
-    "list_files",
-    "list_tiles",
-    "prepare_call",
-    "read",
-    "read_points",
-    "read_stream",
-    "read_tin",
-    "read_with_fallbacks",
-    "require_paths",
-    "require_unit",
-]
 
 _NO_FALLBACKS: Mapping[str, Any] = MappingProxyType({})
 _SHOWN = 5

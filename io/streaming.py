@@ -14,9 +14,9 @@ import numpy as np
 
 from ..base.checks import require_count
 from ..base.errors import OptionError, ReadError
+from ..base.notes import naming_file
 from ..base.sentences import FILE
 from ..tin import Bounds
-from .door import naming_file
 from .isolated.archives import unpack
 from .isolated.spooling import open_ordinary_file
 from .reading import (
@@ -49,15 +49,6 @@ if TYPE_CHECKING:
     from ..base.crs import CRS, CrsLike, Unit, UnitLike
     from .reading import Call
     from .registry import Blocks
-
-__all__ = [
-    "PointChunk",
-    "PointStream",
-    "SourceHeader",
-    "describe_source",
-    "read_box",
-    "stream_points",
-]
 
 _LARGEST_WHOLE = 1 << 28
 """Bytes of a file that is read whole before its points are given, as its format has no parts."""

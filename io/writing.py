@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from ..base.atomic import as_path
 from ..base.errors import FormatError, TinsmithError, WriteError
+from ..base.notes import naming_file
 from ..base.plug_ins import describe_failure
 from ..base.products import product
 from ..base.progress import Progress
 from ..base.results import Features, Raster, Table
 from ..tin import Surface, Survey
-from .door import naming_file
 from .registry.format import require_options, takes_progress
 from .registry.lookup import find_writer
 from .registry.losses import warn_of_lost_lines
@@ -21,10 +21,7 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Callable
 
-    from .door import naming_file
-from .registry.format import Format
-
-__all__ = ["find_kind", "write"]
+    from .registry.format import Format
 
 _KINDS = {"TIN": Surface, "Survey": Survey, "Features": Features, "Raster": Raster, "Table": Table}
 

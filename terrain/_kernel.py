@@ -7,50 +7,6 @@ from ..base.interrupts import hold_interrupts
 with hold_interrupts():
     from . import _core
 
-__all__ = [
-    "SUMS",
-    "TILE_SIDE",
-    "BandBoundaries",
-    "Bases",
-    "ContourLines",
-    "FallingSurface",
-    "Filling",
-    "GriddedSurface",
-    "LinePieces",
-    "OverlayMesh",
-    "SumTerms",
-    "accumulate",
-    "cut_cells",
-    "densify",
-    "fill_band",
-    "fill_bands",
-    "find_ends",
-    "find_seen_parts",
-    "find_seen_vertices",
-    "fit_quadratics",
-    "list_band_boundaries",
-    "measure_cells",
-    "merge_terms",
-    "overlay",
-    "settle_contours",
-    "shade_planes",
-    "simplify_cells",
-    "smooth_contours",
-    "stage_sums",
-    "sum_areas",
-    "sum_between",
-    "sum_channels",
-    "sum_heights",
-    "sum_rows",
-    "terms_between",
-    "terms_of_areas",
-    "terms_of_heights",
-    "trace_contours",
-    "trace_pieces",
-    "triangle_normals",
-    "vertex_normals",
-]
-
 GriddedSurface = _core.GriddedSurface
 TILE_SIDE = _core.TILE_SIDE
 """Cells of a raster that are computed together lie in squares of so many rows and columns."""

@@ -14,51 +14,6 @@ if TYPE_CHECKING:
     from ..base.arrays import Float64Array
     from ..base.progress import Tell
 
-__all__ = [
-    "EXACT_RANGE",
-    "LARGEST_ELEVATION",
-    "MOST_POINTS",
-    "VECTOR_PATHS",
-    "BoxTriangles",
-    "EditedMesh",
-    "Growth",
-    "LeaveOneOut",
-    "Locator",
-    "Mesh",
-    "Method",
-    "NaturalNeighbors",
-    "NaturalWeights",
-    "NearestBoundary",
-    "SmoothPatches",
-    "Trace",
-    "are_in_exact_range",
-    "clean",
-    "compare_distances",
-    "contacts",
-    "count_work",
-    "crossings",
-    "extract",
-    "find_in_box",
-    "find_long_edges",
-    "find_peaks_and_pits",
-    "grow",
-    "in_circle",
-    "intersections",
-    "join_triangles",
-    "measure_neighbors",
-    "nearest_vertices",
-    "orientation",
-    "places_in_rings",
-    "refine",
-    "regions",
-    "simplify",
-    "snap",
-    "sweep",
-    "touches",
-    "turns_of_triangles",
-    "vertices_at",
-]
-
 EXACT_RANGE: tuple[float, float] = (_core.SMALLEST_COORDINATE, _core.LARGEST_COORDINATE)
 """Smallest (but 0) and largest magnitude of a coordinate for which the predicates are exact."""
 

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from ..base.types import GeometriesLike, PointsLike
     from .constraints.breaklines import Breakline, Water
 
-__all__ = ["triangulate"]
-
 
 def triangulate(
     points: Survey | PointsLike,

@@ -25,19 +25,6 @@ import numpy as np
 if TYPE_CHECKING:
     from ..base.arrays import AnyArray, BoolArray, Float64Array, Int8Array, Int64Array
 
-__all__ = [
-    "EXACT_RANGE",
-    "LARGEST_ELEVATION",
-    "ORIENTATION_BOUND",
-    "Columns",
-    "blocks",
-    "columns",
-    "falls_across",
-    "in_circle",
-    "is_last",
-    "orientation",
-]
-
 EXACT_RANGE = (2.0**-200, 2.0**250)
 """Smallest (but 0) and largest magnitude of a coordinate for which the signs are exact."""
 

@@ -18,20 +18,6 @@ if TYPE_CHECKING:
     from ..base.arrays import Float64Array, Int8Array, Int32Array, Int64Array
     from ..base.policies import DuplicatePolicy, SimplificationHold
 
-__all__ = [
-    "LEFT_OUT",
-    "UNMENDED_WHY",
-    "Crossings",
-    "Edit",
-    "Merge",
-    "Overruled",
-    "Report",
-    "Simplification",
-    "Unmended",
-    "describe_skipped",
-    "word_reason",
-]
-
 LEFT_OUT = (
     "erased",
     "in water",

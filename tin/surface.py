@@ -43,9 +43,6 @@ if TYPE_CHECKING:
     from .voronoi.diagram import Voronoi
 
 
-__all__ = ["TIN", "Snapshot", "Surface"]
-
-
 class Surface:
     """What can be asked of a triangulated surface: a :class:`TIN`, or a snapshot of one.
 

@@ -25,27 +25,6 @@ if TYPE_CHECKING:
 
     from ..base.arrays import AnyArray, BoolArray, Int32Array, Int64Array
 
-__all__ = [
-    "NO_NEIGHBOR",
-    "HalfEdges",
-    "boundary_rings",
-    "boundary_walks",
-    "directed_edges",
-    "edge_keys",
-    "edges",
-    "edges_at",
-    "ends",
-    "find_boundary_vertices",
-    "find_offsets",
-    "find_owners",
-    "find_triangles",
-    "gather",
-    "mark_corners",
-    "neighbors_of",
-    "sort_half_edges",
-    "turn_about",
-]
-
 NO_NEIGHBOR = -1
 
 

@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from ...tin import TIN, Survey
     from .reference import Declared, Measures
 
-__all__ = ["Drawing", "choose_length_unit", "list_lines", "scale_elevations"]
-
 _POLYGONS = ("boundary", "hole", "erase", "island")
 
 

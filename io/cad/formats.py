@@ -5,8 +5,6 @@ from typing import Any
 from ..registry.format import SURFACES, Format
 from . import signatures
 
-__all__ = ["FORMATS"]
-
 
 def _make(name: str, description: str, *suffixes: str, **more: Any) -> Format:
     """Describe a format that the package of its name reads and writes."""

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...base.crs import CrsLike, UnitLike
 
-__all__ = ["Declared", "Measures", "Stated", "choose_measures"]
-
 
 class Stated(NamedTuple):
     """What a file says."""

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["BINARY_DXF", "is_dxf", "is_landxml"]
-
 BINARY_DXF = b"AutoCAD Binary DXF\r\n\x1a\x00"
 """How a binary DXF begins."""
 

@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from ...base.policies import FacePolicy
     from ..mesh.common import Reference
 
-__all__ = ["Line", "Mesh", "make_tin_with_lines", "merge_equal_points"]
-
-
 _KINDS = get_args(LineKind)
 _SAME_PLACE = 1e-6
 """CAD programs write the vertices of surfaces and those of lines with other last digits: at a

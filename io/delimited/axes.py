@@ -20,15 +20,6 @@ if TYPE_CHECKING:
     from .columns import Columns
     from .headings import AxesLine
 
-__all__ = [
-    "are_named_plainly",
-    "describe_turn",
-    "is_northing",
-    "require_no_geocentric",
-    "require_one_hemisphere",
-    "settle_axes",
-]
-
 _POSITIVE = frozenset({"n", "e", "north", "east"})
 _NEGATIVE = frozenset({"s", "w", "o", "south", "west", "sud", "ouest", "oeste"})
 

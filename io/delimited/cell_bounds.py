@@ -12,8 +12,6 @@ from .cells import BLANKS
 if TYPE_CHECKING:
     from ...base.arrays import Int64Array, UInt8Array
 
-__all__ = ["CellBounds", "find_cell_bounds"]
-
 _QUOTE, _SPACE, _TAB, _LINE_FEED = b'" \t\n'
 
 

@@ -6,22 +6,6 @@ import csv
 import re
 from functools import lru_cache
 
-__all__ = [
-    "BLANKS",
-    "is_grouped",
-    "is_infinite",
-    "is_missing",
-    "is_number",
-    "is_number_like",
-    "is_padded",
-    "may_group_or_divide",
-    "parse_grouped",
-    "parse_number",
-    "proves_groups",
-    "split_line",
-    "with_hyphen",
-]
-
 BLANKS = " "
 """Stands for a delimiter of one or more spaces or tabs."""
 

@@ -17,20 +17,6 @@ if TYPE_CHECKING:
 
     from .grouping import Group
 
-__all__ = [
-    "COORDINATES",
-    "Columns",
-    "describe_doubts",
-    "find_columns_by_header",
-    "find_columns_by_word",
-    "find_role",
-    "find_unit_word",
-    "list_meanings",
-    "list_names",
-    "name_columns",
-    "names_coordinates",
-]
-
 COORDINATES = ("easting", "northing", "elevation")
 _ROLES = (*COORDINATES, "number", "description")
 _LETTERS = {

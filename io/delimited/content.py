@@ -26,14 +26,6 @@ if TYPE_CHECKING:
     from ...tin.screening.area_of_use import AreaOfUse
     from .parsing import Column
 
-__all__ = [
-    "are_plausible_elevations",
-    "find_columns_by_content",
-    "is_too_steep",
-    "measure_relief_and_extent",
-    "require_no_split_decimals",
-]
-
 _FOOT = 0.3048
 _LOWEST, _HIGHEST = -37_000.0, 30_000.0
 """Feet of the deepest trench and the highest summit, in whatever unit: nothing lies beyond."""

@@ -31,24 +31,6 @@ if TYPE_CHECKING:
     from .lines import TextLines
     from .table import Fault
 
-__all__ = [
-    "describe_faults",
-    "describe_left_out",
-    "describe_outside",
-    "describe_sum_row",
-    "find_commented_points",
-    "find_odd_elevations",
-    "find_repeated_numbers",
-    "find_rounded_coordinates",
-    "find_split_thousands",
-    "find_summary_rows",
-    "find_unit_words",
-    "require_ground",
-    "require_in_area",
-    "require_one_header",
-    "require_unit_of_crs",
-]
-
 _SHOWN = 5
 _LARGEST_WHOLE = 1e15
 """Below, whole point numbers are written without an exponent or decimals."""

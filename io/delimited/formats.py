@@ -2,8 +2,6 @@
 
 from ..registry import Format
 
-__all__ = ["FORMATS"]
-
 FORMATS = (
     Format(
         name="delimited",

@@ -15,8 +15,6 @@ from .names import ColumnName, parse_name
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-__all__ = ["Group", "find_group", "find_plane_pair"]
-
 _FAMILIES = {"word": 0, "letter": 0, "axis": 1, "angle": 2}
 """Of several pairs those are preferred that say where they point, longitudes and latitudes last."""
 _COORDINATES = {"easting", "northing", "elevation"}

@@ -29,15 +29,6 @@ if TYPE_CHECKING:
     from .headings import Heading
     from .lines import TextLines
 
-__all__ = [
-    "GivenColumns",
-    "TopLines",
-    "count_stated_columns",
-    "find_named_columns",
-    "join_brackets",
-    "join_numbers",
-]
-
 GivenColumns: TypeAlias = "str | Sequence[str] | Mapping[str, str | int]"
 """What the caller says that the columns are."""
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Int64Array
     from .lines import TextLines
 
-__all__ = ["AxesLine", "Heading", "UnitLine", "find_axes_line", "find_heading", "find_unit_line"]
-
 _LINES_ABOVE, _LINES_BELOW = 100, 20
 _LONGEST_LINE = 300
 _SHOWN_LETTERS = 60

@@ -49,8 +49,6 @@ if TYPE_CHECKING:
     from .headings import Heading
     from .lines import TextLines
 
-__all__ = ["Layout", "continue_layout", "find_layout", "require_announced"]
-
 _TOP_LINES = 100
 _SPREAD_LINES = 200
 _MOST_COLUMNS = 1_000

@@ -18,16 +18,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import BoolArray, Int64Array, UInt8Array
 
-__all__ = [
-    "BLOCK_BYTES",
-    "COMMENT_PREFIXES",
-    "LONGEST_LINE",
-    "TextLines",
-    "decode_head",
-    "iterate_lines",
-    "read_lines",
-]
-
 COMMENT_PREFIXES = ("#", "//", ";", "!", "%")
 
 _BOMS = (

@@ -15,20 +15,6 @@ from .lines import COMMENT_PREFIXES, decode_head
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-__all__ = [
-    "DecimalMark",
-    "find_decimal_mark",
-    "find_delimiter",
-    "has_idle_commas",
-    "looks_like_table",
-    "parse_decimal_mark",
-    "parse_delimiter",
-    "require_no_blank_groups",
-    "require_no_delimiter",
-    "require_one_kind_of_comma",
-    "split_header",
-]
-
 _NUMBERS_OF_HEADER = 2.5
 """What a header counts for: less than the three numbers of rows, it may have its own delimiter."""
 _TOP_LINES = 100

@@ -19,16 +19,6 @@ if TYPE_CHECKING:
 
     from .vocabulary import Kind, Sense
 
-__all__ = [
-    "ColumnName",
-    "Words",
-    "find_languages",
-    "is_label",
-    "is_phrase",
-    "parse_name",
-    "read_words",
-]
-
 _LONGEST_NAME = 200
 """Letters of a header cell that may be a name; a longer one is some other text."""
 _LONGEST_PHRASE = 6

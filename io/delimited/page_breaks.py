@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Int64Array
     from .lines import TextLines
 
-__all__ = ["PageBreaks", "find_page_breaks"]
-
 _MOST_TITLES = 10
 """Lines of a page's title, above the header that is repeated."""
 _SHOWN_LINES = 5

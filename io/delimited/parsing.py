@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int8Array, Int64Array
     from .cell_bounds import CellBounds
 
-__all__ = ["Column", "parse_column"]
-
 _BLOCK_ROWS = 1 << 15
 """Rows at a time, whose numbers stay in the cache of a core."""
 _LONGEST = 24

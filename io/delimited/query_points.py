@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, ObjectArray
     from ...base.crs import CRS
 
-__all__ = ["QueryPoints", "read_query_points"]
-
 _DELIMITERS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 _SHOWN = 5
 

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from ..registry import Blocks
     from ..reprojection import Placing
 
-__all__ = ["read", "stream", "write"]
-
 _CHUNK_ROWS = 100_000
 _SUFFIX_DELIMITERS = {".tsv": "\t", ".xyz": " ", ".pts": " "}
 _BARE_SUFFIXES = frozenset({".xyz", ".pts"})

@@ -41,18 +41,6 @@ if TYPE_CHECKING:
     from .layout import Layout
     from .lines import TextLines
 
-__all__ = [
-    "Cells",
-    "Fault",
-    "Table",
-    "describe_columns",
-    "describe_faults_of_rows",
-    "leave_out_cut_row",
-    "read_cells",
-    "read_table",
-    "require_one_mark",
-]
-
 _SHOWN = 5
 _QUOTED_ROWS = 2_000
 _REWRITTEN_DELIMITER = "\t"

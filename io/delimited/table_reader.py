@@ -61,8 +61,6 @@ if TYPE_CHECKING:
     from .lines import TextLines
     from .table import Cells, Fault, Table
 
-__all__ = ["Asked", "TableReader", "Taken"]
-
 _WGS84 = "EPSG:4326"
 _SOME = 4_096
 """Points of each block that the elevations and places of all are judged by."""

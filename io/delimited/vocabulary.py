@@ -17,17 +17,6 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, cast
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = [
-    "CONTEXT",
-    "Kind",
-    "Sense",
-    "find_sense",
-    "list_languages",
-    "list_words",
-    "read_languages",
-    "simplify",
-]
-
 Kind = Literal["word", "letter", "axis", "angle", "sure", "open", ""]
 """How a word names its role.
 

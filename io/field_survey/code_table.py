@@ -18,8 +18,6 @@ from .styles import MEANINGS, STYLES, Meaning, Style
 if TYPE_CHECKING:
     import os
 
-__all__ = ["CodeTable", "Rule", "make_rules", "read_code_table"]
-
 _KEYS = ("style", "case", "place", "separators", "comments", "arc_tolerance", "marks", "codes")
 _RULE_KEYS = ("kind", "closed", "arc_tolerance", "description")
 _LETTERS = "-./:_+=&,;(#!|*"

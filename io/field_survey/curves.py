@@ -20,8 +20,6 @@ import numpy as np
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
 
-__all__ = ["MOST_VERTICES", "Arc", "densify", "fit_arcs", "fit_tangent_arc", "measure_turn"]
-
 MOST_VERTICES = 10_000
 """Vertices of one arc that are made at most."""
 

@@ -11,8 +11,6 @@ if TYPE_CHECKING:
 
     from .styles import Meaning, Style
 
-__all__ = ["LONGEST_CODE", "Coded", "Description", "Vocabulary"]
-
 _NUMBERED = re.compile(r"(?P<number>\d*)(?![^\W_])(?P<rest>.*)", re.DOTALL)
 _TIGHT = r"(?<=[\w*])[{0}]+(?=\S)|(?<!\S)[{0}]+(?=[^\W\d])"
 """A separator stands within a text, or before a word: EP1-B, EP1 -B; alone it parts nothing."""

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
     from .code_table import Rule
 
-__all__ = ["Reading", "choose_reading", "read_in_style"]
-
 _HARMLESS = ("curve without an end", "line without an end")
 """What crews leave out in any style."""
 _COUNTED = "end without a begin"

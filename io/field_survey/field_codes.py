@@ -30,15 +30,13 @@ from .geometry import build_polyline
 from .remarks import describe_faults
 from .several_files import NoCodesError, read_each_file, split_files
 from .shot_order import find_jump, require_one_order
-from .styles import MARKS, find_style
+from .styles import find_style
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Iterable, Sequence
 
     from ...base.arrays import Float64Array, Int64Array
-
-__all__ = ["MARKS", "RULES", "LineRole", "lines_from_codes"]
 
 RULES: Mapping[str, LineRole] = {
     **dict.fromkeys(("RDG", "RIDGE", "GB", "BRK", "BL"), "hard"),

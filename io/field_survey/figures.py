@@ -11,8 +11,6 @@ if TYPE_CHECKING:
     from .descriptions import Coded
     from .styles import Meaning
 
-__all__ = ["NO_LINES", "RINGS", "Curve", "Fault", "Figure", "find_curves", "follow_figures"]
-
 RINGS = ("boundary", "hole", "erase", "water")
 NO_LINES = ("point", "exclude")
 """Kinds whose codes make no line."""

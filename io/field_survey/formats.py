@@ -5,8 +5,6 @@ from collections.abc import Callable
 
 from ..registry.format import Format
 
-__all__ = ["FORMATS", "is_dc", "is_gsi", "is_jobxml", "is_sdr"]
-
 _GSI = re.compile(
     rb"(?:\xef\xbb\xbf)?\s*(?:\*?(?:11|41)[\d.]{4}[+-][^\s,;]{8}(?:[^\s,;]{8})?"
     rb"(?:[ \t]*[\r\n]|[ \t]*\Z| (?:\d\d[\d.]|\d{3})[\d.]{3}[+-]))"

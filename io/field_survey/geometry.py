@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from .figures import Figure
 
-__all__ = ["build_polyline"]
-
 _MOST_TURN = 0.75 * math.pi
 """Half of what an arc between two shots may turn at most: beyond, the leg points away from it."""
 _KINK = math.radians(10.0)

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
     from .figures import Fault
 
-__all__ = ["describe_faults", "make_finding", "read_remarks"]
-
 _SHOWN = 5
 _LONGEST = 40
 

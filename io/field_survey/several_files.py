@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Int64Array
     from ...tin import Survey
 
-__all__ = ["NoCodesError", "read_each_file", "split_files"]
-
 _LINES = ("breaklines", "boundary", "holes", "erase", "water")
 _SHOWN = 5
 

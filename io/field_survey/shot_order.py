@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from .detection import Reading
     from .figures import Figure
 
-__all__ = ["find_jump", "require_one_order"]
-
 _MANY_TIMES = 10.0
 """So many times as long as the others of its line a segment is a jump."""
 

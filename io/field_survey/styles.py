@@ -27,8 +27,6 @@ from typing import Literal, TypeAlias, cast, get_args
 from ...base.errors import choice
 from ...base.policies import CodeStyle
 
-__all__ = ["COMMENTS", "MARKS", "MEANINGS", "STYLES", "Meaning", "Style", "find_style"]
-
 Meaning: TypeAlias = Literal[
     "begin",
     "end",

@@ -13,8 +13,6 @@ from typing import IO, Any, NamedTuple
 
 import numpy as np
 
-__all__ = ["Answer", "BrokenMessageError", "Refusal", "receive", "send"]
-
 _LENGTH = struct.Struct("<Q")
 _PLAIN_TYPE = re.compile(r"[<>|][biuf][1248]")
 _LONGEST_AXES = 8

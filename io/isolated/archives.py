@@ -25,8 +25,6 @@ from .spooling import translate_system_errors
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-__all__ = ["unpack"]
-
 _GZIP, _ZIP = b"\x1f\x8b", b"PK\x03\x04"
 _STARTS = {".gz": _GZIP, ".gzip": _GZIP, ".zip": _ZIP}
 """Suffixes of archives, and how they begin: a workbook is a ZIP archive too, and is none here."""

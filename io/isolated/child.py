@@ -17,8 +17,6 @@ from typing import IO, Any
 from .answers import Answer, BrokenMessageError, Refusal, receive, send
 from .limits import Limits
 
-__all__ = ["serve_requests"]
-
 _LONGEST_REQUEST = 1 << 24
 _MARGIN_SECONDS = 5.0
 

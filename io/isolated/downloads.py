@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Iterator
 
-__all__ = ["download", "is_web_address"]
-
 _WEB = re.compile(r"(https?):/+(?=[^/])", re.IGNORECASE)
 """A path that was an address has lost one of its slashes."""
 

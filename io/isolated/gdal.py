@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["RASTER_DRIVERS", "REFERRING_DRIVERS", "VECTOR_DRIVERS", "make_environment"]
-
 RASTER_DRIVERS = (
     *("GTiff", "HFA", "AAIGrid", "GRASSASCIIGrid", "ISG", "GSAG", "GSBG", "GS7BG", "NWT_GRD"),
     *("RRASTER", "netCDF", "HDF5", "HDF5Image", "BAG", "USGSDEM", "SRTMHGT", "DTED", "AIG"),

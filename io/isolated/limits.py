@@ -5,18 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-__all__ = [
-    "BYTES_PER_SECOND",
-    "LEAST_MEMORY",
-    "LEAST_SECONDS",
-    "MEMORY_PER_BYTE",
-    "START_SECONDS",
-    "WAITING_FACTOR",
-    "Limits",
-    "choose_limits",
-    "measure_free_memory",
-]
-
 LEAST_SECONDS = 5.0
 """Seconds of processor time that any file gets; small sound ones take some milliseconds."""
 

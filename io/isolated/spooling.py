@@ -17,16 +17,6 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Iterator
 
-__all__ = [
-    "describe_system_error",
-    "is_pipe",
-    "open_ordinary_file",
-    "require_local",
-    "require_readable",
-    "spool",
-    "translate_system_errors",
-]
-
 _CHUNK = 1 << 20
 
 

@@ -24,8 +24,6 @@ from ...base.sentences import FILE
 from .answers import Answer, BrokenMessageError, receive, send
 from .limits import START_SECONDS, Limits, choose_limits
 
-__all__ = ["run_isolated", "start_early", "stream_isolated"]
-
 _START = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]);"
     "from tinsmith.io.isolated.child import serve_requests; serve_requests(sys.argv[2])"

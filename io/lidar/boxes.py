@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
     from ...base.crs import CrsLike, UnitLike
 
-__all__ = ["describe", "read_box"]
-
 
 def describe(
     path: Path,

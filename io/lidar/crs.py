@@ -24,8 +24,6 @@ from ..reprojection.transformation import transform_points
 if TYPE_CHECKING:
     from .header import Header
 
-__all__ = ["Reference", "find_reference"]
-
 _PROJECTION = "LASF_Projection"
 _WKT, _KEYS, _DOUBLES, _TEXTS = 2112, 34735, 34736, 34737
 _GEOGRAPHIC_KEY, _PROJECTED_KEY, _LINEAR_UNIT_KEY = 2048, 3072, 3076

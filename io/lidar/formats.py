@@ -5,8 +5,6 @@ from pathlib import Path
 from ..registry import SURFACES, Format
 from .signatures import is_lidar, is_lidar_folder, is_virtual_cloud, list_named_files
 
-__all__ = ["FORMATS"]
-
 
 def _list_named(path: Path) -> list[Path]:
     return list_named_files(path) if is_virtual_cloud(path) else []

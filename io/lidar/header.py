@@ -22,8 +22,6 @@ from ..isolated.spooling import translate_system_errors
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["Header", "Record", "parse_header"]
-
 _FIXED = struct.Struct("<4sHH16sBB32s32sHHHIIBHI20s12d")
 _HEADER_BYTES = {0: 227, 1: 227, 2: 227, 3: 235, 4: 375}
 """Bytes of the header by the minor version."""

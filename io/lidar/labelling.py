@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import BoolArray, Float64Array, UInt8Array
     from ...base.crs import CRS
-__all__ = ["LabelledFile", "write_labelled"]
 
 
 @dataclass

@@ -12,8 +12,6 @@ import numpy as np
 from ...base.sentences import FILE, inflect
 from ..isolated import Answer, Refusal
 
-__all__ = ["ENVIRONMENT", "prepare", "read_nodes", "read_points"]
-
 _MOST_THREADS = 8
 """Each reserves some memory of its own, and there is a limit for all of them."""
 

@@ -38,17 +38,6 @@ if TYPE_CHECKING:
     from ..isolated import Answer
     from ..registry import Blocks
 
-__all__ = [
-    "CHILD",
-    "Tile",
-    "describe_surplus",
-    "locate_tiles",
-    "name_attributes",
-    "read",
-    "scale",
-    "stream",
-]
-
 CHILD = f"{__package__}.las_child"
 _SOME = 4_096
 """Points that are compared with the bounds of the header, spread over all."""

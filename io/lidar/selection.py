@@ -18,15 +18,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Int64Array
 
-__all__ = [
-    "CHEAP_ATTRIBUTES",
-    "Selection",
-    "Tally",
-    "describe_classes",
-    "describe_marks",
-    "parse_selection",
-]
-
 CHEAP_ATTRIBUTES = ("classification", "intensity", "return_number", "number_of_returns")
 """Attributes that are kept without asking: five bytes a point."""
 

@@ -13,15 +13,6 @@ from ..isolated.spooling import require_local, translate_system_errors
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = [
-    "SUFFIXES",
-    "is_lidar",
-    "is_lidar_folder",
-    "is_virtual_cloud",
-    "list_named_files",
-    "list_tiles",
-]
-
 _MOST_BYTES = 1 << 28
 """Of a virtual point cloud, some thousand for each file that it names."""
 

@@ -27,15 +27,6 @@ if TYPE_CHECKING:
     from ...base.crs import CRS
     from ...base.progress import Tell
 
-__all__ = [
-    "Scaling",
-    "choose_columns",
-    "make_header",
-    "require_crs",
-    "write",
-    "write_points",
-]
-
 _FINEST = 6
 """Decimals that are written at most: a millionth of a CRS unit is below what anyone surveys."""
 

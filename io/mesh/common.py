@@ -29,31 +29,6 @@ if TYPE_CHECKING:
     from ...base.crs import CrsLike, UnitLike
     from ...base.policies import FacePolicy
 
-__all__ = [
-    "Fans",
-    "Mesh",
-    "Reference",
-    "add_notes",
-    "build_mesh",
-    "choose_reference",
-    "cut_into_fans",
-    "describe_single_precision",
-    "flag_edges",
-    "format_crs",
-    "format_unit",
-    "join_places",
-    "make_survey",
-    "make_tin",
-    "measure_rounding",
-    "mesh_reader",
-    "read_content",
-    "require_own_crs",
-    "require_tin",
-    "require_vertices",
-    "require_writable",
-]
-
-
 _LARGEST_SINGLE = float(np.finfo(np.float32).max)
 _LEAST_MARK = 999.0
 """The smallest number that programs write for no data."""

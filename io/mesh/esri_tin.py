@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from ...base.policies import LineKind
     from ...tin import TIN
 
-__all__ = ["read"]
-
 _FILES = {
     "tnxy.adf": (">f8", 2),
     "tnz.adf": (">f4", 1),

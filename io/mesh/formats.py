@@ -15,8 +15,6 @@ from .signatures import (
     is_tile_folder,
 )
 
-__all__ = ["FORMATS"]
-
 _LOSSES = "Which edges are constrained, lines, attributes and the report"
 _LOSES: tuple[Loss, ...] = ("constrained", "lines", "attributes", "notes", "report")
 """What formats of nothing but vertices and triangles do not hold."""

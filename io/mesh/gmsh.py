@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...tin import TIN
 
-__all__ = ["read", "write"]
-
 SURFACE = "surface"
 BOUNDARY = "boundary"
 UNNAMED = "constrained"

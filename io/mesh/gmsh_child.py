@@ -16,9 +16,6 @@ from ..isolated import Answer, Refusal
 if TYPE_CHECKING:
     from ...base.arrays import Int64Array
 
-__all__ = ["prepare", "read_mesh"]
-
-
 _NO_FACES = frozenset({"vertex", "line", "line3", "line4", "line5"})
 _POLYGONS = {
     # Corners stand before the nodes amid their edges; faces are cut at these.

@@ -35,8 +35,6 @@ if TYPE_CHECKING:
     from ...base.crs import CrsLike, UnitLike
     from ...base.policies import FacePolicy
 
-__all__ = ["from_mesh", "to_meshio", "to_pyvista", "to_trimesh"]
-
 _FACES = {"triangle": 3, "quad": 4}
 _WITHOUT_FACES = frozenset({"vertex", "line"})
 

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Int64Array
     from ...base.policies import LineKind
 
-__all__ = ["Chain", "add_lines", "chain_edges", "list_chains"]
-
 
 class Chain(NamedTuple):
     """A line along edges."""

@@ -40,8 +40,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .texture import Texture
 
-__all__ = ["read", "write"]
-
 _MATERIAL = "terrain"
 _PICTURE = "_texture"
 _SHOWN_LETTERS = 60

@@ -35,8 +35,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...tin import TIN
 
-__all__ = ["read", "write"]
-
 _KEYWORD = re.compile(r"(ST)?(C)?(N)?(4)?(n)?OFF")
 
 

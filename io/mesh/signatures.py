@@ -11,17 +11,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = [
-    "TIN_FILES",
-    "is_2dm",
-    "is_cityjson",
-    "is_esri_tin",
-    "is_gzipped_tile",
-    "is_off",
-    "is_quantized_mesh",
-    "is_tile_folder",
-]
-
 TIN_FILES = ("tnxy.adf", "tnz.adf", "tnod.adf", "tedg.adf", "tmsk.adf", "tmsx.adf", "thul.adf",
              "tdenv.adf", "tdenv9.adf", "tnodinfo.adf", "teval.adf")  # fmt: skip
 """Names of the files in the folder of an Esri TIN; grids of Esri have others."""

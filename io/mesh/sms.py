@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...tin import TIN
 
-__all__ = ["read", "write"]
-
 _NODES_IN_A_ROW = 10
 _FACES = {
     # Corners and midside nodes stand in turn; each element becomes polygons of these.

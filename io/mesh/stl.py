@@ -42,8 +42,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...tin import TIN
 
-__all__ = ["build_solid", "read", "write"]
-
 _HEADER_BYTES = 80
 _FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _HEAD = 1000

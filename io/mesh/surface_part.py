@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from ...tin.predicates import Columns
 
-__all__ = ["SurfacePart", "find_surface_part", "make_surface"]
-
 _ROUNDINGS = 2.0
 """How thick a triangle can seem that rounding turned over: each corner moves by half in x and y."""
 

@@ -25,16 +25,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...tin import TIN
 
-__all__ = [
-    "TextRows",
-    "find_reference",
-    "format_rows",
-    "parse_integers",
-    "split_rows",
-    "write_batches",
-    "write_reference",
-]
-
 _BATCH = 65_536
 """Rows that are formatted at once."""
 

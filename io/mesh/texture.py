@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...tin import TIN
 
-__all__ = ["MOST_PIXELS", "Texture", "load_texture"]
-
 MOST_PIXELS = 8192
 """Widest and highest picture that graphics cards and WebGL take everywhere."""
 

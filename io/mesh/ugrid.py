@@ -42,8 +42,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...tin import TIN, Survey
 
-__all__ = ["read", "write", "write_content"]
-
 _MESH = "mesh2d"
 _CRS_VARIABLE = "projected_coordinate_system"
 _TYPES = ("none", "constrained", "hard", "soft", "boundary", "hole", "water")

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Float64Array, Int64Array
 
-__all__ = ["prepare", "read_mesh"]
-
 _ELEVATIONS = frozenset(
     {"altitude", "height_above_reference_ellipsoid", "height_above_mean_sea_level",
      "height_above_geopotential_datum", "surface_altitude", "ground_level_altitude"}

@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...tin import TIN
 
-__all__ = ["read", "write"]
-
 _KINDS = ("PolyData", "UnstructuredGrid")
 _SHOWN_LETTERS = 60
 _CLOSEST_PACKING = 1100  # zlib packs no tighter than 1032 to 1

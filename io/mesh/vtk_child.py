@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import AnyArray, Float64Array, Int64Array, UInt8Array
 
-__all__ = ["catch_errors", "load_vtk_class", "prepare", "read_dataset", "read_mesh"]
-
 _NO_FACES = frozenset({0, 1, 2, 3, 4})  # empty cell, vertices, lines
 _FACES = frozenset({5, 7, 9})  # triangle, polygon, quadrilateral
 

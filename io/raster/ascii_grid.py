@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...base.results import Raster
 
-__all__ = ["write"]
-
 _NODATA = -9999.0
 _BLOCK_CELLS = 1 << 20
 

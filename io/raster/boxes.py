@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from ...base.crs import CrsLike, UnitLike
     from ...tin import Bounds
 
-__all__ = ["describe", "read_box"]
-
 
 def describe(
     path: Path,

@@ -17,8 +17,6 @@ from .dem import read_georeference
 if TYPE_CHECKING:
     from ...terrain import Raster
 
-__all__ = ["rasterize", "read_cells"]
-
 
 @names_its_file
 def read_cells(path: str | os.PathLike[str]) -> Cells:

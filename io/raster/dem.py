@@ -41,27 +41,6 @@ if TYPE_CHECKING:
 
     OpenStrips: TypeAlias = Callable[[dict[str, Any]], AbstractContextManager[Iterator[Answer]]]
 
-__all__ = [
-    "LEFT_OUT",
-    "Cells",
-    "Choice",
-    "Plan",
-    "Strip",
-    "choose_band",
-    "cut_bounds",
-    "find_elevation_unit",
-    "find_middle",
-    "is_raster",
-    "make_choice",
-    "make_survey",
-    "plan_cells",
-    "read",
-    "read_georeference",
-    "read_strips",
-    "require_elevation_band",
-    "stream",
-]
-
 _STRIP_CELLS = 4_000_000
 """Cells read at a time, so that memory holds little but the points."""
 

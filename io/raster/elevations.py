@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array
     from ...base.crs import CrsLike, UnitLike
 
-__all__ = ["read_raster"]
-
 _STRIP_CELLS = 4_000_000
 """Cells that come from the child process at a time."""
 

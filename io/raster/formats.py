@@ -5,8 +5,6 @@ from typing import Any
 
 from ..registry import Format, signatures
 
-__all__ = ["FORMATS"]
-
 
 def _make(name: str, description: str, writer: str, **more: Any) -> Format:
     """Describe a format that rasters are written in, GeoTIFF if nothing is said."""

@@ -13,8 +13,6 @@ import numpy as np
 from ..isolated import Answer
 from ..isolated.gdal import RASTER_DRIVERS, REFERRING_DRIVERS, make_environment
 
-__all__ = ["ENVIRONMENT", "cut_strips", "describe", "prepare", "read_header", "read_strips"]
-
 ENVIRONMENT = make_environment()
 
 _SAID = 64

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...base.results import Raster
 
-__all__ = ["write", "write_cog"]
-
 _TILE = 512
 _BLOCK_CELLS = 4 * 1024 * 1024
 """Cells that are asked for at a time."""

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int64Array
     from ...tin import Survey
 
-__all__ = ["make_raster"]
-
 _OFF = 1e-3
 """Of a cell's side: as far from its centre a point may lie, for files of rounded coordinates."""
 

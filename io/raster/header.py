@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from ..isolated import Answer
 
-__all__ = ["Affine", "Header", "read_header", "stream_strips"]
-
 
 class Affine(NamedTuple):
     """Easting is ``a * column + b * row + c``, northing ``d * column + e * row + f``."""

@@ -14,8 +14,8 @@ import numpy as np
 from ...base import optional
 from ...base.checks import require_type
 from ...base.errors import OptionError
+from ...base.notes import naming_file
 from ...base.results import Raster
-from ..door import naming_file
 from .dem import Choice, make_survey
 from .gdal_child import cut_strips, describe
 from .header import Affine, Header
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from ...base.crs import CrsLike, UnitLike
     from ...tin import Bounds, Survey
     from ..isolated import Answer
-
-__all__ = ["from_raster", "to_rasterio"]
 
 _AXES = (("x", "y"), ("lon", "lat"), ("longitude", "latitude"))
 _MAPPINGS = ("spatial_ref", "crs")

@@ -16,8 +16,6 @@ from ...tin.screening.area_of_use import AreaOfUse
 if TYPE_CHECKING:
     from .header import Header
 
-__all__ = ["Meaning", "find_meaning", "settle_axes"]
-
 _WGS84 = "EPSG:4326"
 _WORD = re.compile(r"[a-z]+")
 _ELEVATION = frozenset(

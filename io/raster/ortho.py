@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
     from ...tin import TIN
 
-__all__ = ["as_picture_path", "read_ortho"]
-
 _SECONDS = 60.0
 """Of processor time beyond those of the file's size: a small file can unpack to many pixels."""
 

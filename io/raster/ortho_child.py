@@ -15,9 +15,7 @@ import numpy as np
 from ...base.crs import CRS
 from ..isolated import Answer, Refusal
 from ..isolated.gdal import make_environment
-from .gdal_child import prepare
-
-__all__ = ["ENVIRONMENT", "prepare", "read_picture"]
+from .gdal_child import prepare as prepare
 
 ENVIRONMENT = make_environment()
 

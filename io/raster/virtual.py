@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from xml.etree import ElementTree as ET
 
-__all__ = ["is_virtual", "require_plain_sources"]
-
 SUFFIX = ".vrt"
 
 LARGEST_TEXT = 1 << 26

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from ..isolated.gdal import REFERRING_DRIVERS, make_environment
-from .gdal_child import _require_plain_drivers, read_header, read_strips
-
-__all__ = ["ENVIRONMENT", "prepare", "read_header", "read_strips"]
+from .gdal_child import _require_plain_drivers
+from .gdal_child import read_header as read_header
+from .gdal_child import read_strips as read_strips
 
 ENVIRONMENT = make_environment(allowed=["VRT"])
 

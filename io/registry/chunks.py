@@ -23,19 +23,6 @@ if TYPE_CHECKING:
     from ...base.crs import CRS, Unit
     from ...tin import Bounds
 
-__all__ = [
-    "Blocks",
-    "PointChunk",
-    "SourceHeader",
-    "StreamEnd",
-    "StreamHead",
-    "gather",
-    "gathering",
-    "join_chunks",
-    "make_source_header",
-    "yield_survey",
-]
-
 _BYTES_PER_POINT = 24
 _MOST_POINTS = 2**31 - 1
 """The vertices of a TIN are numbered with 32 bits."""

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
     from .options import FormatOption
 
-__all__ = ["KINDS", "SURFACES", "Format", "Loss", "load_function", "require_options"]
-
 SURFACES = ("TIN", "Survey")
 """What triangulations and their points can be written as."""
 

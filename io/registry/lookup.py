@@ -21,21 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from pathlib import Path
 
-__all__ = [
-    "choose_clear",
-    "choose_format",
-    "find_format",
-    "find_format_of_suffix",
-    "find_formats",
-    "find_suffixes",
-    "find_writer",
-    "find_writers",
-    "known_formats",
-    "list_claims",
-    "list_suffixes",
-    "list_writers",
-]
-
 _FAMILIES = ("delimited", "field_survey", "raster", "mesh", "vector", "cad", "tables", "lidar")
 """Packages of ``tinsmith.io`` with a module ``formats``, in the order in which they are asked."""
 

@@ -18,15 +18,6 @@ if TYPE_CHECKING:
     from ...tin import Survey
     from .format import Format
 
-__all__ = [
-    "keep_on_one_line",
-    "select_attributes",
-    "warn_of_formulas",
-    "warn_of_lost_attributes",
-    "warn_of_lost_lines",
-    "warn_of_unknown_elevations",
-]
-
 _FORMULA = re.compile(r"\s*[=+@-].")
 _BREAKS = re.compile("[\r\n\x00]+")
 _PLURALS = {"boundary": "boundaries", "water body": "water bodies"}

@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Sequence
 
-__all__ = ["FormatOption", "describe_parameters", "find_option_not_taken", "list_options"]
-
 _OWN_PARAMETERS = frozenset({"crs", "elevation_unit", "progress"})
 """What every reader or writer may take, which is no option of its format."""
 

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from ...base.plug_ins import PlugIn
 
-__all__ = ["find_fault", "load_plug_in_formats"]
-
 _GROUP = "tinsmith.formats"
 _NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 _SUFFIX = re.compile(r"(?:\.[a-z0-9_-]+)+")

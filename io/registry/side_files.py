@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
     from .format import Format
 
-__all__ = ["is_replaceable_folder", "list_sources", "list_written_beside", "replacing_data_set"]
-
 _PROJECTION = ".prj"
 
 

@@ -9,23 +9,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = [
-    "HEAD_BYTES",
-    "find_foreign_kind",
-    "find_reference_kind",
-    "has_tin_among_layers",
-    "is_geojson",
-    "is_gmsh",
-    "is_obj",
-    "is_ply",
-    "is_raster",
-    "is_stl",
-    "is_tin_geopackage",
-    "is_ugrid",
-    "is_vtk_xml",
-    "skip_prologue",
-]
-
 HEAD_BYTES = 65536
 
 _NUMBER = rb"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"

@@ -24,14 +24,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...base.crs import CRS
 
-__all__ = [
-    "Places",
-    "are_small_degrees",
-    "checking_crs",
-    "look_at_crs",
-    "refuse",
-]
-
 _MOST_DEGREES = (360.0, 90.0)
 _WIDEST = 3.0
 """Degrees that a site spans at most; as many metres are none."""

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...base.crs import CRS
 
-__all__ = ["SOURCE_FILE", "join_surveys"]
-
 SOURCE_FILE = "source_file"
 """The attribute that says which file a point is from; lines of codes end with their file."""
 

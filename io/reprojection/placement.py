@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...base.crs import Unit
 
-__all__ = ["DegreesError", "Placed", "Placing", "place", "settle_unit"]
-
 _WGS84 = "EPSG:4326"
 _MOST_DEGREES = 540.0
 """Longitudes go on beyond 360 where data cross the antimeridian; latitudes never do."""

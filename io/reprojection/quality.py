@@ -14,8 +14,6 @@ from ...base.sentences import FILE
 if TYPE_CHECKING:
     from ...base.crs import CRS
 
-__all__ = ["Quality", "describe_missing_grids", "judge", "require_kept"]
-
 _MOST_NAMES = 2
 
 

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...base.crs import CrsLike, UnitLike
 
-__all__ = ["reproject", "scale_survey"]
-
 _FLAT = 1e-3
 """By how much the corners of water may differ in elevation after a change of the vertical datum."""
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...base.crs import CRS, METRE, UNKNOWN, Unit, assume_elevation_unit
+from ...base.crs import CRS, UNKNOWN, Unit, assume_elevation_unit
 from ...base.errors import CrsError
 from ...base.sentences import coordinate, counted
 from ...tin import Bounds
@@ -19,20 +19,6 @@ from .quality import Quality, describe_missing_grids, judge
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...base.crs import CrsLike, UnitLike
-
-__all__ = [
-    "METRE",
-    "LengthUnit",
-    "Reprojected",
-    "convert_elevations",
-    "find_bounds",
-    "find_conversion_factor",
-    "find_utm_zone",
-    "is_geographic",
-    "length_unit",
-    "reproject",
-    "transform_points",
-]
 
 _BETWEEN = 99
 """Points between the corners of a box that is brought to another CRS."""

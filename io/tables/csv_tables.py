@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...base.results.columns import Units
 
-__all__ = ["header_text", "tabulate_points", "write"]
-
 _CHUNK_ROWS = 100_000
 _AXES = ("easting", "northing", "elevation")
 

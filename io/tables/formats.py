@@ -2,8 +2,6 @@
 
 from ..registry.format import Format
 
-__all__ = ["FORMATS"]
-
 
 def _make(
     name: str, description: str, *suffixes: str, writes: tuple[str, ...] = ("Table",), losses: str

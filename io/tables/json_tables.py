@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...base.results import Table
 
-__all__ = ["write"]
-
 _CHUNK_ROWS = 50_000
 
 

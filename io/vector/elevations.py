@@ -16,14 +16,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from .layers import Layer
 
-__all__ = [
-    "Elevations",
-    "find_elevation_unit",
-    "find_elevations",
-    "find_named_unit",
-    "list_elevation_columns",
-]
-
 GEOMETRY = "geometry"
 _NAMES = frozenset(("contour", "grid_code", "gridcode", "orthometric", "quote", "ele"))
 """Names that programs give to columns of elevations, beside those that headers of texts have."""

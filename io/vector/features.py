@@ -36,10 +36,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Int64Array, ObjectArray
     from ...base.crs import CRS
 
-
-__all__ = ["make_layer", "read_features"]
-
-
 _FOLDERS = (".gdb",)
 """Suffixes of formats that are folders."""
 

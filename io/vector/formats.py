@@ -14,8 +14,6 @@ from .signatures import (
     is_vector_text,
 )
 
-__all__ = ["FORMATS"]
-
 _LOSSES = (
     "Of a TIN all that is not of the kind written: with triangles lines and attributes, the "
     "report, vertices of no triangle; of a survey its lines."

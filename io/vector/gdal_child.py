@@ -13,15 +13,6 @@ from ...base.sentences import FILE
 from ..isolated import Answer, Refusal
 from ..isolated.gdal import REFERRING_DRIVERS, VECTOR_DRIVERS, make_environment
 
-__all__ = [
-    "ENVIRONMENT",
-    "convert_to_texts",
-    "is_numeric",
-    "pack_geometries",
-    "prepare",
-    "read_features",
-]
-
 ENVIRONMENT = make_environment()
 
 _WESTERN = "CP1252"

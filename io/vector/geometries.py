@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ...base.crs import CrsLike
     from .layers import Layer
 
-__all__ = ["read_geometries"]
-
 _KIND_OF = {
     0: "points",
     1: "lines",

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from ...base.results import Features
     from ...tin import Survey
 
-__all__ = ["write"]
-
 _VERSION = "1.3"
 """That of whole TINs; the triggers of 1.4 are unknown to GDAL and its validator before 3.7."""
 

@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from ...base.results import Features
     from .surface_features import Writable
 
-__all__ = ["write"]
-
 _GEOMETRY = "geometry"
 _GROUP_ROWS = 65_536
 _MOST_BYTES = 2**31 - 1

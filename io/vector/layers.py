@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Int64Array, ObjectArray
     from ...base.crs import CRS
 
-__all__ = ["Layer", "name_apart", "name_columns"]
-
 
 class Layer(NamedTuple):
     """What a layer holds."""

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray
     from ...base.policies import FeatureKind
 
-__all__ = ["build_collection", "build_frame", "build_stream", "to_features"]
-
 
 @product
 def to_features(surface: TIN | Survey | Voronoi, kind: FeatureKind | None = None) -> Features:

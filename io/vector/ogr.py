@@ -29,14 +29,6 @@ if TYPE_CHECKING:
     from ...base.results import Features
     from .surface_features import Writable
 
-__all__ = [
-    "describe",
-    "encode_geometries",
-    "require_int64",
-    "write_flatgeobuf",
-    "write_layer",
-]
-
 _NO_CLOCK = "1970-01-01T00:00:00.000Z"
 """Time that GDAL writes as the present one, so that the same features give the same bytes."""
 

@@ -20,15 +20,6 @@ if TYPE_CHECKING:
     from ...base.crs import CRS, Unit
     from .layers import Layer
 
-__all__ = [
-    "Part",
-    "Wanted",
-    "crs_notes",
-    "find_elevation_factor",
-    "move_to_crs",
-    "split_into_parts",
-]
-
 _POLYGON = 3
 
 

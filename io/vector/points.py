@@ -32,15 +32,6 @@ if TYPE_CHECKING:
     from ...base.crs import CrsLike, UnitLike
     from ...base.policies import FacePolicy
 
-__all__ = [
-    "POINT",
-    "collect_attributes",
-    "gather_points",
-    "list_kinds",
-    "read",
-    "require_finite",
-]
-
 POINT, _LINE, _RING, _POLYGON = range(4)
 _TRIANGLE_CORNERS = 4
 

@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...base.crs import CrsLike, UnitLike
 
-__all__ = ["read_lines", "read_polygons", "read_rings", "read_water"]
-
 LARGEST_PRIORITY = 2**31 - 1
 """Priorities of lines that a file can give: whole numbers of 32 bits."""
 

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ...base.policies import FeatureKind
     from .surface_features import Writable
 
-__all__ = ["short_names", "write"]
-
 _NAME_BYTES = 10
 _TEXT_BYTES = 254
 _MOST_COLUMNS = 255

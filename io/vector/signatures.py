@@ -10,16 +10,6 @@ from ..registry.signatures import skip_prologue
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = [
-    "is_flatgeobuf",
-    "is_geodatabase",
-    "is_geojson_sequence",
-    "is_geopackage",
-    "is_parquet",
-    "is_shapefile",
-    "is_vector_text",
-]
-
 _APPLICATIONS = (b"GPKG", b"GP10", b"GP11")
 """Application ids of GeoPackages, 68 bytes from the start of an SQLite file."""
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Int32Array
     from ...base.results.features import Kind
 
-__all__ = ["Parts", "Writable", "choose_kind", "list_parts", "make_features", "make_whole_surface"]
-
 Writable: TypeAlias = TIN | Survey | Features
 
 

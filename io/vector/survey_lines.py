@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 
     Source = str | os.PathLike[str]
 
-__all__ = ["note_nesting", "require_near", "split_layer", "with_lines"]
-
 _FAR = 10.0
 """Lines further from the points than this many diagonals of their extent are somewhere else."""
 

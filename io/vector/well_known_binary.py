@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...base.results import Features
 
-__all__ = ["encode_equal_shapes", "encode_tin", "replace_surfaces"]
-
 _POINT, _LINE, _POLYGON, _MULTIPOLYGON = 1, 2, 3, 6
 _TIN_Z, _TRIANGLE_Z = 1016, 1017
 _PLAIN_KIND = {15: _MULTIPOLYGON, 16: _MULTIPOLYGON, 17: _POLYGON}

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .maps import Map
 
-__all__ = ["blunder_map"]
-
 _PURPOSE = "A map of blunders"
 _MARKERS = {"spike": "^", "pit": "v", "factor": "X", "code": "X", "number": "s", "place": "s"}
 _OTHER = "o"

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array
     from ...tin.paper.comparison import Outcome
 
-__all__ = ["comparison_picture"]
-
 _PURPOSE = "A picture of a comparison"
 _VEIL = 0.22
 """Opacity of an overlapping triangle: the more of them, the darker."""

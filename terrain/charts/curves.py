@@ -17,22 +17,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
     from ...base.results import Table
 
-__all__ = [
-    "FAINT",
-    "Curve",
-    "Measure",
-    "choose_exaggeration",
-    "describe_drawing",
-    "draw",
-    "draw_grid",
-    "find",
-    "find_marks",
-    "find_ratio",
-    "find_rows",
-    "read_units",
-    "write_elevation",
-]
-
 FAINT = palette.FAINT
 
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from ...tin import TIN, Grid
     from .maps import Map
 
-__all__ = ["earthwork_map"]
-
 _PURPOSE = "A cut and fill map"
 _PAD = 0.18
 """Of the ground around what is cut and filled, as a share of its extent."""

@@ -14,8 +14,6 @@ from ..drawing import draw_north_up, palette
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-__all__ = ["INK", "color_frame", "picture", "start_figure", "start_panels", "write_title"]
-
 F = TypeVar("F", bound="Callable[..., Any]")
 
 INK = palette.INK

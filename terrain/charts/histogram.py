@@ -17,8 +17,6 @@ from .figures import INK, start_panels
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
 
-__all__ = ["histogram"]
-
 _PURPOSE = "A histogram"
 _SIZE = (11.0, 7.0)
 """Of the picture, inches."""

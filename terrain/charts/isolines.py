@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .maps import Map
 
-__all__ = ["contour_map"]
-
 _PURPOSE = "A contour map"
 _LIGHTS = (-60, 255)
 """What is black and what is white: paler than a hillshade alone, so that lines are read."""

@@ -20,16 +20,6 @@ if TYPE_CHECKING:
     from ...base.results import Features, Raster
     from ...tin import TIN
 
-__all__ = [
-    "PIXELS",
-    "Map",
-    "draw_scale",
-    "draw_shade",
-    "find_paths",
-    "shade_for_map",
-    "start_map",
-]
-
 PIXELS = 1400
 """Of shading, along the longer side."""
 

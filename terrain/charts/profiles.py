@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...base.crs import CrsLike
 
-__all__ = ["profile_picture"]
-
 _PURPOSE = "A picture of a profile"
 _NAME_LETTERS = 20
 _LABELS = 8

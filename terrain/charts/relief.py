@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...base.results import Features
     from ...tin import TIN
 
-__all__ = ["relief_map"]
-
 _PURPOSE = "A relief map"
 _VEIL = 0.72
 _COLUMNS = ("color", "label", "share")

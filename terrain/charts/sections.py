@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
     from ...base.crs import CrsLike
 
-__all__ = ["section_picture"]
-
 _PURPOSE = "A picture of cross sections"
 _MOST = 60
 """Sections on a sheet."""

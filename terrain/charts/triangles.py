@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from ...base.georeference.units import Ground
     from ...tin import TIN
 
-__all__ = ["plot_tin", "to_matplotlib"]
-
 _MOST_WITH_EDGES = 5_000
 """Triangles; the edges of more hide the colours."""
 

@@ -10,8 +10,6 @@ from ...base.results import Features
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["parse_text", "parse_title", "require_features"]
-
 
 def parse_title(title: Any, usual: str) -> str:
     r"""Return a title on one line, the usual one if none is given.

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .palette import Color
 
-__all__ = ["EDGE_KINDS", "LineEdges", "add_lines", "add_polylines", "find_line_edges"]
-
 EDGE_KINDS = ("soft", "hard", "hole", "boundary", "water")
 """Kinds of lines; where several share an edge it is of the last in this list."""
 

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...tin import TIN
 
-__all__ = ["choose_origin", "lift"]
-
 
 @product
 def lift(

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...tin import TIN
 
-__all__ = ["draw_north_up"]
-
 T = TypeVar("T")
 
 

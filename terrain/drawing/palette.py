@@ -12,19 +12,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, UInt8Array
     from ...base.policies import Tint
 
-__all__ = [
-    "Color",
-    "Palette",
-    "choose_palette",
-    "choose_ramp",
-    "compute_lightness",
-    "interpolate_colors",
-    "interpolate_tints",
-    "mix_tints",
-    "parse_hex",
-    "write_hex",
-]
-
 Color = tuple[int, int, int]
 """Red, green and blue, 0 to 255."""
 

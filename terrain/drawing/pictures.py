@@ -9,8 +9,6 @@ from ...base.atomic import replacing
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["PICTURE_SUFFIXES", "save_figure"]
-
 PICTURE_SUFFIXES = (".png",)
 """File name endings of what :func:`save_figure` writes."""
 

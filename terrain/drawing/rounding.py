@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["choose_ticks", "format_number", "round_down"]
-
 
 def round_down(value: float, *, leads: tuple[float, ...] = (1.0, 2.0, 5.0)) -> float:
     """Return the largest lead times a power of ten that is at most ``value`` (above 0).

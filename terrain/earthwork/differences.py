@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .regional import Regional
 
-__all__ = ["Difference", "difference"]
-
 _SHARES = {"p05": 5.0, "p25": 25.0, "median": 50.0, "p75": 75.0, "p95": 95.0}
 
 

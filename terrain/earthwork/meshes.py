@@ -16,17 +16,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
 
-__all__ = [
-    "as_mesh",
-    "cut_at_zero",
-    "drop_unused",
-    "mend",
-    "number_parts",
-    "part_places",
-    "rebuild",
-    "unite",
-]
-
 _MOST_ROUNDS = 64
 """Flat triangles lie side by side in short chains; each round takes one off an end."""
 

@@ -13,8 +13,6 @@ from ...tin import TIN
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
 
-__all__ = ["Plane", "as_plane", "level_surface"]
-
 _ALLOWED = "a level, or three points (easting, northing, elevation) of a plane"
 
 

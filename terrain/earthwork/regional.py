@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from ..surface import Reference
     from .volumes import Measured
 
-__all__ = ["Regional", "find_regional_zones", "subtract_in_regions"]
-
 
 class Regional(NamedTuple):
     """The difference in one region, where there is any."""

@@ -18,8 +18,6 @@ from ..surface import Pieces, Surface
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int64Array
 
-__all__ = ["as_regions"]
-
 _NAMES = ("name", "region", "id", "label")
 """Columns that name a region, in this order."""
 

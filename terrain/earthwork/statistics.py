@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int64Array
     from ..surface import Surface
 
-__all__ = ["percentiles"]
-
 _FAN_OUT = 32
 """Elevations compared with the share wanted at a time."""
 

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...tin import TIN
 
-__all__ = ["stage_storage"]
-
 _MOST_LEVELS = 100_000
 _USUAL_LEVELS = 20
 """So many levels a table has at most, if nothing else is asked for."""

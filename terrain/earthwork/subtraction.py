@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     _Mesh = tuple[Float64Array, Int32Array]
 
-__all__ = ["subtract"]
-
 _SHARE_OF_VOLUME = 1e-7
 """Of the area times the largest difference: so much the volumes of the TIN may be off."""
 _ROUNDINGS = 4.0

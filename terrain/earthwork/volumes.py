@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from ..surface import Reference
 
-__all__ = ["Measured", "as_table", "describe_overlaps", "measure", "subtract", "volume"]
-
 _ROUNDING = 1e-12
 """An area alone that is a smaller share of the whole is what the sums' rounding leaves."""
 

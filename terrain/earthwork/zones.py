@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from ...tin.triangulation import Triangulation
     from ..surface import Reference
 
-__all__ = ["classify", "find_zones", "join_segments", "number_zones", "trace_zero_line"]
-
 NAMES = {-1: "cut", 0: "unchanged", 1: "fill"}
 
 

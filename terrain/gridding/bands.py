@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from ...base.progress import Progress, Tell
     from ...tin import TIN, Grid
 
-__all__ = ["SurfaceBand"]
-
 _STRIP = 1 << 22
 """Cells whose centres are listed in one go, about: a bound on memory."""
 

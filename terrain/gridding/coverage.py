@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...tin import TIN, Grid
 
-__all__ = ["require_covered"]
-
 _SAMPLE = 1000
 """Triangles that are looked at first."""
 _BLOCK_CELLS = 1 << 22

@@ -22,20 +22,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...tin import TIN
 
-__all__ = [
-    "MOST_CELLS",
-    "MOST_CELLS_IN_MEMORY",
-    "Cells",
-    "as_grid",
-    "as_parts",
-    "cover",
-    "describe_extent",
-    "locate_edges",
-    "require_cells",
-    "require_overlap",
-    "to_grid",
-]
-
 MOST_CELLS = 10**11
 """Of a raster that is made as it is written: 800 GB."""
 

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from ...base.policies import Extrapolation, InterpolationMethod
     from ...tin import TIN
 
-__all__ = ["height_above"]
-
 _SHOWN = 5
 
 

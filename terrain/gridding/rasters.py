@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from ...base.crs import Unit
     from ...tin import TIN, Grid
 
-__all__ = ["list_units", "rasterize"]
-
 _UNITS = {"slope": "°", "aspect": "°"}
 
 

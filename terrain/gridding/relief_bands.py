@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from ...tin import TIN, Grid
     from ..surface import PlaneMeasure
 
-__all__ = ["DESCRIBED_MEANS", "ReliefBand", "choose_smooth"]
-
 DESCRIBED_MEANS = "Slopes are those of the triangles, averaged over the part of a cell."
 
 _PARTS, _FIRST_CORNER = 8, 4

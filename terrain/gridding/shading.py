@@ -20,8 +20,6 @@ from .relief_bands import ReliefBand, choose_smooth
 if TYPE_CHECKING:
     from ...tin import TIN, Grid
 
-__all__ = ["hillshade"]
-
 _USUAL_SIDE = 1000
 _BLOCK_CELLS = 1 << 20
 

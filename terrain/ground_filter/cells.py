@@ -11,8 +11,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from .frame import Frame
 
-__all__ = ["Cells", "lay_cells"]
-
 
 @dataclass(frozen=True, eq=False)
 class Cells:

@@ -35,8 +35,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from .cells import Cells
 
-__all__ = ["GroundPoints", "classify", "find_units", "ground", "require_candidates"]
-
 UNCLASSIFIED, GROUND, LOW_NOISE = 1, 2, 7
 """Classes of the ASPRS LAS specification 1.4."""
 

@@ -13,8 +13,6 @@ from ...base.sentences import counted
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array
 
-__all__ = ["Frame", "Units"]
-
 _CELLS_PER_POINT = 100
 _FEWEST = 4_000_000
 """Cells that there may be whatever the number of points: their memory is some 40 MB."""

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
     Grid = Float64Array
 
-__all__ = ["find_covered", "least_around", "list_windows", "open_grid", "split_columns"]
-
 _GROWTH = 1.3
 """Of one window to the next: finer steps find nothing more."""
 

@@ -9,8 +9,6 @@ from ...base.checks import as_length, as_number
 from ...base.errors import OptionError, choice
 from ...base.policies import GroundReturns
 
-__all__ = ["Parameters"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:

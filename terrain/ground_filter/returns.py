@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray
     from ...base.policies import GroundReturns
 
-__all__ = ["ATTRIBUTES", "Candidates", "are_noise"]
-
 ATTRIBUTES = ("return_number", "number_of_returns", "classification")
 """Attributes that are looked at."""
 

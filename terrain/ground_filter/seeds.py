@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from .cells import Cells
     from .parameters import Parameters
 
-__all__ = ["find_low_noise", "find_seeds"]
-
 _FRAMES = ((2, 7, False), (1, 4, True), (3, 10, True))
 """A group of low points is no wider than the first to each side, and compared with points up to the
 second; in cells. What another group hides in a wide frame is found in a narrow one. At a border

@@ -35,8 +35,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from .parameters import Parameters
 
-__all__ = ["Links", "link", "list_continuing"]
-
 _SHARE = 0.4
 """Of a segment's contacts that are not steps down: the edge of a terrace has more, a roof less."""
 

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
     Doubles = Float64Array
 
-__all__ = ["surround"]
-
 _STEP = 5.0
 """Between neighbouring points, metres."""
 

@@ -18,17 +18,6 @@ if TYPE_CHECKING:
     from .filling import Filling
     from .vertices import Exits
 
-__all__ = [
-    "BOUNDARY",
-    "FLAT",
-    "MOVING",
-    "PIT",
-    "Drops",
-    "Walker",
-    "interpolate_edges",
-    "make_drops",
-]
-
 MOVING, PIT, FLAT, BOUNDARY = range(4)
 """How a drop fares: on its way, or ended; at a vertex or an edge that nothing descends from."""
 

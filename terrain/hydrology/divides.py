@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array, Int64Array
     from .networks import Network
 
-__all__ = ["cut_at_divides"]
-
 _NEAR = 1e-10
 """Places on an edge whose shares of it differ by less are one."""
 

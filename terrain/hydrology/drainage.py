@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from .filling import Filling
     from .networks import Network
 
-__all__ = ["catchments", "flow_accumulation"]
-
 
 @product
 def catchments(

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .falls import Falls
 
-__all__ = ["ridges_and_valleys"]
-
 _MOST_DEGREES = 180.0
 
 

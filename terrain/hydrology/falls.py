@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
     from ...tin import TIN
 
-__all__ = ["FINEST", "Falls", "find_corners", "find_falls", "measure_fall", "round_share"]
-
 FINEST = 2.0**-53
 """Shares of an edge are multiples of this, so that they are exact from either end."""
 

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .hierarchy import Hierarchy
 
-__all__ = ["Filling", "fill"]
-
 
 class Filling(NamedTuple):
     """A surface whose depressions are full, so that all water leaves it over the boundary."""

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...tin import TIN
 
-__all__ = ["Hierarchy", "build_hierarchy", "rank_vertices"]
-
 
 class Hierarchy(NamedTuple):
     """Depressions, those that join before the one that they make."""

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from .falls import Falls
     from .filling import Filling
 
-__all__ = ["Network", "accumulate", "build_network", "build_vertex_network", "find_ends"]
-
 
 class Network(NamedTuple):
     """Nodes: the strips, then the vertices, then where water ends."""

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from .filling import Filling
     from .routes import Trace
 
-__all__ = ["ENDS", "FILLED_NOTE", "flow_path"]
-
 FILLED_NOTE = "Depressions are full: their water goes on from where they spill."
 ENDS = {PIT: "pit", FLAT: "flat", BOUNDARY: "boundary"}
 

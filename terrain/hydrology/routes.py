@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from .descent import Drops, Walker
     from .filling import Filling
 
-__all__ = ["DESCENT", "FLAT_GROUND", "KINDS", "POND", "Parts", "Trace", "cut_parts", "trace_down"]
-
 DESCENT, POND, FLAT_GROUND = range(3)
 KINDS = np.array(["descent", "pond", "flat"], object)
 """Names of the parts of a route: down the surface, across water, over level ground."""

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...tin import TIN
 
-__all__ = ["place_drops"]
-
 _Place: TypeAlias = tuple[Fraction, Fraction]
 
 

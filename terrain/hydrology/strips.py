@@ -17,15 +17,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int64Array
     from .descent import Walker
 
-__all__ = [
-    "SAME",
-    "Strips",
-    "cut_strips",
-    "follow",
-    "leave_strips",
-    "settle",
-]
-
 SAME = 1e-12
 """Fall lines whose shares of the base differ by no more are one."""
 _MOST_CUTS = 100_000_000

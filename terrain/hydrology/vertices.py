@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from ...tin.topology import HalfEdges
     from .falls import Falls
 
-__all__ = ["NOWHERE", "Exits", "find_exits", "sort_edges_at"]
-
 NOWHERE = -1
 _CLOSE = 1e-9
 """Slopes that differ by less, relative to the steepest, are compared in fractions."""

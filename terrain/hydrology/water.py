@@ -13,8 +13,6 @@ from ..surface import DividedMesh, PolygonParts, dissolve, fan_out, repair_polyg
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
-__all__ = ["Polygons", "Waters", "cut_below", "gather_polygons", "measure_waters"]
-
 
 class Polygons(NamedTuple):
     """Polygons as :meth:`Features.of_polygons` takes them, and the region of each feature."""

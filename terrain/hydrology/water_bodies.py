@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from .filling import Filling
     from .hierarchy import Hierarchy
 
-__all__ = ["BOUNDARY_NOTE", "depressions", "pits", "ponds"]
-
 _MOST_VERTICES = 5_000_000
 """Of all waters that lie in each other, beyond those of the surface."""
 

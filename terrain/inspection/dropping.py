@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ...base.results import Table
     from ...tin import TIN
 
-__all__ = ["drop_blunders", "list_wrong_rows"]
-
 
 def list_wrong_rows(table: Table) -> Int64Array:
     """Return the rows that are wrong by themselves, but for those of low certainty, ascending."""

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ...tin.screening.suspects import Suspect
 
-__all__ = ["blunders", "screen"]
-
 
 @product
 def blunders(points: Survey | TIN, *, progress: Callable[[float], None] | None = None) -> Table:

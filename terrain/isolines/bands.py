@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .levels import Levels
 
-__all__ = ["as_features", "contour_bands"]
-
 
 @product
 def contour_bands(

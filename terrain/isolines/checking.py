@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array, ObjectArray
     from ...tin import TIN
 
-__all__ = ["ContourCheck", "check_contours"]
-
 _BLOCK = 1 << 16
 """So many segments are compared at a time."""
 

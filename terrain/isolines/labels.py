@@ -14,8 +14,6 @@ from ...base.types import seal
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array, Int64Array
 
-__all__ = ["contour_labels"]
-
 _MOST_DECIMALS = 15
 _SMALL_SHARE = 1e-6
 _SHARE_OF_EXTENT = 3.0

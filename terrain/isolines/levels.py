@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array
     from ...tin import TIN
 
-__all__ = ["MOST_CROSSINGS", "MOST_LEVELS", "LevelOptions", "Levels"]
-
 MOST_LEVELS = 100_000
 """More are refused: an interval with so many was given in another unit, or by a slip."""
 

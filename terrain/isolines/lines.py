@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from ...base.crs import CRS, Unit
     from ...tin import TIN
 
-__all__ = ["as_features", "contours"]
-
 
 @product
 def contours(

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, ObjectArray
     from ...tin import TIN
 
-__all__ = ["rebuild_wrong_bands"]
-
 _ROUNDINGS = 32.0
 """So many roundings the boundary of a polygon may be off."""
 _SHARE = 1e-9

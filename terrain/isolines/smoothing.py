@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .._kernel import ContourLines
 
-__all__ = ["smooth_lines"]
-
 MOST_POINTS = (2**31 - 1) // 16
 """Of all lines together: the kernel numbers in 31 bits what rounds of cutting corners make."""
 

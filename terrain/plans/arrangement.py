@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from .footprint import Footprint
     from .layout import Layout
 
-__all__ = ["MOST_SHEETS", "OVERLAP", "Ground", "choose_single", "cut_rows", "cut_strip_windows"]
-
 MOST_SHEETS = 500
 OVERLAP = 8.0
 """Millimetres that a sheet shows beyond a match line."""

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from .papers import Paper
 
-__all__ = ["INK", "METADATA", "POINTS_PER_MM", "Canvas", "Pen", "drawing_rules"]
-
 INK = palette.INK_PLAN
 POINTS_PER_MM = 72.0 / MM_PER_INCH
 

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...tin import Bounds
 
-__all__ = ["Paths", "clip_paths", "join_paths"]
-
 
 class Paths(NamedTuple):
     """Polylines in the plane."""

@@ -29,15 +29,6 @@ if TYPE_CHECKING:
     from ...tin import TIN, Survey
     from .footprint import Footprint
 
-__all__ = [
-    "Contents",
-    "Marks",
-    "choose_interval",
-    "describe_count",
-    "gather_contents",
-    "write_elevations",
-]
-
 _MOST_LEVELS = 2000
 """More contours than a sheet has room for: the interval was given in another unit, or by a slip."""
 _LEVELS = 12

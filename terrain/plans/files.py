@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from .canvas import Canvas
 
-__all__ = ["PLAN_SUFFIXES", "list_files", "write_sheets"]
-
 PLAN_SUFFIXES = (".pdf", ".svg", ".png")
 """File name endings of what can be written."""
 

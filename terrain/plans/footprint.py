@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
     from ...tin import TIN
 
-__all__ = ["Footprint", "Pieces", "cut_into_pieces", "find_footprint"]
-
 
 class Footprint(NamedTuple):
     """Polygons that tile a surface."""

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     Axes = tuple[AxisLabel, AxisLabel]
 
-__all__ = ["Label", "draw_grid", "find_cross_places", "find_labels", "find_spacing"]
-
 PEN = Pen(palette.GRID_PLAN, 0.13)
 _TICK = Pen(palette.INK_PLAN, 0.18)
 _WIDEST = 100.0

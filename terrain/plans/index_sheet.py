@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from .mapping import Drawn
     from .windows import Window
 
-__all__ = ["draw_index"]
-
 _LEAST, _LARGEST = 1.6, 5.0
 """Of the numbers of sheets, millimetres."""
 

@@ -10,8 +10,6 @@ from ...tin import Bounds
 if TYPE_CHECKING:
     from .papers import Paper
 
-__all__ = ["Layout", "arrange_sheet"]
-
 _MARGIN = 8.0
 """Between the edge of the paper and the border: office printers leave 5 mm white."""
 _LABELS = 6.0

@@ -8,16 +8,6 @@ from typing import Any, NamedTuple
 
 from ...base import optional
 
-__all__ = [
-    "FONT",
-    "PURPOSE",
-    "Lettering",
-    "clean_text",
-    "find_missing_letters",
-    "fit_text",
-    "measure_text",
-]
-
 FONT = "DejaVu Sans"
 """Comes with matplotlib, and is embedded in a PDF."""
 PURPOSE = "A plan"

@@ -25,16 +25,6 @@ if TYPE_CHECKING:
     from .contents import Contents, Marks
     from .windows import MatchLine, Window
 
-__all__ = [
-    "CONTOUR_PENS",
-    "LINE_PENS",
-    "MATCH_PEN",
-    "OUTLINE_PEN",
-    "Drawn",
-    "draw_map",
-    "draw_outline",
-]
-
 CONTOUR_PENS = {
     False: Pen(palette.CONTOURS_PLAN, 0.13),
     True: Pen(palette.INDEX_CONTOURS_PLAN, 0.35),

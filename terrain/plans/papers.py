@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     PaperLike: TypeAlias = "str | tuple[float, float]"
 
-__all__ = ["MM_PER_INCH", "Paper"]
-
 MM_PER_INCH = 25.4
 
 _ISO = {"A0": (841, 1189), "A1": (594, 841), "A2": (420, 594), "A3": (297, 420), "A4": (210, 297)}

@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...tin import Bounds
 
-__all__ = ["Room", "outline_text"]
-
 _CELL = 8.0
 """Millimetres; a text is looked for in the cells that it covers."""
 

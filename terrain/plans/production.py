@@ -48,8 +48,6 @@ if TYPE_CHECKING:
     from .papers import PaperLike
     from .windows import Window
 
-__all__ = ["Plan", "plan"]
-
 _FACTOR_TOLD = 1e-3
 """A scale factor of the CRS farther from 1 is told in a note; UTM stays within it in its zone."""
 _LETTERS_SHOWN = 10

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
     from ...base.crs import CRS, UnitLike
 
-__all__ = ["Scale", "find_ground_unit", "measure_scale_factor"]
-
 _SMALLEST = 1e8
 _RATIO = re.compile(r"(?:1\s*[:/]\s*)?(\d+(?:[.,]\d+)?)")
 _INCHES = re.compile(

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from .footprint import Footprint, Pieces
 
-__all__ = ["Joint", "Strip", "cut_strips", "find_axis"]
-
 _CELLS_ACROSS = 20
 """Cells of the footprint in the height of a strip."""
 _BAND = 6

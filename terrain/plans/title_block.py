@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from .layout import Layout
     from .windows import Window
 
-__all__ = ["Caption", "draw_title_block"]
-
 _BORDER = Pen(INK, 0.5)
 _RULE = Pen(INK, 0.25)
 _THIN = Pen(INK, 0.13)

@@ -11,8 +11,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...tin import Bounds
 
-__all__ = ["MatchLine", "Window", "list_corners", "turn"]
-
 
 class MatchLine(NamedTuple):
     """Where another sheet goes on."""

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array
     from ...tin import TIN
 
-__all__ = ["aspect_classes", "slope_classes"]
-
 _DEGREE_BREAKS = (2.0, 5.0, 10.0, 15.0, 25.0, 35.0, 45.0)
 _PERCENT_BREAKS = (2.0, 5.0, 10.0, 15.0, 30.0, 60.0)
 """Limits of the FAO's Guidelines for soil description (2006, 4th edition, table 7), from level to

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...tin import TIN
 
-__all__ = ["curvature"]
-
 _CHUNK = 1 << 15
 """Vertices whose curvature is computed at a time, so that what is between stays in the cache."""
 

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...tin import TIN
 
-__all__ = ["aspect", "slope"]
-
 
 @product
 def slope(tin: TIN, *, unit: SlopeUnit = "degrees", per: SurfacePart = "triangle") -> Float64Array:

@@ -13,8 +13,6 @@ from .. import _kernel
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
 
-__all__ = ["list_terms", "merge_terms", "summarise"]
-
 _SPLITTER = 2.0**27 + 1
 """Dekker's: cuts a double into two halves of 26 bits."""
 

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ...base.georeference import Referenced
     from ...tin import TIN
 
-__all__ = ["SYMBOLS", "as_table", "find_weighted_percentiles", "slope_statistics"]
-
 SYMBOLS = {"degrees": "°", "percent": "%", "ratio": ""}
 """What stands behind a slope; nothing for a ratio."""
 _PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)

@@ -36,8 +36,6 @@ if TYPE_CHECKING:
     from .rows import Rows
     from .surfaces import Surfaces
 
-__all__ = ["cross_sections", "section_lines"]
-
 
 class _Axes(NamedTuple):
     """Cross sections in the plane."""

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .rows import Rows
 
-__all__ = ["check_features", "drape", "drape_points"]
-
 
 @product
 def drape(tin: TIN, features: Any, *, outside: OutsidePolicy = "error") -> Features:

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from .rows import Rows
     from .surfaces import Surfaces
 
-__all__ = ["measure_grades"]
-
 _SPLITTER = 2.0**27 + 1
 """Dekker's: cuts a double into two halves of 26 bits."""
 

@@ -28,15 +28,6 @@ if TYPE_CHECKING:
     from .rows import Rows
     from .surfaces import Surfaces
 
-__all__ = [
-    "MOST_STATIONS",
-    "lines_to_segments",
-    "measure_rows",
-    "profile",
-    "require_few",
-    "require_surface",
-]
-
 MOST_STATIONS = 1_000_000
 """So many stations at an interval are made; more are a slip of the interval."""
 

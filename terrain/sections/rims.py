@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...tin import TIN
 
-__all__ = ["move_aside", "trace_to_rim"]
-
 _ASIDE = 2.0
 """Roundings: that of the boundary and that of the segment."""
 _FINEST = 1e-5

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from ..surface import Breaks, Segments
     from .surfaces import Surfaces
 
-__all__ = ["Places", "Rows", "cut_rows"]
-
 _FIRST, _LAST = -1, np.iinfo(np.int64).max
 """Turns of the ends of segments, which are the same row for all, whatever else is there."""
 

@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int64Array
     from .rows import Rows
 
-__all__ = ["Runs", "find_runs"]
-
 
 class Runs(NamedTuple):
     """Lines without gaps."""

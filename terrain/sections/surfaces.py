@@ -13,8 +13,6 @@ from ...base.georeference import agree
 if TYPE_CHECKING:
     from ...tin import TIN
 
-__all__ = ["Surfaces", "as_surfaces"]
-
 _ALLOWED = "a TIN, a sequence of TINs, or a mapping of names to TINs"
 
 

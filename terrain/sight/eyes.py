@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...tin import TIN
 
-__all__ = ["View", "as_view", "measure_distances"]
-
 
 class View(NamedTuple):
     """An eye, and how it sees."""

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int64Array
     from ...tin import TIN
 
-__all__ = ["as_height", "line_of_sight", "raise_places"]
-
 
 @product
 def line_of_sight(

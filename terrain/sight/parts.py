@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .eyes import View
 
-__all__ = ["divide"]
-
 _SEEN, _DIVIDED = 1, 2
 """What the kernel says of a triangle."""
 _THINNEST = 1e-10

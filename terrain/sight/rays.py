@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from ..surface import Breaks, Reference
 
-__all__ = ["EARTH_RADIUS", "REFRACTION", "Blocks", "Rays", "find_blocks", "find_curvature"]
-
 EARTH_RADIUS = 6_371_000.0
 """Metres; the mean radius of the earth."""
 REFRACTION = 0.13

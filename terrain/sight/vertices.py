@@ -20,14 +20,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .eyes import View
 
-__all__ = [
-    "are_heights_exact",
-    "judge_vertices",
-    "look_one_by_one",
-    "see_vertices",
-    "visible_vertices",
-]
-
 _HIDDEN, _SEEN, _UNKNOWN = 0, 1, 2
 """What the kernel says of a vertex."""
 _BREAKS = 4_000_000

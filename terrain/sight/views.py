@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
     _Numbers = Int64Array
 
-__all__ = ["viewshed"]
-
 _CLASSES = ("visible", "partly", "hidden")
 _DOUBT = 1e-12
 """Share of its terms below which a height above a plane may be rounding."""

@@ -17,8 +17,6 @@ from ...tin.topology import find_offsets, find_owners
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int64Array
 
-__all__ = ["cross_cells"]
-
 
 class _Lines(NamedTuple):
     """Lines of edges of the triangles; steps are rows and columns, from the first end of an edge.

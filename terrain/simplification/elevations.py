@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from ...base.crs import Unit
     from ...base.results import Raster
 
-__all__ = ["Block", "Elevations", "Heights", "cut_blocks"]
-
 _LARGEST = 2**31 - 8
 """Cells of one block at most: the core numbers them with 32 bits."""
 

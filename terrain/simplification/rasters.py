@@ -38,8 +38,6 @@ if TYPE_CHECKING:
     from ...base.results import Raster
     from ...tin import TIN
 
-__all__ = ["simplify_raster"]
-
 _LARGEST_WHOLE = 2**24
 """Cells of a raster that is simplified in one piece: 300 MB."""
 

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from ...tin.meshing.simplification import Goal
     from .elevations import Block, Elevations
 
-__all__ = ["Frame", "choose_vertices", "find_frame", "trace_block"]
-
 
 class Frame(NamedTuple):
     """The boundary of the surface of a raster, and the cells that must be vertices."""

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from ...base.policies import SimplificationHold
     from ...tin import TIN
 
-__all__ = ["simplify"]
-
 
 @product
 def simplify(

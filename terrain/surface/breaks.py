@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from ...tin.triangulation import Triangulation
     from .segments import Segments
 
-__all__ = ["CROSSED", "Breaks", "trace_breaks"]
-
 CROSSED = ("line", "vertex", "edge", "breakline", "boundary")
 """What a break can be: a vertex of the line inside a triangle or outside, and what it meets."""
 

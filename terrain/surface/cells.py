@@ -14,8 +14,6 @@ from .reference import Surface
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array, Int32Array, Int64Array
 
-__all__ = ["Pieces", "cut_pieces", "fan_out", "turns"]
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pieces:

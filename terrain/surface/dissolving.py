@@ -16,16 +16,6 @@ if TYPE_CHECKING:
     from ...base.results.columns import Units
     from ...tin import TIN
 
-__all__ = [
-    "Dissolved",
-    "DividedMesh",
-    "Mesh",
-    "dissolve",
-    "join_components",
-    "make_polygons",
-    "number_components",
-]
-
 
 class Mesh(Protocol):
     """Triangles that share their vertices: a TIN, or what has these of its arrays."""

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray
     from ...tin.validation.geometries import Geometries
 
-__all__ = ["as_features"]
-
 _KINDS = {"Point": "points", "LineString": "lines", "Polygon": "polygons"}
 _LEAST = {"points": 1, "lines": 2, "polygons": 4}
 """Vertices of a piece; a ring repeats its first."""

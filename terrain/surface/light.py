@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, UInt8Array
     from ...base.policies import RasterValue
 
-__all__ = ["BRIGHTEST", "DARKEST", "Light", "PlaneMeasure", "as_light", "normalise", "shade"]
-
 DARKEST, BRIGHTEST = 1, 255
 """As gdaldem writes them; 0 is outside."""
 

@@ -22,17 +22,6 @@ if TYPE_CHECKING:
     from ...base.crs import CRS
     from ...tin import TIN, Surface
 
-__all__ = [
-    "compute_normals",
-    "measure_areas",
-    "measure_aspects",
-    "measure_plane_areas",
-    "measure_ring_area",
-    "measure_slopes",
-    "sum_at_vertices",
-    "sum_normals",
-]
-
 
 def measure_slopes(upward: Float64Array, unit: SlopeUnit) -> Float64Array:
     """Return the slope of planes with some upward normals, (k, 3), NaN where there is none."""

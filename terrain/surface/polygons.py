@@ -16,19 +16,6 @@ if TYPE_CHECKING:
     from ...base.crs import CRS
     from ...tin import TIN
 
-__all__ = [
-    "PolygonParts",
-    "as_parts",
-    "has_area",
-    "is_whole",
-    "measure_lengths",
-    "measure_ring_areas",
-    "repair_polygons",
-    "require_whole",
-    "sum_parts",
-    "turn",
-]
-
 _ROUNDINGS = 32.0
 """So many roundings the boundary of a polygon may be off."""
 _SHARE = 1e-9

@@ -18,16 +18,6 @@ if TYPE_CHECKING:
     from ...base.georeference import PlaneUnits, Referenced
     from ...tin import TIN
 
-__all__ = [
-    "Reference",
-    "Surface",
-    "agree_on_reference",
-    "find_common_reference",
-    "find_reference",
-    "make_reference",
-    "require_finite",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Reference:

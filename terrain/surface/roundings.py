@@ -9,8 +9,6 @@ import numpy as np
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
 
-__all__ = ["find_rounding", "find_written_rounding"]
-
 _DECIMALS = range(3, 10)
 """Coordinates with fewer, such as whole numbers, are taken as they are."""
 _SPACINGS = 4.0

@@ -13,8 +13,6 @@ from .roundings import find_rounding
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array
 
-__all__ = ["Segments", "as_segments"]
-
 
 class Segments(NamedTuple):
     """Straight pieces, line after line; those of one line follow each other."""

@@ -12,15 +12,6 @@ from ...tin.topology import NO_NEIGHBOR
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
-__all__ = [
-    "find_slivers",
-    "find_thin",
-    "keep_triangles",
-    "leave_out_slivers",
-    "measure_rounding",
-    "take_without_slivers",
-]
-
 _ROUNDINGS = 8.0
 """Points on a line, turned and rounded, lie off it by some three roundings of a coordinate."""
 

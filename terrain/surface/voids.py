@@ -15,9 +15,6 @@ import numpy as np
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Int64Array
 
-__all__ = ["find_border", "find_surface", "trace_cycles", "trace_rings"]
-
-
 _CORNERS = ((0, 0), (0, 1), (1, 0), (1, 1))
 """Of a square of cells: rows and columns from its northwest."""
 

@@ -21,20 +21,6 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .ortho import Ortho
 
-__all__ = [
-    "BLOCK_SHARE",
-    "NORTHWEST",
-    "add_lights",
-    "add_ortho",
-    "add_terrain",
-    "choose_exaggeration",
-    "fade_edges",
-    "measure_extent",
-    "measure_relief",
-    "place_vertices",
-    "round_exaggeration",
-]
-
 _PURPOSE = "A preview"
 
 RELIEF_SHARE = 0.1

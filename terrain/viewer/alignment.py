@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from ...base.crs import CRS, Unit
     from ...tin import Survey
 
-__all__ = ["Aligned", "align"]
-
 _ALLOWED = "a TIN, or a mapping of names to TINs with one at least"
 _ALONE = "Surface"
 

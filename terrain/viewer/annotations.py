@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from ..surface import Light
     from .overlay import Overlay
 
-__all__ = ["Layout", "TitleBlock", "annotate", "scale_bar_length"]
-
 MARGIN = 44.0
 _COMPASS_RADIUS = 32.0
 _HEADER = 112.0

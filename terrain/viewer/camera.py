@@ -13,16 +13,6 @@ from ...tin import Bounds
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
 
-__all__ = [
-    "VIEWS",
-    "View",
-    "aim",
-    "measure_pixels_per_unit",
-    "name_direction",
-    "place_camera",
-    "project_ground_axes",
-]
-
 _OVERHEAD = 89.5
 """Height of the viewer, degrees, from which on a view is a map."""
 

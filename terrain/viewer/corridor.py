@@ -13,15 +13,6 @@ if TYPE_CHECKING:
     from ...tin import TIN, Bounds
     from .camera import View
 
-__all__ = [
-    "STRIP_GAP",
-    "Corridor",
-    "Strips",
-    "cut_into_strips",
-    "find_corridor",
-    "measure_mean_width",
-]
-
 _LEAST_ELONGATION = 10.0
 """Length over width from which on a surface is a corridor."""
 

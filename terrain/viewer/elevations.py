@@ -9,8 +9,6 @@ import numpy as np
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
 
-__all__ = ["ElevationRange", "find_elevation_range"]
-
 _LEAST_POINTS = 20
 """Of fewer points none is said to be far off the others."""
 

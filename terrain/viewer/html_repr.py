@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from ...base.georeference.units import Ground
     from ...tin import TIN
 
-__all__ = ["draw_map", "make_html_repr"]
-
 _TINTS = 256
 _AMBIENT, _BRIGHTEST = 0.42, 1.35
 """Share of the light that falls everywhere, and the most of the rest, as in a page's still."""

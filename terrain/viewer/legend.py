@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from ...base.policies import Tint
     from ...tin import TIN
 
-__all__ = ["STEEPEST", "Legend", "measure_tint"]
-
 STEEPEST = 60.0
 """Slope, degrees, from which on the colour is the same."""
 

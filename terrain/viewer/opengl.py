@@ -10,8 +10,6 @@ from functools import cache
 from ...base import optional
 from ...base.errors import RenderError
 
-__all__ = ["require_on_screen", "require_opengl", "require_window"]
-
 PROBE_SECONDS = 60
 """How long the probe may take: a first start from a cold disk takes a few seconds."""
 

@@ -18,8 +18,6 @@ from .camera import VIEWS, View
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-__all__ = ["PreviewKeywords", "PreviewOptions"]
-
 
 class PreviewKeywords(TypedDict, total=False):
     """The keywords of :func:`tinsmith.preview` for type checkers: those of PreviewOptions."""

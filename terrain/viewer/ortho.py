@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from ...base.crs import CRS
     from ...tin import TIN
 
-__all__ = ["MOST_PIXELS", "Ortho", "read_ortho"]
-
 MOST_PIXELS = 4096
 """Widest and highest picture in a page: what phones draw, and a few megabytes to mail."""
 

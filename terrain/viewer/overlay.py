@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...base.arrays import UInt8Array
     from ..drawing import Color
 
-__all__ = ["Overlay"]
-
 _LAST_LATIN = "\N{LATIN SMALL LETTER LONG S}"
 """Last character that VTK's own font is sure to have."""
 

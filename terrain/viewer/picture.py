@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from .ortho import Ortho
     from .scene import Scene
 
-__all__ = ["PICTURE_SUFFIXES", "keep_vtk_plain", "write_picture"]
-
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
 """File name endings of pictures that can be written."""
 

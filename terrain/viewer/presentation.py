@@ -36,8 +36,6 @@ if TYPE_CHECKING:
     from ...base.georeference.units import Ground
     from .elevations import ElevationRange
 
-__all__ = ["PREVIEW_SUFFIXES", "Preview", "preview"]
-
 PAGE_SUFFIXES = (".html", ".htm")
 PREVIEW_SUFFIXES = (*PICTURE_SUFFIXES, *PAGE_SUFFIXES)
 """File name endings of what can be written."""

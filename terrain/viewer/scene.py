@@ -43,17 +43,6 @@ if TYPE_CHECKING:
     from .options import PreviewOptions
     from .ortho import Ortho
 
-__all__ = [
-    "Scene",
-    "ScenePlotter",
-    "add_scene",
-    "describe_far_off",
-    "fit_layout",
-    "make_scene",
-    "open_plotter",
-    "place_in_scene",
-]
-
 _PURPOSE = "A preview"
 
 _DESIGN_SIZE = (1600.0, 1000.0)

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from .corridor import Strips
     from .scene import Scene, ScenePlotter
 
-__all__ = ["label_strips", "paste_strips", "place_strips"]
-
 _LABEL_SIZE = 13.0
 _LABEL_RISE = 7.0
 

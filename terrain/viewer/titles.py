@@ -9,8 +9,6 @@ if TYPE_CHECKING:
 
     from .overlay import Overlay
 
-__all__ = ["Title", "fit_title", "shorten"]
-
 _LAYOUTS = (
     ((30.0, 27.0, 24.0), (62.0,), 92.0),
     ((24.0, 21.0), (41.0, 69.0), 96.0),

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from .options import PreviewOptions
     from .ortho import Ortho
 
-__all__ = ["Reading", "Window", "open_window"]
-
 _PURPOSE = "A preview"
 
 _TINTS = get_args(Tint)

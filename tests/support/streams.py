@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.io.streaming import PointChunk, stream_points
+from tinsmith.io.registry import PointChunk
+from tinsmith.io.streaming import stream_points
 
 __all__ = ["CHUNKS", "gather", "require_same"]
 

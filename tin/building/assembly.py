@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from .inputs import BuildInputs
 
-__all__ = ["assemble", "find_ring_groups"]
-
 
 def assemble(inputs: BuildInputs, progress: Progress | None = None) -> Version:
     """Build all that a TIN holds, and tell how far it is."""

@@ -19,15 +19,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import AnyArray, Int32Array, Int64Array
 
-__all__ = [
-    "Attributes",
-    "as_columns",
-    "as_mapping",
-    "as_row_attributes",
-    "find_first_rows",
-    "join_columns",
-]
-
 _EXACT = 2**53
 """Whole numbers up to here are exact as floats."""
 

@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from .options import BuildOptions
 
-__all__ = ["ConstrainedTriangulation", "triangulate_constrained"]
-
 
 class ConstrainedTriangulation(NamedTuple):
     """The triangulated hull with its lines.

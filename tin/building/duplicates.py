@@ -14,8 +14,6 @@ from ..validation.points import SHOWN
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array, Int64Array
 
-__all__ = ["DuplicatePolicy", "Merged", "merge_rows"]
-
 
 class Merged(NamedTuple):
     """Vertices, the vertex of every row, and the report's fields about merges."""

@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     from ..constraints.breaklines import Breakline, Water
     from .options import BuildOptions
 
-__all__ = ["BuildInputs", "gather_inputs"]
-
 _NAMES = ("points", "breaklines", "boundary", "holes", "erase", "water")
 
 

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
     Move = Callable[[Float64Array], Float64Array]
 
-__all__ = ["move_inputs", "move_points", "require_move"]
-
 
 def move_inputs(
     inputs: BuildInputs, move: Move, *, length: float, crs: CRS | None, elevation_unit: Unit | None

@@ -9,8 +9,6 @@ from ...base.errors import choice
 from ...base.policies import CrossingPolicy, DuplicatePolicy, TrimPolicy
 from ..validation.threads import thread_count
 
-__all__ = ["BuildOptions"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class BuildOptions:

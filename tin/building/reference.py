@@ -12,8 +12,6 @@ from ..validation.geometries import is_plain
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["adds_to", "find_crs", "require_crs", "settle_crs"]
-
 
 def adds_to(own: CRS, crs: CRS) -> bool:
     """Whether a CRS is the same as another, or that with a vertical axis."""

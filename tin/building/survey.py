@@ -24,9 +24,6 @@ from .reference import settle_crs
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array
 
-__all__ = ["Survey"]
-
-
 _LINES = ("breaklines", "boundary", "holes", "erase", "water", "extent")
 
 

@@ -20,8 +20,6 @@ from .attributes import find_first_rows
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
-__all__ = ["LineVertices", "Version"]
-
 
 class LineVertices(NamedTuple):
     """Vertices of lines as they were merged with the rows, and the TIN's vertex of each or -1."""

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..constraints.ring_cover import Crossing
 
-__all__ = ["leave_out_water"]
-
 _OUTSIDE = -1
 """Region beyond the hull of all shores."""
 

@@ -34,8 +34,6 @@ from ..predicates import ORIENTATION_BOUND
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int8Array, Int64Array
 
-__all__ = ["Boundary", "BoundaryFault", "find_fault", "find_sides"]
-
 Point = tuple[float, float]
 
 

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ..constraints.breaklines import Lines
     from ..constraints.constraint_set import LineSet
 
-__all__ = ["UNSEEN_CUTS", "Walk", "distance", "walk_along"]
-
 UNSEEN_CUTS = 16
 """Cuts that are allowed for in a part of a line that is left out."""
 

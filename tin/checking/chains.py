@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from ..surface import TIN
     from .findings import Findings
 
-__all__ = ["check_chains", "check_segments", "has_sound_chains"]
-
 
 def has_sound_chains(found: Findings) -> bool:
     """Tell whether :func:`check_chains` found nothing."""

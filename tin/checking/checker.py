@@ -52,8 +52,6 @@ if TYPE_CHECKING:
     from ..constraints.constraint_set import LineSet
     from ..surface import TIN
 
-__all__ = ["CheckResult", "Problem", "check"]
-
 LEVELS = (1, 2, 3)
 
 

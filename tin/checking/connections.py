@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ..surface import TIN
     from .findings import Findings
 
-__all__ = ["check_arrays", "check_connections"]
-
 _NEXT, _AFTER_NEXT = (1, 2, 0), (2, 0, 1)
 NO_VERTEX = -1
 

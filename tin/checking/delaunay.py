@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from ..surface import TIN
     from .findings import Findings
 
-__all__ = ["check_delaunay"]
-
 
 def check_delaunay(tin: TIN, found: Findings, *, conforming: bool = False) -> None:
     """Check every inner edge against the triangle across; constrained ones if it is conforming."""

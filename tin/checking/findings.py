@@ -12,8 +12,6 @@ from ...base.sentences import inflect
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["Findings", "Problem"]
-
 _SHOWN = 5
 
 

@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from ..surface import TIN
     from .findings import Findings
 
-__all__ = ["check_given_lines", "check_rows"]
-
 _ROUNDING = 4 * 2.0**-53
 _UNITS_OF_ROUNDING = 4  # one for a crossing or a bend; the rest for measuring the distance
 _OUTSIDE = ("outside the boundary", "in a hole", "trimmed")

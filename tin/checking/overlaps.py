@@ -20,8 +20,6 @@ from .shape import find_boundary
 if TYPE_CHECKING:
     from ..surface import TIN
 
-__all__ = ["Overlap", "describe_oddities", "find_overlap"]
-
 _MOST_EDGES = 20_000
 """Edges of a boundary that are looked at here, in half a second; a check looks at any number."""
 

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ..surface import TIN
     from .findings import Findings
 
-__all__ = ["check_shape", "find_boundary", "has_sound_boundary"]
-
 _UNIT_ROUNDOFF = 2.0**-53
 
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
-__all__ = ["Breakline", "BreaklineKind", "LineKind", "Lines", "Water"]
-
 MOST_PRIORITY = 2**53
 """Up to here whole numbers are told apart as floats, which priorities become."""
 

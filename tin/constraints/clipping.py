@@ -15,20 +15,6 @@ from ..triangulation import Triangulation
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
 
-__all__ = [
-    "BOUNDARY",
-    "EXTENT",
-    "HOLES",
-    "OWN_BOUNDARY",
-    "RingSegments",
-    "clip",
-    "in_rings",
-    "is_inside",
-    "require_cut",
-    "require_triangles",
-    "trim",
-]
-
 
 def in_rings(xy: Float64Array, rings: Sequence[Float64Array]) -> Int8Array:
     """Tell where places lie: +1 inside an odd number of rings, 0 on one, -1 outside."""

@@ -36,8 +36,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array, Int32Array
     from .polylines import Polylines
 
-__all__ = ["conform"]
-
 _MOST_ROUNDS = 1000  # from the largest coordinate to the smallest are some 450 halvings
 _LEAST_LIMIT = 20_000  # of new vertices, for any few lines
 _NEW_PER_VERTEX = 50  # the limit for many

@@ -25,19 +25,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...base.policies import LineKind
 
-__all__ = [
-    "ABOVE_ALL",
-    "BELOW_ALL",
-    "LineSet",
-    "as_sequence",
-    "gather_extent",
-    "gather_lines",
-    "gather_regions",
-    "gather_rings",
-    "gather_water",
-    "require_length",
-]
-
 ABOVE_ALL = np.inf
 """Priority of water: it stays flat whatever crosses it."""
 

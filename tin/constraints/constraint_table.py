@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array
     from ...base.policies import LineKind
 
-__all__ = ["ConstraintTable"]
-
 
 class ConstraintTable(NamedTuple):
     """A row for each line, in columns.

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..triangulation import Triangulation
 
-__all__ = ["Draped", "drape"]
-
 
 class Draped(NamedTuple):
     """Lines with elevations.

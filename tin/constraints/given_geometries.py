@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
     from ..validation.geometries import Geometries, Geometry
 
-__all__ = ["convert_geometries", "list_regions"]
-
 _LEVELS = ("z", "level", "elevation", "height")
 """Columns that hold the elevation of water, the same as in files."""
 

@@ -36,8 +36,6 @@ from .splitting import Splitting, drop_repeats
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
 
-__all__ = ["Noded", "Touches", "accept_noded", "node", "node_again"]
-
 
 class Touches(NamedTuple):
     """Given vertices that a line passes without naming them.

@@ -15,8 +15,6 @@ from .given_geometries import list_regions
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
 
-__all__ = ["gather_rings_of_regions", "starts_with_elevations"]
-
 
 def gather_rings_of_regions(regions: Sequence[Any], what: str) -> list[list[Float64Array]]:
     """Return the rings of regions, one list for each.

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import AnyArray, BoolArray, Int32Array, Int64Array
 
-__all__ = ["Polylines"]
-
 
 @dataclass(frozen=True, eq=False)
 class Polylines:

@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from .constraint_table import ConstraintTable
     from .polylines import Polylines
 
-__all__ = ["Clip", "Pslg", "build_mesh", "build_mesh_of_growth", "find_lines_in", "force"]
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Clip:

@@ -10,8 +10,6 @@ import numpy as np
 if TYPE_CHECKING:
     from ...base.arrays import Int64Array
 
-__all__ = ["Crossing", "find_crossings", "gather_odd", "walk_regions"]
-
 
 class Crossing(NamedTuple):
     """An edge along rings by which a region is left."""

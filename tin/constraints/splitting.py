@@ -14,8 +14,6 @@ from .polylines import Polylines
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
 
-__all__ = ["Segments", "Splitting", "drop_repeats", "interpolate_linearly", "is_before"]
-
 MOST_ROUNDS = 1000  # cascades of roundings end after a few
 
 _FREE_ROUNDS = 12

@@ -20,17 +20,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Float64Array, Int64Array
 
-__all__ = [
-    "as_array",
-    "as_ends",
-    "as_new_points",
-    "as_point",
-    "as_vertex_elevations",
-    "as_vertices",
-    "copy_argument",
-    "require_distinct",
-]
-
 
 def copy_argument(value: Any) -> Any:
     """Return an argument so that the caller's further use of it changes nothing."""

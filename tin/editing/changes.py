@@ -25,22 +25,6 @@ if TYPE_CHECKING:
     from ..building.inputs import BuildInputs
     from ..building.version import Version
 
-__all__ = [
-    "FLIP",
-    "Change",
-    "Done",
-    "NumberedInputs",
-    "add_line",
-    "count_breaklines",
-    "drop_lines",
-    "drop_vertices",
-    "has_own_elevations",
-    "make_flipped_edge",
-    "put_vertices",
-    "require_inner",
-    "set_elevations",
-]
-
 FLIP = "flip"
 """Name of the soft breakline that keeps a flipped edge."""
 

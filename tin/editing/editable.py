@@ -36,8 +36,6 @@ if TYPE_CHECKING:
     from ..building.version import Version
     from ..report import Edit
 
-__all__ = ["Editable"]
-
 _ONE = np.zeros(1, np.int32)
 
 _PLACES = {"points": "Points", "point": "Points", "coords": "Vertices of the breakline"}

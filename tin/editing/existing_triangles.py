@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ..building.version import Version
     from ..triangulation import Triangulation
 
-__all__ = ["build_of_triangles", "gather_inputs_of_triangles"]
-
 
 def gather_inputs_of_triangles(version: Version) -> BuildInputs:
     """Return what existing triangles are built of.

@@ -14,8 +14,6 @@ from .operations import OPERATIONS
 if TYPE_CHECKING:
     from .editable import Editable
 
-__all__ = ["Edit", "apply_edits"]
-
 
 def apply_edits(tin: Editable, edits: Iterable[Edit | Mapping[str, Any]]) -> None:
     """Do edits on a TIN, in their order.

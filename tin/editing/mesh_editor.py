@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from ..building.inputs import BuildInputs
     from .changes import NumberedInputs
 
-__all__ = ["Editor", "NotLocal", "explain_occupied", "is_local", "merge_elevations", "take_log"]
-
 _Mesh = tuple["Int32Array", "Int32Array", "BoolArray"]
 """Triangles, neighbours and fixed edges, vertices called by their slots, in canonical order."""
 

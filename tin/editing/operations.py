@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from .mesh_editor import Editor
     from .rebuilding import Rebuild
 
-__all__ = ["OPERATIONS", "Operation"]
-
 
 @dataclass(eq=False)
 class Operation:

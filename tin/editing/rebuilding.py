@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from ..constraints.breaklines import Breakline
     from .changes import NumberedInputs
 
-__all__ = ["Rebuild"]
-
 
 class Rebuild:
     """Builds the TIN of changed inputs beside the one that is there, for one edit.

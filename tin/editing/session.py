@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from ..building.inputs import BuildInputs
     from ..building.version import Version
 
-__all__ = ["Origin", "Session"]
-
 
 class Origin(NamedTuple):
     """What a TIN was built from, and what was done to it since.

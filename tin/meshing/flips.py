@@ -10,8 +10,6 @@ from ..triangulation.illegal_edges import mark_illegal_edges
 if TYPE_CHECKING:
     from ..surface import TIN
 
-__all__ = ["count_flips", "describe_flips"]
-
 
 def count_flips(tin: TIN) -> int:
     """Count the edges that a build of the vertices and lines of a TIN cannot keep."""

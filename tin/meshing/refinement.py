@@ -35,8 +35,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ..constraints.pslg import Pslg
 
-__all__ = ["LARGEST_MIN_ANGLE", "refine"]
-
 _MOST_ATTEMPTS = 5
 """The last one but one splits no edge of the boundary where splitting some was not to be had."""
 

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ..surface import TIN
 
-__all__ = ["Quality", "measure_smallest_angles", "quality"]
-
 _QUANTILES = {"min": 0.0, "q05": 0.05, "median": 0.5, "q95": 0.95, "max": 1.0}
 _SMALL_ANGLES = (1.0, 10.0, 20.0, 30.0)
 _LARGE_ANGLES = (90.0, 120.0, 150.0)

@@ -36,16 +36,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ..constraints.breaklines import Lines
 
-__all__ = [
-    "Errors",
-    "Goal",
-    "are_straight",
-    "find_rounding",
-    "insert_until_near",
-    "simplify_convex",
-    "simplify_tin",
-]
-
 _ROUNDING_BITS = 46
 """Elevations that differ in digits beyond these count as equal: 1e-11 m at 1000 m."""
 

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from .._kernel import Trace
     from ..surface import TIN
 
-__all__ = ["Beyond", "Crossings", "SurfaceMeter", "choose_rows"]
-
 
 class Crossings(NamedTuple):
     """Where edges of the new surface cross those of the given one, and the difference there."""

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ...base.policies import LineKind
     from ..surface import TIN
 
-__all__ = ["gather_pslg", "list_rings"]
-
 
 def list_rings(tin: TIN) -> list[list[int]]:
     """Return the rings of the boundary, each from a vertex back to it."""

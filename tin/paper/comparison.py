@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..surface import TIN
 
-__all__ = ["ANGLE_BINS", "MOST_POINTS", "Comparison", "Outcome", "compare"]
-
 MOST_POINTS = 2_500
 """Points compared at most, unless the caller allows more: the paper's algorithms are quadratic."""
 

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Float64Array, Int32Array, Int64Array
 
-__all__ = ["Cover", "cover"]
-
 _LINES = 4_000
 """Lines across the sweep, at least: where edges cross, areas are good to about one in as many."""
 

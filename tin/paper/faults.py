@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array
     from ..predicates import Columns
 
-__all__ = ["find_overlapping", "find_violating", "measure_minimum_angles"]
-
 _ROWS = 1 << 20  # point-in-circle tests at a time
 _BLOCK = 256  # triangles at a time
 _CHUNK = 32  # neighbours of each looked at before asking whether an overlap is found

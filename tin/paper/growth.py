@@ -62,8 +62,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array
     from ..predicates import Columns
 
-__all__ = ["Distance", "EmptyCircle", "Network", "improved", "original"]
-
 EmptyCircle = EmptyCircleRule
 Distance = DistanceRule
 

@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Int8Array, Int64Array
     from ..predicates import Columns
 
-__all__ = ["Edge", "Lists", "Triangle", "sides"]
-
 Edge = tuple[int, int]
 Triangle = tuple[int, int, int]
 

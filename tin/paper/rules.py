@@ -13,15 +13,6 @@ from ..predicates import Columns, in_circle
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int64Array
 
-__all__ = [
-    "Choice",
-    "Rule",
-    "closest_in_circle",
-    "closest_in_circle_or_widest_angle",
-    "widest_angle",
-    "widest_angle_then_closest",
-]
-
 
 class Choice(NamedTuple):
     """The point chosen, None if there is none, and the comparisons of points with circles."""

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
 
-__all__ = ["AreaOfUse"]
-
 _WGS84 = "EPSG:4326"
 _MARGIN_DEGREES = 2.0
 """Surveys at the edge of a zone keep its CRS some way beyond; two degrees are a third of a zone."""

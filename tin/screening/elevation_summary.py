@@ -13,8 +13,6 @@ from .nodata import describe_elevations, describe_suspects, find_suspect_elevati
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
 
-__all__ = ["ElevationSummary"]
-
 _SOME = 65_536
 """Elevations of each block that are kept, spread over it."""
 

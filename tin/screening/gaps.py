@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ..surface import TIN
     from ..triangulation import Triangulation
 
-__all__ = ["describe_gaps"]
-
 _USUAL = 95.0
 _FAR = 5.0
 """An edge is long beyond so many times the length that 95 % of the edges do not exceed,"""

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from ...base.progress import Tell
     from ..triangulation import Triangulation
 
-__all__ = ["STRICT", "Heights", "Judgement", "find_heights"]
-
 STRICT = 10.0
 """A residual is suspicious beyond so many times the scale around it."""
 _CARE = 2.0

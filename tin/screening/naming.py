@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray
     from ..surface import TIN
 
-__all__ = ["NameRows", "find_number", "make_namer", "write_number"]
-
 NameRows: TypeAlias = Callable[["Sequence[int]"], str]
 """Names rows for a sentence."""
 

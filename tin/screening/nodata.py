@@ -16,17 +16,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Float64Array
 
-__all__ = [
-    "CUSTOMARY",
-    "SuspectElevation",
-    "describe_elevations",
-    "describe_suspects",
-    "find_suspect_elevations",
-    "is_beyond_range",
-    "is_customary",
-    "parse_nodata",
-]
-
 CUSTOMARY = (
     *(-9999.0, -99999.0, -999999.0, -999.0, -9999.9, -999.9, -99.0, -99.9, -32768.0, -32767.0),
     *(-3.4028234663852886e38, -3.402823e38, -3.4e38, -1e38, -1e30, -1e20, -1.7976931348623157e308),

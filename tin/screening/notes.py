@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from .searching import Screening
     from .suspects import Suspect
 
-__all__ = ["describe_findings", "describe_screening"]
-
 _SHOWN = 3
 
 

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import BoolArray, Int32Array, Int64Array
 
-__all__ = ["find_clustered", "find_parts", "keep_triangles", "leave_out"]
-
 
 def find_clustered(surface: Triangulation, vertices: Int32Array) -> Int32Array:
     """Return those of some vertices that have another one of them as a neighbour."""

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...base.crs import CRS
     from .suspects import Rows, Suspect
 
-__all__ = ["find_places"]
-
 _CENTRE = (5.0, 95.0)
 """Percentiles between which the site is taken to lie, whatever single points do."""
 _WHOLE = 0.9

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ..surface import TIN
     from .suspects import Rows
 
-__all__ = ["find_crossings", "find_repeated_numbers", "find_repeated_places"]
-
 _USUAL_SHARE = 0.1
 """Where more of the numbers are repeated they are no names of points."""
 _SHOWN = 3

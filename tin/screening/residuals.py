@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..triangulation import Triangulation
 
-__all__ = ["Residuals", "fit_planes", "measure_offsets"]
-
 _TERMS = 3
 """Of a plane: fewer neighbours than these and one more say nothing about a point."""
 _MOST_LEVERAGE = 16.0

@@ -9,8 +9,6 @@ import numpy as np
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
 
-__all__ = ["NORMAL", "find_rounding", "measure_scales"]
-
 NORMAL = 1.4826
 """Times the median absolute deviation is the standard deviation of a normal distribution."""
 

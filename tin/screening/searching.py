@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from .voids import Void
     from .wrong_lines import WrongLine
 
-__all__ = ["Screening", "inspect_points", "screen_points"]
-
 _SAMPLE = 8_192
 _FEW = 10_000
 """So many points are inspected as a whole where others are screened."""

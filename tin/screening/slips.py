@@ -9,8 +9,6 @@ import numpy as np
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
 
-__all__ = ["BEYOND", "FACTORS", "Multiplied", "find_multiplied", "name_factor"]
-
 FACTORS = {
     10.0: "ten times",
     0.1: "a tenth of",

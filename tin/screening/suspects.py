@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from ..report import Report
     from ..surface import TIN
 
-__all__ = ["CERTAINTIES", "DROPPED", "REASONS", "Rows", "Suspect", "list_overruled_points"]
-
 CERTAINTIES = ("high", "medium", "low")
 REASONS = (
     "outside",

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ..triangulation import Triangulation
 
-__all__ = ["Void", "find_voids"]
-
 _MOST_SHARE = 0.5
 """Of the vertices: where more have the elevation it is that of the ground."""
 _FEWEST = 4

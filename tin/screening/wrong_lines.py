@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from ..constraints.breaklines import Lines
     from ..triangulation import Triangulation
 
-__all__ = ["WrongLine", "find_wrong_lines", "fit_ground", "mark_rings", "name_lines_at"]
-
 _MOST_JUDGED = 20_000
 """Vertices of lines that are judged, where there are more those of one in so many."""
 _MOST_OF_LINE = 0.75

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Int64Array
     from .triangulation import Triangulation
 
-__all__ = ["gather_quadrilaterals", "is_against_rule", "mark_illegal_edges"]
-
 
 def mark_illegal_edges(surface: Triangulation) -> BoolArray:
     """Mark the edges that triangulating the vertices and lines of a surface anew would not make.

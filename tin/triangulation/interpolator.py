@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from ...base.policies import InterpolationMethod
     from .triangulation import Triangulation
 
-__all__ = ["Interpolator"]
-
 _WEIGHTS = {
     "natural": _kernel.NaturalWeights.SIBSON,
     "laplace": _kernel.NaturalWeights.LAPLACE,

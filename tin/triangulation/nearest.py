@@ -21,8 +21,6 @@ from ..validation.threads import thread_count
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int8Array, Int32Array, Int64Array
 
-__all__ = ["NearestVertex"]
-
 _ROUNDING = 1.0 + 64 * np.finfo(np.float64).eps
 """Two squared distances whose ratio is further from 1 than this are told apart by doubles: each is
 rounded by less than 8 eps, coordinates of the exact range never underflow."""

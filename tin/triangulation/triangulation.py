@@ -15,8 +15,6 @@ from .nearest import NearestVertex
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
-__all__ = ["Triangulation"]
-
 
 @dataclass(frozen=True, eq=False)
 class Triangulation(Frozen):

@@ -17,8 +17,6 @@ import numpy as np
 
 from ...base.optional import find_loaded
 
-__all__ = ["MISSING", "Geometries", "Geometry", "find_geometries", "find_shapely", "is_plain"]
-
 MISSING = "missing geometry"
 """The kind of a row without a geometry."""
 

@@ -17,18 +17,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Float64Array
 
-__all__ = [
-    "as_elevations",
-    "as_masked_points",
-    "as_pairs",
-    "as_places",
-    "as_points",
-    "as_xy",
-    "clean_points",
-    "require_exact_range",
-    "require_three",
-]
-
 SHOWN = 5
 
 

@@ -19,8 +19,6 @@ from .geometries import find_geometries, find_shapely
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
 
-__all__ = ["Table", "as_table", "is_masked_array"]
-
 COORDINATES = ("easting", "northing", "elevation")
 _NAMES = {
     "easting": ("x", "e", "east", "easting", "eastings", "lon", "long", "lng", "longitude"),

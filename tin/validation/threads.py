@@ -6,8 +6,6 @@ import os
 
 from ...base.checks import require_count
 
-__all__ = ["available_cores", "thread_count"]
-
 # Below, starting the threads and stitching their parts costs as much as they save.
 LEAST_POINTS_PER_THREAD = 10_000
 

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import BoolArray, Float64Array, Int32Array
 
-__all__ = ["as_flags", "as_triangles", "turn_counter_clockwise"]
-
 
 def as_triangles(triangles: ArrayLike, n_vertices: int) -> Int32Array:
     """Return an (m, 3) int32 array of vertex numbers, m >= 1."""

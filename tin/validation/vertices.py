@@ -14,8 +14,6 @@ from .tables import is_masked_array
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Int64Array
 
-__all__ = ["as_rows", "as_vertex", "as_vertex_array", "as_vertex_pairs"]
-
 
 def as_vertex(vertex: Any, n_vertices: int) -> int:
     """Return a vertex number."""

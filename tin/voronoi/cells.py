@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from ...base.types import Bounds
     from .._kernel import Growth
 
-__all__ = ["Rings", "cells_in_box", "measure_signed_areas"]
-
 _OUTSIDE = -1
 
 

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...base.types import Bounds
     from ..surface import TIN
 
-__all__ = ["voronoi"]
-
 
 @product
 def voronoi(

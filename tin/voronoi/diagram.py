@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array, Int64Array, ObjectArray
     from ...base.crs import CRS
 
-__all__ = ["Voronoi", "divide_plane"]
-
 _PAD_SHARE = 0.1
 """How far the default boundary lies beyond the vertices, of the longer side of their bounds."""
 

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array
     from ...base.types import Bounds
 
-__all__ = ["ExactPlane", "HalfPlane"]
-
 _MANTISSA_BITS = 53
 
 Point = tuple[int, int]

@@ -18,8 +18,6 @@ from .names import APPLICATION
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["ENVIRONMENT", "prepare", "read_drawing"]
-
 ENVIRONMENT = {"EZDXF_CONFIG_FILE": os.devnull}
 
 _DEEPEST = 32

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
     from ....base.arrays import Float64Array
 
-__all__ = ["EntityWriter"]
-
 _IN_SPACE = 8
 """Flag of a polyline that is not of one elevation."""
 

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
     from ....base.arrays import AnyArray, Float64Array
 
-__all__ = ["ModelSpace", "read_model_space"]
-
 _SLOWNESS = 5
 """Times the usual time: ezdxf reads about a million bytes in a second, on a busy machine less."""
 

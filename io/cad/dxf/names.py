@@ -4,17 +4,6 @@ from __future__ import annotations
 
 from ....base.crs import FOOT, METRE, US_SURVEY_FOOT, Unit
 
-__all__ = [
-    "APPLICATION",
-    "CONSTRAINED",
-    "CRS_PROPERTY",
-    "ELEVATION_PROPERTY",
-    "LAYERS",
-    "UNIT_OF_CODE",
-    "UNKNOWN",
-    "find_code",
-]
-
 APPLICATION = "TINSMITH"
 """Whose extended data keep the names and kinds of lines, numbers and descriptions of points."""
 

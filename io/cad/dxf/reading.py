@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from ....base.crs import CrsLike, UnitLike
     from ....tin import TIN, Survey
 
-__all__ = ["read"]
-
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)", re.ASCII)
 _PRIORITY = re.compile(r"-?[0-9]{1,15}", re.ASCII)
 _SAMPLE = 64

@@ -46,8 +46,6 @@ if TYPE_CHECKING:
     from ....base.progress import Tell
     from .entities import EntityWriter
 
-__all__ = ["write"]
-
 _CHUNK = 10_000
 _WIDE = 1.5
 """Width of a window by its height."""

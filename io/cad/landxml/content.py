@@ -11,20 +11,6 @@ import numpy as np
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array, Int64Array
 
-__all__ = [
-    "ELEVATION_UNIT",
-    "FEATURE",
-    "KIND",
-    "LINE",
-    "PRIORITY",
-    "SOURCE",
-    "UNKNOWN",
-    "Content",
-    "Line",
-    "Points",
-    "Surface",
-]
-
 FEATURE = "tinsmith"
 """Name of such a feature."""
 

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
     from ....base.arrays import AnyArray, Float64Array
 
-__all__ = ["LARGEST_ID", "fault", "parse_list", "parse_rows", "parse_words"]
-
 LARGEST_ID = 2**63 - 2
 """NumPy makes the next number of all larger ones."""
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-__all__ = ["parse"]
-
 _CHUNK = 1 << 20
 _BATCH = 65_536
 _DEEPEST = 200

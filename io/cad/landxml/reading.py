@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ....base.crs import CrsLike, UnitLike
     from ....tin import TIN, Survey
 
-__all__ = ["read"]
-
 _SAMPLE = 64
 
 

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from ..drawing import Drawing
     from .content import Content, Points, Surface
 
-__all__ = ["gather_points", "gather_source"]
-
 _RINGS = {"outer": "boundary", "void": "hole", "island": "island"}
 
 

@@ -17,16 +17,6 @@ if TYPE_CHECKING:
     from . import content
     from .content import Content, Surface
 
-__all__ = [
-    "NO_ELEVATIONS",
-    "describe_point_files",
-    "find_boundary_kind",
-    "list_edge_lines",
-    "make_mesh",
-    "name_line",
-    "resolve_references",
-]
-
 NO_ELEVATIONS = frozenset({"nondestructive", "proximity"})
 """Types of breaklines that take their elevations from the surface."""
 

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ....base.arrays import Float64Array
     from .content import Content
 
-__all__ = ["find_stated", "name_unit"]
-
 _LINEAR = {
     ("Metric", "meter"): METRE,
     ("Metric", "kilometer"): Unit.of("km"),

@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from ....base.progress import Tell
     from ....tin import TIN, Survey
 
-__all__ = ["write"]
-
 _BATCH = 65_536
 _NAMESPACE = "http://www.landxml.org/schema/LandXML-1.2"
 _ROOT = (

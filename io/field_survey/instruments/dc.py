@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
     from ...delimited.lines import TextLines
 
-__all__ = ["read_book"]
-
 _WIDTH = 16
 _POINTS = ("69", "08")
 _END_OF_NUMBERS = 4 + 4 * _WIDTH

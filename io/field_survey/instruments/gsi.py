@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 
     from ...delimited.lines import TextLines
 
-__all__ = ["read_book"]
-
 _WIDTHS = (8, 16)
 _HEAD = 7  # word index, information and sign
 _LENGTHS = {"0": (1e3, True), "6": (1e4, True), "8": (1e5, True), "1": (1e3, False)}

@@ -21,8 +21,6 @@ from .records import Book
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["read_book"]
-
 _RECORDS: dict[tuple[str, ...], str] = {
     ("JOBFile", "Reductions", "Point"): "reductions",
     ("JOBFile", "InventoryData", "Point"): "reductions",

@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from ....base.crs import CrsLike, UnitLike
     from ....tin import Survey
 
-__all__ = ["read_dc", "read_gsi", "read_jobxml", "read_sdr"]
-
 
 def read_dc(
     path: Path,

@@ -15,9 +15,6 @@ if TYPE_CHECKING:
     from ...delimited.lines import TextLines
     from .records import Book
 
-__all__ = ["describe_head_fault", "find_head", "parse_coordinate", "read_records"]
-
-
 _STX = "\x02"
 
 

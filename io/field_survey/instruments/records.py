@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
     from ....base.crs import CrsLike, UnitLike
 
-__all__ = ["Book", "parse_names", "require_refraction"]
-
 _SHOWN = 5
 _MOST_REFRACTION = 5.0
 _FEET = (FOOT, US_SURVEY_FOOT)

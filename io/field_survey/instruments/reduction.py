@@ -12,8 +12,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-__all__ = ["EARTH_RADIUS", "NOT_APPLIED", "Shot", "Station", "reduce_shot", "to_radians"]
-
 EARTH_RADIUS = 6_371_000.0
 """Metres; the difference to any curvature of the ellipsoid is below 1 % of a correction of
 millimetres."""

@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 
     from ...delimited.lines import TextLines
 
-__all__ = ["read_book"]
-
 _ANGLES = {"1": "degrees", "2": "gon", "4": "mil"}
 _RIGHT_ANGLE = math.pi / 2
 _FIELDS = {"02": (1, 4), "07": (2, 2), "08": (1, 3), "09": (2, 3)}

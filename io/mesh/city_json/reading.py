@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
     from ....base.arrays import Float64Array, Int64Array
 
-__all__ = ["read"]
-
 _VERSIONS = ("1.0", "1.1", "2.0")
 _WITHOUT_TRANSFORM = "1.0"
 """The version in which vertices may be coordinates as they are."""

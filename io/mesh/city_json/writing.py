@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from ....base.progress import Tell
     from ....tin import TIN
 
-__all__ = ["DecimalGrid", "write"]
-
 _BATCH = 65_536
 _NAME = "terrain"
 

@@ -18,8 +18,6 @@ from .schema import POINT, RECORD, digest_lines
 if TYPE_CHECKING:
     from ....base.arrays import AnyArray, Float64Array
 
-__all__ = ["read_tables"]
-
 _TYPE = re.compile(r"[<|][bif][148]|\|u1")
 _SHAPE = re.compile(r"[0-9]{1,12}( [0-9]{1,12}){0,2}")
 _TRIANGLE = np.dtype([("corners", "i8", (3,)), ("flags", "i8")])

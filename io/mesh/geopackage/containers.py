@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-__all__ = ["MARK", "Placing", "adding_layers", "require_closed"]
-
 MARK = "written by"
 """Item of a layer's metadata whose value is ``tinsmith``."""
 

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from ...isolated import Answer
     from ..common import Reference
 
-__all__ = ["read"]
-
 _CHANGED = (
     "Layers of the file were changed by another program since it was written: the TIN is made of "
     "its vertices and triangles, and what was known of lines, rows and edits is left out."

@@ -34,8 +34,6 @@ if TYPE_CHECKING:
 
     from ....base.arrays import AnyArray, BoolArray, Float64Array, Int32Array
 
-__all__ = ["Record", "describe_layer_columns", "pack_tin", "unpack_tin"]
-
 CLASSES: dict[str, Any] = {
     kind.__name__: kind
     for kind in (

@@ -17,22 +17,6 @@ if TYPE_CHECKING:
     from ....base.arrays import AnyArray, Float64Array
     from ....base.crs import CRS
 
-__all__ = [
-    "APPLICATION_ID",
-    "LAYERS",
-    "NO_CLOCK",
-    "POINT",
-    "RECORD",
-    "TABLES",
-    "USER_VERSION",
-    "describe_crs",
-    "digest_arrays",
-    "digest_lines",
-    "make_chain_blobs",
-    "make_point_blobs",
-    "make_triangle_blobs",
-]
-
 APPLICATION_ID = 0x47504B47  # "GPKG"
 USER_VERSION = 10300
 RECORD = "tinsmith_tin"

@@ -38,8 +38,6 @@ if TYPE_CHECKING:
     from ....base.progress import Tell
     from ....tin import TIN
 
-__all__ = ["write"]
-
 _CHUNK = 1 << 16
 """Triangles in memory at a time, as geometries."""
 

@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     from ....tin import TIN
     from ..texture import Texture
 
-__all__ = ["MeshArrays", "choose_colors", "encode_glb", "turn_up", "write"]
-
 _MAGIC, _VERSION = 0x46546C67, 2
 _JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
 _ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963

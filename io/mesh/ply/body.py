@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 _LINE_END = 3
 """Bytes behind the last row that may be ends of lines."""
 
-__all__ = ["Ragged", "Table", "read_tables"]
-
 
 class Ragged(NamedTuple):
     """Lists of any length, one after the other."""

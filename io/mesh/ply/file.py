@@ -43,8 +43,6 @@ if TYPE_CHECKING:
     from .body import Table
     from .header import Header
 
-__all__ = ["read", "write"]
-
 _FLAGS = ("constrained_0", "constrained_1", "constrained_2")
 _LIST = ("count", "corners")
 """Length and items of the list of a face's vertices, as they lie in a row."""

@@ -12,8 +12,6 @@ from ....base.policies import LineKind
 from ....base.sentences import FILE
 from ...registry.signatures import is_ply
 
-__all__ = ["SCALARS", "Element", "Header", "LineComment", "Property", "parse_header"]
-
 SCALARS = {
     "char": "i1",
     "int8": "i1",

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from .body import Table
     from .header import LineComment
 
-__all__ = ["ENDS", "format_line_comments", "read_lines", "require_edges", "take_edges"]
-
 ENDS = ("vertex1", "vertex2")
 """Properties of an edge, as other programs call them."""
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     from ....base.arrays import BoolArray, Float64Array, Int64Array
 
-__all__ = ["GridMesh", "cut_along_grid", "simplify"]
-
 
 class GridMesh(NamedTuple):
     """A mesh on a grid."""

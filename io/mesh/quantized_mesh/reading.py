@@ -20,9 +20,6 @@ if TYPE_CHECKING:
 
     from .tile import TileName
 
-
-__all__ = ["read"]
-
 _NAME = re.compile(r"(\d{1,2})/(\d{1,9})/(\d{1,9})")
 _MOST_LEVEL = 30
 _GZIP = b"\x1f\x8b"

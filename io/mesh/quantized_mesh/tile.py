@@ -20,17 +20,6 @@ import numpy as np
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array, Int64Array
 
-__all__ = [
-    "STEPS",
-    "BrokenTileError",
-    "Tile",
-    "TileName",
-    "decode_tile",
-    "encode_tile",
-    "find_horizon_point",
-    "to_cartesian",
-]
-
 _RADIUS = 6_378_137.0
 _FLATTENING = 1 / 298.257223563
 _POLAR_RADIUS = _RADIUS * (1 - _FLATTENING)

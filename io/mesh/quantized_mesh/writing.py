@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from ....base.arrays import Float64Array, Int64Array
     from ....base.progress import Tell
 
-__all__ = ["write"]
-
 _MOST_LEVEL = 23
 """A step of its tiles is 0.07 mm."""
 

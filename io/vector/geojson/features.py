@@ -28,19 +28,6 @@ if TYPE_CHECKING:
     from ....base.results import Features
     from ..surface_features import Writable
 
-__all__ = [
-    "Places",
-    "Texts",
-    "format_positions",
-    "keep_in_crs",
-    "project_to_wgs84",
-    "require_one_piece",
-    "turn_rings",
-    "write_collection",
-    "write_feature_lines",
-    "write_features",
-]
-
 _BATCH = 16_384
 
 

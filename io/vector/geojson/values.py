@@ -10,8 +10,6 @@ import numpy as np
 if TYPE_CHECKING:
     from ....base.arrays import AnyArray
 
-__all__ = ["json_texts", "properties_template"]
-
 
 def json_texts(values: AnyArray) -> list[str]:
     """Return each value of a column as JSON; ``null`` for what is missing or not finite.

@@ -35,8 +35,6 @@ if TYPE_CHECKING:
     from ..surface_features import Parts
     from .features import Places
 
-__all__ = ["write"]
-
 _LARGEST = 2**63
 _FORMS = {
     "triangles": {"slope": "%.4f", "aspect": "%.4f", "area": "%.9g"},

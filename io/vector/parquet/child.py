@@ -13,8 +13,6 @@ from ....base.sentences import FILE
 from ...isolated import Answer, Refusal
 from ..gdal_child import convert_to_texts, is_numeric, pack_geometries
 
-__all__ = ["ENVIRONMENT", "prepare", "read_features", "read_groups", "read_statistics"]
-
 ENVIRONMENT = {"ARROW_DEFAULT_MEMORY_POOL": "system", "OMP_NUM_THREADS": "1"}
 
 _DEGREES = "OGC:CRS84"

@@ -40,8 +40,6 @@ if TYPE_CHECKING:
     from ...registry import Blocks
     from ..layers import Layer
 
-__all__ = ["describe", "read_box", "stream"]
-
 _CHILD = f"{__package__}.child"
 _LARGEST_WHOLE = 1 << 28
 """Bytes of a file that is read at once where it holds other features than single points."""

@@ -7,21 +7,6 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = [
-    "AnyArray",
-    "BoolArray",
-    "Float32Array",
-    "Float64Array",
-    "Int8Array",
-    "Int32Array",
-    "Int64Array",
-    "ObjectArray",
-    "StrArray",
-    "UInt8Array",
-    "UInt16Array",
-    "UInt64Array",
-]
-
 AnyArray: TypeAlias = NDArray[Any]
 BoolArray: TypeAlias = NDArray[np.bool_]
 Float32Array: TypeAlias = NDArray[np.float32]

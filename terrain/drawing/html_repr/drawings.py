@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ....base.arrays import Float64Array, UInt8Array
     from ....base.crs import CRS
 
-__all__ = ["Canvas", "draw_cells"]
-
 _LINE = (38, 114, 181)
 """A blue that stands out from white and from near black."""
 

@@ -19,18 +19,6 @@ if TYPE_CHECKING:
     from ....base.arrays import Float64Array, UInt8Array
     from ....base.crs import CRS, Unit
 
-__all__ = [
-    "SIZE",
-    "describe_bounds",
-    "encode_png",
-    "name_crs",
-    "name_unit",
-    "name_units",
-    "write_html",
-    "write_range",
-    "write_table",
-]
-
 SIZE = (320, 240)
 """Greatest width and height of a picture, pixels."""
 

@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from ....base.results import Features, Raster, Table
     from ....base.results.columns import Units
 
-__all__ = ["make_features_html", "make_raster_html", "make_table_html"]
-
 _MOST_ROWS = 8
 _MOST_COLUMNS = 12
 _MOST_WRITTEN = 1e12

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ....base.arrays import Float64Array, UInt8Array
     from ....tin import Report, Survey
 
-__all__ = ["list_notes", "make_report_html", "make_survey_html"]
-
 _GIVEN = {
     "breaklines": ("breakline", "breaklines"),
     "boundary": ("boundary ring", "boundary rings"),

@@ -12,8 +12,6 @@ from .edge_cells import find_rays
 if TYPE_CHECKING:
     from ....base.arrays import Float64Array, Int64Array
 
-__all__ = ["measure_distances"]
-
 _SHARE = 1e-6
 """Of the largest distance: what is nearer to each other is one place."""
 

@@ -14,8 +14,6 @@ import numpy as np
 if TYPE_CHECKING:
     from ....base.arrays import BoolArray, Float64Array, Int64Array
 
-__all__ = ["Rays", "find_rays"]
-
 _FACET = np.pi / 90
 """Angle between the rays of a fan."""
 _NONE = -1

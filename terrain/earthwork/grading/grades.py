@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from ....base.arrays import Float64Array
     from ....tin import TIN
 
-__all__ = ["grade"]
-
 _SHARE = 1e-6
 """Of the area of pad and slopes: less of it may lie beyond the ground by rounding."""
 _SLOPE = 0.2

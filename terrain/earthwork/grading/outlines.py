@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ....base.arrays import AnyArray, Float64Array
     from ....tin import TIN
 
-__all__ = ["arrange_rings", "build_area", "fills_hull", "find_area"]
-
 _SHARE = 1e-12
 """Of an area: by so much less it may fill its hull, by rounding."""
 

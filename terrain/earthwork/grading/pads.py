@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ....tin import TIN
     from .slopes import Slope
 
-__all__ = ["build_patch"]
-
 
 def build_patch(tin: TIN, pad: Any, level: float, slopes: list[Slope]) -> TIN:
     """Return pad and slopes as one surface."""

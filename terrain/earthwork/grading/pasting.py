@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from ....base.progress import Tell
     from ....tin import TIN
 
-__all__ = ["join_surfaces", "paste"]
-
 _SHARE = 1e-12
 """Of an area: less of it may lie beyond another one by rounding."""
 _LEVEL = 1e-9

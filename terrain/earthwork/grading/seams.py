@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from ....base.progress import Tell
     from ....tin import TIN
 
-__all__ = ["Seam", "find_sides", "measure_tolerance"]
-
 _ROUNDINGS = 64.0
 """Of the largest coordinate: places so near to each other are one."""
 _BATCH = 256

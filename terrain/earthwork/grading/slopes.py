@@ -17,8 +17,6 @@ from .seams import measure_tolerance
 if TYPE_CHECKING:
     from ....base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
 
-__all__ = ["Slope", "find_slope"]
-
 _MARGIN = 1.01
 """Slopes are made so much longer than they can be: at their end there is no daylight."""
 _PLANE = 1e-6

@@ -17,8 +17,6 @@ from .regions import KINDS, find_regions
 if TYPE_CHECKING:
     from ....tin import TIN
 
-__all__ = ["describe_flats", "flats"]
-
 _FEWEST_POINTS = 30
 _POINTS_PER_LEVEL = 10
 """Contours have so many points at each elevation at least,"""

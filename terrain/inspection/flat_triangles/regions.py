@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from ....base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ....tin import TIN
 
-__all__ = ["CAPS", "KINDS", "NARROWEST", "Border", "Regions", "find_regions"]
-
 KINDS = ("unclear", "ridge", "valley", "peak", "pit")
 """Landforms of flat regions; ``Regions.kinds`` holds places in this list."""
 

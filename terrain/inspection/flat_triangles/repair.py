@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from .regions import Regions
     from .skeleton import Skeleton
 
-__all__ = ["ORIGIN", "mend_flats"]
-
 ORIGIN = "origin"
 """The attribute that tells points that were added from those that were measured; with an underscore
 behind where the survey has another one of this name."""

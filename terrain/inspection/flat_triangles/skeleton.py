@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ....tin import TIN
     from .regions import Regions
 
-__all__ = ["Skeleton", "find_shares", "trace_skeleton"]
-
 
 class Skeleton(NamedTuple):
     """Points of skeletons; each is the middle of an edge across its region."""

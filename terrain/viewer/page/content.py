@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ....tin import TIN, Survey
     from ..ortho import Ortho
 
-__all__ = ["Labels", "Start", "describe_page", "find_labels"]
-
 _STEPS = 2**22
 """Steps of a coordinate from end to end, at least: 0.3 mm in a kilometre."""
 

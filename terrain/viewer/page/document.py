@@ -12,8 +12,6 @@ from ...drawing import PAGE, SAMPLE_FRAME
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["make_document"]
-
 
 def make_document(content: Mapping[str, Any]) -> str:
     """Return the HTML of a page of what :func:`.content.describe_page` gives.

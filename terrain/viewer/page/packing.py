@@ -21,8 +21,6 @@ import numpy as np
 if TYPE_CHECKING:
     from ....base.arrays import Int64Array, UInt64Array
 
-__all__ = ["pack_counts", "pack_rows", "pack_triangles", "sort_in_morton_order"]
-
 _LEVEL = 6
 _BITS = 16
 

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tinsmith.base.notes import naming_file
 from tinsmith.io import ReadError
 from tinsmith.io.delimited import layout as layouts
 from tinsmith.io.delimited.layout import find_layout
 from tinsmith.io.delimited.lines import TextLines, decode_head, read_lines
-from tinsmith.io.door import naming_file
 
 USUAL = {
     "delimiter": ",",

@@ -10,7 +10,8 @@ import pytest
 
 import tinsmith as ts
 from tinsmith.io import lines_from_codes
-from tinsmith.io.field_survey.field_codes import MARKS, RULES
+from tinsmith.io.field_survey.field_codes import RULES
+from tinsmith.io.field_survey.styles import MARKS
 
 SAMPLE = Path(__file__).parents[3] / "sample_data" / "site_survey.csv"
 
