@@ -237,6 +237,17 @@ def test_imports_past_the_face_of_a_package_grow_no_more(figures):
     assert len(figures.past_a_face) <= MOST_PAST_A_FACE, packages.most_common()
 
 
+def test_only_packages_list_their_names():
+    """A module's public names are those without an underscore at their head."""
+    listing = [
+        path.relative_to(ROOT).as_posix()
+        for folder in ("tin", "io", "terrain", "src")
+        for path in (ROOT / folder).rglob("*.py")
+        if path.name != "__init__.py" and re.search(r"^__all__\b", path.read_text(), re.MULTILINE)
+    ]
+    assert listing == []
+
+
 ROOT_ENTRIES = """
 .ci .clang-format .dockerignore .github .gitignore .pre-commit-config.yaml ARCHITECTURE.md
 CHANGELOG.md CMakeLists.txt CONTRIBUTING.md LICENSE Makefile README.md SECURITY.md benchmarks

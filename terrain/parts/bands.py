@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from ...tin.tiling import LocalTriangulation
     from ..isolines import Levels
 
-__all__ = ["RINGS", "BandOptions", "BandPart", "compute_part", "join"]
-
 RINGS = 3
 """Rings of triangles that a part needs around those that meet the tile's box: as contours do, and
 one for what is left out along the boundary."""

@@ -27,16 +27,6 @@ if TYPE_CHECKING:
     from ...tin.tiling import LocalTriangulation
     from ..isolines import Levels
 
-__all__ = [
-    "RINGS",
-    "ContourOptions",
-    "ContourPart",
-    "LineJoiner",
-    "Lines",
-    "compute_part",
-    "join",
-]
-
 RINGS = 2
 """Rings of triangles that a part needs around those that meet the tile's box.
 

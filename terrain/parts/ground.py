@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array, UInt8Array
     from ..ground_filter import Parameters
 
-__all__ = ["GroundWindow", "choose_reach"]
-
 _BUILDINGS = 3.0
 """Widths of the largest building that are read around a tile."""
 

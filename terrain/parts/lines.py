@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ...base.crs import CRS, Unit
     from ...tin.tiling import LocalTriangulation
 
-__all__ = ["RINGS", "LineOptions", "SurfacePart", "compute_part", "find_reach", "join"]
-
 RINGS = 1
 """Rings of triangles that a part needs: a line may meet a triangle in a vertex only."""
 

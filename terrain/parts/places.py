@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from ...base.types import Bounds
     from ...tin.tiling import LocalTriangulation
 
-__all__ = ["PlacePart", "compute_part", "join"]
-
 
 class PlacePart(NamedTuple):
     """Elevations at places: ``rows`` (k,) among all, ``elevations`` (k,), NaN off the surface."""

@@ -29,17 +29,6 @@ if TYPE_CHECKING:
     from ...base.types import Grid
     from ...tin.tiling import LocalTriangulation
 
-__all__ = [
-    "RasterBlock",
-    "RasterOptions",
-    "compute_block",
-    "compute_part",
-    "count_rings",
-    "find_cells",
-    "find_reach",
-    "join",
-]
-
 _NO_CELLS = slice(0, 0)
 
 

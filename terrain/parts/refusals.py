@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from ...base.errors import OptionError
 
-__all__ = ["NOT_LOCAL", "require_local"]
-
 _WATER = (
     "water that falls on one tile runs through others, so that each place depends on all of the "
     "surface above it"

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from ...base.types import Bounds
     from ...tin.tiling import LocalTriangulation
 
-__all__ = ["StatisticsOptions", "StatisticsPart", "compute_part", "join"]
-
 
 class StatisticsOptions(NamedTuple):
     """As the arguments of :func:`tinsmith.slope_statistics`."""

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from ...tin.tiling import LocalTriangulation
     from ..surface import Surface
 
-__all__ = ["are_inner", "are_owned", "are_owned_triangles", "as_surface"]
-
 
 def as_surface(
     part: LocalTriangulation, crs: CRS | None = None, elevation_unit: Unit | None = None

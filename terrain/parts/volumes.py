@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from ..earthwork.planes import Plane
     from ..surface import Reference
 
-__all__ = ["VolumeOptions", "VolumePart", "compute_part", "find_reach", "join", "merge"]
-
 
 class VolumeOptions(NamedTuple):
     """What is measured: the arguments of :func:`tinsmith.volume`, settled.

@@ -11,8 +11,6 @@ from ...base.types import Bounds
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array
 
-__all__ = ["are_in_box", "find_limits", "list_sides", "widen"]
-
 
 def find_limits(box: Bounds) -> tuple[Float64Array, Float64Array]:
     """Return the southwestern and the northeastern corner, (2,) arrays."""

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ...base.types import Bounds
 
-__all__ = ["Discs", "bound_discs"]
-
 _ROUNDING = 2.0**-53
 _TRUSTED = 2.0**-20
 """Relative error of a determinant up to which its double is used."""

@@ -10,8 +10,6 @@ import numpy as np
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array
 
-__all__ = ["ExactSum", "add_doubled_areas"]
-
 _DIGITS = 53
 _LOW_DIGITS = 26
 _SPLITTER = 2.0**27 + 1.0

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ..constraints import LineSet
     from .circles import Discs
 
-__all__ = ["NodedLines", "choose_near", "list_segments_near", "node_lines", "require_local"]
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class NodedLines:

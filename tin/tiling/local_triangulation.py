@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from .rings import Rings
     from .sources import PointSource, SegmentSource
 
-__all__ = ["LocalTriangulation", "find_around", "find_triangles_at", "triangulate_box"]
-
 _EVERYWHERE = (-np.inf, -np.inf, np.inf, np.inf)
 
 _WORTH_LOOKING = 20_000

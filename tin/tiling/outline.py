@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from .local_triangulation import LocalTriangulation
     from .sources import SegmentSource
 
-__all__ = ["Outline", "find_outline"]
-
 _PLANE = Bounds(-np.inf, -np.inf, np.inf, np.inf)
 
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Float64Array, Int32Array, Int64Array
 
-__all__ = ["TileTriangles", "TilesProof", "check_tiles"]
-
 
 class TileTriangles(NamedTuple):
     """The triangles of a surface that a tile owns.

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array
 
-__all__ = ["Rings", "find_inside"]
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Rings:

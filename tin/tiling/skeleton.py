@@ -18,8 +18,6 @@ from .sources import NumberedPoints
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array
 
-__all__ = ["find_outermost", "find_skeleton", "reduce_to_hull"]
-
 _DIRECTIONS = 16
 _MANY, _SAMPLE = 4_096, 1_024
 """Points of which it pays to look at some first, and how many are looked at."""

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from .circles import Discs
     from .rings import Rings
 
-__all__ = ["NumberedPoints", "NumberedSegments", "PointSource", "SegmentSource"]
-
 
 class NumberedPoints(NamedTuple):
     """Points with their numbers among all points.

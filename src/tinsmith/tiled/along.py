@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from .runs import Record
     from .tasks import Part
 
-__all__ = ["compute_along", "join_along", "keep_lines"]
-
 
 def keep_lines(value: Any, features: Features) -> Given:
     """Return lines, or the rings of polygons, for tasks; ``value`` is what they were taken from."""

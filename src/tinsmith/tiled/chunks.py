@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
     from ..base.arrays import AnyArray, Float64Array, Int64Array
 
-__all__ = ["BYTES_ON_DISK", "Chunk", "load_chunks", "save_chunks", "split_numbers", "write_chunk"]
-
 _POINT = np.dtype([("xyz", "<f8", 3), ("row", "<u4")])
 """A point on disk: its coordinates, and its row behind the first one of the chunk."""
 

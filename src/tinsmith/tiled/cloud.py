@@ -24,8 +24,9 @@ from ..base.policies import (
 )
 from ..base.sentences import counted
 from ..io.reading import list_files
+from ..io.registry import SourceHeader
 from ..io.registry.lookup import find_format
-from ..io.streaming import SourceHeader, describe_source, stream_points
+from ..io.streaming import describe_source, stream_points
 from ..io.writing import write as write_file
 from ..tin import Survey
 from ..tin.validation import as_xy
@@ -45,8 +46,6 @@ if TYPE_CHECKING:
     from ..base.types import Bounds, GeometriesLike
     from ..tin import TIN, Breakline
     from ..tin.tiling import TilesProof
-
-__all__ = ["Plan", "TiledPoints", "tiles"]
 
 _BYTES_OF_A_POINT = 30
 """Of text."""

@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from .lines import GivenLines
     from .workers import Phase
 
-__all__ = ["computing", "labelling"]
-
 _LATTICE = 1024
 """Rows and columns of the cells in which points are counted before tiles are cut."""
 _SUFFIX = ".run"

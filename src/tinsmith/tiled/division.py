@@ -13,8 +13,6 @@ from ..base.types import Bounds
 if TYPE_CHECKING:
     from ..base.arrays import Int64Array
 
-__all__ = ["Tile", "divide", "quarter"]
-
 
 @dataclass(frozen=True)
 class Tile:

@@ -22,8 +22,6 @@ from ..base.errors import ReadError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-__all__ = ["Processes", "connect_to_dask", "run_tasks"]
-
 Job = TypeVar("Job")
 _AHEAD = 4
 """Tasks that are handed over for each worker, so that none waits for work."""

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from ..base.types import Bounds
     from ..tin.tiling import NumberedPoints
 
-__all__ = ["Given", "GivenPlaces", "load_given", "read_places"]
-
 _ARRAYS, _CHUNKS = "arrays.npz", "chunks.npy"
 _PLACES_OF_A_CHUNK = 1_000_000
 

@@ -18,8 +18,6 @@ from ..tin.validation import available_cores
 from .executors import Processes, connect_to_dask
 from .workers import Phase, Status
 
-__all__ = ["How", "Way", "choose_tile_points", "estimate_memory"]
-
 _BYTES_OF_A_WORKER = 250 << 20
 """What Python and the libraries take in each process."""
 _BYTES_PER_POINT = 500

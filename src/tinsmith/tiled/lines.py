@@ -50,8 +50,6 @@ if TYPE_CHECKING:
     from ..tin.building import BuildInputs
     from .workers import Phase
 
-__all__ = ["GivenLines", "NearJob", "StoredLines", "find_near", "open_lines", "prepare_lines"]
-
 KINDS = ("breaklines", "boundary", "holes")
 """Options that take lines."""
 

@@ -34,21 +34,6 @@ if TYPE_CHECKING:
     from ..io.streaming import PointStream
     from .workers import Phase
 
-__all__ = [
-    "CHUNK_POINTS",
-    "ROWS_OF_A_FILE",
-    "Extent",
-    "ReadJob",
-    "StoredPoints",
-    "join_bounds",
-    "load_points",
-    "name_rows",
-    "open_store",
-    "read_input",
-    "read_inputs",
-    "save_points",
-]
-
 CHUNK_POINTS = 1_000_000
 """Points that are held at a time while a file is read."""
 

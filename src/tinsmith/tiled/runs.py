@@ -23,8 +23,6 @@ from ..base.sentences import counted
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-__all__ = ["Fingerprint", "Record", "Run", "hash_file"]
-
 _MANIFEST = "run.json"
 _LOCK = "lock"
 _SIZE_OF_ENDS = 1 << 16

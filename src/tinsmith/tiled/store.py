@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from ..tin.tiling import Discs
     from .chunks import Chunk
 
-__all__ = ["NO_POINTS", "PointStore", "count_by_cells", "join_skeletons"]
-
 _SIDE_OF_SKELETON = 32
 """Rows and columns of the cells each of which keeps its outermost points, however many chunks."""
 _MANY = 50_000

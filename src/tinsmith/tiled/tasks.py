@@ -30,20 +30,6 @@ if TYPE_CHECKING:
     from .reading import StoredPoints
     from .store import PointStore
 
-__all__ = [
-    "HALO",
-    "PHASE",
-    "Part",
-    "TileJob",
-    "TileProduct",
-    "compute_tile",
-    "divide_job",
-    "join_elevations",
-    "load_arrays",
-    "measure_elevations",
-    "save_arrays",
-]
-
 PHASE = "tiles"
 HALO = 10.0
 """Mean distances between points that are read around a box at once: more does not settle more

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
     from .runs import Run
 
-__all__ = ["Job", "Phase", "Status"]
-
 _SHOWN = 3
 
 

@@ -40,16 +40,6 @@ if TYPE_CHECKING:
     from ..tasks import Part
     from ..workers import Phase
 
-__all__ = [
-    "FileJob",
-    "check_options",
-    "combine",
-    "compute",
-    "join",
-    "settle_options",
-    "write_file",
-]
-
 FILES = "files"
 """Step in which files are written, and their folder."""
 

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from ..runs import Record
     from ..tasks import Part
 
-__all__ = ["check_options", "compute", "join", "measure_area", "settle_options"]
-
 
 def measure_area(tin: TIN, box: Bounds) -> float:
     """Return the area of the triangles of a tile whose first corner lies in it: an example."""

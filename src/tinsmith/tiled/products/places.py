@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from ..runs import Record
     from ..tasks import Part
 
-__all__ = ["PLACES", "check_options", "compute", "join", "join_elevations", "settle_options"]
-
 PLACES = "places"
 """Option and folder of the places."""
 

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from ..runs import Record
     from ..tasks import Part
 
-__all__ = ["check_options", "compute", "join", "settle_options"]
-
 _LINES = "lines"
 """Option and folder of the lines."""
 

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from ..runs import Record
     from ..tasks import Part
 
-__all__ = ["check_options", "compute", "join", "settle_options"]
-
 
 def check_options() -> dict[str, Any]:
     """Return no options."""

@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from ..runs import Record
     from ..tasks import Part
 
-__all__ = ["check_options", "compute", "join", "settle_options"]
-
 _PURPOSE = "Volumes"
 _OTHER = "other"
 """Option and folder of another surface that is in memory."""
