@@ -28,8 +28,8 @@ import numpy as np
 
 import tinsmith as ts
 from tinsmith.terrain.ground_filter import Frame, Parameters, Units
+from tinsmith.terrain.parts import are_owned
 from tinsmith.terrain.parts.ground import GroundWindow, choose_reach
-from tinsmith.terrain.parts.surfaces import are_owned
 from tinsmith.tin.tiling import are_in_box
 
 from .measure import is_installed

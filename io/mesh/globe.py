@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from ...base.arrays import Float64Array
     from ...base.crs import Unit
 
-__all__ = ["describe_heights", "has_heights", "place_on_globe"]
-
 _ELLIPSOIDAL = "EPSG:4979"
 
 

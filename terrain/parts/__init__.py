@@ -10,3 +10,8 @@ whatever order their parts are computed.
 from .surfaces import are_owned, as_surface
 
 __all__ = ["are_owned", "as_surface"]
+
+from .refusals import require_local
+from .surfaces import are_inner, are_owned_triangles
+
+__all__ = ["are_inner", "are_owned", "are_owned_triangles", "as_surface", "require_local"]

@@ -26,8 +26,12 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int8Array, Int64Array
     from .sources import PointSource, SegmentSource
 
-_MOST_OF_A_DISC = 64
-"""What is taken for one disc in a round: the deepest, which change the triangle most."""
+_FEW, _ROUNDS_OF_FEW = 64, 4
+"""What is taken for one disc in each of the first rounds; from then on twice as much each time.
+
+A triangle between several lines is of the whole though its disc holds any number of points that
+only all of these lines together hide: then nothing that is taken changes it.
+"""
 
 _MOST_SCREENS = 8
 

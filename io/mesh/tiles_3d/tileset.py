@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from ....base.arrays import Float64Array, Int32Array
     from ....base.types import Bounds
 
-__all__ = ["Content", "Scene", "encode_content", "format_tileset"]
-
 _RADIUS = 6_378_137.0
 _STEPS = 2**23
 """In half of the width of a content: float32 holds them all."""

@@ -13,8 +13,6 @@ from ..io.lidar.virtual_cloud import NamedFile, write_virtual_cloud
 if TYPE_CHECKING:
     from ..base.crs import CRS
 
-__all__ = ["GroundTiles", "name_files"]
-
 
 def name_files(files: list[Path]) -> list[str]:
     """Return names of files that are written, each once; an octree is written as plain LAZ."""

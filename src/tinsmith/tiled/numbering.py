@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from ..base.arrays import Int64Array
 
-__all__ = ["NUMBER", "number_vertices"]
-
 NUMBER = np.dtype("<i8")
 """Of a vertex, in a file of nothing else."""
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.atomic import replacing
 from ..base.errors import TinsmithError, WriteError
-from ..terrain.parts.surfaces import are_owned_triangles
+from ..terrain.parts import are_owned_triangles
 from ..tin.tiling import LocalTriangulation, triangulate_box, widen
 from .division import Tile, quarter
 from .lines import open_lines

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from ....base.arrays import Float64Array, Int32Array, Int64Array
     from ....base.types import Bounds
 
-__all__ = ["Mesh", "cut", "settle"]
-
 
 class Mesh(NamedTuple):
     """A part of a surface.

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from ....base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
     from ....base.types import Bounds
 
-__all__ = ["find_tolerance", "join_nodes", "make_finest", "simplify"]
-
 _SHARE_OF_A_SIDE = 2.0**-8
 """Of the finest square: the tolerance of the level above it, which doubles with each."""
 _SHARE_ALONG_SIDES = 0.5

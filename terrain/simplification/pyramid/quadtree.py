@@ -11,8 +11,6 @@ from ....base.types import Bounds
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["Node", "Quadtree"]
-
 
 class Node(NamedTuple):
     """A square: its level from the root, 0, and its column and row from the south-west.

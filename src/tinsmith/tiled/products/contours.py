@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base.crs import CRS, Unit
 from ...terrain.isolines import LevelOptions, Levels, as_levels
-from ...terrain.parts import contours, refusals
+from ...terrain.parts import contours, require_local
 from ..tasks import join_elevations, load_arrays, measure_elevations, save_arrays
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def check_options(
     """Return plain options, or refuse what is none, or needs all lines at a time."""
     for name, value in (("smooth", smooth), ("simplify", simplify)):
         if value is not None:
-            refusals.require_local(name)
+            require_local(name)
     chosen = None if levels is None else as_levels(levels).tolist()
     LevelOptions(interval, chosen, base, index)
     return {"interval": interval, "levels": chosen, "base": base, "index": index}

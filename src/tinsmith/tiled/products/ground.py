@@ -13,7 +13,7 @@ import numpy as np
 from ...base.atomic import replacing
 from ...base.checks import as_flag, as_length
 from ...base.errors import ReadError, TinsmithError, WriteError
-from ...io.door import naming_file
+from ...base.notes import naming_file
 from ...io.lidar.labelling import LabelledFile, write_labelled
 from ...io.lidar.virtual_cloud import NamedFile
 from ...io.streaming import stream_points
@@ -25,8 +25,8 @@ from ...terrain.ground_filter import (
     find_units,
     require_candidates,
 )
+from ...terrain.parts import are_owned
 from ...terrain.parts.ground import GroundWindow, choose_reach
-from ...terrain.parts.surfaces import are_owned
 from ..labelled import GroundTiles, name_files
 from ..reading import ROWS_OF_A_FILE
 from ..runs import Fingerprint, Record, Run, hash_file

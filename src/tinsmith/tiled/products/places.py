@@ -12,8 +12,7 @@ from ...base.georeference import describe_unknown, require_same_crs
 from ...base.policies import Extrapolation, InterpolationMethod
 from ...base.results import Table
 from ...base.types import Bounds
-from ...terrain.parts import places, refusals
-from ...terrain.parts.surfaces import are_owned
+from ...terrain.parts import are_owned, places, require_local
 from ...tin.building.reference import find_crs
 from ...tin.validation import as_xy
 from ..given import GivenPlaces, read_places
@@ -41,7 +40,7 @@ def check_options(
         raise OptionError("method", method, "linear where elevations are computed in tiles")
     if extrapolate is not None:
         choice("extrapolate", extrapolate, Extrapolation)
-        refusals.require_local("extrapolate")
+        require_local("extrapolate")
     xy, crs = as_xy(places) + 0.0, find_crs(places)
     return {
         PLACES: GivenPlaces(xy),

@@ -44,21 +44,6 @@ if TYPE_CHECKING:
     from ..tasks import Part
     from ..workers import Phase
 
-__all__ = [
-    "FORMATS",
-    "INDEX",
-    "NodeJob",
-    "Pyramid",
-    "check_options",
-    "combine",
-    "compute",
-    "compute_node",
-    "divide_job",
-    "divide_points",
-    "join",
-    "settle_options",
-]
-
 INDEX = "tileset.json"
 """What the folder holds, by which such a folder is known."""
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from ..runs import Record
     from ..tasks import Part
 
-__all__ = ["check_options", "compute", "join", "settle_options"]
-
 
 def check_options(*, unit: SlopeUnit = "degrees") -> dict[str, Any]:
     """Return plain options, or refuse what is none."""

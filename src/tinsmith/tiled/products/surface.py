@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from ..runs import Record
     from ..tasks import Part
 
-__all__ = ["INDEX", "SurfaceParts", "check_options", "compute", "join", "settle_options"]
-
 INDEX = "surface.json"
 """What the folder holds, by which such a folder is known."""
 
