@@ -975,8 +975,9 @@ class TiledPoints:
         folder : path-like
             Is made if need be. Files have the names of the inputs, and replace others of these
             names; an input is never replaced.
-        building, cell, terrain_slope, iteration_angle, iteration_distance, edge_length, tolerance,
-        horizontal_tolerance, noise_depth, returns
+        building, cell, terrain_slope, iteration_angle, iteration_distance : float
+            As of :func:`tinsmith.ground`.
+        edge_length, tolerance, horizontal_tolerance, noise_depth, returns
             As of :func:`tinsmith.ground`.
         reach : float, optional
             How far around a tile points are looked at, metres. Default three times ``building``.
