@@ -226,10 +226,14 @@ def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     """Make a square and all squares in it."""
     plan, root = _Plan.of(part.job.options), _as_node(part.job.tile)
     local = part.triangulate(part.job.tile.box)
+    corners = local.points[local.triangles, :2]
+    (west, south), (east, north) = corners.min(axis=1).T, corners.max(axis=1).T
     meshes: dict[Node, Mesh] = {}
     for node in root.list_descendants(plan.quadtree.levels):
         box = plan.quadtree.find_box(node)
-        mesh = make_finest(local.points, local.triangles, box, plan.tolerance)
+        across = (west <= box.xmax) & (east >= box.xmin)
+        rows = np.flatnonzero(across & (south <= box.ymax) & (north >= box.ymin))
+        mesh = make_finest(local.points, local.triangles[rows], box, plan.tolerance)
         if mesh is not None:
             meshes[node] = mesh
     names, told = [], []
