@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from ...base.crs import CRS
 
 
+_GLOBAL_ENCODING = 6
+"""Where the header has it; its first bit tells what times count from."""
+
+
 @dataclass
 class LabelledFile:
     """What was written of a file.
@@ -94,7 +98,7 @@ def write_labelled(
     scaling = Scaling(header.scales, header.offsets, np.zeros(3))
     made = LabelledFile()
     with ExitStack() as stack:
-        output = _Output(laspy, path, stack)
+        output = _Output(laspy, path, stack, _find_gps_time(source))
         for chunk in chunks:
             classes, kept = label(chunk)
             attributes = {**chunk.attributes, "classification": classes}
@@ -114,8 +118,9 @@ def write_labelled(
 class _Output:
     """A file that is begun with the first points, and appears when all are written."""
 
-    def __init__(self, laspy: Any, path: Path, stack: ExitStack) -> None:
+    def __init__(self, laspy: Any, path: Path, stack: ExitStack, gps_time: int) -> None:
         self._laspy = laspy
+        self._gps_time = gps_time
         self._path = path
         self._stack = stack
         self._writer: Any = None
@@ -127,6 +132,7 @@ class _Output:
         if self._writer is None:
             file = self._stack.enter_context(replacing(self._path))
             header = make_header(self._laspy, scaling, columns, crs)
+            header.global_encoding.gps_time_type = self._laspy.header.GpsTimeType(self._gps_time)
             is_compressed = self._path.suffix.lower() == ".laz"
             self._writer = self._stack.enter_context(
                 self._laspy.LasWriter(file, header, do_compress=is_compressed, closefd=False)
@@ -135,6 +141,13 @@ class _Output:
         if tuple(columns) != self._names:
             raise ReadError(f"'{self._path.name}' would have points with different attributes.")
         write_points(self._laspy, self._writer, chunk.points, columns, Progress(None))
+
+
+def _find_gps_time(source: Path) -> int:
+    """Return what times count from: 0 the start of a week, 1 that of GPS less 10^9 seconds."""
+    with source.open("rb") as file:
+        file.seek(_GLOBAL_ENCODING)
+        return file.read(1)[0] & 1
 
 
 def _require_whole(points: Float64Array, scaling: Scaling, source: Path) -> None:

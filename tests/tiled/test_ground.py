@@ -89,6 +89,16 @@ def test_everything_else_of_the_files_is_kept(lidar, tmp_path):
         assert after.header.parse_crs() == before.header.parse_crs()
 
 
+@pytest.mark.parametrize("kind", list(laspy.header.GpsTimeType))
+def test_what_times_count_from_is_kept(kind, lidar, tmp_path):
+    file = laspy.read(lidar / "strip0.laz")
+    file.header.global_encoding.gps_time_type = kind
+    file.write(tmp_path / "a.laz")
+    made = ts.tiles(tmp_path / "a.laz").ground(tmp_path / "out", executor=Shuffled())
+    with laspy.open(made.parent / "a.laz") as written:
+        assert written.header.global_encoding.gps_time_type == kind
+
+
 def test_other_programs_find_the_files_by_the_virtual_cloud(lidar, tmp_path):
     made = ts.tiles(lidar).ground(tmp_path / "out", workers=1)
     assert len(ts.read(made)) == len(ts.read(lidar))

@@ -207,6 +207,8 @@ def write_file(job: FileJob) -> Record:
         record = Record(job.key, "failed", str(error), perf_counter() - started)
     except TinsmithError as error:
         record = Record(job.key, "failed", str(error), perf_counter() - started)
+    except MemoryError:
+        record = Record(job.key, "failed", f"There is no memory left to write '{job.name}'.")
     run.add(FILES, record)
     return record
 
