@@ -19,9 +19,12 @@ def find_limits(box: Bounds) -> tuple[Float64Array, Float64Array]:
 
 def are_in_box(places: Float64Array, box: Bounds) -> BoolArray:
     """Tell which places, (..., 2 or more), lie in a closed box."""
-    low, high = find_limits(box)
-    xy = places[..., :2]
-    return np.asarray(((xy >= low) & (xy <= high)).all(axis=-1))
+    x, y = places[..., 0], places[..., 1]  # one after the other: `all` of two is slow
+    is_inside = x >= box.xmin
+    is_inside &= x <= box.xmax
+    is_inside &= y >= box.ymin
+    is_inside &= y <= box.ymax
+    return np.asarray(is_inside)
 
 
 def list_sides(box: Bounds) -> tuple[float, float, float, float]:

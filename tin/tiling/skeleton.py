@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.errors import PointsError
+from ...base.types import Bounds
 from .. import _kernel
 from ..topology import boundary_rings
+from .boxes import are_in_box
 from .sources import NumberedPoints
 
 if TYPE_CHECKING:
@@ -75,16 +77,16 @@ def _drop_middle(points: NumberedPoints) -> NumberedPoints:
         low, high = middle - share * half, middle + share * half
         corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])])
         if _are_within(ring, corners).all():
-            return points.choose(~((places >= low) & (places <= high)).all(axis=1))
+            return points.choose(~are_in_box(places, Bounds(*low.tolist(), *high.tolist())))
     return points
 
 
 def _find_extremes(points: Float64Array) -> Int64Array:
     angles = 2 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
-    xy = points[:, :2] - points[:1, :2]
-    if not len(xy):
+    if not len(points):
         return np.empty(0, np.int64)
-    return np.array([np.argmax(xy @ (np.cos(a), np.sin(a))) for a in angles])
+    x, y = (points[:, :2] - points[:1, :2]).T.copy()  # no BLAS: its threads wait for each other
+    return np.array([np.argmax(np.cos(a) * x + np.sin(a) * y) for a in angles])
 
 
 def _make_ring(places: Float64Array) -> Float64Array | None:

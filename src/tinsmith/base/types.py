@@ -137,9 +137,8 @@ class Bounds:
             xy = np.empty(0)
         if xy.ndim != 2 or xy.shape[1] < 2 or len(xy) == 0:
             raise OptionError("points", points, "an (n, 2) or (n, 3) array of one row or more")
-        xmin, ymin = xy[:, :2].min(axis=0)
-        xmax, ymax = xy[:, :2].max(axis=0)
-        return cls(float(xmin), float(ymin), float(xmax), float(ymax))
+        x, y = xy[:, 0], xy[:, 1]  # one after the other: extremes along rows of two are slow
+        return cls(float(x.min()), float(y.min()), float(x.max()), float(y.max()))
 
     @property
     def width(self) -> float:

@@ -189,9 +189,9 @@ class Extent:
         """Return the extent with further points, (n, 3)."""
         if not len(points):
             return self
-        return self.join(
-            Extent(len(points), tuple(points.min(axis=0).tolist()), tuple(points.max(0).tolist()))
-        )
+        columns = points.T
+        low, high = ([float(find(one)) for one in columns] for find in (np.min, np.max))
+        return self.join(Extent(len(points), tuple(low), tuple(high)))
 
     def join(self, other: Extent) -> Extent:
         """Return that of both."""

@@ -107,7 +107,9 @@ class CenterScan {
       std::fill_n(first, Paint::kNumbers * static_cast<std::size_t>(tile.columns.size()),
                   std::numeric_limits<double>::quiet_NaN());
     }
-    const double largest = std::max(std::fabs(grid.x[0]), std::fabs(grid.x[grid.columns - 1]));
+    const double largest =
+        std::max({std::fabs(grid.x[0]), std::fabs(grid.x[grid.columns - 1]), std::fabs(grid.y[0]),
+                  std::fabs(grid.y[grid.rows - 1])});
     slack_ = 1e-9 + 32.0 * std::numeric_limits<double>::epsilon() * largest / grid.spacing;
   }
 
@@ -121,8 +123,28 @@ class CenterScan {
 
   void draw(Triangle t) {
     const Point corner[3] = {surface_.corner(t, 0), surface_.corner(t, 1), surface_.corner(t, 2)};
-    const double north = std::max({corner[0].y, corner[1].y, corner[2].y});
-    const double south = std::min({corner[0].y, corner[1].y, corner[2].y});
+    const Box box{std::min({corner[0].x, corner[1].x, corner[2].x}),
+                  std::min({corner[0].y, corner[1].y, corner[2].y}),
+                  std::max({corner[0].x, corner[1].x, corner[2].x}),
+                  std::max({corner[0].y, corner[1].y, corner[2].y})};
+    if (may_hold_centers(box)) draw(t, corner, box.south, box.north);
+  }
+
+  // Most triangles of a dense surface lie between centres.
+  bool may_hold_centers(const Box& box) const {
+    return may_hold_whole(grid_.column_at(box.west), grid_.column_at(box.east), grid_.columns) &&
+           may_hold_whole(grid_.row_at(box.north), grid_.row_at(box.south), grid_.rows);
+  }
+
+  // Whether one of the numbers 0 to `count` - 1 may lie in a range, which rounding put off.
+  bool may_hold_whole(double low, double high, double count) const {
+    low -= slack_;
+    high += slack_;
+    if (high < 0.0 || low > count - 1.0) return false;
+    return !(static_cast<double>(static_cast<std::int32_t>(std::min(count, high))) < low);
+  }
+
+  void draw(Triangle t, const Point (&corner)[3], double south, double north) {
     const std::int32_t first = std::max(tile_.rows.begin, clamped(grid_.row_at(north) - 1.0));
     const std::int32_t last = std::min(tile_.rows.end - 1, clamped(grid_.row_at(south) + 2.0));
     Slanted sides[3];

@@ -99,10 +99,10 @@ class Tiles {
   }
 
   Span span_of(const Box& box) const {
-    const double west = std::floor(grid_.column_at(box.west)) - 1.0;
-    const double east = std::ceil(grid_.column_at(box.east)) + 1.0;
-    const double north = std::floor(grid_.row_at(box.north)) - 1.0;
-    const double south = std::ceil(grid_.row_at(box.south)) + 1.0;
+    const double west = grid_.column_at(box.west) - 2.0;
+    const double east = grid_.column_at(box.east) + 2.0;
+    const double north = grid_.row_at(box.north) - 2.0;
+    const double south = grid_.row_at(box.south) + 2.0;
     if (!(east >= 0.0 && west < grid_.columns && south >= 0.0 && north < grid_.rows)) {
       return {1, 0, 1, 0};
     }
