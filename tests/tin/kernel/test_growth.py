@@ -37,12 +37,12 @@ def require_sound(xy):
     return tin
 
 
-def require_same_by_every_way(xy):
+def require_same_by_every_way(xy, every_threads=(2, 3, 5)):
     """Methods, threads and vector paths must agree in every array, entry by entry."""
     points = np.ascontiguousarray(with_heights(xy))
     wanted = _kernel.grow(points)
     ways = [{"method": method} for method in _kernel.Method]
-    ways += [{"method": _kernel.Method.GROWTH, "threads": threads} for threads in (2, 3, 5)]
+    ways += [{"method": _kernel.Method.GROWTH, "threads": threads} for threads in every_threads]
     ways += [{"method": _kernel.Method.GROWTH, "path": path} for path in _kernel.VECTOR_PATHS]
     for way in ways:
         require_same_growth(_kernel.grow(points, **way), wanted)
@@ -51,29 +51,35 @@ def require_same_by_every_way(xy):
 # ------------------------------------------------------------------ brute force
 
 
-def require_brute_force(xy):
+def require_brute_force(xy, *threads):
     wanted = oracles.delaunay(xy)
     if not wanted:
         with pytest.raises(ts.PointsError, match="at least three"):
             grown(xy)
         return
     assert oracles.canonical(grown(xy).triangles) == wanted
-    require_same_by_every_way(xy)
+    require_same_by_every_way(xy, threads or (2, 3, 5))
 
 
-@given(places(st.integers(0, 4), 9))
-def test_small_grids_equal_brute_force(xy):
-    require_brute_force(xy)
+several_threads = st.sampled_from([2, 3, 5])
 
 
-@given(places(st.sampled_from([0.0, 1e-60, -1e-60, 0.1, 0.2, 0.1 + 0.2, 1.0, 5e5, 1e75, -1e75]), 7))
-def test_mixed_magnitudes_equal_brute_force(xy):
-    require_brute_force(xy)
+@given(places(st.integers(0, 4), 9), several_threads)
+def test_small_grids_equal_brute_force(xy, threads):
+    require_brute_force(xy, threads)
 
 
-@given(hard_places(9))
-def test_hard_coordinates_equal_brute_force(xy):
-    require_brute_force(np.unique(xy, axis=0))
+MIXED = [0.0, 1e-60, -1e-60, 0.1, 0.2, 0.1 + 0.2, 1.0, 5e5, 1e75, -1e75]
+
+
+@given(places(st.sampled_from(MIXED), 7), several_threads)
+def test_mixed_magnitudes_equal_brute_force(xy, threads):
+    require_brute_force(xy, threads)
+
+
+@given(hard_places(9), several_threads)
+def test_hard_coordinates_equal_brute_force(xy, threads):
+    require_brute_force(np.unique(xy, axis=0), threads)
 
 
 def test_whole_grid_equals_brute_force():

@@ -209,9 +209,9 @@ clouds = st.one_of(small_grids, utm_tenths).map(lambda xy: np.array(xy, float))
 clouds_with_triangles = clouds.filter(lambda xy: np.linalg.matrix_rank(xy - xy[0]) == 2)
 
 
-@given(clouds_with_triangles)
-def test_one_two_and_five_threads_agree(xy):
-    require_same_by_threads(with_heights(xy), (1, 2, 5))
+@given(clouds_with_triangles, st.sampled_from([2, 5]))
+def test_one_two_and_five_threads_agree(xy, threads):
+    require_same_by_threads(with_heights(xy), (1, threads))
 
 
 @given(clouds_with_triangles, st.integers(-100, 100), st.sampled_from([1, 2, 5]))
