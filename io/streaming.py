@@ -156,6 +156,11 @@ class PointStream:
         return dict(self._require_end().skipped)
 
     @property
+    def end(self) -> StreamEnd:
+        """All that the reader tells; known at the end."""
+        return self._require_end()
+
+    @property
     def has_voids(self) -> bool:
         """Whether the surface ends at voids of a raster, ``extent`` of a survey; known at the end.
 

@@ -47,7 +47,8 @@ def read_points(path: str, *, wanted: dict[str, Any]) -> Iterator[Answer]:
     ``wanted`` is a Selection as it is sent. The value counts why points were left out, as
     :class:`Tally`. The arrays hold ``xyz``, (n, 3) int32, ``classes``, the points of each class,
     the attributes by their names, ``range``, the first point of the chunk in the file and the one
-    behind its last, and ``kept``, which of them are taken, if not all are.
+    behind its last, ``span``, the bounds of all its points, taken or not, and ``kept``, which of them
+    are taken, if not all are.
     """
     done = end = 0
     for points in _prefetch(_iterate_chunks(path, wanted)):
@@ -295,10 +296,17 @@ def _select(points: Any, wanted: dict[str, Any], done: int) -> tuple[Answer, int
         keep = slice(None)
     xyz = np.stack([record[axis][keep] for axis in "XYZ"], axis=1)
     counts |= _count_marks(points, keep)
-    arrays = {"xyz": xyz, "classes": classes}
+    arrays = {"xyz": xyz, "classes": classes, "span": _find_span(record)}
     if not isinstance(keep, slice):
         arrays["kept"] = (np.flatnonzero(keep) if keep.dtype == bool else keep).astype(np.int32)
     return Answer(counts, arrays | _gather_attributes(points, wanted, keep)), done
+
+
+def _find_span(record: Any) -> Any:
+    """Return the least and the greatest coordinates of all points, taken or not, (2, 3) int32."""
+    if not len(record):
+        return np.empty((0, 3), np.int32)
+    return np.array([[find(record[axis]) for axis in "XYZ"] for find in (np.min, np.max)], np.int32)
 
 
 def _choose_points(

@@ -13,7 +13,14 @@ from ...base.errors import CrsError, OptionError, ReadError
 from ...base.progress import Progress
 from ...base.sentences import coordinate, counted, inflect
 from ..isolated import choose_limits, start_early, stream_isolated
-from ..registry import PointChunk, StreamEnd, StreamHead, gathering
+from ..registry import (
+    Counts,
+    NothingLeftError,
+    PointChunk,
+    StreamEnd,
+    StreamHead,
+    gathering,
+)
 from ..reprojection import Placing, find_conversion_factor, place, settle_unit
 from .crs import Reference, find_reference
 from .header import Header, parse_header
@@ -21,8 +28,7 @@ from .selection import (
     N_CLASSES,
     Selection,
     Tally,
-    describe_classes,
-    describe_marks,
+    count_points,
     parse_selection,
 )
 from .signatures import SUFFIXES, is_virtual_cloud, list_named_files, list_tiles
@@ -119,8 +125,10 @@ def stream(
     notes: list[str] = []
     for tile in tiles:
         notes += yield from _stream_tile(tile, selection, target, head, seen)
-    seen.require_points(path, selection)
-    return StreamEnd(_collect_notes(tiles, notes, seen.tally, selection), seen.tally.skipped)
+    counts = count_points(seen.tally, selection)
+    end = StreamEnd(_collect_notes(tiles, notes, counts), seen.tally.skipped, counts=counts)
+    seen.require_points(path, end)
+    return end
 
 
 read = gathering(stream)
@@ -262,12 +270,12 @@ class _Seen:
         if self.total:
             self.progress((self.taken + self.tally.left_out) / self.total)
 
-    def require_points(self, path: Path, selection: Selection) -> None:
+    def require_points(self, path: Path, end: StreamEnd) -> None:
         """Refuse a selection that leaves nothing, and say what there is."""
         if self.taken:
             return
         tally = self.tally
-        there = ", ".join(describe_classes(tally, selection)).rstrip(".")
+        there = "" if end.counts is None else ", ".join(end.counts.list_notes()).rstrip(".")
         reasons = {
             "is withheld": tally.withheld,
             "is of another class": tally.of_other_classes,
@@ -276,11 +284,12 @@ class _Seen:
         }
         said = [f"{count:,} for that it {why}" for why, count in reasons.items() if count]
         if not said:
-            raise ReadError(f"'{path}' holds no points.", path=path)
-        raise ReadError(
+            raise NothingLeftError(f"'{path}' holds no points.", path=path, end=end)
+        raise NothingLeftError(
             f"'{path}': no point is left; left out were {', '.join(said)}."
             + (f" {there}." if there else ""),
             path=path,
+            end=end,
         )
 
 
@@ -290,7 +299,7 @@ def _stream_tile(
     """Yield the points of a file that are wanted, in the CRS and the unit that are wanted."""
     header = tile.header
     placing = Placing(tile.reference.crs, target, tile.unit)
-    beyond = _Beyond(header)
+    beyond, taken = _Beyond(header), seen.taken
     with stream_isolated(
         f"{CHILD}:read_points",
         {"path": str(header.path.absolute()), "wanted": selection.to_request()},
@@ -298,6 +307,7 @@ def _stream_tile(
         limits=choose_limits(header.size),
     ) as parts:
         for part in parts:
+            beyond.add_span(scale(part.arrays["span"], header))
             own = scale(part.arrays["xyz"], header)
             rows = _find_rows(part, header) + seen.rows
             seen.tally.add(part.value, part.arrays["classes"])
@@ -315,6 +325,8 @@ def _stream_tile(
             yield PointChunk(placed.points, rows, name_attributes(part))
             seen.report_progress()
     seen.rows += header.count
+    if seen.taken == taken:
+        beyond.require_none()
     notes = [*placing.finish(), *beyond.describe()]
     theirs, unit = placing.elevation_unit, head.elevation_unit
     if theirs is not None and unit is not None and theirs != unit:
@@ -364,6 +376,25 @@ class _Beyond:
             self._low, self._high = low - slack, high + slack
         self._stride = max(1, header.count // _SOME)
         self._seen = self._looked_at = self._count = 0
+        self._is_span_beyond = False
+
+    def add_span(self, corners: Float64Array) -> None:
+        """Look at the bounds of further points, taken or not, (2, 3)."""
+        if self._is_bounded and ((corners < self._low) | (corners > self._high)).any():
+            self._is_span_beyond = True
+
+    def require_none(self) -> None:
+        """Refuse a file of which no point is taken if it is another one than the header tells of.
+
+        A damaged file would pass for one without a point that is wanted.
+        """
+        if self._is_span_beyond:
+            path = self._header.path
+            raise ReadError(
+                f"'{path}' is damaged: no point in it is wanted, and there are points outside the "
+                "bounds that its header gives.",
+                path=path,
+            )
 
     def add(self, points: Float64Array) -> None:
         """Look at some of further points."""
@@ -393,12 +424,10 @@ class _Beyond:
 # ------------------------------------------------------------------------- the notes
 
 
-def _collect_notes(
-    tiles: list[Tile], placed: list[str], tally: Tally, selection: Selection
-) -> list[str]:
+def _collect_notes(tiles: list[Tile], placed: list[str], counts: Counts) -> list[str]:
     notes = [note for tile in tiles for note in tile.reference.notes]
     notes += placed
-    notes += describe_classes(tally, selection) + describe_marks(tally)
+    notes += counts.list_notes()
     notes += [note for tile in tiles for note in describe_surplus(tile.header)]
     return list(dict.fromkeys(notes))
 

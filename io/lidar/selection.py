@@ -12,9 +12,10 @@ from ...base.checks import as_length, is_finite_number, is_whole_number, require
 from ...base.errors import OptionError
 from ...base.sentences import counted
 from ...tin import Bounds
+from ..registry import Counts
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from ...base.arrays import Int64Array
 
@@ -206,14 +207,31 @@ def _parse_attributes(given: str | Sequence[str] | None) -> tuple[str, ...] | No
 # ---------------------------------------------------------------------------- notes
 
 
-def describe_classes(tally: Tally, selection: Selection) -> list[str]:
-    """Tell which classes there are and which were taken, where that matters."""
-    there = np.flatnonzero(tally.classes).tolist()
-    if not there or (set(there) <= _UNCLASSIFIED and selection.classes is None):
+def count_points(tally: Tally, selection: Selection) -> Counts:
+    """Return the counts of classes and of marks, of which notes are made."""
+    numbers = {str(one): int(tally.classes[one]) for one in np.flatnonzero(tally.classes).tolist()}
+    marks = {"synthetic": tally.synthetic, "overlap": tally.overlap}
+    classes = None if selection.classes is None else list(selection.classes)
+    return Counts(f"{__name__}:describe_counts", numbers | marks, {"classes": classes})
+
+
+def describe_counts(numbers: Mapping[str, int], classes: Sequence[int] | None) -> list[str]:
+    """Tell which classes and marks there are, and which classes were taken."""
+    found = {int(name): number for name, number in numbers.items() if name.isdigit()}
+    return [
+        *describe_classes(found, classes),
+        *_describe_marks(numbers["synthetic"], numbers["overlap"]),
+    ]
+
+
+def describe_classes(found: Mapping[int, int], classes: Sequence[int] | None) -> list[str]:
+    """Tell how many points each class has, and which were taken, where that matters."""
+    there = sorted(found)
+    if not there or (set(there) <= _UNCLASSIFIED and classes is None):
         return []
-    listed = ", ".join(_describe_class(one, int(tally.classes[one])) for one in there)
-    if selection.classes is not None:
-        taken = ", ".join(map(str, selection.classes))
+    listed = ", ".join(_describe_class(one, found[one]) for one in there)
+    if classes is not None:
+        taken = ", ".join(map(str, classes))
         return [f"Classes of the points: {listed}; taken: {taken}."]
     if len(there) == 1:
         return [f"All points are of one class: {listed}."]
@@ -224,9 +242,9 @@ def describe_classes(tally: Tally, selection: Selection) -> list[str]:
     ]
 
 
-def describe_marks(tally: Tally) -> list[str]:
+def _describe_marks(synthetic: int, overlap: int) -> list[str]:
     """Tell of marked points among those taken."""
-    marks = {"synthetic": tally.synthetic, "overlap of flight lines": tally.overlap}
+    marks = {"synthetic": synthetic, "overlap of flight lines": overlap}
     said = [f"{counted(n, 'point')} as {what}" for what, n in marks.items() if n]
     return [f"Marked, and taken: {', '.join(said)}."] if said else []
 

@@ -1,5 +1,7 @@
 # Names that other packages of `io` use, each with the module that has it.
 from .chunks import Blocks as Blocks
+from .chunks import Counts as Counts
+from .chunks import NothingLeftError as NothingLeftError
 from .chunks import PointChunk as PointChunk
 from .chunks import SourceHeader as SourceHeader
 from .chunks import StreamEnd as StreamEnd

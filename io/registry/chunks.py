@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import wraps
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -74,6 +75,36 @@ class StreamHead(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
+class Counts:
+    """Counts of points of which notes are made: those of several files add up.
+
+    Attributes
+    ----------
+    describe : str
+        ``"module:function"`` of a function that takes numbers and options, and returns notes.
+    numbers : mapping of str to int
+    options : mapping of str to object
+        Plain values.
+    """
+
+    describe: str
+    numbers: Mapping[str, int]
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+    def add(self, other: Counts) -> Counts:
+        """Return the counts of both."""
+        names = dict.fromkeys([*self.numbers, *other.numbers])
+        numbers = {name: self.numbers.get(name, 0) + other.numbers.get(name, 0) for name in names}
+        return replace(self, numbers=numbers)
+
+    def list_notes(self) -> list[str]:
+        """Return the notes, sentences."""
+        module, _, function = self.describe.partition(":")
+        found: list[str] = getattr(import_module(module), function)(self.numbers, **self.options)
+        return found
+
+
+@dataclass(frozen=True, slots=True)
 class StreamEnd:
     """What a reader tells once it has seen all points."""
 
@@ -83,6 +114,22 @@ class StreamEnd:
     """Further attributes of the survey."""
     has_voids: bool = False
     """Whether the surface ends at voids between the points, which the points do not tell."""
+    counts: Counts | None = None
+    """Counts of which some of the notes are made, one behind the other."""
+
+
+class NothingLeftError(ReadError):
+    """A file that holds no point that is wanted.
+
+    Attributes
+    ----------
+    end : StreamEnd
+        What is told of the points that it holds.
+    """
+
+    def __init__(self, message: str, *, path: Path, end: StreamEnd) -> None:
+        super().__init__(message, path=path)
+        self.end = end
 
 
 Blocks: TypeAlias = Generator["StreamHead | PointChunk", None, StreamEnd]

@@ -264,3 +264,23 @@ def test_cells_beside_the_surface_are_refused_as_in_memory(lidar, tmp_path):
     with pytest.raises(ts.PointsError) as tiled:
         ts.tiles(lidar).rasterize(tmp_path / "a.tif", like=away, executor=Shuffled())
     assert str(tiled.value) == str(whole.value)
+
+
+def test_counts_of_all_files_are_told_as_of_one_survey(tmp_path):
+    folder = tmp_path / "lidar"
+    folder.mkdir()
+    rng = np.random.default_rng(4)
+    for k, kind in enumerate((2, 2, 9)):  # the last one is of water alone
+        points = np.round(rng.random((400, 3)) * [40, 40, 5] + [40 * k, 0, 0], 2)
+        classes = np.where(rng.random(400) < 0.2 * (kind == 2), 5, kind).astype(np.uint8)
+        survey = ts.Survey(points=points, attributes={"classification": classes})
+        ts.write(survey, folder / f"{k}.laz")
+    whole = ts.rasterize(ts.triangulate(ts.read(folder, classes=2)), spacing=2.0)
+    wanted = ts.write(whole, tmp_path / "whole.tif")
+    cloud = ts.tiles(folder, where={"classification": 2})
+    made = cloud.rasterize(tmp_path / "made.tif", spacing=2.0, tiles=4, workers=1)
+    assert made.read_bytes() == wanted.read_bytes()
+    assert any("9 water (400); taken: 2" in note for note in whole.notes)
+    nothing = ts.tiles(folder, where={"classification": 12})
+    with pytest.raises(ts.ReadError, match=r"no points in the inputs.*9 water \(400\); taken: 12"):
+        nothing.rasterize(tmp_path / "nothing.tif", spacing=2.0, workers=1)

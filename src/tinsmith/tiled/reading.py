@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import asdict, dataclass, field
+from collections import Counter
+from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache, reduce
 from pathlib import Path
 from time import perf_counter
@@ -18,6 +19,7 @@ from ..base.errors import CrsError, OptionError, ReadError, TinsmithError, Write
 from ..base.notes import join_notes
 from ..base.sentences import counted
 from ..base.types import Bounds
+from ..io.registry import Counts, NothingLeftError
 from ..io.streaming import stream_points
 from ..terrain.ground_filter import Candidates
 from ..tin.report import describe_skipped
@@ -27,10 +29,11 @@ from .runs import Fingerprint, Record, Run, hash_file
 from .store import PointStore, join_skeletons
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from ..base.arrays import AnyArray, BoolArray, Float64Array
     from ..base.policies import GroundReturns
+    from ..io.registry import StreamEnd
     from ..io.streaming import PointStream
     from .workers import Phase
 
@@ -91,6 +94,8 @@ def read_input(job: ReadJob) -> Record:
         record = _read(job, started)
     except WriteError:
         raise
+    except NothingLeftError as error:
+        record = _record_nothing(job, error.end, started)
     except TinsmithError as error:
         record = Record(job.key, "failed", str(error), perf_counter() - started)
     except MemoryError:
@@ -126,12 +131,12 @@ def _read(job: ReadJob, started: float) -> Record:
                 chunks.append(write_chunk(job.folder, job.number, len(chunks), *part))
                 skeletons.append(find_skeleton(part))
         crs, unit = stream.crs, stream.elevation_unit
-        notes = [*stream.notes, *describe_skipped(stream.skipped)]
-        notes += () if candidates is None else candidates.notes
+        told = _Told.of(stream.end)
+        further = [] if candidates is None else [*candidates.notes]
         _require_tiles(stream, path)
     job.source.require_same()
     if left_out:
-        notes.append(_describe_left_out(left_out, path, job.where))
+        further.append(_describe_left_out(left_out, path, job.where))
     index, outline = f"{job.key}.chunks.npy", f"{job.key}.skeleton.npz"
     files: list[str] = []
     if chunks:
@@ -147,11 +152,50 @@ def _read(job: ReadJob, started: float) -> Record:
             "crs": None if crs is None else str(crs),
             "elevation_unit": None if unit is None else unit.text,
             "elevations": [float(low), float(high)] if chunks else [],
-            "notes": notes,
+            "told": asdict(replace(told, further=further)),
             "extent": asdict(extent),
         },
         files={name: hash_file(job.folder / name) for name in files},
     )
+
+
+def _record_nothing(job: ReadJob, end: StreamEnd, started: float) -> Record:
+    """Return the record of a file none of whose points is wanted, as a tile of water alone."""
+    values = {"told": asdict(_Told.of(end)), "extent": asdict(Extent())}
+    job.source.require_same()
+    return Record(job.key, "empty", seconds=perf_counter() - started, values=values)
+
+
+@dataclass(frozen=True)
+class _Told:
+    """What is told of a file, before it is joined with what is told of others.
+
+    Attributes
+    ----------
+    before, after : list of str
+        Notes of the reader, before and behind those that are made of counts.
+    counts : mapping or None
+        Fields of :class:`Counts`.
+    skipped : mapping of str to int
+        What the reader left out.
+    further : list of str
+        Notes of what was done with the points.
+    """
+
+    before: list[str]
+    counts: Mapping[str, Any] | None
+    after: list[str]
+    skipped: Mapping[str, int]
+    further: list[str] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, end: StreamEnd) -> _Told:
+        """Take apart what a reader tells."""
+        notes, counts = list(end.notes), end.counts
+        made = [] if counts is None else counts.list_notes()
+        at = notes.index(made[0]) if made else len(notes)
+        fields = None if counts is None else asdict(counts)
+        return cls(notes[:at], fields, notes[at + len(made) :], dict(end.skipped))
 
 
 def _require_tiles(stream: PointStream, path: Path) -> None:
@@ -331,7 +375,8 @@ def read_inputs(
     crs, unit = _require_one_crs(records, names), _require_one_unit(records, names)
     filled = [record for record in records.values() if record.points]
     if not filled:
-        raise ReadError("There are no points in the inputs.")
+        notes = " ".join(("There are no points in the inputs.", *_join_notes(records)))
+        raise ReadError(notes)
     chunks = [
         chunk
         for record in filled
@@ -358,21 +403,37 @@ def read_inputs(
 
 
 def _join_notes(records: Mapping[str, Record]) -> tuple[str, ...]:
-    """Return the notes of all files; of those that differ in numbers only the first.
+    """Return the notes of all files, with the counts of all together."""
+    told = [_Told(**one.values["told"]) for one in records.values()]
+    counts = [Counts(**one.counts) for one in told if one.counts is not None]
+    skipped: Counter[str] = Counter()
+    for one in told:
+        skipped.update(one.skipped)
+    return join_notes(
+        [
+            *_join_alike(one.before for one in told),
+            *(reduce(Counts.add, counts).list_notes() if counts else ()),
+            *_join_alike(one.after for one in told),
+            *describe_skipped(skipped),
+            *_join_alike(one.further for one in told),
+        ]
+    )
+
+
+def _join_alike(files: Iterable[Sequence[str]]) -> Iterator[str]:
+    """Yield the notes of all files; of those that differ in numbers only the first.
 
     How many files have a note like it is told.
     """
     kinds: dict[str, list[str]] = {}
-    for record in records.values():
-        for note in dict.fromkeys(record.values.get("notes", ())):
+    for notes in files:
+        for note in dict.fromkeys(notes):
             kinds.setdefault(_QUOTED_OR_NUMBER.sub("", note), []).append(note)
-    joined = []
     for notes in kinds.values():
         others = len(notes) - 1
         is_same = len({*notes}) == 1
         more = f" ({counted(others, 'further file')} likewise.)" if others and not is_same else ""
-        joined.append(f"{notes[0]}{more}")
-    return join_notes(joined)
+        yield f"{notes[0]}{more}"
 
 
 def join_bounds(boxes: Sequence[Bounds]) -> Bounds:
