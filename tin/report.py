@@ -310,6 +310,24 @@ def describe_skipped(skipped: Mapping[str, int]) -> tuple[str, ...]:
     return (f"Left out by the reader: {', '.join(left)}.",) if left else ()
 
 
+def describe_differing(
+    places: int, most: float, duplicates: DuplicatePolicy | None
+) -> tuple[str, ...]:
+    """Say at how many places points differ in elevation, in one sentence or none.
+
+    Examples
+    --------
+    >>> describe_differing(1, 2.0, "mean")
+    ("Points at 1 place differ in elevation, by up to 2: ...'mean'.",)
+    """
+    if places == 0:
+        return ()
+    return (
+        f"Points at {counted(places, 'place')} differ in elevation, by up to "
+        f"{most:.6g}: the surface has there the one of the policy '{duplicates}'.",
+    )
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Report(Frozen):
     """What the triangulation did with the input, row by row.
@@ -449,12 +467,7 @@ class Report(Frozen):
         with np.errstate(over="ignore"):  # between the largest floats
             spread = highest - np.minimum.reduceat(self.merged_elevations, starts)
         differing = int(np.count_nonzero(spread))
-        if differing == 0:
-            return ()
-        return (
-            f"Points at {counted(differing, 'place')} differ in elevation, by up to "
-            f"{spread.max():.6g}: the surface has there the one of the policy '{self.duplicates}'.",
-        )
+        return describe_differing(differing, float(spread.max()), self.duplicates)
 
     def after_edits(
         self, vertex_of: Int32Array, n_vertices: int, n_triangles: int, edits: Sequence[Edit]

@@ -47,8 +47,8 @@ def read_points(path: str, *, wanted: dict[str, Any]) -> Iterator[Answer]:
     ``wanted`` is a Selection as it is sent. The value counts why points were left out, as
     :class:`Tally`. The arrays hold ``xyz``, (n, 3) int32, ``classes``, the points of each class,
     the attributes by their names, ``range``, the first point of the chunk in the file and the one
-    behind its last, ``span``, the bounds of all its points, taken or not, and ``kept``, which of them
-    are taken, if not all are.
+    behind its last, ``span``, the bounds of all its points, and ``kept``, which of them are taken,
+    if not all are.
     """
     done = end = 0
     for points in _prefetch(_iterate_chunks(path, wanted)):

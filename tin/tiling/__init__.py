@@ -2,6 +2,7 @@
 
 from .boxes import are_in_box, list_sides, widen
 from .circles import Discs
+from .duplicates import find_differing
 from .lines import NodedLines, choose_near, list_segments_near, node_lines, require_local
 from .local_triangulation import LocalTriangulation, find_around, find_triangles_at, triangulate_box
 from .outline import Outline, find_outline
@@ -24,6 +25,7 @@ __all__ = [
     "check_tiles",
     "choose_near",
     "find_around",
+    "find_differing",
     "find_outermost",
     "find_outline",
     "find_skeleton",

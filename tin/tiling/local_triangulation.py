@@ -19,6 +19,7 @@ from ..building import merge_rows
 from ..topology import edge_keys, ends
 from .boxes import are_in_box, list_sides, widen
 from .circles import bound_discs
+from .duplicates import list_differing
 from .rings import find_inside
 from .sources import NumberedPoints, NumberedSegments
 from .unseen import Question, count_taken, find_unseen_points, find_unseen_segments
@@ -61,6 +62,9 @@ class LocalTriangulation(NamedTuple):
         Which holes cut away triangles that meet the box.
     rounds : int
         How often the source was asked for more.
+    differing : (k, 3) float64 array
+        Places at which points differ in elevation, and by how much, of all points in ``around``
+        and some others.
     """
 
     points: Float64Array
@@ -71,6 +75,7 @@ class LocalTriangulation(NamedTuple):
     owned: BoolArray
     cutting: BoolArray
     rounds: int
+    differing: Float64Array
 
 
 def triangulate_box(
@@ -126,7 +131,9 @@ def triangulate_box(
         rounds += 1
         proven = np.concatenate([proven, names[is_safe]])
     merged = merge_rows(seen.points.points, made.kept_row, duplicates, seen.points.numbers)
-    local = _extract(made, found, merged.points, ordered=ordered)._replace(rounds=rounds)
+    local = _extract(made, found, merged.points, ordered=ordered)._replace(
+        rounds=rounds, differing=list_differing(merged.points, merged.account)
+    )
     if len(seen.segments.are_rings):
         _set_elevations(local, seen.segments.vertices)
     if lines is None or lines.rings is None:
@@ -342,6 +349,7 @@ def _extract(
         owned=found.owned[chosen.order] if ordered else found.owned,
         cutting=np.empty(0, np.bool_),
         rounds=0,
+        differing=np.empty((0, 3)),
     )
 
 
@@ -372,6 +380,7 @@ def _cut(local: LocalTriangulation, segments: NumberedSegments, rings: Rings) ->
         owned=local.owned[keep],
         cutting=cutting,
         rounds=local.rounds,
+        differing=local.differing,
     )
 
 

@@ -111,6 +111,7 @@ def computing(
             records = step.run(run, PHASE, compute_tile, jobs, divide=divided)
             if hasattr(module, "combine"):
                 records = module.combine(run, settled, records, start("Joining"))
+            points = points.tell_differing(records, cloud.duplicates)
         arrays = {name: value for name, value in options.items() if isinstance(value, Given)}
         yield module.join(points, {**settled, **arrays}, records, run.folder)
     if not how.keep:

@@ -22,7 +22,7 @@ from ..base.types import Bounds
 from ..io.registry import Counts, NothingLeftError
 from ..io.streaming import stream_points
 from ..terrain.ground_filter import Candidates
-from ..tin.report import describe_skipped
+from ..tin.report import describe_differing, describe_skipped
 from ..tin.tiling import NumberedPoints, find_skeleton
 from .chunks import Chunk, load_chunks, save_chunks, split_numbers, write_chunk
 from .runs import Fingerprint, Record, Run, hash_file
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from ..base.arrays import AnyArray, BoolArray, Float64Array
-    from ..base.policies import GroundReturns
+    from ..base.policies import DuplicatePolicy, GroundReturns
     from ..io.registry import StreamEnd
     from ..io.streaming import PointStream
     from .workers import Phase
@@ -324,6 +324,14 @@ class StoredPoints:
     def open(self) -> PointStore:
         """Return the source of points for tasks."""
         return open_store(self.folder)
+
+    def tell_differing(
+        self, records: Mapping[str, Record], duplicates: DuplicatePolicy
+    ) -> StoredPoints:
+        """Tell at how many places points differ in elevation, by the records of all tiles."""
+        found = [one.values["differing"] for one in records.values() if "differing" in one.values]
+        places, most = sum(int(one[0]) for one in found), max((one[1] for one in found), default=0)
+        return replace(self, notes=(*self.notes, *describe_differing(places, most, duplicates)))
 
 
 def open_store(folder: Path) -> PointStore:

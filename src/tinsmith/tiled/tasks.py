@@ -12,8 +12,9 @@ import numpy as np
 
 from ..base.atomic import replacing
 from ..base.errors import TinsmithError, WriteError
-from ..terrain.parts import are_owned_triangles
-from ..tin.tiling import LocalTriangulation, triangulate_box, widen
+from ..base.types import Bounds
+from ..terrain.parts import are_owned, are_owned_triangles
+from ..tin.tiling import LocalTriangulation, find_differing, triangulate_box, widen
 from .division import Tile, quarter
 from .lines import open_lines
 from .reading import name_rows, open_store
@@ -23,9 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from ..base.arrays import AnyArray
+    from ..base.arrays import AnyArray, Float64Array
     from ..base.policies import DuplicatePolicy
-    from ..base.types import Bounds
     from .lines import StoredLines
     from .reading import StoredPoints
     from .store import PointStore
@@ -76,6 +76,8 @@ class Part(NamedTuple):
 
     job: TileJob
     store: PointStore
+    differing: dict[Bounds, Float64Array]
+    """Places at which points differ in elevation, and by how much, of boxes that were looked at."""
 
     @property
     def folder(self) -> Path:
@@ -91,16 +93,32 @@ class Part(NamedTuple):
         self, box: Bounds, *, rings: int = 0, ordered: bool = True
     ) -> LocalTriangulation:
         """Return all triangles of the whole surface that meet a closed box, and rings of others."""
-        lines = self.lines
-        return triangulate_box(
+        lines, around = self.lines, widen(box, self._halo)
+        local = triangulate_box(
             self.store,
             box,
-            around=widen(box, self._halo),
+            around=around,
             lines=None if lines is None else lines.noded,
             duplicates=self.job.duplicates,
             rings=rings,
             ordered=ordered,
         )
+        self.differing[around] = local.differing
+        return local
+
+    def measure_differing(self) -> list[float]:
+        """Return at how many places in the tile points differ in elevation, and by how much.
+
+        Points are read where no triangulation has looked at all of them.
+        """
+        own, all_points = self.job.tile.box, self.store.bounds
+        inside = _intersect(own, all_points)
+        looked_at = (found for box, found in self.differing.items() if _holds(box, inside))
+        found = next(looked_at, None)
+        if found is None:
+            found = find_differing(self.store.read_box(inside).points)
+        is_own = are_owned(found, own)
+        return [int(is_own.sum()), float(found[is_own, 2].max(initial=0.0))]
 
     @property
     def may_have_surface(self) -> bool:
@@ -118,6 +136,20 @@ class Part(NamedTuple):
         height = min(tile.box.ymax, bounds.ymax) - max(tile.box.ymin, bounds.ymin)
         area = max(width, 0.0) * max(height, 0.0)
         return HALO * math.sqrt(area / max(tile.count, 1))
+
+
+def _intersect(one: Bounds, other: Bounds) -> Bounds:
+    return Bounds(
+        max(one.xmin, other.xmin),
+        max(one.ymin, other.ymin),
+        min(one.xmax, other.xmax),
+        min(one.ymax, other.ymax),
+    )
+
+
+def _holds(outer: Bounds, inner: Bounds) -> bool:
+    is_wide = outer.xmin <= inner.xmin and outer.xmax >= inner.xmax
+    return is_wide and outer.ymin <= inner.ymin and outer.ymax >= inner.ymax
 
 
 def save_arrays(part: Part, **arrays: AnyArray) -> list[str]:
@@ -152,7 +184,8 @@ class TileProduct(Protocol):
 
     One that writes a folder names by ``INDEX`` the file in it by which such a folder is known. One
     that needs tiles of its own has ``divide_points`` and ``divide_job``; ``combine``, if it is
-    there, does further steps with the records of all tiles.
+    there, does further steps with the records of all tiles. ``IS_OF_SURFACE`` is False of one that
+    is not computed from triangles.
     """
 
     def check_options(self, **asked: Any) -> Mapping[str, Any]:
@@ -187,14 +220,16 @@ def compute_tile(job: TileJob) -> Record:
     (job.folder / PHASE).mkdir(exist_ok=True)
     try:
         product = cast("TileProduct", import_module(f"{__package__}.products.{job.product}"))
-        part = Part(job, open_store(job.points))
+        part = Part(job, open_store(job.points), {})
         points, values, names = product.compute(part) if part.may_have_surface else (0, {}, [])
+        is_told = getattr(product, "IS_OF_SURFACE", True)
+        told = {"differing": part.measure_differing()} if is_told else {}
         record = Record(
             job.key,
             "done" if points else "empty",
             seconds=perf_counter() - started,
             points=points,
-            values=values,
+            values={**values, **told},
             files={f"{PHASE}/{name}": hash_file(job.folder / PHASE / name) for name in names},
         )
     except WriteError:

@@ -48,6 +48,9 @@ _CHOOSING = ("where", "duplicates", "candidates")
 """Options of the points that are none of the reader."""
 
 
+IS_OF_SURFACE = False
+
+
 def check_options(
     *, reach: float | None = None, ground_only: bool = False, **parameters: Any
 ) -> dict[str, Any]:
