@@ -76,7 +76,10 @@ def as_options(given: argparse.Namespace, n_campaigns: int) -> Options:
 def run_all(campaigns: list[Campaign], options: Options) -> int:
     tallies = []
     for campaign in campaigns:
-        tallies.append(run_campaign(campaign, options))
+        own = options
+        if options.cases is not None and len(campaigns) > 1:
+            own = dataclasses.replace(options, cases=-(-options.cases // campaign.weight))
+        tallies.append(run_campaign(campaign, own))
         print(summarize(tallies[-1:]).splitlines()[1], flush=True)
     print(f"\nseed {options.seed}\n{summarize(tallies)}")
     return int(any(tally.finds for tally in tallies))

@@ -29,6 +29,7 @@ class Campaign(NamedTuple):
     examine: Callable[[Case], str | None]
     seconds: float = 60.0  # a case that takes longer hangs; room for a machine that is busy
     megabytes: int = 4096  # what a case may allocate
+    weight: int = 1  # how many cases of other campaigns take the time of one
 
 
 def discover(modules: Iterable[str] = (), wanted: Iterable[str] = ()) -> dict[str, Campaign]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+from pathlib import Path
 
 import pytest
 
@@ -88,6 +89,66 @@ def test_two_runs_in_one_folder(tmp_path, source):
     (run.folder / "lock").write_text("999999999 " + os.uname().nodename)  # of a killed process
     with run.opened(describe(source), restart=False) as goes_on:
         assert goes_on
+
+
+def test_what_a_killed_run_left_beside_its_output_goes(tmp_path, source):
+    run, output = Run(tmp_path / "out.run"), tmp_path / "out.tif"
+    other, own, folder = (
+        tmp_path / f".out-{k}2345678{end}" for k, end in enumerate(("", ".tif", ""))
+    )
+    other.write_text("of another program that is at work")
+    with run.opened(describe(source), restart=False):
+        run.clear_beside(output)
+        own.write_text("half")
+        folder.mkdir()
+        (folder / "part.shp").write_text("half")
+    with run.opened(describe(source), restart=False):
+        run.clear_beside(output)
+    assert (other.exists(), own.exists(), folder.exists()) == (True, False, False)
+
+
+def test_a_run_that_was_killed_as_it_began(tmp_path, source):
+    run = Run(tmp_path / "out.run")
+    run.folder.mkdir()
+    (run.folder / "lock").write_text("999999999 " + os.uname().nodename)
+    (run.folder / ".run-12345678.json").write_text("{")
+    with run.opened(describe(source), restart=False) as goes_on:
+        assert not goes_on
+        assert sorted(one.name for one in run.folder.iterdir()) == ["lock", "run.json"]
+
+
+def test_a_run_that_was_killed_as_it_was_removed_is_one_still(tmp_path, source, monkeypatch):
+    run, inner = Run(tmp_path / "out.run"), Run(tmp_path / "out.run" / "points")
+    manifest = describe(source)
+    unlink, left = Path.unlink, [0]
+
+    def stop(path, **options):
+        if not left[0]:
+            raise KeyboardInterrupt
+        left[0] -= 1
+        unlink(path, **options)
+
+    for most in range(8):
+        with run.opened(manifest, restart=False), inner.opened(manifest, restart=False):
+            for one in (run, inner):
+                one.add("tiles", Record("1", "done"))
+                one.add("tiles", Record("2", "done"))
+                (one.folder / "tiles.json").write_text("[]")
+        left[0] = most
+        with monkeypatch.context() as patch:
+            patch.setattr(Path, "unlink", stop)
+            with pytest.raises(KeyboardInterrupt):
+                run.remove()
+        for one in (run, inner):
+            if one.folder.exists() and one.read("tiles"):
+                assert (one.folder / "tiles.json").exists()
+        with run.opened(manifest, restart=False) as goes_on:
+            assert goes_on
+            if inner.folder.exists():
+                with inner.opened(manifest, restart=False):
+                    pass
+    run.remove()
+    assert not run.folder.exists()
 
 
 def test_a_folder_of_something_else_is_left_alone(tmp_path, source):

@@ -113,6 +113,7 @@ def computing(
                 records = module.combine(run, settled, records, start("Joining"))
             points = points.tell_differing(records, cloud.duplicates)
         arrays = {name: value for name, value in options.items() if isinstance(value, Given)}
+        run.clear_beside(output)
         yield module.join(points, {**settled, **arrays}, records, run.folder)
     if not how.keep:
         run.remove()

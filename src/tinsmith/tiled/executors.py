@@ -7,12 +7,14 @@ Nothing else here knows of Dask. Its own futures are none of ``concurrent.future
 from __future__ import annotations
 
 import multiprocessing
+import os
 import signal
 import sys
 from collections import Counter, deque
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from threading import Thread
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -47,7 +49,7 @@ class Processes:
         """Return the pool, a new one where it is broken."""
         if self._pool is None:
             context = multiprocessing.get_context("spawn")
-            self._pool = ProcessPoolExecutor(self.workers, context, _ignore_interrupts)
+            self._pool = ProcessPoolExecutor(self.workers, context, _prepare_worker)
         return self._pool
 
     def stop(self) -> None:
@@ -66,9 +68,18 @@ class Processes:
             self._pool = None
 
 
-def _ignore_interrupts() -> None:
-    """Leave Ctrl-C to the process that hands out tasks."""
+def _prepare_worker() -> None:
+    """Leave Ctrl-C to the process that hands out tasks, and end when that one is killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """End at once: a worker waits for tasks for ever where the process that has them is gone."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 @contextmanager

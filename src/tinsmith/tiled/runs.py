@@ -11,12 +11,12 @@ import json
 import os
 import shutil
 import socket
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.atomic import replacing
+from ..base.atomic import find_leftovers, replacing
 from ..base.errors import ReadError, WriteError
 from ..base.sentences import counted
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 _MANIFEST = "run.json"
 _LOCK = "lock"
+_BESIDE = "beside.json"
 _SIZE_OF_ENDS = 1 << 16
 _SHOWN = 3
 
@@ -159,7 +160,7 @@ class Run:
             If it holds a run with other options or of other inputs, and may not be begun again.
         """
         found = self.manifest
-        if found is None and self.folder.exists() and any(self.folder.iterdir()):
+        if found is None and self._holds_others():
             raise WriteError(
                 f"Cannot write the run to '{self.folder}': it holds something else.",
                 path=self.folder,
@@ -172,18 +173,41 @@ class Run:
                 self._write(_MANIFEST, manifest)
             yield found is not None and not restart
 
+    def _holds_others(self) -> bool:
+        """Whether there is more in the folder than what a run begins with."""
+        if not self.folder.exists():
+            return False
+        begun = {self.folder / _LOCK, *find_leftovers(self.folder / _MANIFEST)}
+        return any(one not in begun for one in self.folder.iterdir())
+
     def remove(self) -> None:
         """Remove the folder, when what it was for is written."""
+        with suppress(OSError):
+            self._clear()
         shutil.rmtree(self.folder, ignore_errors=True)
 
+    def clear_beside(self, output: Path) -> None:
+        """Remove what this run left beside its output, if it was killed while it wrote it.
+
+        What was there before it first began to write is not its own, and stays.
+        """
+        there = find_leftovers(output)
+        try:
+            before = json.loads((self.folder / _BESIDE).read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            self._write(_BESIDE, [one.name for one in there])
+            return
+        for one in there:
+            if one.name not in before:
+                with suppress(OSError):
+                    _remove(one)
+
     def _clear(self) -> None:
-        for one in self.folder.iterdir():
-            if one.name == _LOCK:
-                continue
-            if one.is_dir():
-                shutil.rmtree(one)
-            else:
-                one.unlink()
+        """Empty the folder but for the lock.
+
+        Killed at any moment, it is that of a run still, with fewer records than before.
+        """
+        _empty(self.folder, keep=_LOCK)
 
     @contextmanager
     def _locked(self) -> Iterator[None]:
@@ -233,9 +257,29 @@ class Run:
                 found[record.key] = record
         return found
 
-    def _write(self, name: str, values: Mapping[str, Any]) -> None:
+    def _write(self, name: str, values: Mapping[str, Any] | list[str]) -> None:
         with replacing(self.folder / name, binary=False) as file:
             json.dump(values, file, indent=1)
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    else:
+        path.unlink()
+
+
+def _empty(folder: Path, *, keep: str = "") -> None:
+    """Remove what a folder holds: records first, then what they refer to, the manifest last."""
+    places = sorted(
+        folder.iterdir(), key=lambda one: (one.name == _MANIFEST, not one.is_dir(), one.name)
+    )
+    for one in places:
+        if one.is_dir() and not one.is_symlink():
+            _empty(one)
+            one.rmdir()
+        elif one.name != keep:
+            one.unlink()
 
 
 def hash_file(path: Path) -> str:

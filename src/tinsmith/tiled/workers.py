@@ -133,6 +133,7 @@ class _Accounts:
         self._started = monotonic()
         self._new = 0
         self._total = 0
+        self._points = 0
         self.done: dict[str, Record] = {}
 
     def find_open(self, jobs: Sequence[Any]) -> list[Any]:
@@ -147,7 +148,7 @@ class _Accounts:
             elif record.state == "divided":
                 waiting.extend(self._divide(job))
             else:
-                self.done[job.key] = record
+                self._keep(job, record)
         self._total = len(self.done) + len(found)
         return found
 
@@ -163,8 +164,12 @@ class _Accounts:
                 self._total += len(parts) - 1
                 return
         self._new += 1
-        self.done[job.key] = record
+        self._keep(job, record)
         self.report()
+
+    def _keep(self, job: Any, record: Record) -> None:
+        self.done[job.key] = record
+        self._points += record.points
 
     def give_up(self, job: Any, sentence: str) -> None:
         """Account for a task whose process was ended each time."""
@@ -181,8 +186,7 @@ class _Accounts:
             return
         seconds, done = monotonic() - self._started, len(self.done)
         left = seconds / self._new * (self._total - done) if self._new else None
-        points = sum(record.points for record in self.done.values())
-        self._phase.tell(Status(self._phase.step, done, self._total, points, seconds, left))
+        self._phase.tell(Status(self._phase.step, done, self._total, self._points, seconds, left))
 
     def require_done(self) -> None:
         """Refuse to go on where tasks failed."""

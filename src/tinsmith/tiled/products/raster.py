@@ -161,21 +161,22 @@ class _Blocks:
 
     def __init__(self, folder: Path, records: Mapping[str, Record], grid: Grid) -> None:
         self.shape = grid.shape
-        self._blocks = [
-            (slice(*record.values["rows"]), slice(*record.values["columns"]), folder / name)
-            for record in records.values()
-            for name in record.files
-        ]
+        made = [(record.values, name) for record in records.values() for name in record.files]
+        self._paths = [folder / name for _, name in made]
+        ends = [[*values["rows"], *values["columns"]] for values, _ in made]
+        self._ends = np.array(ends, np.int64).reshape(-1, 4)
 
     def __getitem__(self, key: tuple[slice, slice]) -> Float64Array:
         """Return a block; slices have no step."""
         rows, columns = key
         found = np.full((rows.stop - rows.start, columns.stop - columns.start), np.nan)
-        for own_rows, own_columns, path in self._blocks:
+        starts, stops = self._ends[:, ::2], self._ends[:, 1::2]
+        is_met = (starts < [rows.stop, columns.stop]) & (stops > [rows.start, columns.start])
+        for k in np.flatnonzero(is_met.all(axis=1)).tolist():
+            own_rows, own_columns = (slice(*ends) for ends in self._ends[k].reshape(2, 2).tolist())
             target = _find_common(rows, own_rows), _find_common(columns, own_columns)
             source = _find_common(own_rows, rows), _find_common(own_columns, columns)
-            if target[0].start < target[0].stop and target[1].start < target[1].stop:
-                found[target] = np.load(path, mmap_mode="r")[source]
+            found[target] = np.load(self._paths[k], mmap_mode="r")[source]
         return found
 
 
