@@ -271,10 +271,22 @@ def test_surfaces_become_folders(words, index, lidar, here):
     assert json.loads(done.stdout)["points"] == 6_000
 
 
+def test_surfaces_become_the_file_of_memory(lidar, here):
+    options = [lidar, "--classes", "2"]
+    done = run("build", *options, "-o", "made.ply", "--tiles", "3", "--workers", "2", "--json")
+    assert done.exit_code == 0, done.output
+    assert [one.name for one in here.iterdir()] == ["made.ply"]
+    assert "Attributes of points are not kept in tiles." in json.loads(done.stdout)["notes"]
+    tin = ts.triangulate(ts.read(lidar, classes=2, attributes=[]))
+    ts.write(tin, here / "whole.ply")
+    assert (here / "made.ply").read_bytes() == (here / "whole.ply").read_bytes()
+
+
 @pytest.mark.parametrize(
     "words",
     [
-        ["-o", "out.ply"],
+        ["-o", "out.obj"],
+        ["-o", "out.laz"],
         ["-o", "made", "--output-format", "obj"],
         ["-o", "made", "--max-edge", "9"],
         ["-o", "made", "--report", "report.json"],

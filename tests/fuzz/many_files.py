@@ -118,8 +118,18 @@ def _compare(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> st
         found.append(name)
     _compare_places(case, tin, cloud, folder)
     _compare_draped(case, tin, cloud, folder)
-    made = _compare_surfaces(case, tin, cloud, folder)
+    made = _compare_surfaces(case, tin, cloud, folder) + _compare_files(case, tin, cloud, folder)
     return f"{len(found) - found.count('refused') + 2 + made} products"
+
+
+def _compare_files(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> int:
+    """Require the file of the whole surface, where it has no lines."""
+    if cloud.lines is not None:
+        return 0
+    wanted = ts.write(tin, folder / "whole.ply")
+    way = {"tiles": case["tiles"], "executor": Shuffled(case["seed"])}
+    assert filecmp.cmp(cloud.build(folder / "tiled.ply", **way), wanted, shallow=False)
+    return 1
 
 
 def _compare_surfaces(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> int:

@@ -10,6 +10,7 @@ import pytest
 from support.many_files import Shuffled, write_lidar
 
 import tinsmith as ts
+from tinsmith.tiled.assembling import Sweep, merge_triangles, write_turned
 from tinsmith.tiled.numbering import NUMBER, number_vertices
 from tinsmith.tiled.runs import hash_file
 
@@ -123,3 +124,86 @@ def test_numbers_range_by_range(tmp_path):
     files["own"][0].write_bytes(files["own"][1].read_bytes())
     with pytest.raises(ts.CheckError, match="lies in two tiles"):
         number_vertices(*files.values(), np.array([0]))
+
+
+# --------------------------------------------------------------------------- one file
+
+
+@pytest.fixture(scope="module")
+def whole(lidar, tmp_path_factory):
+    """Return the file that is written of the surface in memory."""
+    tin = ts.triangulate(ts.read(lidar, classes=2, attributes=[]))
+    return ts.write(tin, tmp_path_factory.mktemp("whole") / "whole.ply")
+
+
+@pytest.mark.parametrize("tiles", [1, 4, 16])
+def test_one_file_has_the_bytes_of_memory(lidar, whole, tmp_path, tiles):
+    cloud = ts.tiles(lidar, classes=2)
+    made = cloud.build(tmp_path / "made.ply", tiles=tiles, executor=Shuffled(tiles))
+    assert made.read_bytes() == whole.read_bytes()
+    assert [path.name for path in tmp_path.iterdir()] == ["made.ply"]
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_one_file_of_workers(lidar, whole, tmp_path, workers):
+    made = ts.tiles(lidar, classes=2).build(tmp_path / "made.ply", tiles=4, workers=workers)
+    assert made.read_bytes() == whole.read_bytes()
+
+
+@pytest.mark.parametrize("most", [5, 40, 700])
+def test_the_order_of_triangles_range_by_range(tmp_path, most):
+    rng = np.random.default_rng(4)
+    town = rng.random((800, 3)) * 1e-6
+    lattice = np.stack(np.meshgrid(np.arange(30.0), np.arange(20.0), [0.0]), axis=-1).reshape(-1, 3)
+    sets = {
+        "even": rng.random((900, 3)),
+        "a town and one far off": np.concatenate([rng.random((300, 3)), town, [[1e4, 1e4, 0]]]),
+        "all but one in a cell": np.concatenate([rng.random((500, 3)), [[1e9, 1e9, 0]]]),
+        "lattice": lattice,
+        "a circle": np.column_stack([*circle(97), np.zeros(97)]),
+    }
+    for name, points in sets.items():
+        tin = ts.triangulate(points)
+        folder = tmp_path / name
+        folder.mkdir()
+        sweep = Sweep(tin.points, folder, most)
+        owner = rng.integers(0, 3, len(tin.triangles))
+        paths = [folder / f"tile{k}" for k in np.unique(owner)]
+        for k, path in zip(np.unique(owner), paths, strict=True):
+            write_turned(path, tin.triangles[owner == k], sweep)
+        found = np.concatenate([*merge_triangles(paths, sweep, most=most)])
+        np.testing.assert_array_equal(found, tin.triangles, err_msg=name)
+
+
+def circle(count):
+    """Return x and y of points on a circle and of its middle, nearest to all of them."""
+    angle = np.arange(count) * (2 * np.pi / (count - 1))
+    x, y = np.cos(angle), np.sin(angle)
+    x[-1] = y[-1] = 0.0
+    return x, y
+
+
+def test_one_file_that_cannot_be(lidar, tmp_path):
+    cloud = ts.tiles(lidar)
+    with pytest.raises(ts.OptionError, match="others need all of it at a time"):
+        cloud.build(tmp_path / "made.obj", executor=Shuffled())
+    with pytest.raises(ts.OptionError, match="its writer has no options"):
+        cloud.build(tmp_path / "made.ply", write={"size": 3}, executor=Shuffled())
+    line = [[500_005, 4_000_030, 301.0], [500_120, 4_000_090, 309.0]]
+    with_line = ts.tiles(lidar, breaklines=[line])
+    with pytest.raises(ts.OptionError, match="write a folder"):
+        with_line.build(tmp_path / "made.ply", executor=Shuffled())
+    with pytest.raises(ts.WriteError, match="there is no folder"):
+        cloud.build(tmp_path / "no" / "made.ply", executor=Shuffled())
+    flat = ts.write(ts.Survey(points=[[0, 0, 1], [1, 1, 1], [2, 2, 1]]), tmp_path / "flat.csv")
+    with pytest.raises(ts.ReadError, match="collinear"):
+        ts.tiles(flat).build(tmp_path / "made.ply", executor=Shuffled())
+    assert {path.name for path in tmp_path.iterdir()} <= {"flat.csv", "made.ply.run"}
+
+
+def test_one_file_after_an_interruption(lidar, whole, tmp_path):
+    cloud = ts.tiles(lidar, classes=2)
+    with pytest.raises(KeyboardInterrupt):
+        cloud.build(tmp_path / "made.ply", tiles=4, executor=Shuffled(1, most=5))
+    made = cloud.build(tmp_path / "made.ply", executor=Shuffled(2))
+    assert made.read_bytes() == whole.read_bytes()

@@ -10,8 +10,11 @@ from .proof import TilesProof, TileTriangles, check_tiles
 from .rings import Rings
 from .skeleton import find_outermost, find_skeleton, reduce_to_hull
 from .sources import NumberedPoints, PointSource
+from .sweep_order import DEEPEST, Cells, choose_crowd, sort_in_cells, sort_stars, turn_to_first
 
 __all__ = [
+    "DEEPEST",
+    "Cells",
     "Discs",
     "LocalTriangulation",
     "NodedLines",
@@ -23,6 +26,7 @@ __all__ = [
     "TilesProof",
     "are_in_box",
     "check_tiles",
+    "choose_crowd",
     "choose_near",
     "find_around",
     "find_differing",
@@ -35,6 +39,9 @@ __all__ = [
     "node_lines",
     "reduce_to_hull",
     "require_local",
+    "sort_in_cells",
+    "sort_stars",
     "triangulate_box",
+    "turn_to_first",
     "widen",
 ]

@@ -1,5 +1,5 @@
 """PLY: header and body of a file, and what they say of a surface."""
 
-from .file import read, write
+from .file import SurfaceBlocks, read, write, write_blocks
 
-__all__ = ["read", "write"]
+__all__ = ["SurfaceBlocks", "read", "write", "write_blocks"]

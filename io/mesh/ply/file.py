@@ -12,7 +12,7 @@ one side only.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -34,10 +34,11 @@ from .lines import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from ....base.arrays import AnyArray, Float64Array
+    from ....base.arrays import AnyArray, Float64Array, Int32Array
+    from ....base.crs import CRS, Unit
     from ....base.progress import Tell
     from ....tin.constraints.breaklines import Lines
     from .body import Table
@@ -48,6 +49,8 @@ _LIST = ("count", "corners")
 """Length and items of the list of a face's vertices, as they lie in a row."""
 
 _COORDINATES = ("x", "y", "z")
+_VERTEX = np.dtype([(name, "<f8") for name in _COORDINATES])
+_FACE = np.dtype([(_LIST[0], "u1"), (_LIST[1], "<i4", (3,))])
 _LARGEST_INTEGER = 2**53
 _TYPE_NAMES = {
     "i1": "char",
@@ -215,30 +218,72 @@ def write(surface: TIN | Survey, path: Path, *, progress: Tell | None = None) ->
             comments = format_line_comments(surface)
             body["edge"] = np.ascontiguousarray(edges, "<i4").view([(name, "<i4") for name in ENDS])
     with replacing(path) as file:
-        lines = ["ply", "format binary_little_endian 1.0"]
-        if surface.crs is not None:
-            lines.append(f"comment crs: {common.format_crs(surface.crs)}")
-        if unit := common.format_unit(surface):
-            lines.append(f"comment elevation unit: {unit}")
-        lines += comments
-        for name, rows in body.items():
-            lines.append(f"element {name} {len(rows)}")
-            if name == "face":
-                lines.append("property list uchar int vertex_indices")
-            lines += [
-                f"property {_TYPE_NAMES.get(rows.dtype[column].str[1:], 'double')} {column}"
-                for column in rows.dtype.names or ()
-                if name != "face" or column not in _LIST
-            ]
-        file.write(("\n".join([*lines, "end_header"]) + "\n").encode())
+        elements = {name: (rows.dtype, len(rows)) for name, rows in body.items()}
+        file.write(_format_header(surface, comments, elements))
         for number, rows in enumerate(body.values(), start=1):
             file.write(rows.data)
             if progress is not None:
                 progress(number / len(body))
 
 
+class SurfaceBlocks(NamedTuple):
+    """A surface that is larger than memory, without lines and attributes.
+
+    Attributes
+    ----------
+    n_points, n_triangles : int
+    points : iterable of (k, 3) float64 arrays
+    triangles : iterable of (k, 3) int32 arrays
+    crs : CRS or None
+    elevation_unit : Unit or None
+    """
+
+    n_points: int
+    n_triangles: int
+    points: Iterable[Float64Array]
+    triangles: Iterable[Int32Array]
+    crs: CRS | None = None
+    elevation_unit: Unit | None = None
+
+
+def write_blocks(surface: SurfaceBlocks, path: Path) -> None:
+    """Write the file that :func:`write` makes of the same surface in memory."""
+    counts = {"vertex": (_VERTEX, surface.n_points), "face": (_FACE, surface.n_triangles)}
+    with replacing(path) as file:
+        file.write(_format_header(surface, [], counts))
+        for points in surface.points:
+            file.write(_pack_vertices(points, {}).data)
+        for triangles in surface.triangles:
+            file.write(_pack_triangles(triangles, ()).data)
+
+
+def _format_header(
+    surface: TIN | Survey | SurfaceBlocks,
+    comments: Sequence[str],
+    elements: Mapping[str, tuple[np.dtype[Any], int]],
+) -> bytes:
+    """Return the header of a file, up to the first row."""
+    lines = ["ply", "format binary_little_endian 1.0"]
+    if surface.crs is not None:
+        lines.append(f"comment crs: {common.format_crs(surface.crs)}")
+    unit = surface.elevation_unit
+    if unit is not None and unit.text:
+        lines.append(f"comment elevation unit: {unit.text}")
+    lines += comments
+    for name, (dtype, count) in elements.items():
+        lines.append(f"element {name} {count}")
+        if name == "face":
+            lines.append("property list uchar int vertex_indices")
+        lines += [
+            f"property {_TYPE_NAMES.get(dtype[column].str[1:], 'double')} {column}"
+            for column in dtype.names or ()
+            if name != "face" or column not in _LIST
+        ]
+    return ("\n".join([*lines, "end_header"]) + "\n").encode()
+
+
 def _pack_vertices(points: Float64Array, columns: dict[str, AnyArray]) -> AnyArray:
-    fields = [(name, "<f8") for name in _COORDINATES]
+    fields = [*_VERTEX.descr]
     fields += [(name, column.dtype.newbyteorder("<").str) for name, column in columns.items()]
     rows = np.empty(len(points), fields)
     for name, column in zip(_COORDINATES, points.T, strict=True):
@@ -272,10 +317,15 @@ def _pack_faces(tin: TIN, edges: AnyArray) -> AnyArray:
     """Return the rows of the faces, with flags only where the edges do not tell them."""
     is_stated = (flag_edges(tin.triangles, edges, len(tin.points)) == tin.constrained).all()
     flags = () if is_stated else _FLAGS
-    fields: list[Any] = [(_LIST[0], "u1"), (_LIST[1], "<i4", (3,))]
-    rows = np.empty(len(tin.triangles), [*fields, *((name, "u1") for name in flags)])
-    rows[_LIST[0]] = 3
-    rows[_LIST[1]] = tin.triangles
+    rows = _pack_triangles(tin.triangles, flags)
     for k, name in enumerate(flags):
         rows[name] = tin.constrained[:, k]
+    return rows
+
+
+def _pack_triangles(triangles: Int32Array, flags: Sequence[str]) -> AnyArray:
+    """Return rows of faces, with columns for flags, which are not filled."""
+    rows = np.empty(len(triangles), [*_FACE.descr, *((name, "u1") for name in flags)])
+    rows[_LIST[0]] = 3
+    rows[_LIST[1]] = triangles
     return rows

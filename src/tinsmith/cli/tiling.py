@@ -247,22 +247,23 @@ def showing_progress(job: Job) -> Iterator[dict[str, Any]]:
         yield {**job.tiling.way, "progress": shown.take}
 
 
-def write_folder(cloud: TiledPoints, job: Job) -> Path:
-    """Write the surface of tiles as a folder, and return it."""
+def write_surface(cloud: TiledPoints, job: Job) -> Path:
+    """Write the surface of tiles as a folder or as one file, and return it."""
     from ..io import find_format
+    from ..io.registry import list_writers
     from ..tiled.products.pyramid import FORMATS
 
     name = (job.writing.output_format or "").strip().lower()
     if len(job.outputs) != 1 or job.outputs[0] == STANDARD or job.writing.options:
         raise Failure(
-            "The surface of tiles is written as one folder of files: name it by -o, and its "
-            "format by --output-format."
+            "The surface of tiles is written as one file (.ply) or one folder of files: name it by "
+            "-o, and its format by --output-format."
         )
     (output,) = job.outputs
-    if output.suffix and not output.is_dir():
+    if output.suffix and not output.is_dir() and not list_writers(output, None, "TIN"):
         raise Failure(
-            f"The surface of tiles is written as a folder of files, and '{output}' is named like a "
-            "file: name a folder, and its format by --output-format."
+            f"The surface of tiles is written as one file (.ply) or as a folder of files, and "
+            f"'{output}' is named like another file."
         )
     with showing_progress(job) as way:
         if name in FORMATS:
@@ -292,6 +293,15 @@ class _Shown:
             self._tell = self.stack.enter_context(self._job.step(text))
         if status.total:
             self._tell(status.done / status.total)
+
+
+def describe_lost(cloud: TiledPoints) -> list[str]:
+    """Tell what of the points surfaces of tiles do not have."""
+    from ..io import find_format
+
+    formats = [find_format(header.format) for header in cloud.headers]
+    has_attributes = any("attributes" in one.options("read") for one in formats)
+    return ["Attributes of points are not kept in tiles."] if has_attributes else []
 
 
 def describe_points(cloud: TiledPoints) -> str:

@@ -23,13 +23,14 @@ from ..base.policies import (
     SlopeUnit,
 )
 from ..base.sentences import counted
+from ..io import find_format
 from ..io.reading import list_files
-from ..io.registry import SourceHeader
-from ..io.registry.lookup import find_format
+from ..io.registry import SourceHeader, list_writers
 from ..io.streaming import describe_source, stream_points
 from ..io.writing import write as write_file
 from ..tin import Survey
 from ..tin.validation import as_xy
+from .assembling import WRITERS, find_writable
 from .chunks import BYTES_ON_DISK
 from .computing import computing, labelling
 from .how import How, Way, estimate_memory
@@ -738,28 +739,32 @@ class TiledPoints:
         self,
         path: str | os.PathLike[str],
         *,
-        format: str = "ply",  # noqa: A002 - as in write
+        format: str | None = None,  # noqa: A002 - as in write
         write: Mapping[str, Any] | None = None,
         **way: Unpack[Way],
     ) -> Path:
-        """Write the surface that :func:`tinsmith.triangulate` makes as a folder, a file a tile.
+        """Write the surface that :func:`tinsmith.triangulate` makes as one file, or a file a tile.
 
-        Each triangle is in one file. Vertices have the numbers that they have in memory: of PLY
-        and TIN files they are the attribute ``vertex``; of GeoParquet and FlatGeobuf, whose
-        triangles are polygons, the columns ``a``, ``b`` and ``c`` of the corners.
+        One file, named with the suffix of a mesh (``surface.ply``), has the bytes of that of the
+        surface in memory, of points without attributes.
+
+        Of a folder each triangle is in one file. Vertices have the numbers that they have in
+        memory: of PLY and TIN files they are the attribute ``vertex``; of GeoParquet and
+        FlatGeobuf, whose triangles are polygons, the columns ``a``, ``b`` and ``c`` of the corners.
         ``surface.json`` lists the files with their bounds, counts and hashes, and names CRS and
         units.
 
         Parameters
         ----------
         path : path-like
-            A new or empty folder, or one that this wrote, which is replaced.
-        format : {"ply", "tin", "geoparquet", "flatgeobuf"}
+            A file; or a new or empty folder, or one that this wrote, which is replaced.
+        format : {"ply", "tin", "geoparquet", "flatgeobuf"}, optional
+            Of a folder, default PLY; one file is PLY.
         write : mapping, optional
             Options of the writer.
         **way
-            As of :meth:`rasterize`. Which triangles are in one file depends on it; the triangles,
-            and the numbers of vertices, do not.
+            As of :meth:`rasterize`. Which triangles of a folder share a file depends on it; the
+            triangles, and the numbers of vertices, do not.
 
         Returns
         -------
@@ -770,7 +775,8 @@ class TiledPoints:
         ReadError, WriteError
             As :meth:`rasterize`.
         OptionError
-            If the format cannot hold the numbers of vertices.
+            If the format cannot hold the numbers of vertices; of one file if it needs all of the
+            surface at a time, or the surface has lines.
 
         Examples
         --------
@@ -784,7 +790,15 @@ class TiledPoints:
         ...     sorted(file.name for file in made.iterdir())
         ['0.ply', 'surface.json']
         """
-        return self._write_folder("surface", {"format": format, "write": write}, path, way)
+        output = as_path(path)
+        if output.is_dir() or not list_writers(output, None, "TIN"):
+            asked = {"format": format or "ply", "write": write}
+            return self._write_folder("surface", asked, output, way)
+        if self.lines is not None:
+            raise OptionError("lines", self.lines, "none for a surface in one file: write a folder")
+        if write:
+            raise OptionError("write", write, "left out for one file: its writer has no options")
+        return self._write_blocks("surface_file", output, {"format": format}, way)
 
     def write(
         self,
@@ -1046,6 +1060,14 @@ class TiledPoints:
         name, options = writing
         with computing(self, product, output, How.of(**way), **asked) as made:
             return write_file(made, output, format=name, **(options or {}))
+
+    def _write_blocks(self, product: str, output: Path, asked: Mapping[str, Any], way: Way) -> Path:
+        """Write one file, in the format that is asked for or else by its suffix."""
+        name = asked["format"] or list_writers(output, None, "TIN")[0].name
+        writer = WRITERS[find_writable(name)]
+        with computing(self, product, output, How.of(**way), **{**asked, "format": name}) as made:
+            writer(made, output)
+        return output
 
     def _write_folder(
         self, product: str, asked: Mapping[str, Any], path: str | os.PathLike[str], way: Way

@@ -16,7 +16,14 @@ from ..output.facts import Facts
 from ..output.failures import Failure
 from ..parameters import input_files, output_files, report_option
 from ..paths import describe_inputs, name_files
-from ..tiling import choose_tiles, describe_points, tell_plan, tiled_options, write_folder
+from ..tiling import (
+    choose_tiles,
+    describe_lost,
+    describe_points,
+    tell_plan,
+    tiled_options,
+    write_surface,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -59,8 +66,8 @@ def build(
     and written. Breaklines, a boundary, holes and water are read from vector files, in any CRS, or
     made from the field codes of the points.
 
-    In tiles (--tiles N, or where memory is short) the surface is written as a folder: a file for
-    each tile, or 3D Tiles for globes with --output-format 3dtiles.
+    In tiles (--tiles N, or where memory is short) the surface is written as one file (.ply), or as
+    a folder: a file for each tile, or 3D Tiles for globes with --output-format 3dtiles.
 
     Example:
       tinsmith build sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.geojson
@@ -119,10 +126,12 @@ def _is_built_in_tiles(
     if job.tiling.plan:
         tell_plan(cloud, job, points[0])
         return True
-    output = write_folder(cloud, job)
+    output = write_surface(cloud, job)
     facts = Facts(points[0])
     facts.add("Points", describe_points(cloud))
-    facts.add("Written", f"{output}, a folder", outputs=[str(output)])
+    kind = "folder" if output.is_dir() else "file"
+    facts.add("Written", f"{output}, a {kind}", outputs=[str(output)])
+    facts.note(describe_lost(cloud))
     seconds = round(perf_counter() - job.started, 3)
     facts.add("Time", f"{seconds:.2f} s", seconds=seconds)
     job.console.answer(facts)

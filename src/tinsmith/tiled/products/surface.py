@@ -77,11 +77,18 @@ def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
         part, points=local.points[used], triangles=corners.reshape(-1, 3).astype(np.int32)
     )
     own = local.numbers[are_owned(local.points, job.tile.box)]
-    for suffix, rows in ((_OWN, own), (_USED, local.numbers[used])):
-        names.append(f"{job.key}{suffix}")
+    names += save_rows(part, {_OWN: own, _USED: local.numbers[used]})
+    return len(local.points), {"triangles": len(corners.reshape(-1, 3))}, names
+
+
+def save_rows(part: Part, files: Mapping[str, Int64Array]) -> list[str]:
+    """Write rows of vertices of a tile to files by suffix, and return their names."""
+    names = []
+    for suffix, rows in files.items():
+        names.append(f"{part.job.key}{suffix}")
         with replacing(part.folder / names[-1]) as file:
             file.write(rows.astype(NUMBER).data)
-    return len(local.points), {"triangles": len(corners.reshape(-1, 3))}, names
+    return names
 
 
 @dataclass(frozen=True)
