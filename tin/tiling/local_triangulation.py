@@ -35,6 +35,8 @@ _EVERYWHERE = (-np.inf, -np.inf, np.inf, np.inf)
 
 _WORTH_LOOKING = 20_000
 """Points from which on it is worth while to look at some of them first."""
+_MOST_LOOKS = 8
+"""Rings reach further with each answer."""
 _THINNING = 16
 """Of the points far inside one of so many is enough to tell what those at the rim will ask for."""
 
@@ -118,7 +120,7 @@ def triangulate_box(
     seen = _Seen(source, lines, around)
     proven = np.empty((0, 3), np.int64)
     if lines is None:
-        proven = _look_beyond(seen, box, around, threads)
+        proven = _look_beyond(seen, box, around, rings, threads)
     rounds = 0
     while True:
         made = _triangulate(seen, threads)
@@ -141,14 +143,14 @@ def triangulate_box(
     return _cut(local, seen.segments, lines.rings)
 
 
-def _look_beyond(seen: _Seen, box: Bounds, around: Bounds, threads: int) -> Int64Array:
+def _look_beyond(seen: _Seen, box: Bounds, around: Bounds, rings: int, threads: int) -> Int64Array:
     """Ask for what most triangles at the rim of a large box will ask for, before all are made.
 
     They are about the same with few of the points far inside, and are had for a fraction of the
     time. What is found more than needed does no harm. Returns the names of triangles in whose discs
     nothing unseen lies, whether they are made of all points or not.
     """
-    nothing = np.empty((0, 3), np.int64)
+    nothing = proven = np.empty((0, 3), np.int64)
     points = seen.points
     sides = zip(list_sides(box), list_sides(around), strict=True)
     margins = [abs(own - outer) for own, outer in sides if np.isfinite(own)]
@@ -157,13 +159,19 @@ def _look_beyond(seen: _Seen, box: Bounds, around: Bounds, threads: int) -> Int6
     is_taken = ~are_in_box(points.points, widen(box, -max(margins)))
     is_taken[::_THINNING] = True
     some = points.choose(np.flatnonzero(is_taken))
-    try:
-        made = _sweep(some, threads)
-    except PointsError:  # all in line: those of all may not be
-        return nothing
-    found = _find(made, box, around, 0)
-    names, question = _find_open(made, found, around, nothing, seen.segments)
-    return names[seen.ask(question)[0]]
+    for rounds in range(_MOST_LOOKS if rings else 1):
+        try:
+            made = _sweep(some, threads)
+        except PointsError:  # all in line: those of all may not be
+            return nothing
+        found = _find(made, box, around, rings)
+        names, question = _find_open(made, found, around, proven, seen.segments)
+        is_safe, has_more = seen.ask(question._replace(most=count_taken(rounds)))
+        proven = np.concatenate([proven, names[is_safe]])
+        if not has_more:
+            break
+        some = some.add(seen.latest)
+    return proven
 
 
 class _Found(NamedTuple):
@@ -208,6 +216,7 @@ class _Seen:
 
     def __init__(self, source: PointSource, lines: SegmentSource | None, around: Bounds) -> None:
         self._source, self._lines = source, lines
+        self.latest = NumberedPoints.none()
         self.segments = NumberedSegments.none()
         others = source.skeleton
         if lines is not None:
@@ -223,7 +232,7 @@ class _Seen:
             self.segments = self.segments.add(segments)
             points = NumberedPoints.join([points, segments.vertices])
             is_safe &= is_clear
-        self.points = self.points.add(points)
+        self.points, self.latest = self.points.add(points), points
         return is_safe, not bool(is_safe.all())
 
 
