@@ -26,7 +26,7 @@ CRS = "EPSG:32616"
 LINE = [[500_001.0, 4_000_002.0], [500_090.0, 4_000_070.0]]
 VICTIMS = ("group", "group", "parent", "worker")
 _POLL = 0.001
-_PATIENCE = 120.0
+_PATIENCE = 400.0
 _NAME_OF_GROUP = 2
 """Field of the process group in /proc/PID/stat, behind the name of the program."""
 
@@ -176,7 +176,7 @@ def _require_ended(process: int, folder: Path) -> None:
 
 def _require_no_processes(group: int) -> None:
     """Require that no process of a run is left, when those that see its end have had time to."""
-    patience = time.monotonic() + _PATIENCE / 4
+    patience = time.monotonic() + _PATIENCE
     while left := list(_list_group(group)):
         if time.monotonic() > patience:
             os.killpg(group, signal.SIGKILL)
@@ -213,7 +213,7 @@ CAMPAIGNS = (
         "runs over many files that are killed and go on",
         generate,
         examine,
-        seconds=600.0,
+        seconds=1800.0,
         weight=100,
     ),
 )
