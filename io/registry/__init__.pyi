@@ -13,4 +13,5 @@ from .chunks import make_source_header as make_source_header
 from .chunks import yield_survey as yield_survey
 from .format import SURFACES as SURFACES
 from .format import Format as Format
+from .lookup import find_writer as find_writer
 from .lookup import list_writers as list_writers

@@ -34,8 +34,8 @@ WHOLE = {
 }
 """Further options that need all points at a time."""
 
-OF_FOLDERS = {"build", "ground"}
-"""Commands whose tiles are a folder of files, which memory makes no other way."""
+OF_FOLDERS = {"build", "ground", "simplify"}
+"""Commands whose tiles make what memory makes otherwise, such as a folder of files."""
 
 
 ROADS = [[500_010, 4_000_010], [500_290, 4_000_190], [500_100, 4_000_150], [500_100, 3_999_000]]
@@ -269,6 +269,21 @@ def test_surfaces_become_folders(words, index, lidar, here):
     assert json.loads(done.stdout)["outputs"] == ["made"]
     done = run("build", *options, *words, "--plan", "--json")
     assert json.loads(done.stdout)["points"] == 6_000
+
+
+def test_simplified_in_tiles(lidar, here):
+    options = ["simplify", lidar, "--classes", "2", "--tolerance", "0.3", "-o"]
+    for count, name in ((1, "a.ply"), (3, "b.ply")):
+        done = run(*options, name, "--tiles", count, "--workers", "2", "--json")
+        assert done.exit_code == 0, done.output
+        assert json.loads(done.stdout)["outputs"] == [name]
+    assert (here / "a.ply").read_bytes() == (here / "b.ply").read_bytes()
+    planned = run(*options, "c.ply", "--plan", "--json")
+    assert json.loads(planned.stdout)["points"] == 6_000
+    for words in (["c.ply", "--hold", "surface"], ["c.ply", "-o", "d.ply"], ["c.obj"]):
+        done = run(*options, *words, "--tiles", "3")
+        assert done.exit_code in (1, 2), done.output
+    assert sorted(one.name for one in here.iterdir()) == ["a.ply", "b.ply"]
 
 
 def test_surfaces_become_the_file_of_memory(lidar, here):

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
 import tinsmith as ts
 from tinsmith.terrain.simplification.pyramid import (
+    Mesh,
     Node,
     Quadtree,
     find_tolerance,
@@ -15,6 +18,7 @@ from tinsmith.terrain.simplification.pyramid import (
     make_finest,
     simplify,
 )
+from tinsmith.tiled.products.simplified import SquareJoiner
 
 from .campaign import Campaign, Case
 
@@ -55,6 +59,7 @@ def examine(case: Case) -> str:
         for node in Node(0, 0, 0).list_descendants(tree.levels)
     )
     level = {node: mesh for node, mesh in found if mesh is not None}
+    _require_joined(tree, level, tin, case["tolerance"])
     for height in range(1, tree.levels + 1):
         _require_fit(level.values(), tin)
         within = find_tolerance(height, tree.side, case["tolerance"])
@@ -75,6 +80,25 @@ def examine(case: Case) -> str:
     away = np.abs(rough.interpolate(places) - tin.interpolate(places))
     assert np.nanmax(away, initial=0.0) <= mesh.error + _find_slack(tin)
     return f"{tree.levels} levels"
+
+
+def _require_joined(tree, level, tin, tolerance):
+    """Require all squares of the finest level as one mesh, within the tolerance at each point."""
+    with TemporaryDirectory() as folder:
+        joiner = SquareJoiner(Path(folder), tree)
+        for node in sorted(level, key=lambda one: (one.y, one.x)):
+            joiner.add(node, level[node])
+        joiner.close()
+        points, triangles = (
+            np.fromfile(*one) for one in zip(joiner.paths, ("<f8", "<i4"), strict=True)
+        )
+    points, triangles = points.reshape(-1, 3), triangles.reshape(-1, 3)
+    assert [len(points), len(triangles)] == joiner.counts
+    assert len(np.unique(points[:, :2], axis=0)) == len(points)
+    _require_fit([Mesh(points, triangles)], tin)
+    found = ts.TIN.from_triangles(points, triangles).interpolate(tin.points[:, :2])
+    away = np.abs(found - tin.points[:, 2])
+    assert np.nanmax(away, initial=0.0) <= tolerance + _find_slack(tin)
 
 
 def _find_slack(tin):

@@ -50,6 +50,27 @@ def find_writable(name: str) -> str:
     return chosen
 
 
+def require_numbers(count: int) -> None:
+    """Refuse more vertices than a file can number.
+
+    Raises
+    ------
+    PointsError
+    """
+    most = np.iinfo(_PLACE).max
+    if count > most:
+        raise PointsError(
+            f"The surface has {count:,} vertices or more, and one file numbers up to {most:,}."
+        )
+
+
+def read_blocks(path: Path, dtype: str) -> Iterator[AnyArray]:
+    """Yield the rows of a file of threes, (k, 3)."""
+    with path.open("rb") as file:
+        while len(block := np.fromfile(file, dtype, 3 * MOST_AT_A_TIME)):
+            yield block.reshape(-1, 3)
+
+
 def place_points(folder: Path, count: int, tiles: Iterable[tuple[Path, Path]]) -> Float64Array:
     """Write the vertices of all tiles in the order of their numbers, and return them as a file.
 
@@ -67,11 +88,7 @@ def place_points(folder: Path, count: int, tiles: Iterable[tuple[Path, Path]]) -
     CheckError
         If a vertex is in no tile.
     """
-    if count > np.iinfo(_PLACE).max:
-        raise PointsError(
-            f"The surface has {count:,} vertices, and one file numbers up to "
-            f"{np.iinfo(_PLACE).max:,}: write a folder."
-        )
+    require_numbers(count)
     points: Float64Array = np.memmap(folder / "points", _COORDINATE, "w+", shape=(count, 3))
     placed = 0
     for numbers, coordinates in tiles:

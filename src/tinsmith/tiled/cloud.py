@@ -25,7 +25,7 @@ from ..base.policies import (
 from ..base.sentences import counted
 from ..io import find_format
 from ..io.reading import list_files
-from ..io.registry import SourceHeader, list_writers
+from ..io.registry import SourceHeader, find_writer, list_writers
 from ..io.streaming import describe_source, stream_points
 from ..io.writing import write as write_file
 from ..tin import Survey
@@ -799,6 +799,74 @@ class TiledPoints:
         if write:
             raise OptionError("write", write, "left out for one file: its writer has no options")
         return self._write_blocks("surface_file", output, {"format": format}, way)
+
+    def simplify(
+        self,
+        path: str | os.PathLike[str],
+        tolerance: float,
+        *,
+        format: str | None = None,  # noqa: A002 - as in write
+        node_points: int = 8_192,
+        **way: Unpack[Way],
+    ) -> Path:
+        """Write a surface of few vertices that is within a tolerance of all points.
+
+        It is made square by square, unlike that of :func:`tinsmith.simplify`: no triangle reaches
+        over a side of a square, and what is kept on sides is chosen by the elevations along these
+        alone, so that squares fit. It has some more vertices for this.
+
+        Parameters
+        ----------
+        path : path-like
+            A file of triangles.
+        tolerance : float
+            Largest vertical distance of a point from the new surface, in the unit of elevations.
+        format : {"ply"}, optional
+            Default by the suffix.
+        node_points : int
+            Points of a square, about.
+        **way
+            As of :meth:`rasterize`; the file has the same bytes for any of it.
+
+        Returns
+        -------
+        Path
+
+        Raises
+        ------
+        ReadError, WriteError
+            As :meth:`rasterize`.
+        OptionError
+            If an option has a value that it cannot have, or the surface has lines.
+        FormatError
+            If the suffix is of no format of triangles.
+
+        Notes
+        -----
+        Vertices are those of the surface, and places on sides of squares where these cut its edges,
+        rounded. Sides lie on multiples of powers of two.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import tinsmith as ts
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> points = np.random.default_rng(1).random((500, 3)) * [100, 100, 1]
+        >>> with TemporaryDirectory() as folder:
+        ...     cloud = ts.tiles(ts.write(ts.Survey(points=points), Path(folder, "points.csv")))
+        ...     made = cloud.simplify(Path(folder, "simple.ply"), 2.0, workers=1)
+        ...     len(ts.read(made).points)
+        16
+        """
+        output = as_path(path)
+        if self.lines is not None:
+            raise OptionError("lines", self.lines, "none where a surface is simplified in tiles")
+        name = find_writable(format or find_writer(output, None, ("TIN",)).name)
+        asked = {"format": name, "tolerance": tolerance, "node_points": node_points}
+        with computing(self, "simplified", output, How.of(**way), **asked) as made:
+            WRITERS[name](made.blocks, output)
+        return output
 
     def write(
         self,

@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import click
 
 from ...base.sentences import coordinate, counted
 from ..command import file_command
-from ..job import Job, surface_options
+from ..job import Job
 from ..output.counts import mesh_counts
 from ..output.facts import Facts
-from ..output.failures import Failure
+from ..output.failures import Failure, note_written
 from ..parameters import file_option
 from ..paths import INPUT, Named
 from ..product_options import product_options
+from ..tiling import (
+    choose_tiles,
+    describe_lost,
+    describe_points,
+    showing_progress,
+    tell_plan,
+    tiled_options,
+)
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray
@@ -35,7 +43,7 @@ if TYPE_CHECKING:
     "File of points to keep, such as benchmarks: each must be a vertex of the surface.",
     type=INPUT,
 )
-@surface_options()
+@tiled_options()
 def simplify(
     file: Path, tolerance: float | None, points: int | None, hold: Any, keep: Path | None, job: Job
 ) -> None:
@@ -45,8 +53,12 @@ def simplify(
     --hold surface between the points too. Boundary, holes, breaklines and water are kept, and so
     are voids of a raster. A raster may be larger than memory: it is read and simplified in blocks.
 
+    In tiles (--tiles N) the surface is another one: squares that fit at their sides, in one PLY
+    file, the same for any N.
+
     Example:
       tinsmith simplify sample_data/jacksboro.tif --tolerance 2 -o hills.ply
+      tinsmith simplify lidar/ --classes 2 --tolerance 0.1 --tiles 16 -o ground.ply
     """
     from ...terrain import simplify as simplify_surface
     from ...tin import TIN
@@ -55,6 +67,11 @@ def simplify(
     if (tolerance is None) == (points is None):
         wrong = "give one of them" if points is None else "not both"
         raise click.UsageError(f"The options are --tolerance or --points: {wrong}.")
+    if job.tiling.given:
+        asked = {"--points": points, "--hold": hold, "--keep": keep}
+        whole = next((flag for flag, value in asked.items() if value is not None), "")
+        _simplify_tiles(file, tolerance, job, whole)
+        return
     more = [] if keep is None else [Named(keep, "--keep")]
     planned = job.plan(job.list_inputs(file, more=more), "TIN")
     given = job.read_cells(file) or job.read_tin(file)
@@ -89,6 +106,27 @@ def simplify(
         facts.add("Kept", f"{counted(found.required, 'point')} {kept_by}")
         before = given.report.notes if isinstance(given, TIN) else given.notes
         facts.extend(summarise_news(simple, [*before, found.sentence()]))
+    job.finish(planned, facts)
+
+
+def _simplify_tiles(file: Path, tolerance: float | None, job: Job, whole: str) -> None:
+    """Write the surface in tiles, or tell what would be done."""
+    planned = job.plan(job.list_inputs(file), "TIN")
+    cloud = choose_tiles(job, file, whole=whole)
+    if cloud is None:
+        raise AssertionError("tiles were asked for")
+    if job.tiling.plan:
+        tell_plan(cloud, job, file)
+        return
+    if len(planned.paths) != 1 or job.writing.options:
+        raise Failure("The surface of tiles is written as one file: name it by -o.")
+    output, name = planned.paths[0], job.writing.output_format
+    with showing_progress(job) as way:
+        cloud.simplify(output, cast("float", tolerance), format=name, **way)
+    note_written(output)
+    facts = Facts(file)
+    facts.add("Read", describe_points(cloud))
+    facts.note(describe_lost(cloud))
     job.finish(planned, facts)
 
 

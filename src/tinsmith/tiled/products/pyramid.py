@@ -29,17 +29,16 @@ from ...terrain.simplification.pyramid import (
     Quadtree,
     find_tolerance,
     join_nodes,
-    make_finest,
 )
 from ...terrain.simplification.pyramid import simplify as simplify_node
-from ..division import Tile
 from ..runs import Record, Run, hash_file
-from ..tasks import TileJob
+from .squares import as_node, list_finest, settle_quadtree
+from .squares import divide_job as divide_job
+from .squares import divide_points as divide_points
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ...base.arrays import Int64Array
     from ..reading import StoredPoints
     from ..tasks import Part
     from ..workers import Phase
@@ -78,12 +77,9 @@ def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str
         raise CrsError(
             "3D Tiles lie on the globe, and the CRS of the points is not known: declare it (`crs`)."
         )
-    if not (points.bounds.width > 0 and points.bounds.height > 0):
-        raise PointsError("All points lie on one line: there is no surface.")
-    quadtree = Quadtree.over(points.bounds, points.count, options["node_points"])
     return {
         **options,
-        "quadtree": asdict(quadtree),
+        "quadtree": settle_quadtree(points, options["node_points"]),
         "bounds": asdict(points.bounds),
         "elevations": list(points.elevations),
         "crs": str(crs),
@@ -148,94 +144,11 @@ def _load_mesh(path: Path) -> Mesh:
         return Mesh(found["points"], found["triangles"], float(found["error"]))
 
 
-# ------------------------------------------------------------------------- tasks of squares
-
-
-def divide_points(
-    options: Mapping[str, Any],
-    counts: Int64Array,
-    bounds: Bounds,
-    *,
-    most: int,
-    fewest_tiles: int,
-) -> list[Tile]:
-    """Return squares that have few enough points, or are of the finest level."""
-    plan = _Plan.of(options)
-    sums = np.zeros((len(counts) + 1, len(counts) + 1), np.int64)
-    sums[1:, 1:] = counts.cumsum(axis=0).cumsum(axis=1)
-    tiles = [_make_tile(Node(0, 0, 0), plan, sums, bounds)]
-    while True:
-        large = [
-            tile
-            for tile in tiles
-            if (tile.count > most or len(tiles) < fewest_tiles)
-            and _as_node(tile).level < plan.quadtree.levels
-        ]
-        if not large:
-            return tiles
-        largest = max(large, key=lambda tile: tile.count)
-        tiles.remove(largest)
-        parts = [_make_tile(child, plan, sums, bounds) for child in _as_node(largest).children]
-        tiles += [part for part in parts if _meet(part.box, bounds)]
-
-
-def _make_tile(node: Node, plan: _Plan, sums: Int64Array, bounds: Bounds) -> Tile:
-    """Return a square as a tile, with the points in it as far as the lattice of counts tells."""
-    box, side = plan.quadtree.find_box(node), len(sums) - 1
-    ends = []
-    for low, high, first, extent in (
-        (box.ymin, box.ymax, bounds.ymin, bounds.height),
-        (box.xmin, box.xmax, bounds.xmin, bounds.width),
-    ):
-        share = (np.array([low, high]) - first) / extent
-        ends.append(np.clip(np.rint(share * side), 0, side).astype(int).tolist())
-    (south, north), (west, east) = ends
-    count = sums[north, east] - sums[south, east] - sums[north, west] + sums[south, west]
-    return Tile(node.key, box, int(count))
-
-
-def _meet(box: Bounds, other: Bounds) -> bool:
-    """Tell whether two closed boxes have a place in common."""
-    across = box.xmin <= other.xmax and other.xmin <= box.xmax
-    return across and box.ymin <= other.ymax and other.ymin <= box.ymax
-
-
-def _as_node(tile: Tile) -> Node:
-    return Node(*map(int, tile.key.split(".")))
-
-
-def divide_job(job: TileJob) -> list[TileJob]:
-    """Return the quarters of a square that was too large, none if it is of the finest level."""
-    node, plan = _as_node(job.tile), _Plan.of(job.options)
-    if node.level == plan.quadtree.levels:
-        return []
-    return [
-        TileJob(
-            job.folder,
-            job.points,
-            Tile(child.key, plan.quadtree.find_box(child), job.tile.count // 4),
-            job.product,
-            job.options,
-            job.duplicates,
-        )
-        for child in node.children
-    ]
-
-
 def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     """Make a square and all squares in it."""
-    plan, root = _Plan.of(part.job.options), _as_node(part.job.tile)
+    plan, root = _Plan.of(part.job.options), as_node(part.job.tile)
     local = part.triangulate(part.job.tile.box)
-    corners = local.points[local.triangles, :2]
-    (west, south), (east, north) = corners.min(axis=1).T, corners.max(axis=1).T
-    meshes: dict[Node, Mesh] = {}
-    for node in root.list_descendants(plan.quadtree.levels):
-        box = plan.quadtree.find_box(node)
-        across = (west <= box.xmax) & (east >= box.xmin)
-        rows = np.flatnonzero(across & (south <= box.ymax) & (north >= box.ymin))
-        mesh = make_finest(local.points, local.triangles[rows], box, plan.tolerance)
-        if mesh is not None:
-            meshes[node] = mesh
+    meshes = dict(list_finest(local, root, plan.quadtree, plan.tolerance))
     names, told = [], []
     while meshes:
         for node, mesh in meshes.items():
