@@ -28,7 +28,7 @@ _SIDE_OF_SKELETON = 32
 _MANY = 50_000
 """Points near a disc, above which only some of the deepest are read."""
 _SOME = 64
-_ABOUT = 1 + 2.0**-20
+_ABOUT = 1 + 2.0**-40
 """Factor within which distances are not told apart where points are only chosen to be looked at."""
 _CLEARLY = 0.99
 """Of the radius: what lies further out is not worth taking before the others were looked at."""
