@@ -22,6 +22,8 @@ from .earthwork.grading import grade as grade
 from .earthwork.grading import paste as paste
 from .gridding import height_above as height_above
 from .gridding import rasterize as rasterize
+from .gridding import rasterize_counts as rasterize_counts
+from .gridding import rasterize_heights as rasterize_heights
 from .gridding.shading import hillshade as hillshade
 from .ground_filter import GroundPoints as GroundPoints
 from .ground_filter import ground as ground

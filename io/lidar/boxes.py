@@ -56,6 +56,7 @@ def describe(
         crs=head.crs,
         elevation_unit=head.elevation_unit,
         has_boxes=not _find_obstacle(tiles, target, selection),
+        records=" and ".join(dict.fromkeys(one.header.records_format for one in tiles)),
         notes=tuple(dict.fromkeys(notes)),
     )
 

@@ -87,6 +87,11 @@ class Header:
         return bool(self.records) and self.records[0][:2] == _COPC
 
     @property
+    def records_format(self) -> str:
+        """Version, and format of the points."""
+        return f"LAS 1.{self.version}, point format {self.point_format}"
+
+    @property
     def middle(self) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
         """Middle of the bounds."""
         with np.errstate(over="ignore", invalid="ignore"):

@@ -231,8 +231,7 @@ def describe_classes(found: Mapping[int, int], classes: Sequence[int] | None) ->
         return []
     listed = ", ".join(_describe_class(one, found[one]) for one in there)
     if classes is not None:
-        taken = ", ".join(map(str, classes))
-        return [f"Classes of the points: {listed}; taken: {taken}."]
+        return [f"Classes of the points: {listed}; taken: {_list_taken(classes)}."]
     if len(there) == 1:
         return [f"All points are of one class: {listed}."]
     advice = f"; {_GROUND} alone is the ground" if _GROUND in there else ""
@@ -240,6 +239,14 @@ def describe_classes(found: Mapping[int, int], classes: Sequence[int] | None) ->
         f"Classes of the points: {listed}. All were taken, vegetation, buildings and noise too: "
         f"the option `classes` takes some{advice}."
     ]
+
+
+def _list_taken(classes: Sequence[int]) -> str:
+    """Write which classes are taken, or which are not where these are fewer."""
+    others = sorted({*range(N_CLASSES)} - {*classes})
+    if 0 < len(others) < len(classes):
+        return f"all but {', '.join(map(str, others))}"
+    return ", ".join(map(str, classes))
 
 
 def _describe_marks(synthetic: int, overlap: int) -> list[str]:

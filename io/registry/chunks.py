@@ -157,6 +157,9 @@ class SourceHeader:
     elevation_unit : Unit, optional
     has_boxes : bool
         Whether :func:`tinsmith.io.streaming.read_box` reads it, with these options.
+    records : str
+        Version of the format, and format of its points, where there are several: "LAS 1.4, point
+        format 6".
     notes : tuple of str
     """
 
@@ -169,6 +172,7 @@ class SourceHeader:
     crs: CRS | None = None
     elevation_unit: Unit | None = None
     has_boxes: bool = False
+    records: str = ""
     notes: tuple[str, ...] = ()
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...base.arrays import Float64Array
-    from ...tin import TIN
+    from ...tin import TIN, Survey
 
 MOST_CELLS = 10**11
 """Of a raster that is made as it is written: 800 GB."""
@@ -45,7 +45,12 @@ class Cells(NamedTuple):
 
 
 def as_grid(
-    tin: TIN, *, spacing: float | None, like: Any = None, grid: Grid | None, in_memory: bool
+    tin: TIN | Survey,
+    *,
+    spacing: float | None,
+    like: Any = None,
+    grid: Grid | None,
+    in_memory: bool,
 ) -> tuple[Grid, tuple[str, ...]]:
     """Return the one grid that was asked for, and what was assumed of it.
 

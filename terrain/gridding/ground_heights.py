@@ -76,7 +76,7 @@ def height_above(
     '1 of 2 points lies outside the surface (rows 1): it has no height above ground.'
     """
     require_tin(tin)
-    points, notes = _place_points(cloud, tin)
+    points, notes = place_points(cloud, tin)
     ground = tin.interpolate(points[:, :2], method=method, extrapolate=extrapolate, threads=threads)
     x, y, z = points.T
     vertical = dict.fromkeys(("elevation", "ground", "height_above_ground"), tin.elevation_unit)
@@ -95,7 +95,7 @@ def height_above(
     )
 
 
-def _place_points(cloud: Any, tin: TIN) -> tuple[Float64Array, tuple[str, ...]]:
+def place_points(cloud: Any, tin: TIN) -> tuple[Float64Array, tuple[str, ...]]:
     """Return the points in the TIN's unit, and what was done or assumed."""
     if not isinstance(cloud, Survey):
         return as_points(cloud), describe_unknown(tin.crs, tin.elevation_unit)

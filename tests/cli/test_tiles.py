@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+import rasterio
 import shapely
 from click.testing import CliRunner
 from support.many_files import write_lidar
@@ -21,6 +22,7 @@ COMMANDS = {
     "profile": ["--from", "500010", "4000010", "--to", "500290", "4000190", "-o", "out.csv"],
     "interpolate": ["--at", "PLACES", "-o", "out.csv"],
     "drape": ["ROADS", "--outside", "nan", "-o", "out.fgb"],
+    "slope": ["--statistics", "--unit", "percent", "-o", "out.csv"],
 }
 """Of each command the options with which it computes in tiles; PLACES and ROADS are files."""
 
@@ -31,8 +33,19 @@ WHOLE = {
     "profile": (["--sections", "10", "20"], ["-o", "out.png"]),
     "interpolate": (["--method", "natural"], ["--extrapolate", "nearest"]),
     "drape": (["--snap", "0.1"],),
+    "slope": (["--max-edge", "9"],),
 }
 """Further options that need all points at a time."""
+
+POINT_RASTERS = (
+    ["--value", "count"],
+    ["--value", "count", "--classes", "2"],
+    ["--value", "height", "--classes", "2"],
+    ["--value", "height", "--classes", "2", "--above-classes", "5"],
+)
+"""Options of rasters of points."""
+
+TILED = ["--tiles", "3", "--workers", "2", "-q"]
 
 OF_FOLDERS = {"build", "ground", "simplify"}
 """Commands whose tiles make what memory makes otherwise, such as a folder of files."""
@@ -123,6 +136,68 @@ def test_outputs_and_records_are_those_in_memory(command, lidar, here, commands)
         if name not in apart:
             assert told[name] == wanted[name], name
     assert any("Classes of the points" in note for note in told["notes"])
+
+
+@pytest.mark.parametrize("words", POINT_RASTERS)
+def test_rasters_of_points_are_those_in_memory(words, lidar, here):
+    options = [lidar, "--spacing", "7", *words, "--json", "-o"]
+    whole, tiled = run("raster", *options, "whole.tif"), run("raster", *options, "t.tif", *TILED)
+    assert (whole.exit_code, tiled.exit_code) == (0, 0), whole.output + tiled.output
+    with rasterio.open(here / "whole.tif") as one, rasterio.open(here / "t.tif") as other:
+        assert one.read(1).tobytes() == other.read(1).tobytes()
+        assert str(one.profile) == str(other.profile)
+        assert one.descriptions == other.descriptions
+    told, wanted = json.loads(tiled.stdout), json.loads(whole.stdout)
+    for name in wanted:
+        if name not in ("notes", "outputs"):
+            assert told[name] == wanted[name], name
+    assert told["bands"] == [words[1]]
+    assert sorted(one.name for one in here.iterdir()) == ["t.tif", "whole.tif"]
+
+
+def test_heights_leave_noise_out_unless_it_is_asked_for(lidar, here):
+    points = ts.read(lidar).points[:40] + np.array([0.0, 0.0, 500.0])
+    classes = np.full(40, 18, np.uint8)
+    noisy = here / "noisy"
+    noisy.mkdir()
+    for one in lidar.iterdir():
+        (noisy / one.name).write_bytes(one.read_bytes())
+    survey = ts.Survey(points=points, attributes={"classification": classes}, crs="EPSG:32616")
+    ts.write(survey, noisy / "noise.laz")
+    words = [noisy, "--classes", "2", "--value", "height", "--spacing", "20", "-o", "out.tif"]
+    for more in ([], TILED):
+        found = []
+        for chosen in ([], ["--above-classes", "18"]):
+            done = run("raster", *words, *chosen, *more, "--json")
+            assert done.exit_code == 0, done.output
+            with rasterio.open("out.tif") as dataset:
+                found.append(np.nanmax(dataset.read(1)))
+        assert found[0] < 5.0 < 490.0 < found[1]
+
+
+@pytest.mark.parametrize("more", [[], ["--tiles", "3"]])
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--value", "height"], "needs to know the ground"),
+        (["--value", "count", "--smooth"], "--smooth is of surfaces"),
+        (["--value", "count", "--at", "mean"], "--at is of surfaces"),
+        (["--value", "count", "--boundary", "LIDAR"], "--boundary is of surfaces"),
+        (["--value", "height", "--classes", "2", "--method", "natural"], "--method is of"),
+        (["--value", "count", "--above", "LIDAR"], "--above is for --value height"),
+        (["--above-classes", "5"], "--above-classes is for --value height"),
+        (["--value", "height", "--classes", "2", "--above-classes", "300"], "from 0 to 255"),
+        (["--value", "height", "--above", "PLACES", "--above-classes", "5"], "has no classes"),
+    ],
+)
+def test_options_of_points_and_of_surfaces_are_not_mixed(words, sentence, more, lidar, given, here):
+    (here / "places.csv").write_text("x,y,z\n500100,4000100,350\n")
+    files = {"LIDAR": lidar, "PLACES": here / "places.csv"}
+    words = [files.get(word, word) for word in words]
+    done = run("raster", lidar, "--spacing", "5", "-o", "out.tif", *words, *more)
+    assert done.exit_code == 2, done.output
+    assert sentence in " ".join(done.output.split())
+    assert [one.name for one in here.iterdir()] == ["places.csv"]
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -295,6 +370,60 @@ def test_surfaces_become_the_file_of_memory(lidar, here):
     tin = ts.triangulate(ts.read(lidar, classes=2, attributes=[]))
     ts.write(tin, here / "whole.ply")
     assert (here / "made.ply").read_bytes() == (here / "whole.ply").read_bytes()
+
+
+@pytest.mark.filterwarnings("ignore:The elevations are not known above")
+def test_3d_tiles_have_a_tolerance_and_squares_of_a_size(lidar, here):
+    words = [
+        lidar,
+        "--classes",
+        "2",
+        "--output-format",
+        "3dtiles",
+        "--tiles",
+        "2",
+        "--workers",
+        "1",
+    ]
+    scales = ["--tolerance", "0.5", "--node-points", "256"]
+    done = run("build", *words, "-o", "made", *scales, "-q")
+    assert done.exit_code == 0, done.output
+    way = {"tolerance": 0.5, "node_points": 256, "tiles": 2, "workers": 1}
+    ts.tiles(lidar, classes=2).write(here / "wanted", **way)
+    files = {name: sorted((here / name).rglob("*.*")) for name in ("made", "wanted")}
+    assert len(files["made"]) == len(files["wanted"]) > 5
+    for one, other in zip(files["made"], files["wanted"], strict=True):
+        assert one.read_bytes() == other.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--tolerance", "0.5", "-o", "a.ply"], "--tolerance is for 3D Tiles, which need --tiles"),
+        (["--node-points", "9", "--tiles", "2", "-o", "a"], "--node-points is for --output-format"),
+        (["--node-points", "0", "--tiles", "2", "-o", "a"], "--node-points"),
+    ],
+)
+def test_options_of_3d_tiles_are_of_nothing_else(words, sentence, lidar, here):
+    done = run("build", lidar, *words)
+    assert done.exit_code == 2, done.output
+    assert sentence in " ".join(done.output.split())
+    assert list(here.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "sentence"),
+    [
+        (["--tiles", "3"], 1, "Tiles cannot be computed with classes, but --statistics can be"),
+        (["--statistics", "--aspect"], 2, "--aspect is for classes"),
+        (["--statistics", "--breaks", "5"], 2, "--breaks is for classes"),
+    ],
+)
+def test_classes_of_slope_are_not_of_tiles(words, code, sentence, lidar, here):
+    done = run("slope", lidar, "-o", "out.csv", *words)
+    assert done.exit_code == code, done.output
+    assert sentence in " ".join(done.output.split())
+    assert list(here.iterdir()) == []
 
 
 @pytest.mark.parametrize(

@@ -119,6 +119,7 @@ def _compare(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> st
     _compare_places(case, tin, cloud, folder)
     _compare_draped(case, tin, cloud, folder)
     made = _compare_surfaces(case, tin, cloud, folder) + _compare_files(case, tin, cloud, folder)
+    made += _compare_point_rasters(case, tin, cloud, folder)
     return f"{len(found) - found.count('refused') + 2 + made} products"
 
 
@@ -157,6 +158,32 @@ def _compare_surfaces(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Pa
         path = cloud.volume(folder / "tiled.csv", one, **way)
         assert filecmp.cmp(path, wanted, shallow=False)
     return 1
+
+
+def _compare_point_rasters(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> int:
+    """Require counts, and heights of all points above the surface; many lie on sides of cells."""
+    points, bounds = np.array(case["points"], np.float64).reshape(-1, 3), tin.bounds
+    extent = max(np.ptp(points[:, :2], axis=0).max(), bounds.width, bounds.height)
+    spacing = float(2.0 ** np.ceil(np.log2(extent / 8)))
+    plain = replace(cloud, lines=None)
+    made = 0
+    for value, surface, whole in (
+        ("count", plain, lambda: ts.rasterize_counts(points, spacing=spacing)),
+        ("height", cloud, lambda: ts.rasterize_heights(tin, points, spacing=spacing)),
+    ):
+        try:
+            raster = whole()
+        except ts.TinsmithError:
+            continue
+        wanted = ts.write(replace(raster, notes=()), folder / "whole.tif")
+        how = How.of(tiles=case["tiles"], executor=Shuffled(case["seed"]))
+        asked = {"value": value, "spacing": spacing}
+        asked |= {"other": plain} if value == "height" else {}
+        with computing(surface, "point_rasters", folder / "tiled.tif", how, **asked) as found:
+            path = ts.write(replace(found, notes=()), folder / "tiled.tif")
+        assert filecmp.cmp(path, wanted, shallow=False), value
+        made += 1
+    return made
 
 
 def _compare_places(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> None:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import filecmp
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import rasterio
+import shapely
 from support.many_files import Shuffled
 
 import tinsmith as ts
@@ -209,3 +211,31 @@ def test_a_run_goes_on_with_the_same_lines_only(folder, store, tmp_path):
 def test_lines_that_cannot_be_are_refused(folder, store, tmp_path, given, error, message):
     with pytest.raises(error, match=message):
         tile(folder, store, **given).volume(tmp_path / "a.csv", base=300.0, executor=Shuffled())
+
+
+@pytest.mark.parametrize("tiles", [1, 12])
+def test_tiles_beyond_a_boundary_count_where_the_surface_is_not_all(
+    folder, store, points, tmp_path, tiles
+):
+    """Most tiles have nothing of a surface in one corner, but of others and of places."""
+    lines = {"boundary": [ring(40, 40, 30)]}
+    tin, cloud = ts.triangulate(points, crs=CRS, **lines), tile(folder, store, **lines)
+    way = {"tiles": tiles, "executor": Shuffled(tiles)}
+    other = ts.triangulate(points[::5] + np.array([0.0, 0.0, 1.0]), crs=CRS)
+    target = ts.write(without_notes(ts.volume(tin, other)), tmp_path / "whole.csv")
+    assert filecmp.cmp(cloud.volume(tmp_path / "a.csv", other, **way), target, shallow=False)
+    places = np.concatenate([points[::50, :2], points[:3, :2] + 1e6])
+    path = cloud.interpolate(tmp_path / "b.csv", places, **way)
+    found = [float(row.split(",")[2] or "nan") for row in path.read_text().splitlines()[1:]]
+    np.testing.assert_array_equal(found, tin.interpolate(places))
+    features = shapely.points(places).tolist()
+    made = cloud.drape(tmp_path / "c.geojson", features, outside="nan", **way)
+    whole = ts.write(ts.drape(tin, features, outside="nan"), tmp_path / "d.geojson")
+    first, second = (json.loads(one.read_text())["features"] for one in (made, whole))
+    assert len(first) > 50
+    assert str(first) == str(second)
+    heights = cloud.rasterize_heights(tmp_path / "h.tif", tile(folder, None), spacing=9.0, **way)
+    raster = ts.rasterize_heights(tin, points, spacing=9.0)
+    with rasterio.open(heights) as dataset:
+        np.testing.assert_array_equal(dataset.read(1), raster.bands["height"])
+        assert raster.notes[-1] in dataset.tags()["notes"]

@@ -12,19 +12,25 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from .errors import LossWarning, OptionError, TinsmithError
-from .sentences import FILE, name_file
+from .sentences import FILE, counted, name_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-_PACKAGE = __name__.partition(".")[0]
+_OWN = (__name__.partition(".")[0], "contextlib")
+"""Modules whose frames are not the caller's; context managers run between those of the package."""
 
 _FILE: ContextVar[Path | None] = ContextVar("file", default=None)
 """The file that is read or written."""
 
 _ORIGINALS: ContextVar[Mapping[Path, Path]] = ContextVar("originals", default=MappingProxyType({}))
 """Files as the user names them, by the copies of them that are read."""
+
+_COLLECTED: ContextVar[list[str] | None] = ContextVar("collected", default=None)
+"""Warnings of what is lost, where they are collected."""
+
+_QUOTED_OR_NUMBER = re.compile(r"'[^']*'|[-\d.,]+")
 
 
 @contextmanager
@@ -73,14 +79,40 @@ def _rename(error: TinsmithError, copy: Path, file: Path) -> None:
         error.file = file
 
 
+@contextmanager
+def collecting_warnings() -> Iterator[list[str]]:
+    """Collect what would be warned of what is lost, for whoever called from another process.
+
+    Yields
+    ------
+    list of str
+        The sentences so far, each once.
+    """
+    found: list[str] = []
+    token = _COLLECTED.set(found)
+    try:
+        yield found
+    finally:
+        _COLLECTED.reset(token)
+
+
+def list_collected() -> tuple[str, ...]:
+    """Return the warnings that were collected so far, none where they are not."""
+    return tuple(_COLLECTED.get() or ())
+
+
 def warn(sentence: str, category: type[Warning] = LossWarning) -> None:
     """Warn whoever called the toolkit, with the name of the file that is read or written."""
     file = _FILE.get()
     if file is not None and FILE in sentence:
         sentence = name_file(sentence, str(file))
+    collected = _COLLECTED.get()
+    if collected is not None and category is LossWarning:
+        collected += [] if sentence in collected else [sentence]
+        return
     # The first frame outside of this package is that of the caller.
     level, frame = 2, sys._getframe(1)
-    while frame.f_back and str(frame.f_globals.get("__name__")).partition(".")[0] == _PACKAGE:
+    while frame.f_back and str(frame.f_globals.get("__name__")).partition(".")[0] in _OWN:
         level, frame = level + 1, frame.f_back
     warnings.warn(sentence, category, stacklevel=level)
 
@@ -88,6 +120,28 @@ def warn(sentence: str, category: type[Warning] = LossWarning) -> None:
 def join_notes(*groups: Iterable[str]) -> tuple[str, ...]:
     """Return notes one group after the other, each once."""
     return tuple(dict.fromkeys(note for group in groups for note in as_notes(group)))
+
+
+def join_alike(notes: Iterable[str]) -> tuple[str, ...]:
+    """Return notes of several files; of those that differ in names and numbers only the first.
+
+    How many files have a note like it is told.
+
+    Examples
+    --------
+    >>> join_alike(["'a' lost 2 codes.", "'b' lost 3 codes.", "All is well.", "All is well."])
+    ("'a' lost 2 codes. (1 further file likewise.)", 'All is well.')
+    """
+    kinds: dict[str, list[str]] = {}
+    for note in notes:
+        kinds.setdefault(_QUOTED_OR_NUMBER.sub("", note), []).append(note)
+    joined = []
+    for several in kinds.values():
+        others = len(several) - 1
+        is_same = len({*several}) == 1
+        more = f" ({counted(others, 'further file')} likewise.)" if others and not is_same else ""
+        joined.append(f"{several[0]}{more}")
+    return join_notes(joined)
 
 
 def as_notes(notes: Any) -> tuple[str, ...]:

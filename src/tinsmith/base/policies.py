@@ -87,6 +87,12 @@ Extrapolation: TypeAlias = Literal["nearest"]
 RasterValue: TypeAlias = Literal["elevation", "slope", "aspect", "hillshade"]
 """What the cells of a raster hold."""
 
+PointRasterValue: TypeAlias = Literal["count", "height"]
+"""What the cells of a raster hold of points."""
+
+CellValue: TypeAlias = Literal[RasterValue, PointRasterValue]
+"""Either of them."""
+
 RasterSample: TypeAlias = Literal["center", "mean"]
 """Whether a cell holds the value at its centre, or the mean over it."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -21,7 +21,7 @@ from .paths import STANDARD
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..tiled.cloud import TiledPoints
+    from ..tiled.cloud import Plan, TiledPoints
     from ..tiled.how import How
     from ..tiled.workers import Status
     from .outputs import Products
@@ -149,7 +149,7 @@ def choose_tiles(
         return None
     from ..io.isolated.limits import measure_free_memory
 
-    cloud = _take_points(job, *files)
+    cloud = take_points(job, *files)
     if not tiling.given:
         count, free = cloud.count_about, measure_free_memory()
         count += sum(one.count_about for other in others if (one := choose_other(job, other)))
@@ -165,7 +165,7 @@ def choose_tiles(
     return _add_lines(cloud, job)
 
 
-def _take_points(job: Job, *files: Path) -> TiledPoints:
+def take_points(job: Job, *files: Path) -> TiledPoints:
     """Return the points of files or folders, by their headers."""
     from ..tiled import tiles
 
@@ -188,7 +188,7 @@ def choose_other(job: Job, file: Path) -> TiledPoints | None:
     """Return a further surface in tiles, if it is a folder or a large file; None to read it."""
     if file == STANDARD or not (file.is_dir() or _may_be_large(file)):
         return None
-    return _take_points(job, file)
+    return take_points(job, file)
 
 
 def _may_be_large(file: Path) -> bool:
@@ -205,6 +205,13 @@ def tell_plan(cloud: TiledPoints, job: Job, file: Path) -> None:
     facts = Facts(file)
     files = counted(len(cloud.files), "file")
     facts.add("Points", f"about {plan.count:,} in {files}", points=plan.count)
+    add_plan(facts, plan)
+    facts.note(dict.fromkeys(note for header in cloud.headers for note in header.notes))
+    job.console.answer(facts)
+
+
+def add_plan(facts: Facts, plan: Plan) -> None:
+    """Add what a run would take."""
     text = f"about {plan.tiles:,}, up to {plan.tile_points:,} points each"
     facts.add("Tiles", text, tiles=plan.tiles, tile_points=plan.tile_points)
     text = f"{plan.workers}, {plan.memory / 1e6:,.0f} MB each"
@@ -212,8 +219,6 @@ def tell_plan(cloud: TiledPoints, job: Job, file: Path) -> None:
     text = f"up to {plan.disk / 1e6:,.0f} MB while it runs"
     facts.add("Disk", text, disk_bytes=plan.disk)
     facts.add("Time", f"about {plan.seconds:,.0f} s", seconds=plan.seconds)
-    facts.note(dict.fromkeys(note for header in cloud.headers for note in header.notes))
-    job.console.answer(facts)
 
 
 @contextmanager
@@ -247,8 +252,8 @@ def showing_progress(job: Job) -> Iterator[dict[str, Any]]:
         yield {**job.tiling.way, "progress": shown.take}
 
 
-def write_surface(cloud: TiledPoints, job: Job) -> Path:
-    """Write the surface of tiles as a folder or as one file, and return it."""
+def write_surface(cloud: TiledPoints, job: Job, scales: Mapping[str, Any]) -> Path:
+    """Write the surface of tiles as a folder or as one file; ``scales`` are of 3D Tiles."""
     from ..io import find_format
     from ..io.registry import list_writers
     from ..tiled.products.pyramid import FORMATS
@@ -265,9 +270,12 @@ def write_surface(cloud: TiledPoints, job: Job) -> Path:
             f"The surface of tiles is written as one file (.ply) or as a folder of files, and "
             f"'{output}' is named like another file."
         )
+    if scales and name not in FORMATS:
+        flag = next(iter(scales)).replace("_", "-")
+        raise click.UsageError(f"--{flag} is for --output-format 3dtiles.")
     with showing_progress(job) as way:
         if name in FORMATS:
-            cloud.write(output, format=name, **way)
+            cloud.write(output, format=name, **scales, **way)
         else:
             chosen: dict[str, Any] = {"format": find_format(name, "write").name} if name else {}
             cloud.build(output, **chosen, **way)

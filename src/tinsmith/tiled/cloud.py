@@ -28,6 +28,7 @@ from ..io.reading import list_files
 from ..io.registry import SourceHeader, find_writer, list_writers
 from ..io.streaming import describe_source, stream_points
 from ..io.writing import write as write_file
+from ..terrain.gridding import describe_extent
 from ..tin import Survey
 from ..tin.validation import as_xy
 from .assembling import WRITERS, find_writable
@@ -230,7 +231,7 @@ class TiledPoints:
     >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
     >>> with TemporaryDirectory() as folder:
     ...     ts.tiles(ts.write(survey, Path(folder, "points.csv")))
-    <TiledPoints: an unknown number of points in 1 file, crs unknown>
+    <TiledPoints: an unknown number of points in 1 file, crs unknown; about 1 tile, 262 MB a worker>
     """
 
     headers: tuple[SourceHeader, ...]
@@ -322,7 +323,7 @@ class TiledPoints:
         ...     kerb = ts.write(line, Path(folder, "kerb.gpkg"))
         ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")))
         ...     cloud.with_lines(breaklines=[kerb])
-        <TiledPoints: an unknown number of points in 1 file, crs unknown; with lines>
+        <TiledPoints: an unknown number of points in 1 file, crs unknown; ...; with lines>
         """
         given = {
             "breaklines": breaklines,
@@ -395,10 +396,12 @@ class TiledPoints:
 
     def __repr__(self) -> str:
         count = "an unknown number of points" if self.count is None else f"{self.count:,} points"
-        crs = shorten_crs(self.crs)
+        files, crs = counted(len(self.headers), "file"), shorten_crs(self.crs)
+        place = "" if self.bounds is None else f", {describe_extent(self.bounds)}"
         with_lines = "" if self.lines is None else "; with lines"
-        files = counted(len(self.headers), "file")
-        return f"<TiledPoints: {count} in {files}, crs {crs}{with_lines}>"
+        plan = self.plan()
+        run = f"about {counted(plan.tiles, 'tile')}, {plan.memory / 1e6:,.0f} MB a worker"
+        return f"<TiledPoints: {count} in {files}{place}, crs {crs}; {run}{with_lines}>"
 
     def rasterize(
         self,
@@ -455,6 +458,108 @@ class TiledPoints:
         light = {"azimuth": azimuth, "altitude": altitude, "smooth": smooth, "at": at}
         asked = {"spacing": spacing, "like": like, "value": value, "bounds": self.bounds, **light}
         return self._write("raster", asked, path, (format, write), way)
+
+    def rasterize_counts(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        spacing: float | None = None,
+        like: Any = None,
+        format: str | None = None,  # noqa: A002 - as in write
+        write: Mapping[str, Any] | None = None,
+        **way: Unpack[Way],
+    ) -> Path:
+        """Write how many points lie in each cell, as :func:`tinsmith.rasterize_counts` of all.
+
+        Parameters
+        ----------
+        path, format, write, **way
+            As of :meth:`rasterize`.
+        spacing, like
+            As of :func:`tinsmith.rasterize_counts`.
+
+        Returns
+        -------
+        Path
+
+        Raises
+        ------
+        ReadError, WriteError
+            As :meth:`rasterize`.
+        OptionError
+            If the points have lines, or an option has a value that it cannot have.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+        >>> with TemporaryDirectory() as folder:
+        ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")))
+        ...     cloud.rasterize_counts(Path(folder, "counts.tif"), spacing=1.0, workers=1).name
+        'counts.tif'
+        """
+        if self.lines is not None:
+            raise OptionError("lines", self.lines, "none where points are counted")
+        asked = {"value": "count", "spacing": spacing, "like": like, "bounds": self.bounds}
+        return self._write("counts", asked, path, (format, write), way)
+
+    def rasterize_heights(
+        self,
+        path: str | os.PathLike[str],
+        above: TiledPoints,
+        *,
+        spacing: float | None = None,
+        like: Any = None,
+        format: str | None = None,  # noqa: A002 - as in write
+        write: Mapping[str, Any] | None = None,
+        **way: Unpack[Way],
+    ) -> Path:
+        """Write how high the highest point of each cell is above this surface.
+
+        It is the canopy height model of :func:`tinsmith.rasterize_heights` of the whole.
+
+        Parameters
+        ----------
+        path, format, write, **way
+            As of :meth:`rasterize`.
+        above : TiledPoints
+            Points whose heights are measured; may be those of the same files, such as
+            ``tinsmith.tiles("lidar/")`` above ``tinsmith.tiles("lidar/", classes=2)``.
+        spacing, like
+            As of :func:`tinsmith.rasterize_heights`.
+
+        Returns
+        -------
+        Path
+
+        Raises
+        ------
+        ReadError, WriteError
+            As :meth:`rasterize`.
+        CrsError
+            If the points are in another CRS than the surface.
+        OptionError
+            If an option has a value that it cannot have.
+
+        Examples
+        --------
+        >>> import tinsmith as ts
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> survey = ts.Survey(points=[[0, 0, 5], [4, 0, 6], [0, 3, 8]])
+        >>> tree = ts.Survey(points=[[1, 1, 15]])
+        >>> with TemporaryDirectory() as folder:
+        ...     cloud = ts.tiles(ts.write(survey, Path(folder, "points.csv")))
+        ...     above = ts.tiles(ts.write(tree, Path(folder, "tree.csv")))
+        ...     path = Path(folder, "heights.tif")
+        ...     cloud.rasterize_heights(path, above, spacing=1.0, workers=1).name
+        'heights.tif'
+        """
+        cells = {"spacing": spacing, "like": like, "bounds": self.bounds}
+        asked = {"value": "height", "other": above, **cells}
+        return self._write("point_rasters", asked, path, (format, write), way)
 
     def contours(
         self,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections import Counter
 from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache, reduce
@@ -16,7 +15,7 @@ import numpy as np
 from ..base.atomic import replacing
 from ..base.crs import CRS, Unit
 from ..base.errors import CrsError, OptionError, ReadError, TinsmithError, WriteError
-from ..base.notes import join_notes
+from ..base.notes import join_alike, join_notes
 from ..base.sentences import counted
 from ..base.types import Bounds
 from ..io.registry import Counts, NothingLeftError
@@ -29,7 +28,7 @@ from .runs import Fingerprint, Record, Run, hash_file
 from .store import PointStore, join_skeletons
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from ..base.arrays import AnyArray, BoolArray, Float64Array
     from ..base.policies import DuplicatePolicy, GroundReturns
@@ -44,7 +43,6 @@ ROWS_OF_A_FILE = 2**40
 """Numbers of rows are those in the file, and this times the number of the file."""
 
 _PHASE = "inputs"
-_QUOTED_OR_NUMBER = re.compile(r"'[^']*'|[-\d.,]+")
 _CHUNKS, _SKELETON = "chunks.npy", "skeleton.npz"
 
 
@@ -428,20 +426,9 @@ def _join_notes(records: Mapping[str, Record]) -> tuple[str, ...]:
     )
 
 
-def _join_alike(files: Iterable[Sequence[str]]) -> Iterator[str]:
-    """Yield the notes of all files; of those that differ in numbers only the first.
-
-    How many files have a note like it is told.
-    """
-    kinds: dict[str, list[str]] = {}
-    for notes in files:
-        for note in dict.fromkeys(notes):
-            kinds.setdefault(_QUOTED_OR_NUMBER.sub("", note), []).append(note)
-    for notes in kinds.values():
-        others = len(notes) - 1
-        is_same = len({*notes}) == 1
-        more = f" ({counted(others, 'further file')} likewise.)" if others and not is_same else ""
-        yield f"{notes[0]}{more}"
+def _join_alike(files: Iterable[Sequence[str]]) -> tuple[str, ...]:
+    """Return the notes of all files; of those that differ in numbers only the first."""
+    return join_alike(note for notes in files for note in dict.fromkeys(notes))
 
 
 def join_bounds(boxes: Sequence[Bounds]) -> Bounds:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..base.types import Bounds
+from ..terrain.parts import are_owned
 from ..tin.tiling import (
     NumberedPoints,
     are_in_box,
@@ -70,6 +72,26 @@ class PointStore:
         """Return all points in a closed box, in order of their numbers."""
         found = self._read(np.array([list_sides(box)]))
         return found.choose(are_in_box(found.points, box))
+
+    def read_parts(self, box: Bounds, most: int) -> Iterator[NumberedPoints]:
+        """Yield the points in a box without its east and north sides, in parts.
+
+        These are strips from the south on, as many as leave each ``most`` points, about.
+        """
+        sides = np.array([list_sides(box)])
+        count = sum(
+            int(self.chunks[number].count_points(self.chunks[number].locate(sides)).sum())
+            for number, _ in self._find(sides)
+        )
+        low, high = max(box.ymin, self.bounds.ymin), min(box.ymax, self.bounds.ymax)
+        cuts = np.linspace(low, high, max(1, -(-count // most)) + 1)[1:-1]
+        edges = [box.ymin, *np.unique(cuts).tolist(), box.ymax]
+        for south, north in itertools.pairwise(edges):
+            strip = Bounds(box.xmin, south, box.xmax, north)
+            found = self.read_box(strip)
+            own = are_owned(found.points, strip)
+            if own.any():
+                yield found.choose(own)
 
     def read_some(self, discs: Discs) -> NumberedPoints:
         """Return some of the deepest points of discs near which there are very many.

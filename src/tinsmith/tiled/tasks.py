@@ -185,7 +185,8 @@ class TileProduct(Protocol):
     One that writes a folder names by ``INDEX`` the file in it by which such a folder is known. One
     that needs tiles of its own has ``divide_points`` and ``divide_job``; ``combine``, if it is
     there, does further steps with the records of all tiles. ``IS_OF_SURFACE`` is False of one that
-    is not computed from triangles.
+    is not computed from triangles, ``HAS_ALL_TILES`` True of one that has something also in tiles
+    that the surface does not reach.
     """
 
     def check_options(self, **asked: Any) -> Mapping[str, Any]:
@@ -221,7 +222,8 @@ def compute_tile(job: TileJob) -> Record:
     try:
         product = cast("TileProduct", import_module(f"{__package__}.products.{job.product}"))
         part = Part(job, open_store(job.points), {})
-        points, values, names = product.compute(part) if part.may_have_surface else (0, {}, [])
+        is_wanted = part.may_have_surface or getattr(product, "HAS_ALL_TILES", False)
+        points, values, names = product.compute(part) if is_wanted else (0, {}, [])
         is_told = getattr(product, "IS_OF_SURFACE", True)
         told = {"differing": part.measure_differing()} if is_told else {}
         record = Record(

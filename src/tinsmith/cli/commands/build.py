@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,7 +14,7 @@ from ..job import Job
 from ..output.counts import describe_counts
 from ..output.facts import Facts
 from ..output.failures import Failure
-from ..parameters import input_files, output_files, report_option
+from ..parameters import input_files, number_option, output_files, report_option
 from ..paths import describe_inputs, name_files
 from ..tiling import (
     choose_tiles,
@@ -26,7 +26,7 @@ from ..tiling import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from ...tin import TIN, Survey
     from ..output.blunder_summaries import Suspects
@@ -51,6 +51,17 @@ if TYPE_CHECKING:
     help="POINTS are contour lines, which become breaklines: where they leave the surface flat, "
     "points are added along ridges, valleys, peaks and pits, and marked.",
 )
+@number_option(
+    "--tolerance",
+    "HEIGHT",
+    "Of 3D Tiles: leave out vertices within it on the finest level already; default none.",
+)
+@number_option(
+    "--node-points",
+    "N",
+    "Of 3D Tiles: points of a square of the finest level, about; default 8192.",
+    type=click.IntRange(min=1),
+)
 @tiled_options()
 def build(
     points: tuple[Path, ...],
@@ -58,6 +69,8 @@ def build(
     drop_blunders: bool,
     job: Job,
     from_contours: bool,
+    tolerance: float | None,
+    node_points: int | None,
 ) -> None:
     """Build the exact Delaunay TIN of elevation points and lines.
 
@@ -80,8 +93,17 @@ def build(
     from ..output.summaries import describe_report
     from ..outputs import write_text
 
-    if _is_built_in_tiles(points, job, report, drop=drop_blunders, is_contours=from_contours):
+    given = {"tolerance": tolerance, "node_points": node_points}
+    scales = {name: value for name, value in given.items() if value is not None}
+    whole = {
+        "--report": report is not None,
+        "--drop-blunders": drop_blunders,
+        "--from-contours": from_contours,
+    }
+    if _is_built_in_tiles(points, job, whole, scales):
         return
+    for name in scales:
+        raise click.UsageError(f"--{name.replace('_', '-')} is for 3D Tiles, which need --tiles.")
     planned = job.plan(job.list_inputs(*points), "TIN", report=report)
     survey = _read(points, job, is_contours=from_contours)
     tin, suspects = _find_blunders(job.build_tin(survey), job, drop=drop_blunders)
@@ -111,14 +133,12 @@ def build(
 
 
 def _is_built_in_tiles(
-    points: Sequence[Path], job: Job, report: Path | None, *, drop: bool, is_contours: bool
+    points: Sequence[Path], job: Job, whole: Mapping[str, bool], scales: Mapping[str, Any]
 ) -> bool:
-    """Write the surface in tiles, if it is to be, and tell whether it is."""
-    whole = {
-        "--report": report is not None,
-        "--drop-blunders": drop,
-        "--from-contours": is_contours,
-    }
+    """Write the surface in tiles, if it is to be, and tell whether it is.
+
+    ``whole`` are options that need all points at a time, ``scales`` those of 3D Tiles.
+    """
     asked = next((flag for flag, is_given in whole.items() if is_given), "")
     cloud = choose_tiles(job, *points, whole=asked)
     if cloud is None:
@@ -126,7 +146,7 @@ def _is_built_in_tiles(
     if job.tiling.plan:
         tell_plan(cloud, job, points[0])
         return True
-    output = write_surface(cloud, job)
+    output = write_surface(cloud, job, scales)
     facts = Facts(points[0])
     facts.add("Points", describe_points(cloud))
     kind = "folder" if output.is_dir() else "file"

@@ -38,13 +38,29 @@ def info(files: tuple[Path, ...], plot: Path | None, job: Job) -> None:
     Example:
       tinsmith info sample_data/jacksboro.tif
       tinsmith info sample_data/site_survey.csv --crs EPSG:32616 --json
+      tinsmith info lidar/
     """
+    from ...io.reading import is_folder
     from ...tin import TIN
+    from ..output.inventory import describe_folder, find_tiles
     from ..output.summaries import describe_survey, summarise_survey
     from ..outputs import require_picture
 
     if plot is not None:
         require_picture(plot, "--plot", job.list_inputs(*files))
+    folder = next((file for file in files if is_folder(file)), None)
+    tiles = [] if folder is None else find_tiles(folder, job)
+    if folder is not None and tiles:
+        flags = {
+            "--plot": plot is not None,
+            "--codes": job.how.has_codes,
+            "further files": files[1:],
+        }
+        asked = next((flag for flag, is_given in flags.items() if is_given), None)
+        if asked is not None:
+            raise Failure(f"Of the folder '{folder}' only headers are read: no {asked} with it.")
+        job.console.answer(describe_folder(folder, tiles, job))
+        return
     found, file = job.read(*files), files[0]
     job.note_found(found)
     if isinstance(found, TIN):

@@ -46,6 +46,10 @@ class Facts:
 
         self.add(label, mesh_counts(tin), **{"tin": describe} | values)
 
+    def add_surface(self, tin: TIN) -> None:
+        """Add the counts of the surface that a product is of."""
+        self.add("Surface", mesh_counts(tin))
+
     def extend(self, rows: Iterable[Row] | Callable[[], Iterable[Row]], **values: Any) -> None:
         """Add lines, or what makes them if they are wanted, and the values that they tell."""
         self._rows += [rows] if callable(rows) else rows

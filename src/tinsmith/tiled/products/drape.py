@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from ..runs import Record
     from ..tasks import Part
 
+HAS_ALL_TILES = True
+"""Points beyond the surface count, too."""
 _LINES = "lines"
 """Option and folder of lines and rings."""
 

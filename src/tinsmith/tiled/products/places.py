@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from ..runs import Record
     from ..tasks import Part
 
+HAS_ALL_TILES = True
+"""Places beyond the surface count, too."""
 PLACES = "places"
 """Option and folder of the places."""
 

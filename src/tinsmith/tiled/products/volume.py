@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from ..tasks import Part
 
 _PURPOSE = "Volumes"
+HAS_ALL_TILES = True
+"""Of another surface the area beyond this one counts, too."""
 _OTHER = "other"
 """Option and folder of another surface that is in memory."""
 
