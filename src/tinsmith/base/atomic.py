@@ -106,6 +106,10 @@ def _finding_target(path: Path) -> Iterator[Path]:
         yield target
 
 
+_CUT_SHORT = " written"
+"""What NumPy says, without the system's reason: "2028 requested and 709 written"."""
+
+
 @contextmanager
 def _translate_faults(path: Path) -> Iterator[None]:
     """Turn what the system says into a sentence."""
@@ -115,6 +119,8 @@ def _translate_faults(path: Path) -> Iterator[None]:
         raise
     except OSError as error:
         reason = error.strerror or str(error) or type(error).__name__
+        if reason.endswith(_CUT_SHORT):
+            reason = "the disk is full, or files may not be so large"
         raise WriteError(f"Cannot write '{path}': {reason}.", path=path) from error
 
 

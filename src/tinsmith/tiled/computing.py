@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import asdict, replace
 from functools import partial
 from importlib import import_module
@@ -84,7 +84,7 @@ def computing(
             other = clouds[_OTHERS]
             manifest[_OTHERS] = _describe(other, _POINTS, {}, _look_at(other))
         stack.enter_context(run.opened(manifest, restart=how.restart))
-        with how.started() as start:
+        with run.refused(), how.started() as start:
             stored = [
                 stack.enter_context(_reading(one, run.folder / name, start("Reading"), how))
                 for name, one in clouds.items()
@@ -113,8 +113,10 @@ def computing(
                 records = module.combine(run, settled, records, start("Joining"))
             points = points.tell_differing(records, cloud.duplicates)
         arrays = {name: value for name, value in options.items() if isinstance(value, Given)}
+        with run.refused():
+            made = module.join(points, {**settled, **arrays}, records, run.folder)
         run.clear_beside(output)
-        yield module.join(points, {**settled, **arrays}, records, run.folder)
+        yield made
     if not how.keep:
         run.remove()
 
@@ -152,6 +154,7 @@ def labelling(cloud: TiledPoints, folder: Path, how: How, **asked: Any) -> Itera
             raise WriteError(
                 f"Cannot write '{folder / name}': it is read. Name another folder.", path=folder
             )
+    is_new = not folder.exists()
     make_folder(folder)
     wanted = [*dict.fromkeys([*cloud.options.get("attributes", ()), *ATTRIBUTES])]
     chosen = replace(
@@ -159,10 +162,14 @@ def labelling(cloud: TiledPoints, folder: Path, how: How, **asked: Any) -> Itera
         candidates=asked["returns"],
         options={**cloud.options, "attributes": wanted},
     )
-    with computing(
-        chosen, "ground", folder / f"{folder.absolute().name}.vpc", how, **asked
-    ) as made:
-        yield made
+    path = folder / f"{folder.absolute().name}.vpc"
+    try:
+        with computing(chosen, "ground", path, how, **asked) as made:
+            yield made
+    finally:
+        if is_new:
+            with suppress(OSError):  # files are in it
+                folder.rmdir()
 
 
 class _Lines(NamedTuple):

@@ -12,12 +12,13 @@ import os
 import shutil
 import socket
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.atomic import find_leftovers, replacing
-from ..base.errors import ReadError, WriteError
+from ..base.errors import MissingExtraError, ReadError, TinsmithError, WriteError
+from ..base.notes import list_collected
 from ..base.sentences import counted
 
 if TYPE_CHECKING:
@@ -28,6 +29,10 @@ _LOCK = "lock"
 _BESIDE = "beside.json"
 _SIZE_OF_ENDS = 1 << 16
 _SHOWN = 3
+
+
+class UnfinishedError(ReadError):
+    """Tasks failed; what is done is kept, and the same call tries these again."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +110,8 @@ class Record:
         What it found, plain values.
     files : mapping of str to str
         What it wrote into the folder, with the hash of each file.
+    warnings : sequence of str
+        Of what is lost, for the caller.
     """
 
     key: str
@@ -114,6 +121,7 @@ class Record:
     points: int = 0
     values: Mapping[str, Any] = field(default_factory=dict)
     files: Mapping[str, str] = field(default_factory=dict)
+    warnings: Sequence[str] = ()
 
 
 class Run:
@@ -133,7 +141,7 @@ class Run:
         """What the run computes, and from what; None where it was not begun."""
         try:
             text = (self.folder / _MANIFEST).read_text(encoding="utf-8")
-        except FileNotFoundError:
+        except (FileNotFoundError, NotADirectoryError):
             return None
         except OSError as error:
             raise ReadError(
@@ -174,11 +182,28 @@ class Run:
             yield found is not None and not restart
 
     def _holds_others(self) -> bool:
-        """Whether there is more in the folder than what a run begins with."""
+        """Whether there is more in the folder than what a run begins with, or it is a file."""
         if not self.folder.exists():
             return False
+        if not self.folder.is_dir():
+            return True
         begun = {self.folder / _LOCK, *find_leftovers(self.folder / _MANIFEST)}
         return any(one not in begun for one in self.folder.iterdir())
+
+    @contextmanager
+    def refused(self) -> Iterator[None]:
+        """Remove the folder where no further call with the same options can go on.
+
+        That is where they are refused, or the inputs are: not where tasks failed, files cannot be
+        written, or a library is missing.
+        """
+        try:
+            yield
+        except (UnfinishedError, WriteError, MissingExtraError):
+            raise
+        except TinsmithError:
+            self.remove()
+            raise
 
     def remove(self) -> None:
         """Remove the folder, when what it was for is written."""
@@ -243,7 +268,8 @@ class Run:
         """Write what became of a task; called by the task, when all that it writes is there."""
         folder = self.folder / phase
         folder.mkdir(exist_ok=True)
-        self._write(f"{phase}/{record.key}.json", asdict(record))
+        kept = replace(record, warnings=list_collected())
+        self._write(f"{phase}/{record.key}.json", asdict(kept))
 
     def read(self, phase: str) -> dict[str, Record]:
         """Return the records of a phase by their keys, without those whose files are not whole."""

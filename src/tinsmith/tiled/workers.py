@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING, Any, Protocol
 
-from ..base.errors import ReadError
+from ..base.notes import collecting_warnings, join_alike, warn
 from ..base.sentences import counted
 from .executors import Processes, run_tasks
-from .runs import Record
+from .runs import Record, UnfinishedError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -98,8 +99,13 @@ class Phase:
 
         Raises
         ------
-        ReadError
+        UnfinishedError
             If a task failed: how many, and the sentences of the first.
+
+        Warns
+        -----
+        LossWarning
+            Of what tasks lost, those of an earlier call included.
         """
         accounts = _Accounts(run, name, divide, self)
         waiting = accounts.find_open(jobs)
@@ -107,7 +113,7 @@ class Phase:
         while waiting:
             run_tasks(
                 self.executor,
-                function,
+                partial(_collect, function),
                 waiting,
                 workers=self.workers,
                 take=accounts.take,
@@ -115,7 +121,18 @@ class Phase:
             )
             waiting = accounts.take_parts()
         accounts.require_done()
+        for sentence in join_alike(
+            one for record in accounts.done.values() for one in record.warnings
+        ):
+            warn(sentence)
         return dict(sorted(accounts.done.items(), key=lambda item: _as_order(item[0])))
+
+
+def _collect(function: Callable[[Any], Record], job: Any) -> Record:
+    """Do a task, and return its record with its warnings, which are lost in other processes."""
+    with collecting_warnings() as found:
+        record = function(job)
+    return replace(record, warnings=tuple(found))
 
 
 class _Accounts:
@@ -195,7 +212,7 @@ class _Accounts:
             return
         shown = " ".join(one.sentence for one in failed[:_SHOWN])
         more = f" and {len(failed) - _SHOWN} more" if len(failed) > _SHOWN else ""
-        raise ReadError(
+        raise UnfinishedError(
             f"{self._phase.step}: {counted(len(failed), 'task')} of {len(self.done):,} "
             f"failed{more}. {shown} What is done is kept: the same call tries these again."
         )

@@ -12,6 +12,7 @@ import numpy as np
 from ...base.atomic import replacing
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError
+from ...base.notes import collecting_warnings, join_alike, warn
 from ...base.results import Features
 from ...io import find_format
 from ...io import write as write_file
@@ -118,7 +119,10 @@ class SurfaceParts:
 
     def write(self, folder: Path) -> None:
         """Write a file for each tile, and the index."""
-        entries = [self._write_part(key, record, folder) for key, record in self.records.items()]
+        with collecting_warnings() as lost:
+            entries = [self._write_part(*one, folder) for one in self.records.items()]
+        for sentence in join_alike(lost):
+            warn(sentence)
         box, crs, unit = self.points.bounds, self.points.crs, self.points.elevation_unit
         low, high = self.points.elevations
         index = {
