@@ -27,7 +27,7 @@ COMMANDS = {
 """Of each command the options with which it computes in tiles; PLACES and ROADS are files."""
 
 WHOLE = {
-    "raster": (["--max-edge", "9"], ["--snap", "0.1"], ["--to-crs", "EPSG:32617"], ["--drape"]),
+    "raster": (["--max-edge", "9"], ["--snap", "0.1"], ["--to-crs", "EPSG:32617"]),
     "contours": (["--smooth", "0.1"], ["--simplify", "0.1"], ["--labels"], ["-o", "out.png"]),
     "volume": (["-o", "out.gpkg"], ["-o", "out.png"]),
     "profile": (["--sections", "10", "20"], ["-o", "out.png"]),
@@ -105,6 +105,15 @@ def write_lines(folder):
         path.write_text(json.dumps(content))
         files.append(path)
     return files
+
+
+def write_wide_boundary(folder):
+    """Write a boundary without elevations of which a part lies beyond the points; return it."""
+    path = folder / "wide.gpkg"
+    corners = [[500_010, 4_000_010], [500_400, 4_000_100], [500_150, 4_000_195]]
+    ring = [*corners, corners[0]]
+    boundary = ts.Features.of_polygons(ring, [0, 4], [0, 1], [0, 1], crs="EPSG:32616")
+    return ts.write(boundary, path)
 
 
 def test_every_command_with_tiles_is_here():
@@ -200,11 +209,15 @@ def test_options_of_points_and_of_surfaces_are_not_mixed(words, sentence, more, 
     assert [one.name for one in here.iterdir()] == ["places.csv"]
 
 
+@pytest.mark.parametrize("kind", ["own elevations", "draped"])
 @pytest.mark.parametrize("command", COMMANDS)
-def test_lines_of_files_are_those_in_memory(command, lidar, here, tmp_path_factory, commands):
+def test_lines_of_files_are_those_in_memory(command, kind, lidar, here, tmp_path_factory, commands):
     line, site, flat = write_lines(tmp_path_factory.mktemp("lines"))
     words = [lidar, "--classes", "2", "--json", *commands[command], "--breaklines", line]
     words += ["--boundary", site, "--lines-elevation-unit", "m"]
+    if kind == "draped":
+        words += ["--holes", flat, "--drape"]
+        words[words.index(site)] = write_wide_boundary(flat.parent)
     whole = run(command, *words)
     assert whole.exit_code == 0, whole.output
     (path,) = here.iterdir()
@@ -219,9 +232,6 @@ def test_lines_of_files_are_those_in_memory(command, lidar, here, tmp_path_facto
         if name not in ("notes", "input", "inputs"):
             assert told[name] == wanted[name], name
     path.unlink()
-    refused = run(command, *words, "--holes", flat, "--tiles", "3")
-    assert refused.exit_code == 1
-    assert "has no elevations" in refused.output
     wrong = [run(command, *words, "--holes", here, *more) for more in ((), ("--tiles", "3"))]
     assert [one.exit_code for one in wrong] == [1, 1]
     assert json.loads(wrong[0].stdout)["error"] == json.loads(wrong[1].stdout)["error"]

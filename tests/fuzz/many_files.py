@@ -61,6 +61,11 @@ def _generate_lines(rng: np.random.Generator, cloud: np.ndarray) -> dict[str, li
             (west, east), (south, north) = np.sort(rng.random((2, 2)) * 1.2 - 0.1, axis=1)
             corners = np.array([[west, south], [east, south], [east, north], [west, north]])
             found[name].append(lift(low + (high - low) * corners))
+    likely = float(rng.choice([0.0, 0.5, 1.0]))  # to be draped: without elevations
+    for name, lines in found.items():
+        found[name] = [
+            [row[:2] for row in line] if rng.random() < likely else line for line in lines
+        ]
     return {name: lines for name, lines in found.items() if lines}
 
 

@@ -52,6 +52,21 @@ def generate_lines(rng: np.random.Generator) -> Case:
     }
 
 
+def generate_crossing(rng: np.random.Generator) -> Case:
+    """Add many short lines that cross each other, between which needles see far past several."""
+    case = generate(rng)
+    pool = np.array(case["points"], np.float64)[:, :2]
+    low, extent = pool.min(axis=0), np.ptp(pool, axis=0)
+    length = float(rng.choice([0.05, 0.2, 0.6]))
+    lines = []
+    for _ in range(int(rng.integers(5, 60))):
+        middle = low + extent * rng.random(2)
+        away = extent * (rng.random(2) - 0.5) * length
+        rows = np.column_stack([[middle - away, middle + away], rng.integers(0, 9, 2)])
+        lines.append(rows.tolist())
+    return case | {"breaklines": lines}
+
+
 def _draw(rng: np.random.Generator, pool: Any, least: int, most: int) -> list[list[float]]:
     """Return corners that are points, or lie between two of them."""
     count = int(rng.integers(least, most))
@@ -59,6 +74,32 @@ def _draw(rng: np.random.Generator, pool: Any, least: int, most: int) -> list[li
     share = np.where(rng.random((count, 1)) < 0.5, 0.0, rng.random((count, 1)))
     rows: list[list[float]] = (one + share * (other - one)).tolist()
     return rows
+
+
+def _flatten(rng: np.random.Generator, lines: list[Any], likely: float) -> list[Any]:
+    """Leave the elevations of some lines out: these are draped."""
+    return [[row[:2] for row in one] if rng.random() < likely else one for one in lines]
+
+
+def generate_draped(rng: np.random.Generator) -> Case:
+    """Lines and rings of which some have no elevations, and reach beyond the points or run along.
+
+    Elevations are whole numbers, which those of no two triangles share by chance.
+    """
+    case = generate_lines(rng)
+    pool = np.array(case["points"], np.float64)
+    middle = pool[:, :2].mean(axis=0)
+    likely = float(rng.choice([0.3, 1.0]))
+    for name in ("breaklines", "boundary", "holes"):
+        lines = case[name]
+        if rng.random() < 0.5:
+            grown = 1.0 + 2.0 * rng.random()
+            lines = [
+                [[*(middle + grown * (np.array(row[:2]) - middle)), *row[2:]] for row in one]
+                for one in lines
+            ]
+        case[name] = _flatten(rng, lines, likely)
+    return case
 
 
 def _draw_ring(rng: np.random.Generator, pool: Any) -> list[list[float]]:
@@ -93,4 +134,6 @@ def examine(case: Case) -> str:
 CAMPAIGNS = (
     Campaign("tiling", "triangles of boxes of a surface in cells", generate, examine),
     Campaign("tiling lines", "the same with lines, boundaries and holes", generate_lines, examine),
+    Campaign("tiling crossing", "the same with lines that cross", generate_crossing, examine),
+    Campaign("tiling draped", "the same with lines without elevations", generate_draped, examine),
 )

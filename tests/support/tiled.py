@@ -11,6 +11,13 @@ from tinsmith.tin import _kernel
 from tinsmith.tin.building.inputs import gather_inputs
 from tinsmith.tin.building.options import BuildOptions
 from tinsmith.tin.tiling.boxes import are_in_box, find_limits, widen
+from tinsmith.tin.tiling.draping import (
+    Draping,
+    KnownTriangles,
+    find_rim,
+    node_base,
+    node_laid,
+)
 from tinsmith.tin.tiling.lines import choose_near, node_lines
 from tinsmith.tin.tiling.local_triangulation import triangulate_box
 from tinsmith.tin.tiling.proof import TileTriangles, check_tiles
@@ -74,15 +81,49 @@ def make_inputs(points, duplicates="mean", *, breaklines=(), boundary=(), holes=
     )
 
 
-def node_all(points, duplicates="mean", *, chunk=100, **lines):
-    """Cut the lines of a survey; points are looked at chunk by chunk."""
+def node_all(points, duplicates="mean", *, chunk=100, source=None, **lines):
+    """Cut the lines of a survey; points are looked at chunk by chunk, and draped on all cells."""
     inputs = make_inputs(points, duplicates, **lines)
     rows = NumberedPoints(points, np.arange(len(points)))
     near = [
         choose_near(rows.choose(slice(begin, begin + chunk)), inputs.lines)
         for begin in range(0, len(points), chunk)
     ]
-    return node_lines(NumberedPoints.join(near), inputs, first_number=len(points))
+    near = NumberedPoints.join(near)
+    if not inputs.lines.is_draped.any():
+        return node_lines(near, inputs, first_number=len(points))
+    near = near.add(find_near_rim(rows, inputs)).sort()
+    laid = drape_all(source, near, inputs, first_number=len(points))
+    return node_laid(near, source.skeleton, laid, first_number=len(points))
+
+
+def find_near_rim(rows, inputs):
+    """Return the points near the convex hull of points and lines with elevations."""
+    lines = inputs.lines.choose(~inputs.lines.is_draped)
+    vertices = np.column_stack([lines.xy, lines.elevations])
+    together = np.concatenate([rows.points, vertices])
+    rim = find_rim(NumberedPoints(together, np.arange(len(together))))
+    return choose_near(
+        rows, make_inputs(rows.points, breaklines=[np.append(rim, rim[:1], 0)]).lines
+    )
+
+
+def drape_all(source, near, inputs, *, first_number):
+    """Drape the lines that have no elevations, on the triangles of all cells."""
+    lines = inputs.lines.choose(~inputs.lines.is_draped)
+    duplicates, given, skeleton = inputs.options.duplicates, None, source.skeleton
+    if lines.kinds:
+        given = node_base(near, inputs, first_number=first_number)
+        skeleton = NumberedPoints.join([skeleton, given.skeleton])
+    draping = Draping.of(inputs, find_rim(skeleton))
+    parts = [
+        triangulate_box(source, source.box_of(key), lines=given, duplicates=duplicates)
+        for key in source.list_cells()
+    ]
+    known = [KnownTriangles(one.points, one.triangles) for one in parts]
+    laid, unknown = draping.lay(known)
+    assert not len(unknown)
+    return laid
 
 
 def require_triangles_of_the_whole(points, source, *, margin, duplicates="mean", **lines):
@@ -91,7 +132,7 @@ def require_triangles_of_the_whole(points, source, *, margin, duplicates="mean",
     Of all cells together, require each triangle of the whole once among those that they own.
     """
     whole = ts.triangulate(points, duplicates=duplicates, **lines)
-    noded = node_all(points, duplicates, **lines) if lines else None
+    noded = node_all(points, duplicates, source=source, **lines) if lines else None
     number_at = find_numbers(whole, len(points))
     constrained = find_constrained(whole.points, whole)
     owned, parts, rounds = [], [], 0

@@ -13,6 +13,8 @@ import shapely
 from support.many_files import Shuffled
 
 import tinsmith as ts
+from tinsmith.tiled.computing import computing
+from tinsmith.tiled.how import How
 from tinsmith.tiled.products.mapped import measure_area
 
 CRS = "EPSG:32616"
@@ -47,6 +49,25 @@ LINES = {
         "breaklines": KERBS,
         "boundary": [ring(150, 100, 95, 40)],
         "holes": [[ring(150, 100, 50), ring(150, 100, 20)]],
+    },
+}
+
+FLAT = [line[:, :2] for line in KERBS]
+"""Lines without elevations, which are draped."""
+
+LINES |= {
+    "draped breaklines": {"breaklines": FLAT},
+    "draped boundary and hole": {
+        "boundary": [ring(150, 100, 95)[:, :2]],
+        "holes": [[ring(150, 100, 50)[:, :2], ring(150, 100, 20)[:, :2]]],
+    },
+    "draped lines that leave the points": {
+        "breaklines": [lift([[-40, 100], [340, 110]])[:, :2], WALL],
+        "boundary": [lift([[40, 20], [390, 120], [120, 170], [-80, 90]])[:, :2]],
+        "holes": [ring(295, 100, 30)[:, :2], ring(150, 40, 20)],
+    },
+    "draped boundary around the points": {
+        "boundary": [lift([[-9, -9], [309, -9], [309, 209], [-9, 209]])[:, :2]]
     },
 }
 
@@ -111,7 +132,8 @@ def test_products_are_those_in_memory(folder, store, points, tmp_path, kind, pro
     target = ts.write(without_notes(make(tin, *given, **options)), tmp_path / f"whole{suffix}")
     cloud = tile(folder, store, **LINES[kind])
     extra = {"bands": True} if product == "bands" else {}
-    for tiles in (1, 4, 16, 64) if product == "contours" else (7,):
+    several = (1, 9) if "draped" in kind else (1, 4, 16, 64)
+    for tiles in several if product == "contours" else (7,):
         way = {"tiles": tiles, "executor": Shuffled(tiles)}
         path = getattr(cloud, method)(
             tmp_path / f"tiles{suffix}", *given, **options, **extra, **way
@@ -187,9 +209,67 @@ def test_a_run_goes_on_with_the_same_lines_only(folder, store, tmp_path):
     assert [one.name for one in tmp_path.iterdir()] == ["a.csv"]
 
 
+@pytest.mark.parametrize(("most", "draped"), [(2, 0), (6, 3), (12, None)])
+def test_draping_goes_on_where_it_was(folder, store, points, tmp_path, most, draped):
+    """A run is killed while files are looked at, lines are draped, or tiles are computed."""
+    lines = LINES["draped lines that leave the points"]
+    path, wanted = tmp_path / "a.csv", tmp_path / "whole.csv"
+    whole = ts.volume(ts.triangulate(points, crs=CRS, **lines), base=300.0)
+    ts.write(without_notes(whole), wanted)
+    tile(folder, store).volume(path, base=300.0, executor=Shuffled())  # reads the points
+    cloud = tile(folder, store, **lines)
+    with pytest.raises(KeyboardInterrupt):
+        cloud.volume(path, base=300.0, tiles=6, executor=Shuffled(most=most))
+    with pytest.raises(ts.ReadError, match=r"`breaklines` was '2 lines .*, and is '3 lines"):
+        tile(folder, store, breaklines=FLAT).volume(path, base=300.0, executor=Shuffled())
+    told = []
+    cloud.volume(path, base=300.0, tiles=6, executor=Shuffled(), progress=told.append)
+    assert filecmp.cmp(path, wanted, shallow=False)
+    done = [one.done for one in told if one.step == "Draping lines"]
+    assert done == ([] if draped is None else [*range(draped, 7)])
+    assert [one.name for one in tmp_path.iterdir() if one.is_dir()] == []
+
+
+def test_parts_of_draped_lines_beside_the_points_are_told(folder, store, tmp_path):
+    lines = {"breaklines": [lift([[-40, 100], [340, 110]])[:, :2]]}
+    how = How.of(tiles=2, executor=Shuffled())
+    with computing(tile(folder, store, **lines), "volume", tmp_path / "a", how, base=300.0) as made:
+        (note,) = (one for one in made.notes if "draped" in one)
+    assert note == "Of 1 draped line the parts outside the surface of the points were left out."
+
+
+def test_lines_of_files_are_draped_where_it_is_asked_for(folder, store, points, tmp_path):
+    offsets = np.append(0, np.cumsum([len(line) for line in KERBS]))
+    kerbs = ts.Features.of_lines(np.concatenate(KERBS), offsets, crs=CRS)
+    file = ts.write(kerbs, tmp_path / "kerbs.gpkg")
+    wanted = tmp_path / "whole.csv"
+    whole = ts.volume(ts.triangulate(points, crs=CRS, breaklines=FLAT), base=300.0)
+    ts.write(without_notes(whole), wanted)
+    cloud = tile(folder, store).with_lines(breaklines=[file], drape=True)
+    path = cloud.volume(tmp_path / "tiles.csv", base=300.0, tiles=5, executor=Shuffled())
+    assert filecmp.cmp(path, wanted, shallow=False)
+    with pytest.raises(ts.OptionError, match="Invalid drape"):
+        tile(folder, store).with_lines(breaklines=[file], drape="no")
+
+
 @pytest.mark.parametrize(
     ("given", "error", "message"),
     [
+        (
+            {"boundary": [ring(90, 90, 50)[:, :2]], "holes": [ring(250, 100, 20)[:, :2]]},
+            ts.LinesError,
+            "Hole 0 lies outside the surface",
+        ),
+        (
+            {"boundary": [ring(900, 90, 50)[:, :2]]},
+            ts.LinesError,
+            "The boundary and the holes leave no triangle",
+        ),
+        (
+            {"breaklines": [WALL, lift([[5, 95], [60, 5]])[:, :2]], "crossing": "error"},
+            ts.LinesError,
+            "cross",
+        ),
         (
             {"boundary": [ring(90, 90, 50)], "holes": [ring(250, 100, 20)]},
             ts.LinesError,

@@ -203,13 +203,14 @@ def _drape_lines(rows: Int64Array, inputs: BuildInputs, progress: Tell | None) -
     )
     laid = drape(base.surface, lines.choose(is_draped), threads=inputs.threads)
     notes = []
-    if laid.n_cut:
+    if laid.cut.n_cut:
         notes.append(
-            f"Of {counted(laid.n_cut, 'draped line')} the parts outside the surface "
+            f"Of {counted(laid.cut.n_cut, 'draped line')} the parts outside the surface "
             "of the points were left out."
         )
-    together = LineSet.join([lines.choose(~is_draped), laid.lines, laid.boundary])
-    return _Ground(together, len(laid.boundary.kinds) > 0, notes)
+    boundary = laid.cut.boundary.lines
+    together = LineSet.join([lines.choose(~is_draped), laid.lines, boundary])
+    return _Ground(together, len(boundary.kinds) > 0, notes)
 
 
 # ----------------------------------------------------------------------- account

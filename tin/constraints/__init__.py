@@ -3,17 +3,25 @@
 from .clipping import HOLES, in_rings, require_cut, require_triangles
 from .constraint_set import ABOVE_ALL, BELOW_ALL, LineSet, as_sequence
 from .constraint_table import ConstraintTable
+from .draping import CutLines, cut_at_boundary, drape
 from .noding import node
 from .polylines import Polylines
+from .pslg import Clip, Pslg, build_mesh
 
 __all__ = [
     "ABOVE_ALL",
     "BELOW_ALL",
     "HOLES",
+    "Clip",
     "ConstraintTable",
+    "CutLines",
     "LineSet",
     "Polylines",
+    "Pslg",
     "as_sequence",
+    "build_mesh",
+    "cut_at_boundary",
+    "drape",
     "in_rings",
     "node",
     "require_cut",

@@ -19,6 +19,61 @@ if TYPE_CHECKING:
     from ..triangulation import Triangulation
 
 
+class CutBoundary(NamedTuple):
+    """The boundary of a surface that fills its convex hull, as it runs through vertices of lines.
+
+    Attributes
+    ----------
+    lines : LineSet
+        The parts that got vertices.
+    corners : (c, 2) float64 array
+        Along it the places that are vertices of the surface. One that an edge is bent onto occurs
+        again.
+    is_split : (c,) bool array
+        Whether the edge from each corner to the next is one of the lines, which are in this order.
+    is_met : (c,) bool array
+        Whether a line has a vertex on it, its ends included.
+    """
+
+    lines: LineSet
+    corners: Float64Array
+    is_split: BoolArray
+    is_met: BoolArray
+
+
+class CutLines(NamedTuple):
+    """Lines without elevations, cut at the boundary of a surface that fills its convex hull.
+
+    Attributes
+    ----------
+    points : (v, 2) float64 array
+        Places, of which some may be on no line.
+    elevations : (v,) float64 array
+        Of those on the boundary; NaN elsewhere.
+    polylines : Polylines
+        Each line with its parts outside.
+    is_inside : (s,) bool array
+        Whether each segment is on the surface.
+    boundary : CutBoundary
+    """
+
+    points: Float64Array
+    elevations: Float64Array
+    polylines: Polylines
+    is_inside: BoolArray
+    boundary: CutBoundary
+
+    @property
+    def inner(self) -> Polylines:
+        """The parts on the surface, in the order of the lines and along each."""
+        return self.polylines if self.is_inside.all() else self.polylines.keep(self.is_inside)
+
+    @property
+    def n_cut(self) -> int:
+        """Lines of which a part lies outside."""
+        return len(np.unique(self.polylines.segment_lines()[~self.is_inside]))
+
+
 class Draped(NamedTuple):
     """Lines with elevations.
 
@@ -26,15 +81,12 @@ class Draped(NamedTuple):
     ----------
     lines : LineSet
         The given lines, cut where they leave the surface; kind, source and name are kept.
-    boundary : LineSet
-        The parts of the surface's boundary that got vertices where lines leave it.
-    n_cut : int
-        Lines of which a part lies outside the surface.
+    cut : CutLines
+        How they were cut, and the boundary with them.
     """
 
     lines: LineSet
-    boundary: LineSet
-    n_cut: int
+    cut: CutLines
 
 
 def drape(surface: Triangulation, lines: LineSet, *, threads: int) -> Draped:
@@ -44,20 +96,36 @@ def drape(surface: Triangulation, lines: LineSet, *, threads: int) -> Draped:
     it follows the ground. Parts outside the surface are left out.
     """
     hull = topology.boundary_rings(surface.triangles, surface.neighbors)[0]
-    ring = np.ascontiguousarray(surface.points[hull, :2])
-    if (in_rings(lines.xy, [ring]) >= 0).all():
+    cut = cut_at_boundary(surface.points[hull], lines, threads=threads)
+    return Draped(_take_elevations(surface, cut, lines), cut)
+
+
+def cut_at_boundary(ring: Float64Array, lines: LineSet, *, threads: int) -> CutLines:
+    """Cut lines at the boundary of a surface that fills its convex hull.
+
+    Parameters
+    ----------
+    ring : (k, 3) float64 array
+        All vertices on the boundary, counter-clockwise.
+    lines : LineSet
+    threads : int
+    """
+    if (in_rings(lines.xy, [ring[:, :2]]) >= 0).all():
         # the places of the lines' vertices, and the lines through these
-        xy, vertex_of = np.unique(lines.xy, axis=0, return_inverse=True)
-        polylines = Polylines.whole(vertex_of.reshape(-1).astype(np.int32), lines.offsets)
-        whole = _take_elevations(surface, xy, np.full(len(xy), np.nan), polylines, lines)
-        return Draped(whole, lines.choose(np.zeros(len(lines.kinds), np.bool_)), 0)
-    return _cut_at_boundary(surface, hull, lines, threads=threads)
-
-
-def _cut_at_boundary(
-    surface: Triangulation, hull: Int32Array, lines: LineSet, *, threads: int
-) -> Draped:
-    boundary = surface.points[np.append(hull, hull[0])]
+        xy, inverse = np.unique(lines.xy, axis=0, return_inverse=True)
+        polylines = Polylines.whole(inverse.reshape(-1).astype(np.int32), lines.offsets)
+        return CutLines(
+            xy,
+            np.full(len(xy), np.nan),
+            polylines,
+            np.ones(len(polylines.starts()), np.bool_),
+            CutBoundary(
+                lines.choose(np.zeros(len(lines.kinds), np.bool_)),
+                ring[:, :2],
+                *np.zeros((2, len(ring)), np.bool_),
+            ),
+        )
+    boundary = np.concatenate([ring, ring[:1]])
     both = np.concatenate([lines.xy, boundary[:, :2]])
     xy, inverse = np.unique(both, axis=0, return_inverse=True)
     vertex_of: Int32Array = inverse.reshape(-1).astype(np.int32)
@@ -75,13 +143,20 @@ def _cut_at_boundary(
     cut = Polylines.whole(vertices[: offsets[-2]], offsets[:-1])
     is_outside = np.zeros(len(points), np.bool_)
     is_outside[: len(xy)] = in_rings(xy, [boundary[:-1, :2]]) < 0
-    is_inside = ~_run_outside(cut, is_outside, boundary_chain)
     elevations = np.full(len(points), np.nan)
     elevations[boundary_chain] = boundary_elevations
-    return Draped(
-        _take_elevations(surface, points, elevations, cut.keep(is_inside), lines),
-        _split_boundary(points, boundary_chain, boundary_elevations, vertex_of[len(lines.xy) :]),
-        len(np.unique(cut.segment_lines()[~is_inside])),
+    return CutLines(
+        points,
+        elevations,
+        cut,
+        ~_run_outside(cut, is_outside, boundary_chain),
+        _split_boundary(
+            points,
+            boundary_chain,
+            boundary_elevations,
+            own=np.isin(boundary_chain, vertex_of[len(lines.xy) :]),
+            met=np.isin(boundary_chain, cut.vertices),
+        ),
     )
 
 
@@ -112,9 +187,11 @@ def _split_boundary(
     points: Float64Array,
     chain: Int32Array,
     elevations: Float64Array,
-    own: Int32Array,
-) -> LineSet:
-    """Return the edges of the boundary that have vertices between their ends, as lines.
+    *,
+    own: BoolArray,
+    met: BoolArray,
+) -> CutBoundary:
+    """Return a closed boundary, whose edges with vertices between their ends are lines.
 
     Edges that such a vertex hides belong to them: where rounding put it beyond the boundary, a
     sliver that is no surface lies between it and the next edges in line::
@@ -122,7 +199,7 @@ def _split_boundary(
         --------- v ----.         v is above the boundary by a rounding; the edge from a to b
         ______.--' `--. a ___ b   tells the sliver v, a, b apart from the surface below
     """
-    corner = np.flatnonzero(np.isin(chain, own))
+    corner = np.flatnonzero(own)
     is_split = np.diff(corner) > 1
     # which edges of a closed boundary, corner to corner, a vertex on another one hides
     xy = points[chain]
@@ -143,7 +220,13 @@ def _split_boundary(
     rows = np.arange(offsets[-1]) + np.repeat(begins - offsets[:-1], counts)
     sources = np.full(len(counts), -1, np.int32)
     table = ConstraintTable.of_kind("boundary", sources, np.full(len(counts), BELOW_ALL))
-    return LineSet(points[chain[rows]], elevations[rows], offsets, table)
+    before = find_offsets(met)
+    return CutBoundary(
+        LineSet(points[chain[rows]], elevations[rows], offsets, table),
+        points[chain[corner[:-1]]],
+        is_split,
+        before[corner[1:] + 1] > before[corner[:-1]],
+    )
 
 
 def _are_beyond(xy: Float64Array, edge: Float64Array) -> BoolArray:
@@ -153,17 +236,12 @@ def _are_beyond(xy: Float64Array, edge: Float64Array) -> BoolArray:
     return beyond
 
 
-def _take_elevations(
-    surface: Triangulation,
-    points: Float64Array,
-    elevations: Float64Array,
-    polylines: Polylines,
-    lines: LineSet,
-) -> LineSet:
-    """Give polylines a vertex at every edge of the surface, and every vertex its elevation."""
-    xy, owner = _follow_surface(surface, points, polylines)
+def _take_elevations(surface: Triangulation, cut: CutLines, lines: LineSet) -> LineSet:
+    """Give lines a vertex at every edge of the surface, and every vertex its elevation."""
+    polylines = cut.inner
+    xy, owner = _follow_surface(surface, cut.points, polylines)
     z = _kernel.Locator(surface.points, surface.triangles, surface.neighbors).interpolate(xy)
-    known = _look_elevations_up(xy, points, elevations)
+    known = _look_elevations_up(xy, cut.points, cut.elevations)
     z = np.where(np.isnan(known), z, known)
     keep = ~np.isnan(z)
     xy, z, owner = xy[keep], z[keep], owner[keep]

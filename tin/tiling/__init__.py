@@ -2,6 +2,7 @@
 
 from .boxes import are_in_box, list_sides, widen
 from .circles import Discs
+from .draping import Draping, KnownTriangles, LaidLines, find_rim, node_base, node_laid
 from .duplicates import find_differing
 from .lines import NodedLines, choose_near, list_segments_near, node_lines, require_local
 from .local_triangulation import LocalTriangulation, find_around, find_triangles_at, triangulate_box
@@ -16,6 +17,9 @@ __all__ = [
     "DEEPEST",
     "Cells",
     "Discs",
+    "Draping",
+    "KnownTriangles",
+    "LaidLines",
     "LocalTriangulation",
     "NodedLines",
     "NumberedPoints",
@@ -32,10 +36,13 @@ __all__ = [
     "find_differing",
     "find_outermost",
     "find_outline",
+    "find_rim",
     "find_skeleton",
     "find_triangles_at",
     "list_segments_near",
     "list_sides",
+    "node_base",
+    "node_laid",
     "node_lines",
     "reduce_to_hull",
     "require_local",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -23,6 +23,17 @@ if TYPE_CHECKING:
     from ..building import BuildInputs, BuildOptions
     from ..constraints import LineSet
     from .circles import Discs
+
+
+class _Index(NamedTuple):
+    """Bounds of segments in the ``order`` of their western sides, and the largest width."""
+
+    order: Int64Array
+    west: Float64Array
+    south: Float64Array
+    east: Float64Array
+    north: Float64Array
+    width: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -59,22 +70,36 @@ class NodedLines:
 
     def read_discs(self, discs: Discs) -> NumberedSegments:
         """Return the segments whose bounds meet those of any disc."""
-        low, high = self._bounds
+        index = self._index
         meets = np.zeros(len(self.segments), np.bool_)
         reach = (discs.radii + _SLACK * np.abs(discs.centers).max(axis=1, initial=0.0))[:, None]
         reach = reach * (1 + _SLACK)
-        for west_south, east_north in zip(
-            discs.centers - reach, discs.centers + reach, strict=True
-        ):
-            meets |= ((low <= east_north) & (high >= west_south)).all(axis=1)
-        return self._choose(meets)
+        low, high = discs.centers - reach, discs.centers + reach
+        begins = np.searchsorted(index.west, low[:, 0] - index.width, "left")
+        ends = np.searchsorted(index.west, high[:, 0], "right")
+        for k in np.flatnonzero(begins < ends).tolist():
+            some = slice(begins[k], ends[k])
+            meets[some] |= (
+                (index.east[some] >= low[k, 0])
+                & (index.south[some] <= high[k, 1])
+                & (index.north[some] >= low[k, 1])
+            )
+        return self._choose(np.sort(index.order[meets]))
+
+    @cached_property
+    def _index(self) -> _Index:
+        low, high = self._bounds
+        order = np.argsort(low[:, 0], kind="stable")
+        (west, south), (east, north) = low[order].T.copy(), high[order].T.copy()
+        width = float((east - west).max(initial=0.0)) * (1 + _SLACK)
+        return _Index(order, west, south, east, north, width)
 
     @cached_property
     def _bounds(self) -> tuple[Float64Array, Float64Array]:
         ends = self.vertices.points[self.segments, :2]
         return ends.min(axis=1), ends.max(axis=1)
 
-    def _choose(self, which: BoolArray) -> NumberedSegments:
+    def _choose(self, which: BoolArray | Int64Array) -> NumberedSegments:
         starts, ends = self.segments[which].T
         return NumberedSegments(
             self.vertices.choose(starts), self.vertices.choose(ends), self.are_rings[which]
@@ -97,7 +122,7 @@ def require_local(inputs: BuildInputs) -> None:
         If triangles are dropped by their edges, lines are made to conform, or rows are merged
         within a distance.
     LinesError
-        If lines take their elevations from the surface, or points within water go.
+        If points within water go.
     """
     options, lines = inputs.options, inputs.lines
     if options.max_edge is not None:
@@ -110,13 +135,6 @@ def require_local(inputs: BuildInputs) -> None:
         raise OptionError("conforming", True, f"False {_ALL_OVER}")
     if options.snap > 0:
         raise OptionError("snap", options.snap, f"0 {_ALL_OVER}")
-    draped = np.flatnonzero(lines.is_draped)
-    if len(draped):
-        raise LinesError(
-            f"{lines.title(int(draped[0]))} has no elevations: lines of surfaces in "
-            "tiles need them.",
-            lines=draped[:5].tolist(),
-        )
     if (lines.priorities == ABOVE_ALL).any() or inputs.has_own_boundary:
         raise LinesError(
             "Water and existing triangles are not available for surfaces in tiles: a hole is."
@@ -157,6 +175,24 @@ def list_segments_near(lines: LineSet, box: Bounds) -> Float64Array:
     return np.asarray(ends[meets])
 
 
+class MeetingLines(NamedTuple):
+    """Lines that share vertices wherever they meet, and the points that they pass.
+
+    Attributes
+    ----------
+    points : (v, 3) float64 array
+        Distinct places, with the elevations that they have in the surface; maybe some that no line
+        passes.
+    numbers : (v,) int64 array
+        Of the first point at each place; -1 if there is none.
+    polylines : Polylines
+    """
+
+    points: Float64Array
+    numbers: Int64Array
+    polylines: Polylines
+
+
 def node_lines(near: NumberedPoints, inputs: BuildInputs, *, first_number: int) -> NodedLines:
     """Cut lines where they meet, as :func:`tinsmith.triangulate` does.
 
@@ -173,26 +209,41 @@ def node_lines(near: NumberedPoints, inputs: BuildInputs, *, first_number: int) 
     Raises
     ------
     OptionError, LinesError
-        As :func:`require_local`; if lines cross that must not.
+        As :func:`require_local`; if lines have no elevations, or cross and must not.
     """
+    made = let_meet(near, inputs)
+    groups = _find_groups(inputs)
+    rings = _gather_rings(made.points, made.polylines, groups)
+    return gather_lines(made, groups >= 0, rings, first_number=first_number)
+
+
+def let_meet(near: NumberedPoints, inputs: BuildInputs) -> MeetingLines:
+    """Give lines a vertex where they meet, or pass points: see :func:`node_lines`."""
     require_local(inputs)
     lines, options = inputs.lines, inputs.options
+    draped = np.unique(lines.line_of[np.isnan(lines.elevations)])
+    if len(draped):
+        raise LinesError(
+            f"{lines.title(int(draped[0]))} has no elevations: it must be draped before.",
+            lines=draped[:5].tolist(),
+        )
     places, vertex_of = _find_places(np.concatenate([near.points[:, :2], lines.xy]))
     of_points, of_lines = vertex_of[: len(near.numbers)], vertex_of[len(near.numbers) :]
     numbers, elevations = _describe(near, of_points, len(places), options)
-    polylines = Polylines.whole(of_lines, lines.offsets)
     _set_line_elevations(elevations, of_lines, lines)
     noded = node(
         places,
-        polylines,
+        Polylines.whole(of_lines, lines.offsets),
         lines.elevations,
         lines.priorities,
         crossing=options.crossing,
         names=lines.labels(),
     )
-    points = np.concatenate([np.column_stack([places, elevations]), noded.new_points])
-    numbers = np.append(numbers, np.full(len(noded.new_points), -1))
-    return _gather(points, numbers, noded.polylines, _find_groups(inputs), first_number)
+    return MeetingLines(
+        np.concatenate([np.column_stack([places, elevations]), noded.new_points]),
+        np.append(numbers, np.full(len(noded.new_points), -1)),
+        noded.polylines,
+    )
 
 
 def _find_groups(inputs: BuildInputs) -> Int64Array:
@@ -233,25 +284,22 @@ def _set_line_elevations(elevations: Float64Array, vertex_of: Int32Array, lines:
     elevations[vertex_of[best[counts]]] = lines.elevations[best[counts]]
 
 
-def _gather(
-    points: Float64Array,
-    numbers: Int64Array,
-    polylines: Polylines,
-    groups: Int64Array,
-    first_number: int,
+def gather_lines(
+    made: MeetingLines, is_ring: BoolArray, rings: Rings | None, *, first_number: int
 ) -> NodedLines:
-    """Name the vertices, and leave out those that are on no line."""
+    """Name the vertices, and leave out those that are on no line; ``is_ring`` is of each line."""
+    polylines, numbers = made.polylines, made.numbers.copy()
     is_new = numbers < 0
     numbers[is_new] = first_number + np.arange(np.count_nonzero(is_new))
     alone = polylines.vertices[np.repeat(polylines.lengths == 1, polylines.lengths)]
     segments = np.concatenate([polylines.segments(), np.stack([alone, alone], axis=1)])
     used, ends = np.unique(segments, return_inverse=True)
-    are_rings = groups[polylines.segment_lines()] >= 0
+    are_rings = is_ring[polylines.segment_lines()]
     return NodedLines(
-        vertices=NumberedPoints(points[used], numbers[used]),
+        vertices=NumberedPoints(made.points[used], numbers[used]),
         segments=ends.reshape(-1, 2).astype(np.int32),
         are_rings=np.append(are_rings, np.zeros(len(alone), np.bool_)),
-        rings=_gather_rings(points, polylines, groups),
+        rings=rings,
     )
 
 

@@ -134,7 +134,6 @@ def choose_tiles(
         "--remote": job.reading.remote,
         "--to-crs": job.reading.to_crs,
         "--snap": how.snap,
-        "--drape": how.drape,
         **dict.fromkeys((flag for flag in how.shaping if flag not in _LINES), True),
         whole: bool(whole),
     }
@@ -181,7 +180,7 @@ def _add_lines(cloud: TiledPoints, job: Job) -> TiledPoints:
     if not files:
         return cloud
     with job.step("Reading lines"):
-        return cloud.with_lines(**files, elevation_unit=how.lines_elevation_unit)
+        return cloud.with_lines(**files, drape=how.drape, elevation_unit=how.lines_elevation_unit)
 
 
 def choose_other(job: Job, file: Path) -> TiledPoints | None:

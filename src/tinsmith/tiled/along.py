@@ -17,7 +17,7 @@ from .reading import open_store
 from .tasks import load_arrays, save_arrays
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
     from ..base.results import Features
@@ -70,10 +70,13 @@ def join_along(
 ) -> TIN:
     """Return the surface along lines, of the parts of all tiles."""
     segments = as_segments(given.arrays["xy"], given.arrays["offsets"])
-    parts = (
-        lines.SurfacePart(**load_arrays(folder, record))
-        for record in records.values()
-        if record.files
-    )
     options = _make_options(segments, points.folder, points.lines)
+    parts = load_parts(records, folder)
     return lines.join(parts, options, points.crs, points.elevation_unit)
+
+
+def load_parts(records: Mapping[str, Record], folder: Path) -> Iterator[lines.SurfacePart]:
+    """Yield what :func:`compute_along` wrote of each tile."""
+    for record in records.values():
+        if record.files:
+            yield lines.SurfacePart(**load_arrays(folder, record))

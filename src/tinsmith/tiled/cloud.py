@@ -291,6 +291,7 @@ class TiledPoints:
         soft_breaklines: Sequence[str | os.PathLike[str]] = (),
         boundary: Sequence[str | os.PathLike[str]] = (),
         holes: Sequence[str | os.PathLike[str]] = (),
+        drape: bool = False,
         elevation_unit: UnitLike | None = None,
     ) -> TiledPoints:
         """Add the lines of vector files, in the CRS of the points.
@@ -300,7 +301,7 @@ class TiledPoints:
 
         Parameters
         ----------
-        breaklines, soft_breaklines, boundary, holes, elevation_unit
+        breaklines, soft_breaklines, boundary, holes, drape, elevation_unit
             As of :func:`tinsmith.with_lines`.
 
         Returns
@@ -310,7 +311,7 @@ class TiledPoints:
         Raises
         ------
         MissingExtraError, ReadError, CrsError, LinesError
-            As :func:`tinsmith.with_lines`; LinesError also if lines have no elevations.
+            As :func:`tinsmith.with_lines`.
 
         Examples
         --------
@@ -334,7 +335,8 @@ class TiledPoints:
         for name, several in given.items():
             if several and (isinstance(several, str) or as_files(several) is None):
                 raise OptionError(name, several, "a list of files")
-        lines = self._start_lines().read(given, elevation_unit)
+        how = {"drape": as_flag("drape", drape), "elevation_unit": elevation_unit}
+        lines = self._start_lines().read(given, **how)
         return self._check_lines(lines)
 
     def _take_lines(self, **given: Any) -> TiledPoints:
@@ -343,7 +345,7 @@ class TiledPoints:
             return self
         files = {name: as_files(given[name]) or [] for name in KINDS}
         values = {name: given[name] for name in KINDS if not files[name]}
-        lines = self._start_lines().read(files, None)
+        lines = self._start_lines().read(files)
         return self._check_lines(replace(lines, values=values))
 
     def _start_lines(self) -> GivenLines:

@@ -16,6 +16,7 @@ from ..base.errors import OptionError, ReadError, WriteError
 from ..base.types import Bounds
 from ..terrain.ground_filter import ATTRIBUTES
 from .division import Tile, divide
+from .draping import Drape
 from .given import Given
 from .labelled import name_files
 from .lines import describe_lines, prepare_lines
@@ -91,8 +92,14 @@ def computing(
             ]
             points = stored[0]
             if lines is not None and lines.inputs is not None:
+                drape = Drape(
+                    run=run,
+                    points=points,
+                    phase=start("Draping lines"),
+                    find_tiles=partial(_find_tiles, points=points, how=how, cut=divide),
+                )
                 step = start("Looking for lines")
-                points = prepare_lines(run, points, lines.given, lines.inputs, step)
+                points = prepare_lines(lines.given, lines.inputs, step, drape)
             settled = module.settle_options(points, _store(options, run), *stored[1:])
             own = getattr(module, "divide_points", None)
             cut = divide if own is None else partial(own, settled)

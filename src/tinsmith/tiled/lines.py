@@ -25,14 +25,18 @@ from ..io import with_lines
 from ..io.vector.survey_lines import require_near, split_layer
 from ..tin import Survey
 from ..tin.building import BuildOptions, gather_inputs
-from ..tin.constraints import ConstraintTable, LineSet, as_sequence
+from ..tin.constraints import ConstraintTable, LineSet, as_sequence, in_rings
 from ..tin.tiling import (
+    Draping,
     NodedLines,
     NumberedPoints,
     Rings,
     choose_near,
     find_outline,
+    find_rim,
     list_segments_near,
+    node_base,
+    node_laid,
     node_lines,
     require_local,
     widen,
@@ -45,9 +49,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from ..base.arrays import AnyArray, Float64Array
-    from ..base.crs import UnitLike
     from ..base.policies import CrossingPolicy, DuplicatePolicy
     from ..tin.building import BuildInputs
+    from .draping import Drape
     from .workers import Phase
 
 KINDS = ("breaklines", "boundary", "holes")
@@ -83,7 +87,7 @@ class GivenLines:
     files: tuple[Fingerprint, ...] = ()
     boxes: tuple[tuple[Path, Bounds], ...] = ()
 
-    def read(self, sources: Mapping[str, Any], elevation_unit: UnitLike | None) -> GivenLines:
+    def read(self, sources: Mapping[str, Any], **how: Any) -> GivenLines:
         """Add lines of files, as :func:`tinsmith.with_lines` does; ``sources`` by option.
 
         Raises
@@ -96,8 +100,8 @@ class GivenLines:
             for source in several:
                 path = split_layer(source)[0]
                 found = [Fingerprint.take(path)] if path.is_file() else []  # else the reader tells
-                one: dict[str, Any] = {name: [source], "elevation_unit": elevation_unit}
-                before, survey = survey, with_lines(survey, **one)
+                one: dict[str, Any] = {name: [source]}
+                before, survey = survey, with_lines(survey, **one, **how)
                 for file in found:
                     file.require_same()
                 files += found
@@ -288,20 +292,19 @@ class StoredLines(NamedTuple):
 
 
 def prepare_lines(
-    run: Run, points: StoredPoints, given: GivenLines, inputs: BuildInputs, phase: Phase
+    given: GivenLines, inputs: BuildInputs, phase: Phase, drape: Drape
 ) -> StoredPoints:
     """Cut the lines, if no record says that it is done; return the points of the whole surface.
 
     Parameters
     ----------
-    run : Run
-        Of the product.
-    points : StoredPoints
     given : GivenLines
     inputs : BuildInputs
         Of these lines.
     phase : Phase
         In which points on lines are looked for.
+    drape : Drape
+        How those without elevations are draped, of which run and points.
 
     Raises
     ------
@@ -313,10 +316,11 @@ def prepare_lines(
     PointsError
         If points coincide and may not.
     """
+    run, points = drape.run, drape.points
     _require_fitting(points, given)
     record = run.read(_NODED).get("0")
     if record is None:
-        record = _node(run, points, inputs, phase)
+        record = _node(inputs, phase, drape)
         run.add(_NODED, record)
     (name,) = record.files
     told = record.values
@@ -324,12 +328,9 @@ def prepare_lines(
         points,
         crs=points.crs if inputs.crs is None else inputs.crs,
         elevation_unit=inputs.elevation_unit or points.elevation_unit,
-        notes=tuple(dict.fromkeys([*points.notes, *inputs.notes])),
+        notes=tuple(dict.fromkeys([*points.notes, *inputs.notes, *told["notes"]])),
         bounds=Bounds(*told["bounds"]),
-        elevations=(
-            min(points.elevations[0], told["elevations"][0]),
-            max(points.elevations[1], told["elevations"][1]),
-        ),
+        elevations=(told["elevations"][0], told["elevations"][1]),
         is_raster=points.is_raster and not told["has_inner_lines"],
         lines=run.folder / name,
     )
@@ -358,26 +359,25 @@ def _require_fitting(points: StoredPoints, given: GivenLines) -> None:
             require_near(points.bounds, box)
 
 
-def _node(run: Run, points: StoredPoints, inputs: BuildInputs, phase: Phase) -> Record:
+def _node(inputs: BuildInputs, phase: Phase, drape: Drape) -> Record:
     """Cut lines where they meet and pass points, and write them with what they tell at once."""
     started = perf_counter()
-    with replacing(run.folder / _GIVEN) as file:
-        np.savez(file, xy=inputs.lines.xy, offsets=inputs.lines.offsets)
-    count = points.files
-    jobs = [NearJob(run.folder, points.folder, number) for number in range(count)]
-    records = phase.run(run, _NEAR, find_near, jobs)
-    found = [load_points(run.folder / name) for one in records.values() for name in one.files]
-    near = NumberedPoints.join([NumberedPoints.none(), *found])
+    run, points = drape.run, drape.points
+    skeleton, first_number = points.open().skeleton, points.files * ROWS_OF_A_FILE
+    near = _find_near(run, points, phase, _list_paths(inputs, skeleton))
     try:
-        noded = node_lines(near, inputs, first_number=count * ROWS_OF_A_FILE)
+        if inputs.lines.is_draped.any():
+            noded, notes = _node_draped(inputs, near, first_number, drape)
+        else:
+            noded, notes = node_lines(near, inputs, first_number=first_number), ()
     except PointsError as error:
         if error.rows:
             rows = name_rows(points.folder, list(error.rows))
             raise PointsError(f"Points lie at one place: {rows}.") from error
         raise
-    outline = find_outline(points.open().skeleton, noded)
+    outline = find_outline(skeleton, noded)
     name = _save_lines(run.folder, noded, outline.rim)
-    z = noded.vertices.points[:, 2]
+    z = np.append(noded.vertices.points[:, 2], points.elevations)
     return Record(
         "0",
         "done",
@@ -389,9 +389,52 @@ def _node(run: Run, points: StoredPoints, inputs: BuildInputs, phase: Phase) -> 
             "is_clipped": outline.is_clipped,
             "has_inner_lines": outline.has_inner_lines,
             "elevations": [float(z.min()), float(z.max())],
+            "notes": list(notes),
         },
         files={name: hash_file(run.folder / name)},
     )
+
+
+def _list_paths(inputs: BuildInputs, skeleton: NumberedPoints) -> list[Float64Array]:
+    """Return all lines, (k, 2) each, and the convex hull if lines are draped that may leave it."""
+    lines = inputs.lines
+    paths = np.split(lines.xy, lines.offsets[1:-1])
+    draped, others = lines.choose(lines.is_draped), lines.choose(~lines.is_draped)
+    if not draped.kinds:
+        return paths
+    vertices = np.column_stack([others.xy, others.elevations])
+    together = np.concatenate([skeleton.points, vertices])
+    rim = find_rim(NumberedPoints(together, np.arange(len(together))))[:, :2]
+    if (in_rings(draped.xy, [rim]) > 0).all():
+        return paths
+    return [*paths, np.concatenate([rim, rim[:1]])]
+
+
+def _find_near(
+    run: Run, points: StoredPoints, phase: Phase, paths: list[Float64Array]
+) -> NumberedPoints:
+    """Return the points of all files that lie on lines, or may."""
+    offsets = np.cumsum([0, *map(len, paths)])
+    with replacing(run.folder / _GIVEN) as file:
+        np.savez(file, xy=np.concatenate(paths), offsets=offsets)
+    jobs = [NearJob(run.folder, points.folder, number) for number in range(points.files)]
+    records = phase.run(run, _NEAR, find_near, jobs)
+    found = [load_points(run.folder / name) for one in records.values() for name in one.files]
+    return NumberedPoints.join([NumberedPoints.none(), *found])
+
+
+def _node_draped(
+    inputs: BuildInputs, near: NumberedPoints, first_number: int, drape: Drape
+) -> tuple[NodedLines, tuple[str, ...]]:
+    """Cut lines, those without elevations draped on the surface of everything else."""
+    skeleton, base = drape.points.open().skeleton, None
+    rim = skeleton
+    if not inputs.lines.is_draped.all():
+        noded = node_base(near, inputs, first_number=first_number)
+        rim = NumberedPoints.join([skeleton, noded.skeleton])
+        base = drape.run.folder / _save_lines(drape.run.folder, noded, find_rim(rim))
+    laid = drape.lay(Draping.of(inputs, find_rim(rim)), base)
+    return node_laid(near, skeleton, laid, first_number=first_number), laid.notes
 
 
 def _save_lines(folder: Path, noded: NodedLines, rim: Float64Array) -> str:

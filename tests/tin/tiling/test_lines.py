@@ -9,8 +9,10 @@ from support.tiled import divide, make_inputs, node_all, require_triangles_of_th
 import tinsmith as ts
 from tinsmith.base.errors import LinesError, OptionError
 from tinsmith.tin.tiling.boxes import widen
-from tinsmith.tin.tiling.lines import require_local
+from tinsmith.tin.tiling.draping import Draping, KnownTriangles, find_rim
+from tinsmith.tin.tiling.lines import node_lines, require_local
 from tinsmith.tin.tiling.local_triangulation import triangulate_box
+from tinsmith.tin.tiling.sources import NumberedPoints
 
 
 def rng(seed=0):
@@ -95,6 +97,32 @@ SURVEYS = {
     ),
 }
 
+SURVEYS |= {
+    "draped lines": (
+        CLOUD,
+        {"breaklines": [walk(k)[:, :2] if k % 2 else walk(k) for k in range(4)]},
+    ),
+    "draped lines along the hull of a lattice": (
+        LATTICE,
+        {
+            "breaklines": [[[-3, 0], [11, 0]], [[23, -5], [23, 40]], [[0, 0], [23, 23]]],
+            "holes": [[[-1, 11], [3, 11], [3, 15], [-1, 15]]],
+        },
+    ),
+    "draped rings that leave the points": (
+        CLOUD,
+        {
+            "boundary": [ring((500.0, 500.0), 560.0, 60)[:, :2]],
+            "holes": [ring((0.0, 600.0), 90.0)[:, :2], ring((650.0, 400.0), 120.0)],
+            "breaklines": [walk(9, size=1600.0)[:, :2]],
+        },
+    ),
+    "draped boundary around all points": (
+        CLOUD,
+        {"boundary": [ring((500.0, 500.0), 900.0)[:, :2]]},
+    ),
+}
+
 
 @pytest.mark.parametrize("side", [1, 2, 4, pytest.param(8, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", SURVEYS)
@@ -151,13 +179,36 @@ def test_holes_that_cut_are_told():
     assert cutting == [[True, False], [False, False], [False, True]]
 
 
+def test_places_in_triangles_that_are_not_known_are_told():
+    """Of a line of which the triangles at one end are missing."""
+    inputs = make_inputs(CLOUD, breaklines=[[[100, 480], [900, 520]]])
+    source = divide(CLOUD, 2)
+    draping = Draping.of(inputs, find_rim(source.skeleton))
+    assert draping.list_asked().tolist() == [[[100, 480], [900, 520]]]
+    parts = [triangulate_box(source, source.box_of(key)) for key in source.list_cells()]
+    known = [KnownTriangles(one.points, one.triangles) for one in parts]
+    laid, unknown = draping.lay(known)
+    assert len(laid.inputs.lines.xy) > 50
+    assert len(unknown) == 0
+    laid, unknown = draping.lay([])  # on the triangles of the hull alone
+    np.testing.assert_array_equal(unknown, laid.inputs.lines.xy)
+    western = [one for key, one in zip(source.list_cells(), known, strict=True) if key[0] == 0]
+    _, unknown = draping.lay(western)
+    assert unknown[:, 0].min() > 500.0
+
+
+def test_lines_without_elevations_are_not_cut():
+    inputs = make_inputs(CLOUD, breaklines=[[[0, 0], [9, 9]]])
+    with pytest.raises(LinesError, match="Breakline 0 has no elevations: it must be draped before"):
+        node_lines(NumberedPoints.none(), inputs, first_number=0)
+
+
 @pytest.mark.parametrize(
     ("given", "error", "message"),
     [
         ({"max_edge": 5.0}, OptionError, "None for a surface in tiles: what it drops"),
         ({"snap": 0.1}, OptionError, "Invalid snap 0.1: it must be 0 for a surface in tiles"),
         ({"conforming": True}, OptionError, "it must be False for a surface"),
-        ({"breaklines": [[[0, 0], [9, 9]]]}, LinesError, "has no elevations"),
     ],
 )
 def test_what_is_not_local_is_refused(given, error, message):
