@@ -248,6 +248,23 @@ def find_in_box(
     around: tuple[float, float, float, float],
 ) -> BoxTriangles: ...
 
+class SeenTriangles:
+    offsets: Final[Int32Array]
+    triangles: Final[Int32Array]
+    failed: Final[Int32Array]
+
+def find_seen(
+    places: Float64Array,
+    triangles: Int32Array,
+    neighbors: Int32Array,
+    fixed: BoolArray,
+    chosen: Int32Array,
+    centers: Float64Array,
+    radii: Float64Array,
+    most: int,
+) -> SeenTriangles: ...
+def are_in_triangles(corners: Float64Array, places: Float64Array) -> BoolArray: ...
+
 class BoxTriangles:
     chosen: Final[Int32Array]
     firsts: Final[UInt8Array]

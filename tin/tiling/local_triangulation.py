@@ -2,9 +2,9 @@
 
 Ties between cocircular points are broken by the points' own coordinates, so the constrained
 Delaunay triangulation is a function of the sets of points and segments. A triangle of some of them
-whose closed circumscribed disc holds no other point and meets no other segment is therefore one of
-the whole, whatever else there is: nothing that was not looked at can take part in it, and nothing
-that was looked at is hidden by what was not.
+that meets no other segment, and whose closed circumscribed disc holds no other vertex that is seen
+from it, is therefore one of the whole, whatever else there is: what was not looked at can only hide
+more of what was.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from .duplicates import list_differing
 from .rings import find_inside
 from .sources import NumberedPoints, NumberedSegments
 from .unseen import Question, count_taken, find_unseen_points, find_unseen_segments
+from .visibility import Views, find_views
 
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
@@ -320,9 +321,13 @@ def _find_open(
     names = made.list_names(triangles)
     is_open = ~discs.are_within(around) & ~_are_among(names, proven)
     number, triangles = number[is_open], triangles[is_open]
-    fixed = np.zeros(triangles.shape, np.bool_) if made.fixed is None else made.fixed[number]
+    discs = discs.choose(is_open)
+    fixed, views = np.zeros(triangles.shape, np.bool_), Views.unknown(discs)
+    if made.fixed is not None:
+        fixed = made.fixed[number]
+        views = find_views(made.places, made.triangles, made.neighbors, made.fixed, number, discs)
     return names[is_open], Question(
-        made.places[triangles], fixed, discs.choose(is_open), segments.ends_in_plane, count_taken(0)
+        made.places[triangles], fixed, discs, segments.ends_in_plane, views, count_taken(0)
     )
 
 

@@ -1,9 +1,10 @@
 """What a task has not seen, and what of it may put an end to a triangle.
 
-A triangle of some points and segments is one of the whole if its closed circumscribed disc holds
-no other point and meets no other segment. What a segment hides from all of the triangle does not
-count. Beyond an edge of it that is a segment, that is all in the disc, of which it is a chord; of
-other segments, that are their shadows::
+A triangle of some points and segments is one of the whole if it meets no other segment, and its
+closed circumscribed disc holds no other point, and no end of another segment. What segments hide
+from all of the triangle does not count: see :mod:`.visibility`. Where there is too much to be seen,
+less is told: beyond an edge that is a segment all in the disc is hidden, of which it is a chord;
+beyond other segments, what is in the shadow of one::
 
              . - ~ - .
           .     p     .       p does not count if the edge a-b is a segment, nor if a longer one
@@ -21,6 +22,7 @@ import numpy as np
 from .. import _kernel
 from .circles import Discs
 from .sources import NumberedPoints, NumberedSegments
+from .visibility import Views, are_met, are_seen
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int8Array, Int64Array
@@ -51,6 +53,8 @@ class Question(NamedTuple):
     discs : Discs
     screens : (s, 2, 2) float64 array
         The ends of all segments that are known.
+    views : Views
+        What is seen from each of them, as far as it is known.
     most : int
         What is taken for one disc: the deepest, which change the triangle most.
     """
@@ -59,6 +63,7 @@ class Question(NamedTuple):
     hiding: BoolArray
     discs: Discs
     screens: Float64Array
+    views: Views
     most: int
 
     def choose(self, which: BoolArray) -> Question:
@@ -68,8 +73,18 @@ class Question(NamedTuple):
             self.hiding[which],
             self.discs.choose(which),
             self.screens,
+            self.views.choose(which),
             self.most,
         )
+
+    def are_deciding(self, k: int, places: Float64Array) -> BoolArray:
+        """Tell which places, (f, 2), are in the disc of a triangle and not hidden from it."""
+        view = self.views.corners[k]
+        is_deciding = np.ones(len(places), np.bool_) if view is None else are_seen(view, places)
+        is_deciding[is_deciding] = _are_in_disc(self.corners[k], places[is_deciding])
+        if view is None:
+            is_deciding[is_deciding] = ~self.find_hidden(k, places[is_deciding][:, None])
+        return is_deciding
 
     def find_hidden(self, k: int, figures: Float64Array) -> BoolArray:
         """Tell what is hidden from a triangle, of the hulls of (f, p, 2) places each, exactly."""
@@ -104,9 +119,9 @@ def find_unseen_points(
     """
     if not len(question.corners):
         return NumberedPoints.none(), np.ones(0, np.bool_)
-    some, is_open = _examine(question, source.read_some(question.discs), seen)
+    some, is_open = _examine(question, source.read_some(question.views.discs), seen)
     left = question.choose(is_open)
-    rest, is_clear = _examine(left, source.read_discs(left.discs), seen)
+    rest, is_clear = _examine(left, source.read_discs(left.views.discs), seen)
     is_safe = is_open.copy()
     is_safe[is_open] = is_clear
     return NumberedPoints.join([some, rest]), is_safe
@@ -116,24 +131,23 @@ def _examine(
     question: Question, found: NumberedPoints, seen: Int64Array
 ) -> tuple[NumberedPoints, BoolArray]:
     """Return which of some points may change triangles, and of which triangles none may."""
-    discs = question.discs
-    is_safe = np.ones(len(discs.radii), np.bool_)
+    count = len(question.corners)
+    is_safe = np.ones(count, np.bool_)
     found = found.choose(seen[np.searchsorted(seen, found.numbers) % len(seen)] != found.numbers)
     found = found.choose(np.argsort(found.points[:, 0], kind="stable"))
-    reach = discs.radii + _SLACK * (np.abs(discs.centers[:, 0]) + discs.radii)
-    west = np.searchsorted(found.points[:, 0], discs.centers[:, 0] - reach, "left")
-    east = np.searchsorted(found.points[:, 0], discs.centers[:, 0] + reach, "right")
+    x, y = np.ascontiguousarray(found.points[:, :2].T)
+    boxes = np.array([_bound_view(question, k) for k in range(count)]).reshape(-1, 2, 2)
+    begins = np.searchsorted(x, boxes[:, 0, 0], "left")
+    ends = np.searchsorted(x, boxes[:, 1, 0], "right")
     is_wanted = np.zeros(len(found.numbers), np.bool_)
-    for k in np.flatnonzero(west < east).tolist():
-        near = np.arange(west[k], east[k])
-        distances = np.hypot(*(found.points[near, :2] - discs.centers[k]).T)
-        is_near = distances <= discs.radii[k] * (1 + _SLACK)
-        near, distances = near[is_near], distances[is_near]
-        places = found.points[near, :2]
-        counts = _are_in_disc(question.corners[k], places)
-        counts[counts] = ~question.find_hidden(k, places[counts][:, None])
-        is_wanted[_take_deepest(near[counts], distances[counts], question.most)] = True
-        is_safe[k] = not counts.any()
+    for k in np.flatnonzero(begins < ends).tolist():
+        across = y[begins[k] : ends[k]]
+        near = begins[k] + np.flatnonzero((across >= boxes[k, 0, 1]) & (across <= boxes[k, 1, 1]))
+        near = near[question.are_deciding(k, found.points[near, :2])] if len(near) else near
+        if len(near):
+            distances = np.hypot(*(found.points[near, :2] - question.discs.centers[k]).T)
+            is_wanted[_take_deepest(near, distances, question.most)] = True
+            is_safe[k] = False
     return found.choose(is_wanted).sort(), is_safe
 
 
@@ -145,19 +159,46 @@ def find_unseen_segments(
     is_safe = np.ones(len(discs.radii), np.bool_)
     if not len(is_safe):
         return NumberedSegments.none(), is_safe
-    found = lines.read_discs(discs)
+    found = lines.read_discs(question.views.discs)
     found = found.choose(~found.are_among(seen))
     ends = found.ends_in_plane
+    low, high = (np.ascontiguousarray(pick(axis=1).T) for pick in (ends.min, ends.max))
     is_wanted = np.zeros(len(ends), np.bool_)
     for k in range(len(is_safe) if len(ends) else 0):
-        distances, roundings = _measure_distances(ends, discs.centers[k])
-        near = np.flatnonzero(
-            (distances <= discs.radii[k] * (1 + _SLACK) + roundings) | np.isinf(discs.radii[k])
-        )
-        near = near[~question.find_hidden(k, ends[near])]
-        is_wanted[_take_deepest(near, distances[near], question.most)] = True
-        is_safe[k] = not len(near)
+        (west, south), (east, north) = _bound_view(question, k)
+        is_near = (low[0] <= east) & (high[0] >= west) & (low[1] <= north) & (high[1] >= south)
+        near = np.flatnonzero(is_near)
+        if len(near):
+            near = near[_are_deciding(question, k, ends[near])]
+            distances, _ = _measure_distances(ends[near], discs.centers[k])
+            is_wanted[_take_deepest(near, distances, question.most)] = True
+            is_safe[k] = not len(near)
     return found.choose(is_wanted), is_safe
+
+
+def _bound_view(question: Question, k: int) -> tuple[Float64Array, Float64Array]:
+    """Return the corners of a box in which all lies that may be seen from a triangle."""
+    discs = question.views.discs
+    reach = discs.radii[k] * (1 + _SLACK) + _SLACK * float(np.abs(discs.centers[k]).max())
+    return discs.centers[k] - reach, discs.centers[k] + reach
+
+
+def _are_deciding(question: Question, k: int, ends: Float64Array) -> BoolArray:
+    """Tell which segments, (f, 2, 2), meet a triangle, or end in its disc where it is seen from.
+
+    Where it is not known what is seen, all count that meet the disc and are not hidden.
+    """
+    if question.views.corners[k] is None:
+        distances, roundings = _measure_distances(ends, question.discs.centers[k])
+        radius = question.discs.radii[k]
+        is_near = (distances <= radius * (1 + _SLACK) + roundings) | np.isinf(radius)
+        is_near[is_near] = ~question.find_hidden(k, ends[is_near])
+        return np.asarray(is_near)
+    are_deciding = are_met(question.corners[k], ends)
+    for end in (0, 1):
+        left = np.flatnonzero(~are_deciding)
+        are_deciding[left] = question.are_deciding(k, ends[left, end])
+    return are_deciding
 
 
 def _take_deepest(rows: Int64Array, distances: Float64Array, most: int) -> Int64Array:

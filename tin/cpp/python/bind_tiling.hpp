@@ -15,6 +15,7 @@
 
 #include "../tiling/box_triangles.hpp"
 #include "../tiling/extraction.hpp"
+#include "../tiling/visibility.hpp"
 #include "conversion.hpp"
 
 namespace tinsmith::python {
@@ -120,7 +121,59 @@ inline ExtractedArrays extract(const GivenXy& places, const GivenTriples& triang
           hand_over<Numbers>(made.take_order(), {size}), std::move(flags)};
 }
 
+struct SeenArrays {
+  Numbers offsets, triangles;
+  Numbers failed;
+};
+
+inline SeenArrays find_seen(const GivenXy& places, const GivenTriples& triangles,
+                            const GivenTriples& neighbors, const GivenFlags& fixed,
+                            const GivenNumbers& chosen, const GivenXy& centers,
+                            const GivenValues& radii, std::int32_t most) {
+  const PlaneTriangles all = plane_triangles_of(places, triangles, &neighbors);
+  const bool is_sound =
+      fixed.shape(0) == triangles.shape(0) && centers.shape(0) == chosen.size() &&
+      radii.size() == chosen.size() && most > 0 && are_all(chosen, [&](std::int32_t t) {
+        return t >= 0 && t < static_cast<std::int32_t>(all.count);
+      });
+  if (!is_sound) throw std::invalid_argument("triangles, flags and discs do not go together");
+  std::vector<std::int32_t> offsets{0}, seen, failed;
+  {
+    ReleasedLock release;
+    Visibility visibility(all, fixed.data(), static_cast<std::size_t>(most));
+    const Point* center = points_of(centers);
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      const Disc disc{center[i], radii.data()[i]};
+      if (!visibility.find(triangle_numbered(chosen.data()[i]), disc, seen))
+        failed.push_back(static_cast<std::int32_t>(i));
+      offsets.push_back(static_cast<std::int32_t>(seen.size()));
+    }
+  }
+  return {hand_over(offsets), hand_over(seen), hand_over(failed)};
+}
+
+inline Made<bool, -1> are_in_triangles(const GivenXy& corners, const GivenXy& places) {
+  if (corners.shape(0) % 3 != 0) throw std::invalid_argument("three corners for each triangle");
+  StreamedArray<bool> found = streamed_array<bool>(places.shape(0));
+  {
+    ReleasedLock release;
+    for (std::size_t i = 0; i < places.shape(0); ++i)
+      found[i] = is_in_any(points_of(places)[i], points_of(corners), corners.shape(0) / 3);
+  }
+  return hand_over<Made<bool, -1>>(std::move(found), {places.shape(0)});
+}
+
 inline void bind_tiling(nb::module_& m) {
+  Result<SeenArrays>(m, "SeenTriangles", "The triangles that are seen from each of some.")
+      .def_array("offsets", &SeenArrays::offsets, "(k + 1,), where those of each begin.")
+      .def_array("triangles", &SeenArrays::triangles, "(n,), ascending for each.")
+      .def_array("failed", &SeenArrays::failed, "Which of some see more than was asked for.");
+  m.def("find_seen", &find_seen, "places"_a.noconvert(), "triangles"_a.noconvert(),
+        "neighbors"_a.noconvert(), "fixed"_a.noconvert(), "chosen"_a.noconvert(),
+        "centers"_a.noconvert(), "radii"_a.noconvert(), "most"_a,
+        "The triangles that lines of sight from the inside of each chosen one reach in its disc.");
+  m.def("are_in_triangles", &are_in_triangles, "corners"_a.noconvert(), "places"_a.noconvert(),
+        "Whether each place lies in any of some closed triangles.");
   Result<BoxTriangleArrays>(m, "BoxTriangles", "Triangles that meet a box.")
       .def_array("chosen", &BoxTriangleArrays::chosen, "(k,), ascending.")
       .def_array("firsts", &BoxTriangleArrays::firsts,
