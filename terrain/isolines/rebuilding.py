@@ -9,7 +9,15 @@ import numpy as np
 from ...base import optional
 from ...base.sentences import counted
 from .. import _kernel
-from ..surface import PolygonParts, as_parts, measure_lengths, measure_ring_areas, sum_parts, turn
+from ..surface import (
+    PolygonParts,
+    as_parts,
+    measure_lengths,
+    measure_ring_areas,
+    measure_rounding,
+    sum_parts,
+    take_polygons,
+)
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, ObjectArray
@@ -54,18 +62,38 @@ def rebuild_wrong_bands(
 def _find_wrong(tin: TIN, levels: Float64Array, parts: PolygonParts) -> BoolArray:
     """Tell which bands have another area than the surface has between their levels."""
     under = _kernel.stage_sums(tin.points, tin.triangles, levels, 1.0)[:, 0]
-    true = np.diff(np.concatenate([[0.0], under, [float(tin.triangulation.area)]]))
+    area, rounding = float(tin.triangulation.area), measure_rounding(tin.points)
+    extent = float(np.ptp(tin.points[:, :2], axis=0).sum())
+    off, slack = measure_off(parts, under, area, slack_of=(rounding, extent))
+    wrong: BoolArray = off > slack
+    return wrong
+
+
+def measure_off(
+    parts: PolygonParts, under: Float64Array, area: float, *, slack_of: tuple[float, float]
+) -> tuple[Float64Array, Float64Array]:
+    """Return how far the area of each band is from that of the surface, and how far it may be.
+
+    Parameters
+    ----------
+    parts : PolygonParts
+    under : (k,) float64 array
+        Area of the surface below each level.
+    area : float
+        Of the surface.
+    slack_of : (float, float)
+        The rounding of the largest coordinate, and width and height together.
+    """
+    true = np.diff(np.concatenate([[0.0], under, [area]]))
     rings = measure_ring_areas(None, parts.points, parts.ring_offsets)
     lengths = measure_lengths(None, parts.points, parts.ring_offsets)
     found, around = (
         np.bincount(parts.band, sum_parts(values, parts.polygon_offsets[:-1]), len(true))
         for values in (rings, lengths)
     )
-    rounding = float(np.spacing(np.abs(tin.points[:, :2]).max(initial=0.0)))
-    extent = float(np.ptp(tin.points[:, :2], axis=0).sum())
-    slack = _SHARE * tin.triangulation.area + _ROUNDINGS * rounding * (around + extent)
-    wrong: BoolArray = np.abs(found - true) > slack
-    return wrong
+    rounding, extent = slack_of
+    slack = np.asarray(_SHARE * area + _ROUNDINGS * rounding * (around + extent))
+    return np.abs(found - true), slack.astype(np.float64)
 
 
 def _list_shapes(parts: PolygonParts) -> tuple[ObjectArray, Int32Array]:
@@ -86,10 +114,7 @@ def _join_parts(tin: TIN, levels: Float64Array, band: int) -> ObjectArray:
     rings = [_cut_between(triangle, low, high) for triangle in corners[is_met].tolist()]
     parts = np.array([shapely.Polygon(ring) for ring in rings if len(ring) > 2], object)
     parts = parts[shapely.is_valid(parts) & (shapely.area(parts) > 0.0)]
-    joined = shapely.get_parts(shapely.union_all(parts))
-    polygons = joined[shapely.get_type_id(joined) == shapely.GeometryType.POLYGON]
-    kept: ObjectArray = np.array([turn(one) for one in polygons], object)
-    return kept
+    return take_polygons(shapely.get_parts(shapely.union_all(parts)))
 
 
 def _cut_between(corners: list[list[float]], low: float, high: float) -> list[tuple[float, float]]:

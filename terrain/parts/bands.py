@@ -13,6 +13,7 @@ import numpy as np
 from ...base.errors import PointsError
 from .. import _kernel
 from ..isolines.bands import as_features
+from ..isolines.rebuilding import measure_off
 from ..surface import (
     PolygonParts,
     find_slivers,
@@ -38,6 +39,10 @@ RINGS = 3
 one for what is left out along the boundary."""
 
 
+_NEARLY = 0.99
+"""Of how far off the area of a band may be."""
+
+
 class BandOptions(NamedTuple):
     """What bands are filled.
 
@@ -47,10 +52,13 @@ class BandOptions(NamedTuple):
     rounding : float
         Distance of neighbouring doubles at the largest coordinate of the whole surface: thinner
         triangles along its boundary are left out.
+    extent : float
+        Width and height of the whole surface together.
     """
 
     levels: Levels
     rounding: float
+    extent: float
     crs: CRS | None = None
     elevation_unit: Unit | None = None
 
@@ -66,11 +74,14 @@ class BandPart(NamedTuple):
         Those of band i are ``segments[offsets[i]:offsets[i + 1]]``.
     areas : (1, t) float64 array
         Doubles that add up to the area of the tile's triangles, exactly.
+    under : (k,) float64 array
+        Area of the tile's triangles below each level.
     """
 
     segments: Float64Array
     offsets: Int64Array
     areas: Float64Array
+    under: Float64Array
 
 
 def compute_part(part: LocalTriangulation, box: Bounds, options: BandOptions) -> BandPart:
@@ -91,20 +102,18 @@ def compute_part(part: LocalTriangulation, box: Bounds, options: BandOptions) ->
     is_owned = are_owned_triangles(part, box)
     is_inner = are_inner(part, box, RINGS)
     _require_decided(part, is_owned, is_inner, options.rounding)
-    areas = _kernel.terms_of_areas(
-        part.points,
-        np.ascontiguousarray(part.triangles[is_owned]),
-        np.zeros(int(np.count_nonzero(is_owned)), np.int32),
-        1,
-    )
+    owned = np.ascontiguousarray(part.triangles[is_owned])
+    areas = _kernel.terms_of_areas(part.points, owned, np.zeros(len(owned), np.int32), 1)
+    levels = options.levels.values
+    under = _kernel.stage_sums(part.points, owned, levels, 1.0)[:, 0]
     is_sliver = find_slivers(
         part.points, part.triangles, part.neighbors, options.rounding, is_inner=is_inner
     )
     kept = keep_triangles(part.triangles, part.neighbors, ~is_sliver)
     found = _kernel.list_band_boundaries(
-        part.points, *kept, options.levels.values, np.ascontiguousarray(is_owned[~is_sliver])
+        part.points, *kept, levels, np.ascontiguousarray(is_owned[~is_sliver])
     )
-    return BandPart(found.segments, found.offsets, areas)
+    return BandPart(found.segments, found.offsets, areas, under)
 
 
 def _require_decided(
@@ -140,7 +149,7 @@ def join(parts: Sequence[BandPart], options: BandOptions) -> Features:
     Raises
     ------
     PointsError
-        If polygons meet themselves by rounding: what repairs them needs the whole surface.
+        If rounding leaves no polygons, or some that must be built anew from all triangles.
     """
     levels = options.levels.values
     filled = [_fill(parts, band) for band in range(len(levels) + 1)]
@@ -148,13 +157,27 @@ def join(parts: Sequence[BandPart], options: BandOptions) -> Features:
     if not made:
         raise PointsError("No triangle is left that is thicker than the rounding of coordinates.")
     found, notes = repair_polygons(_concatenate(made))
-    terms = np.concatenate([part.areas for part in parts], axis=1)
-    if notes or not has_area(found, float(_kernel.sum_rows(terms)[0])):
+    area = float(_kernel.sum_rows(np.concatenate([part.areas for part in parts], axis=1))[0])
+    if notes or not has_area(found, area):
+        _require_right(found, np.sum([part.under for part in parts], axis=0), area, options)
+    return as_features(found, options.levels, options.crs, options.elevation_unit, notes)
+
+
+def _require_right(
+    found: PolygonParts, under: Float64Array, area: float, options: BandOptions
+) -> None:
+    """Refuse bands whose area is not what lies between their levels: memory builds these anew.
+
+    Sums over tiles are rounded otherwise than those of the whole: so bands are refused, too, that
+    are only nearly as far off.
+    """
+    slack_of = options.rounding, options.extent
+    off, slack = measure_off(found, under, area, slack_of=slack_of)
+    if (off > _NEARLY * slack).any() or not has_area(found, area):
         raise PointsError(
             "Polygons of bands meet themselves within the rounding of coordinates, and can only be "
             "made valid in memory: fill the bands of a part of the surface, or subtract an origin."
         )
-    return as_features(found, options.levels, options.crs, options.elevation_unit)
 
 
 def _fill(parts: Sequence[BandPart], band: int) -> PolygonParts:

@@ -33,7 +33,7 @@ from .polygons import (
     repair_polygons,
     require_whole,
     sum_parts,
-    turn,
+    take_polygons,
 )
 from .reference import (
     Reference,
@@ -109,10 +109,10 @@ __all__ = [
     "sum_at_vertices",
     "sum_normals",
     "sum_parts",
+    "take_polygons",
     "take_without_slivers",
     "trace_breaks",
     "trace_cycles",
     "trace_rings",
-    "turn",
     "turns",
 ]

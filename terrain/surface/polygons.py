@@ -65,14 +65,28 @@ def repair_polygons(
 
 def _make_valid(shapes: ObjectArray) -> ObjectArray:
     shapely = optional.load("shapely")
-    whole = shapely.union_all(shapely.make_valid(shapes))
+    try:
+        whole = shapely.union_all(shapely.make_valid(shapes))
+    except shapely.errors.GEOSException as error:
+        raise PointsError(
+            "Polygons meet themselves within the rounding of coordinates, and cannot be made "
+            "valid: triangles are too thin for coordinates of this size; subtract an origin from "
+            "them."
+        ) from error
     found = shapely.get_parts(whole)
-    polygons = found[shapely.get_type_id(found) == shapely.GeometryType.POLYGON]
-    kept: ObjectArray = np.array([turn(one) for one in polygons], object)
+    return take_polygons(found)
+
+
+def take_polygons(shapes: ObjectArray) -> ObjectArray:
+    """Return the shapes that are polygons with an area, turned; none of nothing."""
+    shapely = optional.load("shapely")
+    is_polygon = shapely.get_type_id(shapes) == shapely.GeometryType.POLYGON
+    polygons = shapes[is_polygon & ~shapely.is_empty(shapes)]
+    kept: ObjectArray = np.array([_turn(one) for one in polygons], object)
     return kept
 
 
-def turn(polygon: Any) -> Any:
+def _turn(polygon: Any) -> Any:
     """Return a polygon whose exterior runs counter-clockwise, and its holes clockwise."""
     orient = optional.load("shapely.geometry.polygon").orient
     return orient(polygon)

@@ -79,7 +79,8 @@ def join_bands(tiling, points, given, seed=0):
     z = points[:, 2]
     chosen = LevelOptions(given.get("interval"), given.get("levels"), 0.0)
     levels = chosen.for_bands_between(z.min() - 1.0, z.max() + 1.0)
-    options = bands.BandOptions(levels, measure_rounding(points))
+    extent = float(np.ptp(points[:, :2], axis=0).sum())
+    options = bands.BandOptions(levels, measure_rounding(points), extent)
     parts = tiling.compute(lambda part, box: bands.compute_part(part, box, options), seed)
     order = np.random.default_rng(seed + 1).permutation(len(parts))
     return bands.join([parts[k] for k in order], options)

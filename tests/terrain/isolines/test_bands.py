@@ -194,3 +194,32 @@ def test_bands_along_a_slanted_line_tile_the_surface():
     bands = ts.contour_bands(tin, interval=0.2)
     require_a_partition(tin, bands)
     assert not any("met themselves" in note or "crossed" in note for note in bands.notes)
+
+
+def test_bands_that_have_no_area_once_made_valid_are_refused():
+    """Points on one line, rounded: no polygon has an area once it is made valid."""
+    points = [
+        *(
+            [6.908707451270402, 22.798734589192325, 426.27],
+            [19.198162329613456, 63.3539356877244, 850.97],
+        ),
+        *(
+            [20.02963292916463, 66.09778866624328, 294.08],
+            [21.027857645219118, 69.39193022922309, 54.98],
+        ),
+        *(
+            [29.53847443582438, 97.47696563822045, 894.96],
+            [30.658991681177696, 101.17467254788639, 388.37],
+        ),
+        *(
+            [60.010759520297086, 198.03550641698038, 487.09],
+            [61.216687157802305, 202.0150676207476, 785.14],
+        ),
+        *(
+            [78.5377284183638, 259.1745037806005, 376.94],
+            [90.8528355854534, 299.8143574319962, 0.65],
+        ),
+    ]
+    tin = ts.triangulate(points)
+    with pytest.raises(ts.PointsError, match="too thin for coordinates of this size"):
+        ts.contour_bands(tin, levels=[246.26, 383.798, 450.59799999999996, 798.306])

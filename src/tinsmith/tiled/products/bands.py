@@ -41,6 +41,7 @@ def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str
         **options,
         "values": found.values.tolist(),
         "rounding": measure_rounding(corners),
+        "extent": float(np.ptp(corners, axis=0).sum()),
         "crs": None if crs is None else str(crs),
         "elevation_unit": None if unit is None else unit.text,
     }
@@ -56,6 +57,7 @@ def _make_options(options: Mapping[str, Any]) -> bands.BandOptions:
     return bands.BandOptions(
         levels,
         options["rounding"],
+        options["extent"],
         CRS.of(options["crs"]),
         Unit.of(options["elevation_unit"] or None),
     )
