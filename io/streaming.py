@@ -168,6 +168,14 @@ class PointStream:
         """
         return self._require_end().has_voids
 
+    @property
+    def lattice(self) -> tuple[int, int] | None:
+        """Cells of a row of a raster, and the step from one that is taken to the next.
+
+        The rows of points are numbers of cells. None of other files; known at the end.
+        """
+        return self._require_end().lattice
+
     def _require_end(self) -> StreamEnd:
         if self._end is None or self._n_waiting:
             raise ReadError("Notes of a stream are known once all of its chunks have been taken.")

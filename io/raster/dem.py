@@ -299,7 +299,9 @@ def _read_blocks(
     counts = {"nodata cells": n_nodata, LEFT_OUT: left_out}
     skipped = {name: count for name, count in counts.items() if count}
     notes = [*plan.said, *noted]
-    return StreamEnd(notes, skipped, {"from_raster": True}, has_voids=has_voids)
+    more = {"from_raster": True}
+    lattice = (plan.dataset.width, cells.stride)
+    return StreamEnd(notes, skipped, more, has_voids=has_voids, lattice=lattice)
 
 
 def _require_points(plan: Plan, n_points: int, n_nodata: int) -> None:

@@ -114,6 +114,8 @@ class StreamEnd:
     """Further attributes of the survey."""
     has_voids: bool = False
     """Whether the surface ends at voids between the points, which the points do not tell."""
+    lattice: tuple[int, int] | None = None
+    """Cells of a row of a raster, and the step from one that is taken to the next."""
     counts: Counts | None = None
     """Counts of which some of the notes are made, one behind the other."""
 

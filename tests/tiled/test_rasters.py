@@ -191,17 +191,72 @@ def test_points_at_one_place_are_named_by_file_and_row(tmp_path):
         cloud.rasterize(tmp_path / "a.tif", spacing=1.0, executor=Shuffled())
 
 
-def test_rasters_with_voids_are_refused(tmp_path):
-    grid = ts.Grid(ts.Bounds(500_000.0, 4_000_000.0, 500_006.0, 4_000_006.0), (6, 6), 1.0)
-    cells = np.arange(36.0).reshape(6, 6)
-    path = ts.write(ts.Raster({"elevation": cells}, grid, crs="EPSG:32616"), tmp_path / "a.tif")
-    made = ts.tiles(path).rasterize(tmp_path / "b.tif", spacing=0.5, tiles=4, executor=Shuffled())
-    tin = ts.triangulate(ts.read(path))
-    np.testing.assert_array_equal(read(made), ts.rasterize(tin, spacing=0.5).bands["elevation"])
-    cells[2:4, 2:4] = np.nan
-    path = ts.write(ts.Raster({"elevation": cells}, grid, crs="EPSG:32616"), tmp_path / "c.tif")
-    with pytest.raises(ts.ReadError, match=r"c\.tif' has cells without data"):
-        ts.tiles(path).rasterize(tmp_path / "d.tif", spacing=0.5, executor=Shuffled())
+def write_raster(path, voids=()):
+    """Write a raster of 40 by 30 cells, some of which have no elevation; return the file."""
+    grid = ts.Grid(ts.Bounds(500_000.0, 4_000_000.0, 500_120.0, 4_000_090.0), (30, 40), 3.0)
+    row, column = np.mgrid[:30, :40]
+    cells = 50 + 3 * np.sin(row / 4.0) * np.cos(column / 5.0) + 0.01 * (row * 7 % 11)
+    for rows, columns in voids:
+        cells[rows, columns] = np.nan
+    return ts.write(ts.Raster({"elevation": cells}, grid, crs="EPSG:32616"), path)
+
+
+VOIDS = {
+    "none": [],
+    "a hole": [(slice(8, 14), slice(10, 20))],
+    "a rim": [(slice(0, 9), slice(0, 12)), (29, slice(None)), (slice(None), 39)],
+    "islands": [(slice(14, 16), slice(None)), (slice(None), slice(19, 22)), (5, 5), (6, 6)],
+    "scattered": [([3, 4, 9, 20, 20, 21], [3, 4, 30, 7, 8, 8])],
+    "a cell alone": [(slice(0, 5), slice(0, 5)), (slice(20, 25), slice(5, 10))],
+}
+
+
+@pytest.mark.filterwarnings("ignore:.* is a shapefile")
+@pytest.mark.parametrize("name", VOIDS)
+@pytest.mark.parametrize("options", [{}, {"cells": (3, 2, 33, 25), "stride": 2}])
+def test_the_surface_of_a_raster_ends_at_voids_as_in_memory(tmp_path, name, options):
+    path = write_raster(tmp_path / "a.tif", VOIDS[name])
+    tin = ts.triangulate(ts.read(path, **options))
+    cloud = ts.tiles(path, store=tmp_path / "points", **options)
+    way = {"tiles": 6, "executor": Shuffled(2)}
+    for value in ("elevation", "slope"):
+        made = cloud.rasterize(tmp_path / "b.tif", spacing=1.0, value=value, **way)
+        wanted = ts.rasterize(tin, spacing=1.0, value=value)
+        np.testing.assert_array_equal(read(made), wanted.bands[value])
+    whole = ts.write(ts.contours(tin, 0.5), tmp_path / "whole.shp")
+    made = cloud.contours(tmp_path / "tiles.shp", 0.5, **way)
+    assert filecmp.cmp(made, whole, shallow=False)
+    proof = cloud.check(run=tmp_path / "run", **way)
+    assert (proof.triangles, proof.vertices) == (len(tin.triangles), len(tin.points))
+
+
+def test_voids_and_lines_together(tmp_path):
+    path = write_raster(tmp_path / "a.tif", VOIDS["a hole"])
+    line = [[500_010.0, 4_000_015.0, 60.0], [500_110.0, 4_000_080.0, 61.0]]
+    ring = [[500_020.0, 4_000_010, 50], [500_100.0, 4_000_010, 50], [500_060.0, 4_000_085, 50]]
+    lines = {"breaklines": [line], "boundary": [ring]}
+    tin = ts.triangulate(ts.read(path), **lines)
+    made = ts.tiles(path, **lines).rasterize(
+        tmp_path / "b.tif", spacing=1.0, tiles=5, executor=Shuffled()
+    )
+    np.testing.assert_array_equal(read(made), ts.rasterize(tin, spacing=1.0).bands["elevation"])
+
+
+def test_voids_that_no_tiles_can_have_are_refused(tmp_path):
+    path = write_raster(tmp_path / "a.tif", VOIDS["a hole"])
+    other = write_raster(tmp_path / "b.tif")
+    way = {"executor": Shuffled()}
+    with pytest.raises(ts.ReadError, match=r"'a\.tif' has voids.*cannot be joined"):
+        ts.tiles([path, other]).rasterize(tmp_path / "c.tif", spacing=1.0, **way)
+    with pytest.raises(ts.ReadError, match="not available in tiles for this product"):
+        ts.tiles(path).write(tmp_path / "terrain", **way)
+    with pytest.raises(ts.ReadError, match="not available in tiles for the other surface"):
+        ts.tiles(other).volume(tmp_path / "d.csv", ts.tiles(path), **way)
+    grid = np.full((30, 40), np.nan)
+    grid[::2, ::2] = 5.0
+    sparse = write_raster(tmp_path / "e.tif", [(np.isnan(grid).nonzero())])
+    with pytest.raises(ts.ReadError):
+        ts.tiles(sparse).rasterize(tmp_path / "f.tif", spacing=1.0, **way)
 
 
 def test_rows_far_apart_are_kept_apart():

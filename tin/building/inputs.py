@@ -191,7 +191,7 @@ def gather_inputs(
     open_lines = [*own.breaklines, *as_sequence(breaklines, "breaklines")]
     flat = [*own.water, *as_sequence(water, "water")]
     lines = gather_lines(open_lines, outer, inner, flat)
-    if not lines.kinds:
+    if not lines.kinds and not own.extent:
         require_three(len(xyz))
     _require_simple_rings(lines)
     require_degrees(lines.xy, system, "Vertices of lines")

@@ -24,6 +24,7 @@ from .reading import StoredPoints, read_inputs
 from .runs import Fingerprint, Run
 from .store import count_by_cells
 from .tasks import PHASE, TileJob, compute_tile, divide_job
+from .voids import add_void_rings
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -91,6 +92,11 @@ def computing(
                 for name, one in clouds.items()
             ]
             points = stored[0]
+            _require_no_voids(stored[1:], "the other surface")
+            if points.lattice is not None:
+                if not getattr(module, "HAS_LINES", True):
+                    _require_no_voids([points], "this product")
+                lines = _Lines.of(add_void_rings(points, cloud.lines), cloud)
             if lines is not None and lines.inputs is not None:
                 drape = Drape(
                     run=run,
@@ -177,6 +183,15 @@ def labelling(cloud: TiledPoints, folder: Path, how: How, **asked: Any) -> Itera
         if is_new:
             with suppress(OSError):  # files are in it
                 folder.rmdir()
+
+
+def _require_no_voids(stored: Sequence[StoredPoints], where: str) -> None:
+    """Refuse rasters whose surface ends at voids where none can."""
+    if any(one.lattice is not None for one in stored):
+        raise ReadError(
+            "The raster has cells without data, at which its surface ends, which is not available "
+            f"in tiles for {where}."
+        )
 
 
 class _Lines(NamedTuple):

@@ -133,7 +133,8 @@ class GivenLines:
             As :func:`tinsmith.triangulate`, or if tiles cannot have such lines.
         """
         lines = {name: self.values.get(name, ()) for name in KINDS}
-        own = [*self.survey.breaklines, *self.survey.boundary, *self.survey.holes]
+        found = self.survey
+        own = [*found.breaklines, *found.boundary, *found.holes, *found.extent]
         if not own and not any(as_sequence(values, name) for name, values in lines.items()):
             return None
         inputs = gather_inputs(

@@ -152,6 +152,7 @@ def _read(job: ReadJob, started: float) -> Record:
             "elevations": [float(low), float(high)] if chunks else [],
             "told": asdict(replace(told, further=further)),
             "extent": asdict(extent),
+            "lattice": stream.lattice if stream.has_voids else None,
         },
         files={name: hash_file(job.folder / name) for name in files},
     )
@@ -198,10 +199,10 @@ class _Told:
 
 def _require_tiles(stream: PointStream, path: Path) -> None:
     """Refuse points that are not those of a surface that tiles can compute."""
-    if stream.has_voids:
+    if stream.has_voids and stream.lattice is None:
         raise ReadError(
-            f"'{path}' has cells without data, at which its surface ends: it cannot be "
-            "computed in tiles, whose surface is that of all points.",
+            f"'{path}' has cells without data, at which its surface ends, in an order that tiles "
+            "do not know: make a GeoTIFF of it.",
             path=path,
         )
     unit = stream.elevation_unit
@@ -305,6 +306,9 @@ class StoredPoints:
         Whether they are the cells of one raster, without lines among them.
     lines : Path or None
         File of the lines, cut where they meet.
+    lattice : tuple of int or None
+        Of one raster with voids: cells of a row of it, and the step from one that is taken to the
+        next. Their numbers are those of the points.
     """
 
     folder: Path
@@ -318,6 +322,7 @@ class StoredPoints:
     extent: Extent = Extent()
     is_raster: bool = False
     lines: Path | None = None
+    lattice: tuple[int, int] | None = None
 
     def open(self) -> PointStore:
         """Return the source of points for tasks."""
@@ -389,6 +394,7 @@ def read_inputs(
         for chunk in load_chunks(run.folder / f"{record.key}.chunks.npy", run.folder)
     ]
     bounds = join_bounds([chunk.bounds for chunk in chunks])
+    lattice = _find_lattice(filled, names)
     outlines = [load_points(run.folder / f"{record.key}.skeleton.npz") for record in filled]
     save_chunks(run.folder / _CHUNKS, chunks)
     save_points(run.folder / _SKELETON, join_skeletons(outlines, bounds))
@@ -405,7 +411,22 @@ def read_inputs(
             max(record.values["elevations"][1] for record in filled),
         ),
         reduce(Extent.join, (Extent(**one.values["extent"]) for one in records.values())),
+        lattice=lattice,
     )
+
+
+def _find_lattice(filled: Sequence[Record], names: Mapping[str, str]) -> tuple[int, int] | None:
+    """Return that of a raster with voids; refuse one among several files."""
+    for record in filled:
+        lattice = record.values.get("lattice")
+        if lattice is not None and len(filled) > 1:
+            raise ReadError(
+                f"'{names[record.key]}' has voids, around which there is no surface, and cannot be "
+                "joined with others: make one raster of them first, such as a virtual one (VRT)."
+            )
+        if lattice is not None:
+            return lattice[0], lattice[1]
+    return None
 
 
 def _join_notes(records: Mapping[str, Record]) -> tuple[str, ...]:

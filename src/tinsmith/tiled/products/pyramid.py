@@ -44,6 +44,8 @@ if TYPE_CHECKING:
     from ..workers import Phase
 
 INDEX = "tileset.json"
+HAS_LINES = False
+"""Squares are those of points alone."""
 """What the folder holds, by which such a folder is known."""
 
 FORMATS = ("3dtiles",)

@@ -1,0 +1,79 @@
+"""Where the surface of a raster ends at cells without data: rings that cut it, as lines do."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..base.errors import ReadError
+from ..terrain.surface import trace_rings
+from ..tin import Survey
+from ..tin.tiling import NumberedPoints
+from .lines import GivenLines
+from .reading import ROWS_OF_A_FILE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ..base.arrays import Float64Array, Int64Array
+    from .reading import StoredPoints
+
+
+def add_void_rings(points: StoredPoints, lines: GivenLines | None) -> GivenLines:
+    """Return lines with the rings at which the surface of a raster ends.
+
+    Parameters
+    ----------
+    points : StoredPoints
+        Cells of one raster, with their ``lattice``.
+    lines : GivenLines or None
+        Further lines.
+
+    Raises
+    ------
+    ReadError
+        If nowhere three cells side by side have elevations.
+
+    Notes
+    -----
+    Of all cells a byte each is held, and some 60 while rings are traced.
+    """
+    if lines is None:
+        survey = Survey(
+            points=np.empty((0, 3)), crs=points.crs, elevation_unit=points.elevation_unit
+        )
+        lines = GivenLines(survey=survey)
+    return replace(lines, survey=replace(lines.survey, extent=_find_rings(points)))
+
+
+def _find_rings(points: StoredPoints) -> list[Float64Array]:
+    """Return the cells of each ring, (k, 3)."""
+    limits = [(part.min(axis=1), part.max(axis=1)) for part, _ in _list_cells(points)]
+    low, high = np.min([one for one, _ in limits], axis=0), np.max([one for _, one in limits], 0)
+    is_valid = np.zeros(tuple((high - low + 1).tolist()), np.bool_)
+    for part, _ in _list_cells(points):
+        is_valid[tuple(part - low[:, None])] = True
+    rings = trace_rings(is_valid)
+    if not rings:
+        raise ReadError("Nowhere in the raster do three cells side by side have elevations.")
+    on_rings = np.unique(np.concatenate(rings))
+    cells = np.flatnonzero(is_valid)[on_rings]
+    found = np.empty((len(cells), 3))
+    for part, some in _list_cells(points):
+        numbers = np.ravel_multi_index(tuple(part - low[:, None]), is_valid.shape)
+        at = np.searchsorted(cells, numbers)
+        is_there = np.append(cells, -1)[at] == numbers
+        found[at[is_there]] = some.points[is_there]
+    return [found[np.searchsorted(on_rings, ring)] for ring in rings]
+
+
+def _list_cells(points: StoredPoints) -> Iterator[tuple[Int64Array, NumberedPoints]]:
+    """Yield row and column of the cells of each chunk, (2, k), and the points."""
+    if points.lattice is None:
+        raise AssertionError("points of no raster with voids")
+    width, step = points.lattice
+    for chunk in points.open().chunks:
+        some = chunk.read([slice(0, chunk.count)])
+        yield np.stack(np.divmod(some.numbers % ROWS_OF_A_FILE, width)) // step, some
