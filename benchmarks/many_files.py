@@ -3,7 +3,9 @@
 ``python -m benchmarks.many_files FOLDER --points 1e8 --tiles 10`` writes LAZ tiles into the folder
 once, then measures in turn, each in processes of its own: decoding the tiles with laspy, as many
 processes as cores; the same tiles to a raster of 1 m by ``tinsmith raster``, with its peak memory
-over all processes; where GDAL's programs are there, ``gdal_grid`` on a share of the points.
+over all processes. ``--format csv`` takes one file of delimited text with the same points instead.
+``--beside`` computes the raster of the ground points in one text file by both ``tinsmith raster``
+and ``gdal_grid -a linear`` (10^6 points take GDAL minutes), and tells how much they differ.
 """
 
 from __future__ import annotations
@@ -19,7 +21,10 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Self
 
-from .datasets.lidar_tiles import make_lidar_tiles, make_text
+import numpy as np
+import rasterio
+
+from .datasets.lidar_tiles import make_ground, make_lidar_tiles, make_text
 from .report.tables import TEXT, Table, add_option
 
 COLUMNS = {
@@ -30,6 +35,8 @@ COLUMNS = {
     "of decoding": "{:.2f}",
     "peak MB": "{:,.0f}",
 }
+IN_TILES = ("--tiles", "1")
+"""Whatever memory there is."""
 _INTERVAL = 0.05
 
 
@@ -99,10 +106,8 @@ def _measure_own(process: int) -> int:
     return int(sizes.get("Pss_Anon", 0)) + int(sizes.get("Pss_Shmem", 0))
 
 
-def rasterize(source: Path, output: Path, workers: int, *more: str) -> tuple[float, float]:
-    """Make a raster by the command; return seconds and the peak of memory."""
-    command = [sys.executable, "-m", "tinsmith", "raster", str(source), "--spacing", "1"]
-    command += ["-o", str(output), "--workers", str(workers), "--restart", "-q", *more]
+def time_program(command: list[str]) -> tuple[float, float]:
+    """Run a program; return seconds and the peak of memory."""
     begin = time.perf_counter()
     process = subprocess.Popen(command)
     with PeakMemory(process.pid) as peak:
@@ -112,6 +117,58 @@ def rasterize(source: Path, output: Path, workers: int, *more: str) -> tuple[flo
     return time.perf_counter() - begin, peak.megabytes
 
 
+def rasterize(source: Path, output: Path, workers: int, *more: str) -> tuple[float, float]:
+    """Make a raster by the command; return seconds and the peak of memory."""
+    command = [sys.executable, "-m", "tinsmith", "raster", str(source), "--spacing", "1"]
+    command += ["-o", str(output), "--workers", str(workers), "--restart", "-q", *more]
+    return time_program(command)
+
+
+def _describe_columns(text: Path) -> Path:
+    """Write which columns of a text are coordinates, for GDAL."""
+    path = text.with_suffix(".vrt")
+    path.write_text(
+        f"""<OGRVRTDataSource><OGRVRTLayer name="{text.stem}">
+<SrcDataSource>{text}</SrcDataSource><GeometryType>wkbPoint25D</GeometryType>
+<GeometryField encoding="PointFromColumns" x="easting" y="northing" z="elevation"/>
+</OGRVRTLayer></OGRVRTDataSource>""",
+        encoding="utf-8",
+    )
+    return path
+
+
+def compare_with_gdal(folder: Path, tiles: list[Path], workers: int, table: Table) -> None:
+    """Compute the raster of the ground by two programs, and show how much their cells differ."""
+    program = shutil.which("gdal_grid")
+    if program is None:
+        print("gdal_grid: skipped, GDAL's programs are not installed.")
+        return
+    text = make_ground(tiles, folder / f"ground-{tiles[0].parent.name}.csv")
+    count = text.read_bytes().count(b"\n") - 1
+    ours, theirs = folder / "ours.tif", folder / "gdal.tif"
+    seconds, peak = rasterize(text, ours, workers, "--crs", "EPSG:32616", *IN_TILES)
+    rate = count / seconds / 1e6
+    table.show("ground, CSV, tinsmith raster", count, seconds, rate, None, peak)
+    with rasterio.open(ours) as dataset:
+        box, cells = dataset.bounds, dataset.read(1)
+    command = [program, "-q", "-a", "linear:radius=0:nodata=nan", "-ot", "Float64"]
+    command += ["-txe", str(box.left), str(box.right), "-tye", str(box.top), str(box.bottom)]
+    command += ["-outsize", *map(str, cells.shape[::-1]), "-l", text.stem]
+    command += [str(_describe_columns(text)), str(theirs)]
+    seconds, peak = time_program(command)
+    rate = count / seconds / 1e6
+    table.show("ground, CSV, gdal_grid -a linear", count, seconds, rate, None, peak)
+    with rasterio.open(theirs) as dataset:
+        others = dataset.read(1)
+    both = np.isfinite(cells) & np.isfinite(others)
+    gap = np.abs(cells - others)[both]
+    print(
+        f"{cells.size:,} cells; {int((np.isfinite(cells) ^ np.isfinite(others)).sum()):,} are "
+        f"empty in one of both; {int((gap > 0.001).sum()):,} differ by more than a millimetre, the "
+        f"largest difference is {gap.max(initial=0.0):.3f} m."
+    )
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -119,29 +176,30 @@ def main() -> None:
     parser.add_argument("--points", type=lambda text: int(float(text)), default=10**8)
     parser.add_argument("--tiles", type=int, default=10)
     parser.add_argument("--workers", type=int, default=len(os.sched_getaffinity(0)))
-    parser.add_argument("--text", action="store_true", help="the same points as delimited text")
+    parser.add_argument("--format", choices=("laz", "csv"), default="laz")
+    parser.add_argument("--beside", action="store_true", help="gdal_grid, on the ground points")
     add_option(parser)
     given = parser.parse_args()
     lidar = given.folder / f"lidar-{given.points:.0e}-{given.tiles}"
     tiles = make_lidar_tiles(lidar, given.points, given.tiles, workers=given.workers)
     table = Table(COLUMNS)
-    begin = time.perf_counter()
-    count = decode_all(tiles, given.workers)
-    decoding = time.perf_counter() - begin
-    table.show("decoding alone, laspy", count, decoding, count / decoding / 1e6, 1.0, float("nan"))
     output = given.folder / "dtm.tif"
-    seconds, peak = rasterize(
-        lidar, output, given.workers, "--output-format", "cog", "--classes", "2"
-    )
-    rate = count / seconds / 1e6
-    table.show("LAZ to COG, 1 m", count, seconds, rate, decoding / seconds, peak)
-    if given.text:
-        text = make_text(given.folder, tiles, given.folder / f"points-{given.points:.0e}.csv")
-        seconds, peak = rasterize(text, output, given.workers, "--crs", "EPSG:32616")
+    if given.beside:
+        compare_with_gdal(given.folder, tiles, given.workers, table)
+    elif given.format == "csv":
+        text = make_text(tiles, given.folder / f"points-{given.points:.0e}.csv")
+        count = given.points // given.tiles * given.tiles
+        seconds, peak = rasterize(text, output, given.workers, "--crs", "EPSG:32616", *IN_TILES)
+        table.show("CSV to GeoTIFF, 1 m", count, seconds, count / seconds / 1e6, None, peak)
+    else:
+        begin = time.perf_counter()
+        count = decode_all(tiles, given.workers)
+        decoding = time.perf_counter() - begin
+        table.show("decoding alone, laspy", count, decoding, count / decoding / 1e6, 1.0, None)
+        cog = ("--output-format", "cog", "--classes", "2")
+        seconds, peak = rasterize(lidar, output, given.workers, *cog, *IN_TILES)
         rate = count / seconds / 1e6
-        table.show("CSV to GeoTIFF, 1 m", count, seconds, rate, decoding / seconds, peak)
-    if shutil.which("gdal_grid") is None:
-        print("gdal_grid: skipped, GDAL's programs are not installed.")
+        table.show("LAZ to COG, 1 m", count, seconds, rate, decoding / seconds, peak)
     table.write(given.json)
 
 

@@ -42,10 +42,13 @@ TILES = (1, 4, 16, 64)
 def rasterize_by_file(
     surveys: Sequence[ts.Survey], whole: ts.Raster, buffer: float
 ) -> tuple[np.ndarray, float]:
-    """Return the cells that each file has in its bounds, with points around it, and seconds."""
+    """Return the cells that each file has in its bounds, with points around it, and seconds.
+
+    Cells between the bounds of files are those of the first file that has them.
+    """
     begin = time.perf_counter()
     everything = np.concatenate([one.points for one in surveys])
-    cells = np.full(whole.shape, np.nan)
+    cells, between = np.full((2, *whole.shape), np.nan)
     box, spacing = whole.grid.bounds, whole.grid.spacing
     for survey in surveys:
         low, high = survey.points[:, :2].min(axis=0), survey.points[:, :2].max(axis=0)
@@ -55,7 +58,9 @@ def rasterize_by_file(
         x = box.xmin + (np.arange(whole.shape[1]) + 0.5) * spacing
         y = box.ymax - (np.arange(whole.shape[0]) + 0.5) * spacing
         own = ((y >= low[1]) & (y <= high[1]))[:, None] & ((x >= low[0]) & (x <= high[0]))
-        cells[own & np.isnan(cells)] = made[own & np.isnan(cells)]
+        cells = np.where(own & np.isnan(cells), made, cells)
+        between = np.where(np.isnan(between), made, between)
+    cells = np.where(np.isnan(cells), between, cells)
     return cells, time.perf_counter() - begin
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-__all__ = ["make_lidar_tiles", "make_text"]
+__all__ = ["make_ground", "make_lidar_tiles", "make_text"]
 
 _SEED = 20_261
 _CORNER = (500_000.0, 4_000_000.0)
@@ -17,6 +17,7 @@ _DENSITY = 4.0
 _LINE = 0.7
 """Metres between scan lines."""
 _CHUNK = 2_000_000
+_CLASS = "classification"
 _GROUND, _HIGH_VEGETATION, _BUILDING = 2, 5, 6
 
 
@@ -103,22 +104,36 @@ def _find_crs() -> object:
     return pyproj.CRS("EPSG:32616")
 
 
-def make_text(folder: Path, tiles: list[Path], path: Path) -> Path:
+def make_text(tiles: list[Path], path: Path) -> Path:
     """Write the points of tiles to one file of delimited text, with their classes."""
-    import laspy
+    return _write_text(tiles, path, ground_only=False)
 
-    del folder
+
+def make_ground(tiles: list[Path], path: Path) -> Path:
+    """Write the ground points of tiles to one file of delimited text."""
+    return _write_text(tiles, path, ground_only=True)
+
+
+def _write_text(tiles: list[Path], path: Path, *, ground_only: bool) -> Path:
+    import laspy
+    import pyarrow as pa
+    from pyarrow import csv
+
     if path.exists():
         return path
     beside = path.with_suffix(".part")
+    names = ("easting", "northing", "elevation")
+    plain = csv.WriteOptions(include_header=False)
     with beside.open("wb") as file:
-        file.write(b"easting,northing,elevation,classification\n")
+        columns = (*names, *(() if ground_only else (_CLASS,)))
+        file.write(f"{','.join(columns)}\n".encode())
         for tile in tiles:
             with laspy.open(tile) as reader:
                 for points in reader.chunk_iterator(_CHUNK):
-                    columns = [np.asarray(points[name]) for name in "xyz"]
-                    columns.append(np.asarray(points["classification"], np.float64))
-                    table = np.column_stack(columns)
-                    np.savetxt(file, table, fmt=("%.2f", "%.2f", "%.2f", "%d"), delimiter=",")
+                    classes = np.asarray(points[_CLASS])
+                    wanted = classes == _GROUND if ground_only else slice(None)
+                    values = [np.round(np.asarray(points[one])[wanted], 2) for one in "xyz"]
+                    values += [] if ground_only else [classes]
+                    csv.write_csv(pa.table(dict(zip(columns, values, strict=True))), file, plain)
     beside.rename(path)
     return path
