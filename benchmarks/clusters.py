@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 import tinsmith as ts
-from tinsmith.tiled.executors import Processes, connect_to_dask, run_tasks
+from tinsmith.tiled.running.executors import Processes, connect_to_dask, run_tasks
 
 from .datasets.lidar_tiles import make_lidar_tiles
 from .report.tables import TEXT, Table, add_option

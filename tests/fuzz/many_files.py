@@ -16,7 +16,7 @@ from support.product_parts import require_same_features
 
 import tinsmith as ts
 from tinsmith.tiled.computing import computing
-from tinsmith.tiled.how import How
+from tinsmith.tiled.running.how import How
 
 from .campaign import Campaign, Case
 

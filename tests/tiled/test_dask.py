@@ -11,7 +11,7 @@ import distributed
 import pytest
 
 import tinsmith as ts
-from tinsmith.tiled.executors import connect_to_dask, run_tasks
+from tinsmith.tiled.running.executors import connect_to_dask, run_tasks
 
 
 def square(job):
@@ -42,7 +42,7 @@ def test_a_cluster_does_every_job_though_a_worker_is_killed():
 
 @pytest.mark.filterwarnings("ignore")
 def test_no_scheduler_is_a_sentence(monkeypatch):
-    monkeypatch.setattr("tinsmith.tiled.executors._SECONDS_TO_CONNECT", 1)
+    monkeypatch.setattr("tinsmith.tiled.running.executors._SECONDS_TO_CONNECT", 1)
     with (
         pytest.raises(
             ts.ReadError, match=r"No scheduler of Dask answers at 'tcp://127\.0\.0\.1:9'"

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tinsmith.tiled.executors import Processes, run_tasks
+from tinsmith.tiled.running.executors import Processes, run_tasks
 
 
 def double(job):
@@ -90,7 +90,7 @@ def test_an_error_ends_the_run():
 def test_a_script_without_a_guard_is_not_run_again(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(
-        "from tinsmith.tiled.executors import Processes, run_tasks\n"
+        "from tinsmith.tiled.running.executors import Processes, run_tasks\n"
         "print('once')\n"
         "processes = Processes(2)\n"
         "run_tasks(processes, abs, [-1, -2], workers=2, take=print, give_up=print)\n"

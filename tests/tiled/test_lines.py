@@ -14,8 +14,8 @@ from support.many_files import Shuffled
 
 import tinsmith as ts
 from tinsmith.tiled.computing import computing
-from tinsmith.tiled.how import How
 from tinsmith.tiled.products.mapped import measure_area
+from tinsmith.tiled.running.how import How
 
 CRS = "EPSG:32616"
 ORIGIN = np.array([500_000.0, 4_000_000.0])

@@ -13,8 +13,8 @@ from support.many_files import Shuffled, write_lidar
 
 import tinsmith as ts
 from tinsmith.tiled.computing import computing
-from tinsmith.tiled.how import How
 from tinsmith.tiled.products import point_rasters
+from tinsmith.tiled.running.how import How
 
 
 @pytest.fixture(scope="module")

@@ -14,8 +14,8 @@ from support.product_parts import require_same_features
 import tinsmith as ts
 from tinsmith.tiled import given
 from tinsmith.tiled.computing import computing
-from tinsmith.tiled.how import How
 from tinsmith.tiled.products.mapped import measure_area
+from tinsmith.tiled.running.how import How
 
 SQUARES = {
     "a": [(500_010, 4_000_010), (500_080, 4_000_015), (500_070, 4_000_090)],

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import tinsmith as ts
-from tinsmith.tiled.runs import Fingerprint, Record, Run, hash_file
+from tinsmith.tiled.running.runs import Fingerprint, Record, Run, hash_file
 
 
 def describe(path, **options):

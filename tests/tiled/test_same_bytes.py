@@ -17,7 +17,7 @@ import rasterio
 from support.many_files import Shuffled
 
 import tinsmith as ts
-from tinsmith.tiled.executors import connect_to_dask
+from tinsmith.tiled.running.executors import connect_to_dask
 
 PRODUCTS = {
     ".tif": lambda made, path, **way: made.rasterize(path, spacing=1.0, **way),

@@ -12,7 +12,7 @@ from support.many_files import Shuffled, write_lidar
 import tinsmith as ts
 from tinsmith.tiled.assembling import Sweep, merge_triangles, write_turned
 from tinsmith.tiled.numbering import NUMBER, number_vertices
-from tinsmith.tiled.runs import hash_file
+from tinsmith.tiled.running.runs import hash_file
 
 
 @pytest.fixture(scope="module")

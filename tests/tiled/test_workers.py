@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import pytest
 
 import tinsmith as ts
-from tinsmith.tiled.runs import Record, Run
-from tinsmith.tiled.workers import Phase
+from tinsmith.tiled.running.runs import Record, Run
+from tinsmith.tiled.running.workers import Phase
 
 
 @dataclass(frozen=True)

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ..tiled.cloud import Plan, TiledPoints
-    from ..tiled.how import How
-    from ..tiled.workers import Status
+    from ..tiled.running import How, Status
     from .outputs import Products
     from .parameters import Decorator
 
@@ -237,7 +236,7 @@ def compute_tiles(
 @contextmanager
 def showing_tiles(job: Job) -> Iterator[How]:
     """Yield how a run is carried out, showing how far each step is."""
-    from ..tiled.how import How
+    from ..tiled.running import How
 
     with showing_progress(job) as way:
         yield How.of(**way)

@@ -6,7 +6,6 @@ memory. The steps: ``reading`` (inputs into ``chunks`` of a ``store``), ``divisi
 """
 
 from .cloud import TiledPoints, tiles
-from .how import Way
-from .workers import Status
+from .running import Status, Way
 
 __all__ = ["Status", "TiledPoints", "Way", "tiles"]

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ..terrain.surface import Segments
     from ..tin import TIN
     from .reading import StoredPoints
-    from .runs import Record
+    from .running import Record
     from .tasks import Part
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from ..base.arrays import AnyArray
     from .reading import StoredPoints
-    from .runs import Record
+    from .running import Record
     from .tasks import Part
 
 

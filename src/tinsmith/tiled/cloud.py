@@ -34,9 +34,9 @@ from ..tin.validation import as_xy
 from .assembling import WRITERS, find_writable
 from .chunks import BYTES_ON_DISK
 from .computing import computing, labelling
-from .how import How, Way, estimate_memory
 from .lines import KINDS, GivenLines, as_files
 from .reading import join_bounds
+from .running import How, Way, estimate_memory
 
 if TYPE_CHECKING:
     import os

@@ -21,7 +21,7 @@ from .given import Given
 from .labelled import name_files
 from .lines import describe_lines, prepare_lines
 from .reading import StoredPoints, read_inputs
-from .runs import Fingerprint, Run
+from .running import Fingerprint, Run
 from .store import count_by_cells
 from .tasks import PHASE, TileJob, compute_tile, divide_job
 from .voids import add_void_rings
@@ -31,10 +31,9 @@ if TYPE_CHECKING:
 
     from ..tin.building import BuildInputs
     from .cloud import TiledPoints
-    from .how import How
     from .labelled import GroundTiles
     from .lines import GivenLines
-    from .workers import Phase
+    from .running import How, Phase
 
 _LATTICE = 1024
 """Rows and columns of the cells in which points are counted before tiles are cut."""
@@ -97,15 +96,8 @@ def computing(
                 if not getattr(module, "HAS_LINES", True):
                     _require_no_voids([points], "this product")
                 lines = _Lines.of(add_void_rings(points, cloud.lines), cloud)
-            if lines is not None and lines.inputs is not None:
-                drape = Drape(
-                    run=run,
-                    points=points,
-                    phase=start("Draping lines"),
-                    find_tiles=partial(_find_tiles, points=points, how=how, cut=divide),
-                )
-                step = start("Looking for lines")
-                points = prepare_lines(lines.given, lines.inputs, step, drape)
+            if lines is not None:
+                points = lines.prepare(points, run, how, start)
             settled = module.settle_options(points, _store(options, run), *stored[1:])
             own = getattr(module, "divide_points", None)
             cut = divide if own is None else partial(own, settled)
@@ -208,6 +200,16 @@ class _Lines(NamedTuple):
             return cls(replace(given, files=()), None, {})
         given.require_same()
         return cls(given, inputs, describe_lines(inputs))
+
+    def prepare(
+        self, points: StoredPoints, run: Run, how: How, start: Callable[[str], Phase]
+    ) -> StoredPoints:
+        """Return points with the lines, cut where they meet, and with elevations."""
+        if self.inputs is None:
+            return points
+        find_tiles = partial(_find_tiles, points=points, how=how, cut=divide)
+        drape = Drape(run=run, points=points, phase=start("Draping lines"), find_tiles=find_tiles)
+        return prepare_lines(self.given, self.inputs, start("Looking for lines"), drape)
 
 
 def _look_at(cloud: TiledPoints) -> list[Fingerprint]:

@@ -10,7 +10,7 @@ import numpy as np
 from ..tin.tiling import KnownTriangles
 from .along import load_parts
 from .given import Given
-from .runs import Run
+from .running import Run
 from .tasks import PHASE, TileJob, compute_tile, divide_job
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..tin.tiling import Draping, LaidLines
     from .division import Tile
     from .reading import StoredPoints
-    from .workers import Phase
+    from .running import Phase
 
 _PRODUCT, _LINES = "drape", "lines"
 _FOLDER = "draped"

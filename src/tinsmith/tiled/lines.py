@@ -43,7 +43,7 @@ from ..tin.tiling import (
 )
 from .chunks import load_chunks
 from .reading import ROWS_OF_A_FILE, StoredPoints, load_points, name_rows, save_points
-from .runs import Fingerprint, Record, Run, hash_file
+from .running import Fingerprint, Record, Run, hash_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from ..base.policies import CrossingPolicy, DuplicatePolicy
     from ..tin.building import BuildInputs
     from .draping import Drape
-    from .workers import Phase
+    from .running import Phase
 
 KINDS = ("breaklines", "boundary", "holes")
 """Options that take lines."""

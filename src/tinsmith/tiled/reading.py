@@ -24,7 +24,7 @@ from ..terrain.ground_filter import Candidates
 from ..tin.report import describe_differing, describe_skipped
 from ..tin.tiling import NumberedPoints, find_skeleton
 from .chunks import Chunk, load_chunks, save_chunks, split_numbers, write_chunk
-from .runs import Fingerprint, Record, Run, hash_file
+from .running import Fingerprint, Record, Run, hash_file
 from .store import PointStore, join_skeletons
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from ..base.policies import DuplicatePolicy, GroundReturns
     from ..io.registry import StreamEnd
     from ..io.streaming import PointStream
-    from .workers import Phase
+    from .running import Phase
 
 CHUNK_POINTS = 1_000_000
 """Points that are held at a time while a file is read."""

@@ -18,7 +18,7 @@ from ..tin.tiling import LocalTriangulation, find_differing, triangulate_box, wi
 from .division import Tile, quarter
 from .lines import open_lines
 from .reading import name_rows, open_store
-from .runs import Record, Run, hash_file
+from .running import Record, Run, hash_file
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

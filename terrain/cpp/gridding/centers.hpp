@@ -107,9 +107,8 @@ class CenterScan {
       std::fill_n(first, Paint::kNumbers * static_cast<std::size_t>(tile.columns.size()),
                   std::numeric_limits<double>::quiet_NaN());
     }
-    const double largest =
-        std::max({std::fabs(grid.x[0]), std::fabs(grid.x[grid.columns - 1]), std::fabs(grid.y[0]),
-                  std::fabs(grid.y[grid.rows - 1])});
+    const double largest = std::max({std::fabs(grid.x[0]), std::fabs(grid.x[grid.columns - 1]),
+                                     std::fabs(grid.y[0]), std::fabs(grid.y[grid.rows - 1])});
     slack_ = 1e-9 + 32.0 * std::numeric_limits<double>::epsilon() * largest / grid.spacing;
   }
 

@@ -131,11 +131,11 @@ inline SeenArrays find_seen(const GivenXy& places, const GivenTriples& triangles
                             const GivenNumbers& chosen, const GivenXy& centers,
                             const GivenValues& radii, std::int32_t most) {
   const PlaneTriangles all = plane_triangles_of(places, triangles, &neighbors);
-  const bool is_sound =
-      fixed.shape(0) == triangles.shape(0) && centers.shape(0) == chosen.size() &&
-      radii.size() == chosen.size() && most > 0 && are_all(chosen, [&](std::int32_t t) {
-        return t >= 0 && t < static_cast<std::int32_t>(all.count);
-      });
+  const bool is_sound = fixed.shape(0) == triangles.shape(0) && centers.shape(0) == chosen.size() &&
+                        radii.size() == chosen.size() && most > 0 &&
+                        are_all(chosen, [&](std::int32_t t) {
+                          return t >= 0 && t < static_cast<std::int32_t>(all.count);
+                        });
   if (!is_sound) throw std::invalid_argument("triangles, flags and discs do not go together");
   std::vector<std::int32_t> offsets{0}, seen, failed;
   {

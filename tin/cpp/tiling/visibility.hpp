@@ -146,9 +146,8 @@ class Visibility {
   static bool may_meet(Point a, Point b, const Disc& disc) {
     const double x = b.x - a.x, y = b.y - a.y;
     const double square = x * x + y * y;
-    double share = square > 0.0
-                       ? ((disc.center.x - a.x) * x + (disc.center.y - a.y) * y) / square
-                       : 0.0;
+    double share =
+        square > 0.0 ? ((disc.center.x - a.x) * x + (disc.center.y - a.y) * y) / square : 0.0;
     share = share >= 0.0 ? std::min(share, 1.0) : 0.0;  // 0 if it is not a number
     const double distance =
         std::hypot(a.x + share * x - disc.center.x, a.y + share * y - disc.center.y);

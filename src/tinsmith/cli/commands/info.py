@@ -31,14 +31,13 @@ if TYPE_CHECKING:
 def info(files: tuple[Path, ...], plot: Path | None, job: Job) -> None:
     """Describe FILES: survey points, an elevation raster or a TIN.
 
-    Several files of points are read as one survey. Shown are counts, extent, elevations and CRS;
-    for a TIN also areas, slopes and the shape of triangles; with --codes the lines made from field
-    codes, and irregularities in them.
+    Several files of points are read as one survey; of a folder the headers are compared. Shown are
+    counts, extent, elevations and CRS; for a TIN also areas, slopes and the shape of triangles;
+    with --codes the lines made from field codes, and irregularities in them.
 
     Example:
       tinsmith info sample_data/jacksboro.tif
       tinsmith info sample_data/site_survey.csv --crs EPSG:32616 --json
-      tinsmith info lidar/
     """
     from ...io.reading import is_folder
     from ...tin import TIN

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from ...base.results import Features
     from ..reading import StoredPoints
-    from ..runs import Record
+    from ..running import Record
     from ..tasks import Part
 
 

@@ -29,7 +29,7 @@ from ...terrain.parts import are_owned
 from ...terrain.parts.ground import GroundWindow, choose_reach
 from ..labelled import GroundTiles, name_files
 from ..reading import ROWS_OF_A_FILE
-from ..runs import Fingerprint, Record, Run, hash_file
+from ..running import Fingerprint, Record, Run, hash_file
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, UInt8Array
     from ...io.registry import PointChunk
     from ..reading import StoredPoints
+    from ..running import Phase
     from ..tasks import Part
-    from ..workers import Phase
 
 FILES = "files"
 """Step in which files are written, and their folder."""

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Float64Array
     from ..reading import StoredPoints
-    from ..runs import Record
+    from ..running import Record
     from ..tasks import Part
 
 HAS_ALL_TILES = True

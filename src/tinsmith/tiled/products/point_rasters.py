@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from ...terrain.gridding import CellBlock
     from ..cloud import TiledPoints
     from ..reading import StoredPoints
-    from ..runs import Record
+    from ..running import Record
     from ..tasks import Part
 
 HAS_ALL_TILES = True

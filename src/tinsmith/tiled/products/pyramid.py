@@ -31,7 +31,7 @@ from ...terrain.simplification.pyramid import (
     join_nodes,
 )
 from ...terrain.simplification.pyramid import simplify as simplify_node
-from ..runs import Record, Run, hash_file
+from ..running import Record, Run, hash_file
 from .squares import as_node, list_finest, settle_quadtree
 from .squares import divide_job as divide_job
 from .squares import divide_points as divide_points
@@ -40,8 +40,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ..reading import StoredPoints
+    from ..running import Phase
     from ..tasks import Part
-    from ..workers import Phase
 
 INDEX = "tileset.json"
 HAS_LINES = False

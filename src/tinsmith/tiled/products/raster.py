@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from ...base.types import Bounds
     from ..reading import StoredPoints
-    from ..runs import Record
+    from ..running import Record
     from ..tasks import Part
 
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Int64Array
     from ...base.types import Bounds
     from ..reading import StoredPoints
-    from ..runs import Record
+    from ..running import Record
     from ..tasks import Part
 
 _JOINED = "joined"

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from ...base.results import Table
     from ..reading import StoredPoints
-    from ..runs import Record
+    from ..running import Record
     from ..tasks import Part
 
 

@@ -20,7 +20,7 @@ from ...terrain.parts import are_owned
 from ...tin import TIN
 from ..numbering import NUMBER, number_vertices
 from ..reading import open_store
-from ..runs import hash_file
+from ..running import hash_file
 from ..tasks import save_arrays
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Int64Array
     from ..reading import StoredPoints
-    from ..runs import Record
+    from ..running import Record
     from ..tasks import Part
 
 INDEX = "surface.json"

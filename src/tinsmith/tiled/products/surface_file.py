@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Float64Array
     from ..reading import StoredPoints
-    from ..runs import Record
+    from ..running import Record
     from ..tasks import Part
 
 _ROWS, _USED, _POINTS, _NUMBERS = ".own.rows", ".used.rows", ".own.points", ".numbers"

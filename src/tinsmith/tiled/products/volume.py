@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from ...tin.tiling import LocalTriangulation
     from ..reading import StoredPoints
-    from ..runs import Record
+    from ..running import Record
     from ..tasks import Part
 
 _PURPOSE = "Volumes"

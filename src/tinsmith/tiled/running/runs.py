@@ -16,10 +16,10 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.atomic import find_leftovers, replacing
-from ..base.errors import MissingExtraError, ReadError, TinsmithError, WriteError
-from ..base.notes import list_collected
-from ..base.sentences import counted
+from ...base.atomic import find_leftovers, replacing
+from ...base.errors import MissingExtraError, ReadError, TinsmithError, WriteError
+from ...base.notes import list_collected
+from ...base.sentences import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -268,7 +268,7 @@ class Run:
         """Write what became of a task; called by the task, when all that it writes is there."""
         folder = self.folder / phase
         folder.mkdir(exist_ok=True)
-        kept = replace(record, warnings=list_collected())
+        kept = replace(record, warnings=tuple(list_collected()))
         self._write(f"{phase}/{record.key}.json", asdict(kept))
 
     def read(self, phase: str) -> dict[str, Record]:
@@ -276,8 +276,9 @@ class Run:
         found = {}
         for path in sorted((self.folder / phase).glob("*.json")):
             try:
-                record = Record(**json.loads(path.read_text(encoding="utf-8")))
-            except (OSError, ValueError, TypeError):
+                values = json.loads(path.read_text(encoding="utf-8"))
+                record = Record(**{**values, "warnings": tuple(values["warnings"])})
+            except (OSError, ValueError, TypeError, KeyError):
                 continue
             if all(hash_file(self.folder / name) == value for name, value in record.files.items()):
                 found[record.key] = record

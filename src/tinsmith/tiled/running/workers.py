@@ -8,8 +8,8 @@ from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING, Any, Protocol
 
-from ..base.notes import collecting_warnings, join_alike, warn
-from ..base.sentences import counted
+from ...base.notes import collecting_warnings, join_alike, warn
+from ...base.sentences import counted
 from .executors import Processes, run_tasks
 from .runs import Record, UnfinishedError
 

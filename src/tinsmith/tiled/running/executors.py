@@ -18,8 +18,8 @@ from threading import Thread
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from ..base import optional
-from ..base.errors import ReadError
+from ...base import optional
+from ...base.errors import ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
