@@ -67,6 +67,7 @@ def test_processes_and_threads_do_every_job():
         assert run(threads, double, []) == ({}, {})
 
 
+@pytest.mark.slow
 def test_killed_processes_lose_nothing(tmp_path):
     jobs = [(number, str(tmp_path)) for number in range(12)]
     taken, given_up = run(Processes(2), die_once, jobs)
@@ -74,6 +75,7 @@ def test_killed_processes_lose_nothing(tmp_path):
     assert given_up == {}
 
 
+@pytest.mark.slow
 def test_a_job_that_ends_its_process_each_time_is_given_up():
     taken, given_up = run(Processes(2), die, range(8))
     assert taken == {job: job for job in range(8) if job != 3}
