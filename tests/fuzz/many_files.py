@@ -142,10 +142,19 @@ def _compare_files(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path)
     except ts.ReadError as error:
         if "nearer to each other than coordinates are rounded" in str(error):
             return 1
+        if "it is so narrow there" in str(error) and _is_narrow(tin.points):
+            return 1
         raise
     again = cloud.simplify(folder / "again.ply", **options, **way)
     assert filecmp.cmp(simple, again, shallow=False)
     return 2
+
+
+def _is_narrow(points: np.ndarray) -> bool:
+    """Tell whether all points lie within 16 roundings of the largest coordinate, across a line."""
+    xy = points[:, :2] - points[0, :2]
+    across = np.linalg.svd(xy - xy.mean(axis=0), full_matrices=False)[2][1]
+    return bool(np.ptp(xy @ across) <= 16 * np.spacing(np.abs(points[:, :2]).max()))
 
 
 def _compare_surfaces(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> int:

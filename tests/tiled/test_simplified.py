@@ -84,3 +84,23 @@ def test_what_cannot_be_is_refused(lidar, tmp_path):
     with pytest.raises(ts.OptionError, match="none where a surface is simplified"):
         with_line.simplify(tmp_path / "a.ply", 1.0, executor=Shuffled())
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_surface_narrower_than_rounding_is_refused(tmp_path):
+    x = np.array([76.8, 77.3, 78.9, 79.7, 80.6, 81.4, 82.2]) + 0.02843790880735
+    for seed in range(30):
+        z = np.random.default_rng(seed).normal(0, 5, len(x))
+        points = np.column_stack([x, x * 0.1 + seed / 97, z])
+        try:
+            tin = ts.triangulate(points)
+        except ts.PointsError:
+            continue
+        cloud = ts.tiles(ts.write(ts.Survey(points=points), tmp_path / f"{seed}.ply"))
+        ts.simplify(tin, tolerance=1.0)
+        try:
+            made = cloud.simplify(tmp_path / "a.ply", 1.0, node_points=16, executor=Shuffled())
+        except ts.ReadError as error:
+            assert "so narrow there that its triangles lie over each other" in str(error)  # noqa: PT017
+            return
+        assert ts.check(ts.read(made), level=1).ok
+    pytest.fail("no surface was refused")

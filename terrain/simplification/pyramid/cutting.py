@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ....base.errors import PointsError
+from ....tin import TIN, check
 from ....tin.predicates import columns, orientation
 
 if TYPE_CHECKING:
@@ -50,13 +52,43 @@ def cut(points: Float64Array, triangles: Int32Array, box: Bounds) -> Mesh:
     -------
     Mesh
         Without parts that have no area where coordinates are rounded.
+
+    Raises
+    ------
+    PointsError
+        If rounding turned parts over, and the others do not make up one surface.
     """
     rings = triangles.astype(np.int64)
     for axis, low, high in ((0, box.xmin, box.xmax), (1, box.ymin, box.ymax)):
         whole = _Edges(len(points), np.empty((0, 2), np.int64))
         points, rings, whole = _keep_side(points, rings, whole, axis=axis, value=low, sign=1)
         points, rings, _ = _keep_side(points, rings, whole, axis=axis, value=high, sign=-1)
-    return settle(points, _divide(points, rings))
+    parts = _divide(points, rings)
+    found = settle(points, parts)
+    if (orientation(columns(points), *parts.T) < 0).any() and not _is_sound(found):
+        raise explain_narrow(box)
+    return found
+
+
+def explain_narrow(box: Bounds) -> PointsError:
+    """Return the refusal of triangles that rounding turned over in a square."""
+    return PointsError(
+        f"The surface cannot be cut along the square from {box.xmin:g}, {box.ymin:g} to "
+        f"{box.xmax:g}, {box.ymax:g}: it is so narrow there that its triangles lie over each "
+        "other where coordinates are rounded. `tinsmith.simplify` in memory does not cut it."
+    )
+
+
+def _is_sound(mesh: Mesh) -> bool:
+    """Tell whether triangles make up one surface with one boundary, which does not meet itself."""
+    if not len(mesh.triangles):
+        return True
+    try:
+        found = check(TIN.from_triangles(mesh.points, mesh.triangles), level=2)
+    except PointsError:  # edges of more than two triangles
+        return False
+    kinds = {problem.kind for problem in found.problems}
+    return kinds.isdisjoint({"orientation", "boundary", "overlap", "euler", "area"})
 
 
 class _Edges(NamedTuple):

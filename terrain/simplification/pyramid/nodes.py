@@ -9,7 +9,7 @@ import numpy as np
 from ....base.errors import PointsError
 from ....tin import TIN
 from ....tin.meshing import simplify_convex
-from .cutting import Mesh, cut, settle
+from .cutting import Mesh, cut, explain_narrow, settle
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -84,11 +84,15 @@ def simplify(mesh: Mesh, box: Bounds, tolerance: float) -> Mesh:
     Raises
     ------
     PointsError
-        If rounding left a vertex on a side of the square that was not chosen there.
+        If rounding left a vertex on a side of the square that was not chosen there, or triangles
+        that lie over each other.
     """
-    tin = TIN.from_triangles(mesh.points, mesh.triangles)
     on_sides, chosen = _choose_on_sides(mesh.points, box, tolerance * _SHARE_ALONG_SIDES)
-    kept, triangles, error = simplify_convex(tin, chosen, on_sides, tolerance)
+    try:
+        tin = TIN.from_triangles(mesh.points, mesh.triangles)
+        kept, triangles, error = simplify_convex(tin, chosen, on_sides, tolerance)
+    except PointsError as fault:
+        raise explain_narrow(box) from fault
     if not np.array_equal(kept[on_sides[kept]], chosen):
         raise PointsError(
             f"The sides of the square from {box.xmin:g}, {box.ymin:g} to {box.xmax:g}, "
