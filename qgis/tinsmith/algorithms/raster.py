@@ -29,8 +29,9 @@ class RasterAlgorithm(CommandAlgorithm):
             "VALUE",
             "What the cells hold",
             "--value",
-            "Slope and aspect in degrees, hillshade from 1 to 255.",
-            ("elevation", "slope", "aspect", "hillshade"),
+            "Slope and aspect in degrees, hillshade from 1 to 255. Of points also their count in a "
+            "cell, and how high the highest is above the ground, whose classes are chosen.",
+            ("elevation", "slope", "aspect", "hillshade", "count", "height"),
         ),
         choice(
             "METHOD",
