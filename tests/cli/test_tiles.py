@@ -209,7 +209,7 @@ def test_options_of_points_and_of_surfaces_are_not_mixed(words, sentence, more, 
     assert [one.name for one in here.iterdir()] == ["places.csv"]
 
 
-@pytest.mark.parametrize("kind", ["own elevations", "draped"])
+@pytest.mark.parametrize("kind", ["own elevations", pytest.param("draped", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("command", COMMANDS)
 def test_lines_of_files_are_those_in_memory(command, kind, lidar, here, tmp_path_factory, commands):
     line, site, flat = write_lines(tmp_path_factory.mktemp("lines"))

@@ -21,6 +21,7 @@ def square(job):
 
 
 @pytest.mark.filterwarnings("ignore")  # of distributed, about a worker that is gone
+@pytest.mark.slow
 def test_a_cluster_does_every_job_though_a_worker_is_killed():
     taken = {}
     with distributed.LocalCluster(

@@ -125,7 +125,8 @@ sys.exit(main(sys.argv[1:]))
 """
 
 
-@pytest.mark.parametrize("workers", [1, pytest.param(2, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("workers", [1, 2])
 def test_files_that_become_too_large_are_told_and_the_run_goes_on(lidar, tmp_path, workers):
     """The limit on the size of files stands for a disk that is full: no rights are needed."""
     words = ["raster", lidar, "--spacing", "2", "--tiles", "3", "--workers", workers, "-q", "-o"]

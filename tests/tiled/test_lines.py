@@ -124,7 +124,10 @@ def tile(folder, store, **lines):
 
 
 @pytest.mark.filterwarnings("ignore:.* is a shapefile")
-@pytest.mark.parametrize("product", PRODUCTS)
+@pytest.mark.parametrize(
+    "product",
+    [pytest.param(one, marks=[pytest.mark.slow] * (one == "contours")) for one in PRODUCTS],
+)
 @pytest.mark.parametrize("kind", LINES)
 def test_products_are_those_in_memory(folder, store, points, tmp_path, kind, product):
     make, method, (given, options), suffix = PRODUCTS[product]

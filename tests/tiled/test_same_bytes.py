@@ -125,6 +125,7 @@ def fuzz(*arguments):
     return done.stdout
 
 
+@pytest.mark.slow
 def test_a_run_whose_first_process_is_killed_goes_on(tmp_path):
     find = tmp_path / "case.json"
     find.write_text(json.dumps({"campaign": "kills", "seed": 1, "case": CASE}))

@@ -10,6 +10,8 @@ from support.pages import open_page
 
 import tinsmith as ts
 
+pytestmark = pytest.mark.slow  # a browser for each
+
 READ = """window.terrain.then((p) => {
   const found = [];
   for (const [azimuth, tilt, factor] of [[195, 35, null], [180, 90, null], [40, 60, 3]]) {

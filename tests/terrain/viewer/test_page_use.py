@@ -13,6 +13,8 @@ from support.pages import open_page
 
 import tinsmith as ts
 
+pytestmark = pytest.mark.slow  # a browser for each
+
 STATE = """window.terrain.then((p) => ({
   heading: p.scene.heading, away: p.scene.camera.position.distanceTo(p.scene.controls.target),
   target: p.scene.controls.target.toArray(), marked: p.tool.marked.length,
