@@ -310,6 +310,20 @@ def describe_skipped(skipped: Mapping[str, int]) -> tuple[str, ...]:
     return (f"Left out by the reader: {', '.join(left)}.",) if left else ()
 
 
+def measure_spread(elevations: Float64Array, starts: Int32Array | Int64Array) -> Float64Array:
+    """Return by how much elevations of a place differ, (k,): those from each start on.
+
+    Examples
+    --------
+    >>> measure_spread(np.array([5.0, 7.0, 6.0]), np.array([0, 2]))
+    array([2., 0.])
+    """
+    with np.errstate(over="ignore"):  # between the largest floats
+        highest = np.maximum.reduceat(elevations, starts)
+        spread: Float64Array = highest - np.minimum.reduceat(elevations, starts)
+    return spread
+
+
 def describe_differing(
     places: int, most: float, duplicates: DuplicatePolicy | None
 ) -> tuple[str, ...]:
@@ -462,10 +476,7 @@ class Report(Frozen):
     def _describe_merges(self) -> tuple[str, ...]:
         if len(self.merged_rows) == 0:
             return ()
-        starts = self.merged_offsets[:-1]
-        highest = np.maximum.reduceat(self.merged_elevations, starts)
-        with np.errstate(over="ignore"):  # between the largest floats
-            spread = highest - np.minimum.reduceat(self.merged_elevations, starts)
+        spread = measure_spread(self.merged_elevations, self.merged_offsets[:-1])
         differing = int(np.count_nonzero(spread))
         return describe_differing(differing, float(spread.max()), self.duplicates)
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...base.types import Bounds, seal
 from ...tin import TIN, triangulate
+from ...tin.tiling import intersect
 from ..sections.rims import move_aside
 from ..surface import Segments
 from .surfaces import as_surface
@@ -71,7 +72,7 @@ def find_reach(box: Bounds, options: LineOptions) -> Bounds | None:
         ends = np.concatenate([segments.starts, segments.ends])
         near = Bounds.of(ends)
         reach = near if reach is None else _join(reach, near)
-    return None if reach is None else _intersect(reach, box)
+    return None if reach is None else intersect(reach, box)
 
 
 def _list_near(box: Bounds, options: LineOptions) -> Iterator[Segments]:
@@ -91,15 +92,6 @@ def _join(one: Bounds, other: Bounds) -> Bounds:
         min(one.ymin, other.ymin),
         max(one.xmax, other.xmax),
         max(one.ymax, other.ymax),
-    )
-
-
-def _intersect(one: Bounds, other: Bounds) -> Bounds:
-    return Bounds(
-        max(one.xmin, other.xmin),
-        max(one.ymin, other.ymin),
-        min(one.xmax, other.xmax),
-        min(one.ymax, other.ymax),
     )
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from support.many_files import Shuffled
@@ -60,6 +63,22 @@ def test_notes_are_those_in_memory(survey, tmp_path, name):
     for tiles in (1, 5):
         path = in_tiles(cloud, tmp_path / name, tiles=tiles, executor=Shuffled(tiles))
         assert path.read_bytes() == wanted.replace(b"whole-", b"")
+
+
+@pytest.mark.parametrize("tiles", [1, 5])
+@pytest.mark.parametrize("is_other", [False, True])
+def test_volumes_tell_of_both_surfaces(survey, tmp_path, is_other, tiles):
+    plain = replace(survey, points=np.random.default_rng(3).random((500, 3)) * [60, 50, 3])
+    files = [ts.write(survey, tmp_path / "a.csv"), ts.write(plain, tmp_path / "b.csv")]
+    first, second = files[::-1] if is_other else files
+    whole = ts.volume(*(ts.triangulate(ts.read(one)) for one in (first, second)))
+    (wanted,) = [note for note in whole.notes if "differ in elevation" in note]
+    cloud, executor = ts.tiles(first), Shuffled(tiles)
+    path = tmp_path / "volume.json"
+    cloud.volume(path, other=ts.tiles(second), tiles=tiles, executor=executor)
+    (told,) = [note for note in json.loads(path.read_text())["notes"] if "differ in" in note]
+    assert told.startswith("The other surface: ") is is_other
+    assert told.partition("Points at")[2] == wanted.partition("Points at")[2]
 
 
 def test_places_of_a_merge_are_those_of_points_that_are_not_merged(survey):

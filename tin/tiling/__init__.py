@@ -1,6 +1,6 @@
 """Parts of a triangulation that is never in memory as a whole, each of them exact."""
 
-from .boxes import are_in_box, list_sides, widen
+from .boxes import are_in_box, intersect, list_sides, widen
 from .circles import Discs
 from .draping import Draping, KnownTriangles, LaidLines, find_rim, node_base, node_laid
 from .duplicates import find_differing
@@ -39,6 +39,7 @@ __all__ = [
     "find_rim",
     "find_skeleton",
     "find_triangles_at",
+    "intersect",
     "list_segments_near",
     "list_sides",
     "node_base",

@@ -32,6 +32,16 @@ def list_sides(box: Bounds) -> tuple[float, float, float, float]:
     return float(box.xmin), float(box.ymin), float(box.xmax), float(box.ymax)
 
 
+def intersect(one: Bounds, other: Bounds) -> Bounds:
+    """Return what two boxes have in common; its sides are exchanged where that is nothing."""
+    return Bounds(
+        max(one.xmin, other.xmin),
+        max(one.ymin, other.ymin),
+        min(one.xmax, other.xmax),
+        min(one.ymax, other.ymax),
+    )
+
+
 def widen(box: Bounds, margin: float) -> Bounds:
     """Return a box that is wider by a margin on every side."""
     return Bounds(box.xmin - margin, box.ymin - margin, box.xmax + margin, box.ymax + margin)

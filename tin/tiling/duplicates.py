@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..report import measure_spread
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from typing import Any
@@ -36,7 +38,6 @@ def _measure(places: Float64Array, elevations: Float64Array, starts: Int64Array)
     """Return places and the spread of their elevations, those from each start on."""
     if not len(starts):
         return np.empty((0, 3))
-    with np.errstate(over="ignore"):  # between the largest floats
-        spread = np.maximum.reduceat(elevations, starts) - np.minimum.reduceat(elevations, starts)
+    spread = measure_spread(elevations, starts)
     found: Float64Array = np.column_stack([places, spread])[spread != 0.0]
     return found

@@ -73,7 +73,7 @@ class Drape:
         options = {"kind": _LINES, _LINES: given.describe()}
         duplicates, folder = draping.inputs.options.duplicates, self.points.folder
         jobs = [
-            TileJob(run.folder, folder, tile, _PRODUCT, options, duplicates, base)
+            TileJob(run.folder, folder, tile, _PRODUCT, options, duplicates, base, is_told=False)
             for tile in self.find_tiles(run)
         ]
         records = self.phase.run(run, PHASE, compute_tile, jobs, divide=divide_job)

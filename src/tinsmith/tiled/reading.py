@@ -332,9 +332,16 @@ class StoredPoints:
         self, records: Mapping[str, Record], duplicates: DuplicatePolicy
     ) -> StoredPoints:
         """Tell at how many places points differ in elevation, by the records of all tiles."""
-        found = [one.values["differing"] for one in records.values() if "differing" in one.values]
-        places, most = sum(int(one[0]) for one in found), max((one[1] for one in found), default=0)
-        return replace(self, notes=(*self.notes, *describe_differing(places, most, duplicates)))
+        return replace(self, notes=(*self.notes, *tell_differing(records, "differing", duplicates)))
+
+
+def tell_differing(
+    records: Mapping[str, Record], name: str, duplicates: DuplicatePolicy
+) -> tuple[str, ...]:
+    """Return the note on what tiles counted under a name, by :func:`.tasks.measure_differing`."""
+    found = [one.values[name] for one in records.values() if name in one.values]
+    places, most = sum(int(one[0]) for one in found), max((one[1] for one in found), default=0)
+    return describe_differing(places, most, duplicates)
 
 
 def open_store(folder: Path) -> PointStore:
@@ -418,14 +425,15 @@ def read_inputs(
 def _find_lattice(filled: Sequence[Record], names: Mapping[str, str]) -> tuple[int, int] | None:
     """Return that of a raster with voids; refuse one among several files."""
     for record in filled:
-        lattice = record.values.get("lattice")
-        if lattice is not None and len(filled) > 1:
+        lattice = record.values["lattice"]
+        if lattice is None:
+            continue
+        if len(filled) > 1:
             raise ReadError(
                 f"'{names[record.key]}' has voids, around which there is no surface, and cannot be "
                 "joined with others: make one raster of them first, such as a virtual one (VRT)."
             )
-        if lattice is not None:
-            return lattice[0], lattice[1]
+        return lattice[0], lattice[1]
     return None
 
 

@@ -12,9 +12,8 @@ import numpy as np
 
 from ..base.atomic import replacing
 from ..base.errors import TinsmithError, WriteError
-from ..base.types import Bounds
 from ..terrain.parts import are_owned, are_owned_triangles
-from ..tin.tiling import LocalTriangulation, find_differing, triangulate_box, widen
+from ..tin.tiling import LocalTriangulation, find_differing, intersect, triangulate_box, widen
 from .division import Tile, quarter
 from .lines import open_lines
 from .reading import name_rows, open_store
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
 
     from ..base.arrays import AnyArray, Float64Array
     from ..base.policies import DuplicatePolicy
+    from ..base.types import Bounds
     from .lines import StoredLines
     from .reading import StoredPoints
     from .store import PointStore
@@ -55,6 +55,8 @@ class TileJob:
         What becomes of points at one place.
     lines : Path or None
         File of the lines of the surface.
+    is_told : bool
+        Whether places at which points differ in elevation are counted, for a note.
     """
 
     folder: Path
@@ -64,6 +66,7 @@ class TileJob:
     options: Mapping[str, Any] = field(default_factory=dict)
     duplicates: DuplicatePolicy = "mean"
     lines: Path | None = None
+    is_told: bool = True
 
     @property
     def key(self) -> str:
@@ -106,20 +109,6 @@ class Part(NamedTuple):
         self.differing[around] = local.differing
         return local
 
-    def measure_differing(self) -> list[float]:
-        """Return at how many places in the tile points differ in elevation, and by how much.
-
-        Points are read where no triangulation has looked at all of them.
-        """
-        own, all_points = self.job.tile.box, self.store.bounds
-        inside = _intersect(own, all_points)
-        looked_at = (found for box, found in self.differing.items() if _holds(box, inside))
-        found = next(looked_at, None)
-        if found is None:
-            found = find_differing(self.store.read_box(inside).points)
-        is_own = are_owned(found, own)
-        return [int(is_own.sum()), float(found[is_own, 2].max(initial=0.0))]
-
     @property
     def may_have_surface(self) -> bool:
         """Whether the tile meets the bounds that lines leave of the surface."""
@@ -138,13 +127,27 @@ class Part(NamedTuple):
         return HALO * math.sqrt(area / max(tile.count, 1))
 
 
-def _intersect(one: Bounds, other: Bounds) -> Bounds:
-    return Bounds(
-        max(one.xmin, other.xmin),
-        max(one.ymin, other.ymin),
-        min(one.xmax, other.xmax),
-        min(one.ymax, other.ymax),
-    )
+def measure_differing(
+    store: PointStore, box: Bounds, looked_at: Mapping[Bounds, Float64Array]
+) -> list[float]:
+    """Return at how many places in a tile points differ in elevation, and by how much at most.
+
+    Parameters
+    ----------
+    store : PointStore
+    box : Bounds
+        Of the tile.
+    looked_at : mapping of Bounds to (k, 3) float64 array
+        What triangulations have found of such places in boxes, see
+        :class:`tinsmith.tin.tiling.LocalTriangulation`. Points are read where none of these holds
+        all of the tile.
+    """
+    inside = intersect(box, store.bounds)
+    found = next((one for around, one in looked_at.items() if _holds(around, inside)), None)
+    if found is None:
+        found = find_differing(store.read_box(inside).points)
+    is_own = are_owned(found, box)
+    return [int(is_own.sum()), float(found[is_own, 2].max(initial=0.0))]
 
 
 def _holds(outer: Bounds, inner: Bounds) -> bool:
@@ -224,8 +227,9 @@ def compute_tile(job: TileJob) -> Record:
         part = Part(job, open_store(job.points), {})
         is_wanted = part.may_have_surface or getattr(product, "HAS_ALL_TILES", False)
         points, values, names = product.compute(part) if is_wanted else (0, {}, [])
-        is_told = getattr(product, "IS_OF_SURFACE", True)
-        told = {"differing": part.measure_differing()} if is_told else {}
+        told = {}
+        if job.is_told and getattr(product, "IS_OF_SURFACE", True):
+            told["differing"] = measure_differing(part.store, job.tile.box, part.differing)
         record = Record(
             job.key,
             "done" if points else "empty",

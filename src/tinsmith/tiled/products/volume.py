@@ -18,8 +18,8 @@ from ...terrain.surface import Pieces, Reference, Surface, agree_on_reference, m
 from ...tin.tiling import find_triangles_at, triangulate_box, widen
 from ..cloud import TiledPoints
 from ..given import Given, load_given
-from ..reading import open_store
-from ..tasks import HALO, load_arrays, save_arrays
+from ..reading import open_store, tell_differing
+from ..tasks import HALO, load_arrays, measure_differing, save_arrays
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -37,6 +37,8 @@ HAS_ALL_TILES = True
 """Of another surface the area beyond this one counts, too."""
 _OTHER = "other"
 """Option and folder of another surface that is in memory."""
+_DIFFERING = "other_differing"
+"""At how many places the other points differ in elevation, and by how much."""
 
 
 class _Referenced(NamedTuple):
@@ -145,27 +147,32 @@ def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     """Sum the triangles of a tile."""
     box, options = part.job.tile.box, part.job.options
     local = part.triangulate(box, ordered=False)
-    other = None
-    if options["base"] is None:
-        other = _find_other(part, volumes.find_reach(local, box))
+    other: Surface | LocalTriangulation | None = None
+    told: dict[str, Any] = {}
+    if "other_points" in options:
+        other, told[_DIFFERING] = _triangulate_other(part, volumes.find_reach(local, box))
+    elif options["base"] is None:
+        other = _choose_other(part, volumes.find_reach(local, box))
     count = len(local.points) + (0 if other is None else len(other.triangles))
     if not count:
-        return 0, {}, []
+        return 0, told, []
     found = volumes.compute_part(local, box, _make_options(options), other)
-    return count, {}, save_arrays(part, **found._asdict())
+    return count, told, save_arrays(part, **found._asdict())
 
 
-def _find_other(part: Part, box: Bounds) -> Surface | LocalTriangulation:
-    """Return the triangles of the other surface that meet a box."""
+def _triangulate_other(part: Part, box: Bounds) -> tuple[LocalTriangulation, list[float]]:
+    """Return triangles of the other points that meet a box, and how these differ in the tile."""
+    options = part.job.options
+    store, around = open_store(Path(options["other_points"])), widen(box, options["other_halo"])
+    local = triangulate_box(
+        store, box, around=around, duplicates=options["other_duplicates"], ordered=False
+    )
+    return local, measure_differing(store, part.job.tile.box, {around: local.differing})
+
+
+def _choose_other(part: Part, box: Bounds) -> Surface:
+    """Return the triangles of the other surface, which is in memory, that meet a box."""
     job = part.job
-    if "other_points" in job.options:
-        return triangulate_box(
-            open_store(Path(job.options["other_points"])),
-            box,
-            around=widen(box, job.options["other_halo"]),
-            duplicates=job.options["other_duplicates"],
-            ordered=False,
-        )
     given: Any = load_given(job.folder / _OTHER, job.options[_OTHER])
     chosen = find_triangles_at(given["points"], given["triangles"], box)
     return Surface(given["points"], np.ascontiguousarray(given["triangles"][chosen]))
@@ -181,5 +188,8 @@ def join(
         if record.files
     )
     made = volumes.join(parts, _make_options(options))
-    others = [f"The other surface: {note}" for note in options.get("other_notes", ())]
+    told = [*options.get("other_notes", ())]
+    if "other_points" in options:
+        told += tell_differing(records, _DIFFERING, options["other_duplicates"])
+    others = [f"The other surface: {note}" for note in told]
     return replace(made, notes=[*points.notes, *others, *options.get("notes", ()), *made.notes])
