@@ -11,16 +11,10 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from support.many_files import Shuffled, lose, write_lidar
+from support.many_files import Shuffled, lose
 
 import tinsmith as ts
 from tinsmith.base import atomic
-
-
-@pytest.fixture(scope="module")
-def lidar(tmp_path_factory):
-    """Return a folder of lidar tiles."""
-    return write_lidar(tmp_path_factory.mktemp("lidar"))
 
 
 def list_tree(folder):

@@ -9,18 +9,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import rasterio
-from support.many_files import Shuffled, write_lidar
+from support.many_files import Shuffled
 
 import tinsmith as ts
 from tinsmith.tiled.computing import computing
 from tinsmith.tiled.products import point_rasters
 from tinsmith.tiled.running.how import How
-
-
-@pytest.fixture(scope="module")
-def lidar(tmp_path_factory):
-    """Return a folder of tiles that overlap, with points at one place and of two classes."""
-    return write_lidar(tmp_path_factory.mktemp("lidar"))
 
 
 def read_cells(path):

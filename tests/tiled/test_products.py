@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import rasterio
-from support.many_files import Shuffled, write_lidar
+from support.many_files import Shuffled
 from support.product_parts import require_same_features
 
 import tinsmith as ts
@@ -22,18 +22,6 @@ SQUARES = {
     "b": [(500_150, 4_000_050), (500_290, 4_000_050), (500_290, 4_000_150), (500_150, 4_000_150)],
 }
 LINE = [[500_010.0, 4_000_020.0], [500_150.5, 4_000_180.0], [500_290.0, 4_000_030.0]]
-
-
-@pytest.fixture(scope="module")
-def lidar(tmp_path_factory):
-    """Return a folder of tiles that overlap, with points at one place and of two classes."""
-    return write_lidar(tmp_path_factory.mktemp("lidar"))
-
-
-@pytest.fixture(scope="module")
-def tin(lidar):
-    """Return the surface in memory."""
-    return ts.triangulate(ts.read(lidar, classes=2))
 
 
 @pytest.fixture

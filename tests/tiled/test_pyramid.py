@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 import pyproj
 import pytest
-from support.many_files import Shuffled, write_lidar
+from support.many_files import Shuffled
 from support.tiles_3d import read_tileset
 
 import tinsmith as ts
@@ -19,18 +19,6 @@ pytestmark = pytest.mark.filterwarnings("ignore:The elevations are not known abo
 
 POINTS = 300
 """Of a square."""
-
-
-@pytest.fixture(scope="module")
-def lidar(tmp_path_factory):
-    """Return a folder of tiles that overlap, with points at one place and of two classes."""
-    return write_lidar(tmp_path_factory.mktemp("lidar"))
-
-
-@pytest.fixture(scope="module")
-def tin(lidar):
-    """Return the surface in memory."""
-    return ts.triangulate(ts.read(lidar, classes=2))
 
 
 @pytest.fixture(scope="module")

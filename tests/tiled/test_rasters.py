@@ -9,16 +9,10 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 import rasterio
-from support.many_files import Shuffled, write_lidar
+from support.many_files import Shuffled
 
 import tinsmith as ts
 from tinsmith.tiled import tasks
-
-
-@pytest.fixture(scope="module")
-def lidar(tmp_path_factory):
-    """Return a folder of tiles that overlap, with points at one place and of two classes."""
-    return write_lidar(tmp_path_factory.mktemp("lidar"))
 
 
 @pytest.fixture(scope="module")

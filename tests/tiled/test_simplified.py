@@ -4,24 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from support.many_files import Shuffled, write_lidar
+from support.many_files import Shuffled
 
 import tinsmith as ts
 
 TOLERANCE = 0.3
 OPTIONS = {"tolerance": TOLERANCE, "node_points": 300}
-
-
-@pytest.fixture(scope="module")
-def lidar(tmp_path_factory):
-    """Return a folder of tiles that overlap, with points at one place and of two classes."""
-    return write_lidar(tmp_path_factory.mktemp("lidar"))
-
-
-@pytest.fixture(scope="module")
-def tin(lidar):
-    """Return the surface in memory."""
-    return ts.triangulate(ts.read(lidar, classes=2))
 
 
 @pytest.fixture(scope="module")

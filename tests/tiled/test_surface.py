@@ -7,24 +7,12 @@ import json
 
 import numpy as np
 import pytest
-from support.many_files import Shuffled, write_lidar
+from support.many_files import Shuffled
 
 import tinsmith as ts
 from tinsmith.tiled.assembling import Sweep, merge_triangles, write_turned
 from tinsmith.tiled.numbering import NUMBER, number_vertices
 from tinsmith.tiled.running.runs import hash_file
-
-
-@pytest.fixture(scope="module")
-def lidar(tmp_path_factory):
-    """Return a folder of tiles that overlap, with points at one place and of two classes."""
-    return write_lidar(tmp_path_factory.mktemp("lidar"))
-
-
-@pytest.fixture(scope="module")
-def tin(lidar):
-    """Return the surface in memory."""
-    return ts.triangulate(ts.read(lidar, classes=2))
 
 
 def turn(triangles):
