@@ -7,6 +7,7 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
+import numpy as np
 import pytest
 from support.api import describe_api, public_members, public_objects
 from support.processes import run
@@ -223,6 +224,16 @@ FLAT_TIN = ts.triangulate([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
         (lambda: ts.stage_storage([1], interval=1), "Invalid TIN [1]"),
         (lambda: ts.stage_storage(FLAT_TIN, interval=10**400), "Invalid interval"),
         (lambda: ts.curvature(None), "Invalid TIN None"),
+        (lambda: ts.contours(FLAT_TIN, levels=[10**400]), "Invalid levels"),
+        (lambda: ts.stage_storage(FLAT_TIN, levels=[10**400]), "Invalid levels"),
+        (lambda: ts.volume(FLAT_TIN, base=10**400), "Invalid base"),
+        (lambda: ts.Features(kind="points", coordinates=[[10**400, 0]]), "Invalid coordinates"),
+        (lambda: ts.Survey(points=np.array(1.5)), "Points have shape ()"),
+        (lambda: ts.profile(np.array(1.5), [[0, 0], [1, 1]]), "Invalid TIN"),
+        (lambda: FLAT_TIN.plot(lines=np.arange(2)), "Invalid lines"),
+        (lambda: FLAT_TIN.plot(colorbar=np.arange(2)), "Invalid colorbar"),
+        (lambda: ts.tiles("a.las", where=np.arange(2)), "Invalid where"),
+        (lambda: ts.read("\ud800.csv"), "encoding of file names"),
         (lambda: ts.hillshade("a"), "Invalid TIN 'a'"),
         (lambda: ts.Features(kind="points", coordinates=[[0, 0, 0]], notes=5), "Invalid notes 5"),
         (lambda: ts.Features(kind=[1], coordinates=[[0, 0, 0]]), "Invalid kind [1]"),

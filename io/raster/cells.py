@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from functools import wraps
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ... import terrain
+from ...base.atomic import as_path
 from ...base.crs import CRS
 from ...terrain.gridding.grids import Cells, to_grid
 from ..door import names_its_file
@@ -39,7 +39,7 @@ def read_cells(path: str | os.PathLike[str]) -> Cells:
         If rasterio is not installed.
     """
     require_local(path)
-    file = Path(path)
+    file = as_path(path)
     with open_ordinary_file(file) as local:
         require_readable(local)
         transform, shape, crs = read_georeference(local)

@@ -64,7 +64,8 @@ def to_features(surface: TIN | Survey | Voronoi, kind: FeatureKind | None = None
         return _make_cells(surface)
     if not isinstance(surface, Surface | Survey):
         raise OptionError("surface", surface, "a TIN, a Survey or a Voronoi diagram")
-    if kind == "lines" and isinstance(surface, Surface) and not _has_lines(surface):
+    is_without_lines = isinstance(surface, Surface) and not _has_lines(surface)
+    if isinstance(kind, str) and kind == "lines" and is_without_lines:
         texts, numbers = np.empty(0, object), np.empty(0, np.int64)
         columns: dict[str, AnyArray] = {
             "id": numbers, "kind": texts, "name": texts, "source": numbers

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path
@@ -12,7 +11,7 @@ import numpy as np
 
 from ...base import optional
 from ...base.atomic import as_path
-from ...base.checks import require_type
+from ...base.checks import is_collection, require_type
 from ...base.errors import OptionError, ReadError
 from ...base.notes import naming_file
 from ...base.sentences import coordinate, counted, inflect
@@ -94,7 +93,7 @@ def with_lines(
 
     def read(reader: Callable[..., list[Any]], sources: Iterable[Source], **how: Any) -> list[Any]:
         found = []
-        if isinstance(sources, str | bytes) or not isinstance(sources, Iterable):
+        if not is_collection(sources):
             raise OptionError("files of lines", sources, "a list of files")
         for source in list(sources):
             path, layer = split_layer(source)

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from ...base import optional
-from ...base.checks import require_tin
+from ...base.checks import as_flag, as_floats, require_tin
 from ...base.errors import OptionError
 from ...base.georeference.axes import find_axes
 from ...base.georeference.units import find_ground
@@ -75,6 +73,8 @@ def plot_tin(
     **options: Any,
 ) -> Any:
     """Draw a TIN in plan, as :meth:`TIN.plot` describes it."""
+    with_edges = len(tin) <= _MOST_WITH_EDGES if edges is None else as_flag("edges", edges)
+    with_lines, with_bar = as_flag("lines", lines), as_flag("colorbar", colorbar)
     triangles = to_matplotlib(tin)
     numbers, name = _find_values(tin, values)
     is_new = ax is None
@@ -88,11 +88,11 @@ def plot_tin(
         how = {"facecolors": numbers} if is_flat else {"shading": "gouraud"}
         given = (triangles,) if is_flat else (triangles, numbers)
         mapped = ax.tripcolor(*given, **(how | options))
-        if is_new and colorbar:
+        if is_new and with_bar:
             ax.figure.colorbar(mapped, ax=ax, shrink=0.7, label=_write_caption(name, ground))
-    if edges if edges is not None else len(tin) <= _MOST_WITH_EDGES:
+    if with_edges:
         ax.triplot(triangles, color="0.25", linewidth=0.3)
-    if lines:
+    if with_lines:
         _draw_lines(ax, tin)
     _set_axes(ax, tin, ground, is_new=is_new)
     return ax
@@ -108,11 +108,8 @@ def _find_values(tin: TIN, values: Any) -> tuple[Float64Array | None, str]:
         if values == "slope":
             return measure_slopes(compute_normals(tin), "degrees"), values
         raise OptionError("values", values, ["elevation", "slope"])
-    try:
-        numbers = np.asarray(values, np.float64)
-    except (TypeError, ValueError):
-        numbers = np.empty((0, 0))
-    if numbers.shape not in ((len(tin.points),), (len(tin),)):
+    numbers = as_floats(values)
+    if numbers is None or numbers.shape not in ((len(tin.points),), (len(tin),)):
         raise OptionError(
             "values",
             values,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base import optional
-from ...base.checks import as_number, require_tin
+from ...base.checks import as_floats, as_number, require_tin
 from ...base.crs import scale_elevations
 from ...base.errors import OptionError
 from ...base.products import product
@@ -110,10 +110,7 @@ def _round_down_to_power(extent: float) -> float:
 
 
 def _parse_origin(origin: ArrayLike) -> Float64Array:
-    try:
-        shift = np.array(origin, np.float64)
-    except (TypeError, ValueError, OverflowError):
-        shift = np.empty(0)
-    if shift.shape != (3,) or not np.isfinite(shift).all():
+    shift = as_floats(origin)
+    if shift is None or shift.shape != (3,) or not np.isfinite(shift).all():
         raise OptionError("origin", origin, "three finite numbers: easting, northing, elevation")
     return shift

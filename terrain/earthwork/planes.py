@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.checks import as_floats
 from ...base.errors import OptionError
 from ...tin import TIN
 
@@ -40,11 +41,8 @@ class Plane:
 
 def as_plane(base: Any) -> Plane:
     """Return the plane that a level or three points stand for."""
-    try:
-        given = np.asarray(base, np.float64)
-    except (TypeError, ValueError):
-        raise OptionError("base", base, allowed=_ALLOWED) from None
-    if given.shape not in ((), (3, 3)) or isinstance(base, bool | str):
+    given = as_floats(base)
+    if given is None or given.shape not in ((), (3, 3)) or isinstance(base, bool | str):
         raise OptionError("base", base, allowed=_ALLOWED)
     if not np.isfinite(given).all():
         raise OptionError("base", base, allowed="finite")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.checks import as_number
+from ...base.checks import as_floats, as_number
 from ...base.crs import CRS
 from ...base.errors import OptionError, PointsError
 from ...base.georeference import require_same_crs
@@ -150,10 +150,10 @@ def _as_levels(levels: Any, interval: Any, lowest: float, highest: float) -> Flo
 
 
 def _as_given_levels(levels: Sequence[float]) -> Float64Array:
-    try:
-        array = np.atleast_1d(np.asarray(levels, np.float64))
-    except (TypeError, ValueError):
-        raise OptionError("levels", type(levels).__name__, allowed="numbers") from None
+    given = as_floats(levels)
+    if given is None:
+        raise OptionError("levels", type(levels).__name__, allowed="numbers")
+    array = np.atleast_1d(given)
     if array.ndim != 1 or not 0 < len(array) <= _MOST_LEVELS:
         allowed = f"from 1 to {_MOST_LEVELS:,}"
         raise OptionError("levels", array.size, allowed=allowed, what="number of levels")

@@ -48,7 +48,7 @@ def catchments(
     Parameters
     ----------
     tin : TIN
-    outlets : (k, 2) array or Features of points, optional
+    outlets : (k, 2) array, Features of points, shapes or a data frame, optional
         Places on the surface, CRS units; default the pits. Each is moved down to the first vertex
         that a drop comes to there, as to the lower end of a channel.
     fill_depressions : bool, optional

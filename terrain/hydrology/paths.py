@@ -36,7 +36,7 @@ def flow_path(tin: TIN, points: Any, *, fill_depressions: bool = False) -> Featu
     Parameters
     ----------
     tin : TIN
-    points : (k, 2) array or Features of points
+    points : (k, 2) array, Features of points, shapes, or a data frame
         Where they fall, CRS units.
     fill_depressions : bool, optional
         Depressions are full, so that water goes on from where they spill, to the boundary; default

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.checks import as_number, require_count
+from ...base.checks import as_floats, as_number, require_count
 from ...base.errors import OptionError
 from ...base.sentences import counted, height, shown
 from ...base.types import seal
@@ -162,10 +162,9 @@ def as_levels(given: Any) -> Float64Array:
 
     Raises OptionError if they are not one or more finite numbers, or too many.
     """
-    try:
-        values = np.asarray(given, np.float64)
-    except (TypeError, ValueError):
-        raise OptionError("levels", given, allowed="numbers") from None
+    values = as_floats(given)
+    if values is None:
+        raise OptionError("levels", given, allowed="numbers")
     if values.ndim > 1 or values.size == 0:
         raise OptionError("levels", given, allowed="a list of one or more numbers")
     values = np.unique(values)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ...base.checks import as_floats
 from ...base.errors import OptionError, choice
 from ...base.georeference import describe_unknown, find_plane_units
 from ...base.policies import SlopeUnit
@@ -148,10 +149,9 @@ def aspect_classes(tin: TIN) -> Features:
 def _as_breaks(breaks: Any, unit: str) -> Float64Array:
     """Return limits between classes, or say what is wrong with them."""
     allowed = "a sequence of ascending numbers above 0"
-    try:
-        limits = np.asarray(breaks, np.float64)
-    except (TypeError, ValueError, OverflowError):
-        raise OptionError("breaks", breaks, allowed=allowed) from None
+    limits = as_floats(breaks)
+    if limits is None:
+        raise OptionError("breaks", breaks, allowed=allowed)
     if limits.ndim != 1 or len(limits) == 0 or len(limits) >= _MOST_CLASSES:
         raise OptionError("breaks", breaks, allowed=f"{allowed}, 1 to {_MOST_CLASSES - 1} of them")
     is_ascending = np.isfinite(limits).all() and limits[0] > 0 and (np.diff(limits) > 0).all()

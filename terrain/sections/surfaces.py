@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ...base.checks import require_tin
+from ...base.checks import is_collection, require_tin
 from ...base.crs import CRS, Unit
 from ...base.errors import OptionError
 from ...base.georeference import agree
@@ -56,7 +56,7 @@ def _name_tins(given: Any) -> tuple[tuple[str, ...], tuple[TIN, ...]]:
             if not (isinstance(name, str) and name.strip() and name.isprintable()):
                 raise OptionError("name of a surface", name, allowed="a printable text")
         tins = tuple(given.values())
-    elif isinstance(given, Iterable) and not isinstance(given, str | bytes):
+    elif is_collection(given):
         tins = tuple(given)
         names = tuple(str(number + 1) for number in range(len(tins)))
     else:

@@ -35,7 +35,7 @@ def line_of_sight(
     Parameters
     ----------
     tin : TIN
-    eyes, targets : (2,) or (k, 2) array, or Features of points
+    eyes, targets : (2,) or (k, 2) array, Features of points, shapes or a data frame
         CRS units; one eye for all targets, or as many eyes as targets.
     eye_height, target_height : float, optional
         Above the ground, in the unit of elevations.

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ...base.checks import is_collection
 from ...base.crs import CRS
 from ...base.errors import LinesError, PointsError
 from ...base.results import Features
@@ -70,7 +71,7 @@ def _walk(given: Any, what: str) -> Iterator[_Item]:
         yield from _take_geometries(found, what)
     elif _is_one_line(given):
         yield _as_line(given, what)
-    elif isinstance(given, Iterable) and not isinstance(given, str | bytes | Mapping):
+    elif is_collection(given) and not isinstance(given, Mapping):
         for one in given:
             if not (_is_one_line(one) or isinstance(one, Breakline) or find_geometries(one)):
                 raise _refuse(one, what)

@@ -10,7 +10,8 @@ from ...base.errors import PointsError
 from ...base.georeference import require_same_crs
 from ...base.results import Features
 from ...base.sentences import counted
-from ...tin.validation import as_xy
+from ...tin import validation
+from ...tin.building import find_crs
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
@@ -18,19 +19,21 @@ if TYPE_CHECKING:
 
 
 def as_places(tin: TIN, points: Any, what: str) -> tuple[Float64Array, tuple[str, ...]]:
-    """Return places on a surface, and what was assumed of them.
+    """Return places on a surface, (k, 2), and what was assumed of them.
+
+    They are one place or several, as arrays, shapes, data frames or Features.
 
     Raises CrsError if their CRS is another one. Raises PointsError if there is none, or one lies
     outside the surface.
     """
-    theirs = getattr(points, "crs", None)
-    notes: tuple[str, ...] = ()
-    if isinstance(points, Features):
-        if points.kind != "points":
-            raise PointsError(f"Points are needed for {what}, and there are {points.kind}.")
-        notes = require_same_crs(theirs, tin.crs, what) + tuple(points.notes)
+    is_named = isinstance(points, Features)
+    if is_named and points.kind != "points":
+        raise PointsError(f"Points are needed for {what}, and there are {points.kind}.")
+    notes = require_same_crs(find_crs(points), tin.crs, what, is_plain=not is_named)
+    if is_named:
+        notes += tuple(points.notes)
         points = points.coordinates[:, :2]
-    xy = np.atleast_2d(as_xy(np.atleast_2d(points) if np.size(points) else points)) + 0.0
+    xy = validation.as_places(points)[0] + 0.0
     if len(xy) == 0:
         raise PointsError(f"There is no point for {what}: at least one is needed.")
     outside = np.flatnonzero(tin.locate(xy) < 0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import warnings
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
@@ -44,7 +45,7 @@ VALUES: dict[str, Any] = {
     "set": {1},
     "object": object(),
     "class": int,
-    "function": len,
+    "function": abs,  # takes what progress gives
     "xyz": XYZ,
     "array": np.array(XYZ, float),
     "ragged": [[1], [2, 3]],
@@ -53,6 +54,14 @@ VALUES: dict[str, Any] = {
     "numbers": [0, 1],
     "numbers twice": [1, 1],
     "far numbers": [10**30],
+    "huge numbers": [10**400],
+    "decimals": [Decimal("0.5"), Decimal("sNaN")],
+    "0d array": np.array(1.5),
+    "0d text": np.array("mean"),
+    "objects": np.array([None, 1.0, "a"], object),
+    "empty lists": [[], []],
+    "date": np.datetime64("2020-01-01"),
+    "surrogate": "\ud800",
     "texts": ["a", "b"],
     "flags": [True, False],
     "nans": [[np.nan, 1.0, 2.0]],

@@ -144,7 +144,9 @@ def as_columns(attributes: Any, shape: tuple[int, ...] | None) -> dict[str, AnyA
         That all must have; default any, of one axis.
     """
     if hasattr(attributes, "columns") and not isinstance(attributes, Mapping):
-        attributes = {name: attributes[name] for name in attributes.columns}
+        columns = attributes.columns
+        is_mapping = isinstance(columns, Mapping)
+        attributes = columns if is_mapping else {name: attributes[name] for name in columns}
     given = as_mapping("attributes", attributes)
     return {name: _as_column(name, given[name], shape) for name in given}
 

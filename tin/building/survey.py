@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.checks import as_flag
 from ...base.crs import CRS, Unit, require_one_unit, shorten_crs
-from ...base.errors import OptionError
+from ...base.errors import OptionError, PointsError
 from ...base.lazy import make_html_repr
 from ...base.ranges import require_degrees
 from ...base.sentences import counted
@@ -118,10 +119,7 @@ class Survey:
         unit = require_one_unit(crs, Unit.of(self.elevation_unit))
         object.__setattr__(self, "elevation_unit", unit)
         for name in _LINES:
-            # several lines or rings as a sequence; one alone is told from several
-            lines = getattr(self, name)
-            is_ready = isinstance(lines, tuple | list) and all(map(_is_ready, lines))
-            object.__setattr__(self, name, lines if is_ready else as_sequence(lines, name))
+            object.__setattr__(self, name, _as_lines(getattr(self, name), name))
         object.__setattr__(self, "skipped", as_mapping("skipped", self.skipped))
         object.__setattr__(self, "skipped_lines", as_mapping("skipped_lines", self.skipped_lines))
         # refuse a source that is no text, and notes that are no sequence of texts
@@ -130,11 +128,12 @@ class Survey:
             raise OptionError("notes", notes, "a list of sentences")
         if not isinstance(self.source, str | None):
             raise OptionError("source", self.source, "text or None")
-        if not isinstance(self.from_raster, bool):
-            raise OptionError("from_raster", self.from_raster, "True or False")
+        as_flag("from_raster", self.from_raster)
         if told:
             object.__setattr__(self, "notes", [*self.notes, *told])
         table = Table(self.points) if _is_plain(self.points) else as_table(self.points, "Points")
+        if table.values.ndim != 2 and table.values.shape != (0,):
+            raise PointsError(f"Points have shape {table.values.shape}: (n, 3) is needed.")
         if table.values.ndim == 2 and table.values.shape[1] >= 2:
             require_degrees(table.values, crs, "Points")
         object.__setattr__(self, "points", table.values)
@@ -180,6 +179,12 @@ class Survey:
 
     def _repr_html_(self) -> str:
         return make_html_repr(self)
+
+
+def _as_lines(lines: Any, name: str) -> Sequence[Any]:
+    """Return several lines or rings as a sequence; one alone is told from several."""
+    is_ready = isinstance(lines, tuple | list) and all(map(_is_ready, lines))
+    return lines if is_ready else as_sequence(lines, name)
 
 
 def _is_ready(line: Any) -> bool:

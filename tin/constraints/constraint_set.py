@@ -273,7 +273,7 @@ def as_sequence(lines: Any, what: str) -> list[Any]:
     if found is not None:
         return convert_geometries(found, what)
     if not isinstance(lines, str | bytes | Mapping):
-        with suppress(TypeError):  # whatever it is, it gives no lines
+        with suppress(TypeError, LookupError):  # whatever it is, it gives no lines
             return _convert_each(list(lines), what)
     raise LinesError(
         f"Invalid {what} {shown(lines)}: a sequence of lines is needed, each an array of vertices."

@@ -89,7 +89,7 @@ def _as_kind(value: Any, row: int) -> BreaklineKind:
 def _as_priority(value: Any, row: int) -> int:
     try:
         number = float(0 if value is None else value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, ArithmeticError):
         number = np.nan
     if number != np.rint(number):
         raise LinesError(
@@ -136,7 +136,7 @@ def _find_level(found: Geometries, part: Geometry) -> float:
 def _as_level(value: Any, row: int) -> float:
     try:
         return float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, ArithmeticError):
         raise LinesError(
             f"The water in row {row} has the elevation {shown(value)}: a number is needed."
         ) from None

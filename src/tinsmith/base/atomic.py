@@ -27,6 +27,11 @@ def as_path(path: Any, option: str = "path") -> Path:
     """Return the path of a file, or refuse what is none."""
     if not isinstance(path, str | os.PathLike) or isinstance(os.fspath(path), bytes):
         raise OptionError(option, path, "the name of a file, as text or Path")
+    try:
+        os.fsencode(path)
+    except UnicodeEncodeError:
+        allowed = "a name that can be written in the encoding of file names"
+        raise OptionError(option, ascii(os.fspath(path)), allowed) from None
     return Path(path)
 
 

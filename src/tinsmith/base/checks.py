@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,6 +30,21 @@ def is_finite_number(value: Any) -> bool:
         return math.isfinite(float(value))
     except OverflowError:
         return False
+
+
+def as_floats(values: Any) -> Float64Array | None:
+    """Return numbers as an array; None if they are none, or none that a float can hold."""
+    try:
+        return np.asarray(values, np.float64)
+    except (TypeError, ValueError, ArithmeticError):
+        return None
+
+
+def is_collection(given: Any) -> bool:
+    """Tell whether there are items to go through: texts are none, nor arrays of one value."""
+    return isinstance(given, Iterable) and not (
+        isinstance(given, str | bytes) or getattr(given, "shape", None) == ()
+    )
 
 
 def as_flag(name: str, value: Any) -> bool:
@@ -74,11 +90,8 @@ def as_length(name: str, value: Any, *, unit: str = "in CRS units", or_none: boo
 
 def as_percentages(name: str, values: ArrayLike) -> Float64Array:
     """Return numbers from 0 to 100."""
-    try:
-        shares = np.asarray(values, np.float64)
-    except (TypeError, ValueError):
-        shares = np.empty(())
-    if shares.ndim != 1 or not ((shares >= 0) & (shares <= 100)).all():
+    shares = as_floats(values)
+    if shares is None or shares.ndim != 1 or not ((shares >= 0) & (shares <= 100)).all():
         raise OptionError(name, values, "a sequence of numbers from 0 to 100")
     return shares
 

@@ -11,6 +11,7 @@ from contextvars import ContextVar
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from .checks import is_collection
 from .errors import LossWarning, OptionError, TinsmithError
 from .sentences import FILE, counted, name_file
 
@@ -146,8 +147,7 @@ def join_alike(notes: Iterable[str]) -> tuple[str, ...]:
 
 def as_notes(notes: Any) -> tuple[str, ...]:
     """Return notes as a tuple of sentences."""
-    is_several = isinstance(notes, Iterable) and not isinstance(notes, str)
-    texts = tuple(notes) if is_several else (None,)
+    texts = tuple(notes) if is_collection(notes) else (None,)
     if not all(isinstance(text, str) for text in texts):
         raise OptionError("notes", notes, allowed="a sequence of texts")
     return texts

@@ -162,6 +162,8 @@ def tiles(
     choice("crossing", crossing, CrossingPolicy)
     _require_lines_of_tiles(options)
     files = _list_files(paths, options.get("format"))
+    if not isinstance(where, Mapping | None):
+        raise OptionError("where", where, "a mapping of attributes to values")
     wanted = {name: _as_values(name, values) for name, values in (where or {}).items()}
     read = {name: value for name, value in options.items() if value is not None}
     if crs is not None:

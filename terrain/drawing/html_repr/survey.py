@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ....base.checks import as_floats
 from ....base.georeference.axes import find_axes
 from ....base.sentences import counted
 from ....tin.report import word_reason
@@ -71,9 +72,8 @@ def _draw(survey: Survey) -> UInt8Array:
 
 def _take_plane(line: object) -> Float64Array | None:
     """Return eastings and northings of a line; None of what is no plain array of places."""
-    try:
-        table = np.array(line, np.float64)
-    except (TypeError, ValueError):
+    table = as_floats(line)
+    if table is None:
         return None
     is_line = table.ndim == 2 and table.shape[1] in (2, 3) and bool(np.isfinite(table).all())
     return table[:, :2] if is_line else None

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, Unpack
 
 import numpy as np
 
+from ..checks import as_floats, is_collection
 from ..crs import CRS, Unit, require_one_unit, shorten_crs
 from ..errors import OptionError
 from ..notes import as_notes
@@ -330,12 +331,11 @@ class Features(Noted):
 
 
 def _as_coordinates(given: Any) -> Float64Array:
-    try:
-        array = np.asarray(given, np.float64)
-    except (TypeError, ValueError):
+    array = as_floats(given)
+    if array is None:
         raise OptionError(
             "coordinates", type(given).__name__, allowed="a table of numbers with equal rows"
-        ) from None
+        )
     if array.size == 0 and array.ndim == 1:
         array = np.empty((0, 2))
     if array.ndim != 2 or array.shape[1] not in (2, 3):
@@ -357,7 +357,7 @@ def _as_levels(kind: Any, levels: Any, count: int) -> tuple[Int64Array, ...]:
     """Return the offsets of every level, each of which must cover the level below."""
     if not isinstance(kind, str) or kind not in _LEVELS:
         raise OptionError("kind", kind, allowed="one of points, lines, polygons")
-    if not isinstance(levels, tuple | list | np.ndarray):
+    if not isinstance(levels, tuple | list | np.ndarray) or not is_collection(levels):
         raise OptionError("offsets", levels, allowed="a sequence of arrays")
     least = _LEAST.get(kind, 1)
     checked = []

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..checks import as_length
+from ..checks import as_floats, as_length
 from ..crs import CRS, shorten_crs
 from ..errors import OptionError
 from ..notes import as_notes
@@ -88,9 +88,11 @@ class Raster(Noted):
         require_degrees(np.array([low, high]), crs, "Corners")
         keep(self, "crs", crs)
         nodata: Any = self.nodata
-        if isinstance(nodata, bool) or not isinstance(nodata, int | float | np.number):
+        is_number = isinstance(nodata, int | float | np.number) and not isinstance(nodata, bool)
+        number = as_floats(nodata) if is_number else None
+        if number is None:
             raise OptionError("nodata", nodata, allowed="a number or NaN")
-        keep(self, "nodata", float(nodata))
+        keep(self, "nodata", float(number))
         keep(self, "units", as_units(self.units, bands))
         keep(self, "name", as_name(self.name))
         keep(self, "notes", as_notes(self.notes))

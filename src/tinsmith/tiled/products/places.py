@@ -13,7 +13,7 @@ from ...base.policies import Extrapolation, InterpolationMethod
 from ...base.results import Table
 from ...base.types import Bounds
 from ...terrain.parts import are_owned, places, require_local
-from ...tin.building.reference import find_crs
+from ...tin.building import find_crs
 from ...tin.validation import as_xy
 from ..given import GivenPlaces, read_places
 from ..tasks import load_arrays, save_arrays
