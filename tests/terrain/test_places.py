@@ -42,7 +42,7 @@ def test_places_may_have_any_form(name, form):
 @pytest.mark.parametrize("name", PRODUCTS)
 def test_places_in_another_crs_are_refused(name, form):
     other = ts.triangulate(XYZ, crs="EPSG:32617", elevation_unit="m")
-    with pytest.raises(ts.CrsError, match="EPSG:32616.*EPSG:32617"):
+    with pytest.raises(ts.CrsError, match=r"EPSG:32616.*EPSG:32617"):
         PRODUCTS[name](other, FORMS[form])
 
 
