@@ -13,10 +13,11 @@ from ...base.interrupts import hold_interrupts
 from ...base.records import require
 from ...base.sentences import counted, inflect
 from ..report import Edit
+from .arguments import copy_argument
 from .changes import Change, NumberedInputs
 from .existing_triangles import build_of_triangles, gather_inputs_of_triangles
 from .mesh_editor import Editor, NotLocal, is_local
-from .operations import OPERATIONS
+from .operations import LOCAL, OPERATIONS
 from .rebuilding import Rebuild
 
 if TYPE_CHECKING:
@@ -166,19 +167,19 @@ class Session:
     def do(self, name: str, arguments: dict[str, Any]) -> Any:
         """Do one of ``OPERATIONS`` and remember it; one that fails leaves everything as it was."""
         self.settle()
-        operation = OPERATIONS[name](**arguments)
-        kept, before = operation.arguments(), self._version
+        do, before = OPERATIONS[name], self._version
+        kept = {one: copy_argument(value) for one, value in arguments.items()}
         try:
-            if self._editor is None and operation.is_of_vertices:
+            if self._editor is None and name in LOCAL:
                 inputs = self.inputs()
                 if is_local(inputs.build_inputs):
                     self._editor = Editor(self.now(), inputs)
             try:
-                if self._editor is None or not operation.is_of_vertices:
+                if self._editor is None or name not in LOCAL:
                     raise NotLocal
-                done = operation.do(self._editor)
+                done = do(self._editor, **arguments)
             except NotLocal:
-                done = operation.do(Rebuild(self.now, self.inputs()))
+                done = do(Rebuild(self.now, self.inputs()), **arguments)
         except TinsmithError:
             raise
         except BaseException:  # interrupted: the mesh may be half-way

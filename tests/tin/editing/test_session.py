@@ -587,19 +587,16 @@ def test_edits_of_earlier_versions_are_done_by_their_names_of_now():
         apply_edits(tin, [{"op": ["set_z"]}])
 
 
-def test_an_operation_and_its_edit_are_written_the_same():
+def test_an_edit_is_written_in_plain_values():
     tin = ts.triangulate([[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]])
     tin.set_elevation([1, 2], np.array([3.0, 4.0]))
     (edit,) = tin.edits
-    operation = OPERATIONS[edit.operation](**edit.arguments)
-    written = {"op": "set_elevation", "vertices": [1, 2], "z": [3, 4]}
-    assert operation.to_dict() == edit.to_dict() == written
+    assert edit.to_dict() == {"op": "set_elevation", "vertices": [1, 2], "z": [3, 4]}
     assert tin.points[[1, 2], 2].tolist() == [3, 4]
 
 
 def test_every_operation_is_a_method_of_a_tin():
     assert all(callable(getattr(ts.TIN, name)) for name in OPERATIONS)
-    assert [kind.operation for kind in OPERATIONS.values()] == list(OPERATIONS)
 
 
 def test_a_vertex_is_not_moved_while_all_others_are_in_line():
