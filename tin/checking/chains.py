@@ -46,15 +46,11 @@ def _check_labels(tin: TIN, found: Findings) -> None:
     allowed = get_args(LineKind)
     found.report(
         "chains",
-        [i for i, kind in enumerate(lines.kinds) if kind not in allowed],
-        "{count} [chain is|chains are] of a kind that is none of "
-        f"{', '.join(allowed)} (first: [chain|chains] {{first}}).",
+        np.array([kind not in allowed for kind in lines.kinds], np.bool_),
+        "chain",
+        f"[is|are] of a kind that is none of {', '.join(allowed)}",
     )
-    found.report(
-        "chains",
-        np.flatnonzero(lines.sources < 0),
-        "{count} [chain has|chains have] a source below 0 (first: [chain|chains] {first}).",
-    )
+    found.report("chains", lines.sources < 0, "chain", "[has|have] a source below 0")
 
 
 def _check_ranges(tin: TIN, found: Findings) -> None:
@@ -68,26 +64,13 @@ def _check_ranges(tin: TIN, found: Findings) -> None:
         )
         return
     is_short = np.diff(offsets) < 2
-    found.report(
-        "chains",
-        np.flatnonzero(is_short),
-        "{count} [chain has|chains have] fewer than two vertices (first: [chain|chains] {first}).",
-    )
+    found.report("chains", is_short, "chain", "[has|have] fewer than two vertices")
     is_wrong = (vertices < 0) | (vertices >= n)
-    found.report(
-        "chains",
-        np.flatnonzero(is_wrong),
-        f"{{count}} [entry of chains is|entries of chains are] outside 0 to {n - 1} "
-        "(first: [entry|entries] {first}).",
-    )
+    found.report("chains", is_wrong, "entry", f"of chains [is|are] outside 0 to {n - 1}")
     if not (is_short.any() or is_wrong.any()):
         start, end = tin.lines.segments().T
-        found.report(
-            "chains",
-            np.flatnonzero(start == end),
-            "{count} [segment of chains stays at its|segments of chains stay at their] vertex "
-            "(first: [segment|segments] {first}).",
-        )
+        what = "of chains [stays at its|stay at their] vertex"
+        found.report("chains", start == end, "segment", what)
 
 
 def check_segments(tin: TIN, found: Findings) -> None:
@@ -99,15 +82,15 @@ def check_segments(tin: TIN, found: Findings) -> None:
     found.report(
         "lines",
         np.unique(chain[~np.isin(segments, edges)]),
-        "{count} [chain has|chains have] segments that are no constrained edges of the surface "
-        "(first: [chain|chains] {first}).",
+        "chain",
+        "[has|have] segments that are no constrained edges of the surface",
     )
     is_once = tin.neighbors[triangle, corner] > triangle
     tell = found.report if len(tin.lines) else found.note
     tell(
         "lines",
         triangle[is_once][~np.isin(edges[is_once], segments)],
-        "{count} [constrained edge|constrained edges] inside the surface [belongs|belong] to no "
-        "line "
-        "that is known (first: [triangle|triangles] {first}).",
+        "constrained edge",
+        "inside the surface [belongs|belong] to no line that is known",
+        first="triangle",
     )

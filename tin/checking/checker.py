@@ -233,9 +233,8 @@ def check(
             check_delaunay(tin, found, conforming=is_conforming)
             _check_given(tin, rows, lines, found)
     elif level >= 2:
-        found.note(
-            "stopped", [level], "Level {first} was not reached: level 1 must be passed first."
-        )
+        sentence = f"Level {level} was not reached: level 1 must be passed first."
+        found.notes.append(Problem("stopped", 1, (level,), sentence))
     return CheckResult(level, tuple(found.problems), tuple(found.notes), found.counts)
 
 

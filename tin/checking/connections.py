@@ -52,53 +52,38 @@ def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
 
 
 def _check_coordinates(points: Float64Array, found: Findings) -> None:
-    found.report(
-        "coordinates",
-        np.flatnonzero(~np.isfinite(points).all(axis=1)),
-        "{count} [vertex has|vertices have] a coordinate that is not finite "
-        "(first: [vertex|vertices] {first}).",
-    )
+    is_lost = ~np.isfinite(points).all(axis=1)
+    found.report("coordinates", is_lost, "vertex", "[has|have] a coordinate that is not finite")
     smallest, largest = EXACT_RANGE
     size = np.abs(points[:, :2])
     found.report(
         "coordinates",
-        np.flatnonzero(
-            (((size > largest) & np.isfinite(size)) | ((size < smallest) & (size > 0))).any(axis=1)
-        ),
-        "{count} [vertex lies|vertices lie] outside the range of exact arithmetic, magnitudes "
-        f"{smallest:.0e} to {largest:.0e} (first: [vertex|vertices] {{first}}).",
+        (((size > largest) & np.isfinite(size)) | ((size < smallest) & (size > 0))).any(axis=1),
+        "vertex",
+        "[lies|lie] outside the range of exact arithmetic, magnitudes "
+        f"{smallest:.0e} to {largest:.0e}",
     )
     height = np.abs(points[:, 2])
     found.report(
         "coordinates",
-        np.flatnonzero((height > LARGEST_ELEVATION) & np.isfinite(height)),
-        "{count} [vertex has|vertices have] an elevation of a magnitude above "
-        f"{LARGEST_ELEVATION:.0e} (first: [vertex|vertices] {{first}}).",
+        (height > LARGEST_ELEVATION) & np.isfinite(height),
+        "vertex",
+        f"[has|have] an elevation of a magnitude above {LARGEST_ELEVATION:.0e}",
     )
 
 
 def _check_ranges(tin: TIN, found: Findings) -> None:
     n_vertices, n_triangles = len(tin.points), len(tin.triangles)
-    is_left_out = _check_left_out(tin, found)
+    vertex_of = np.where(_check_left_out(tin, found), 0, tin.vertex_of)[:, None]
     ranges = (
-        ("triangles", "[triangle|triangles]", tin.triangles, 0, n_vertices),
-        ("neighbors", "[triangle|triangles]", tin.neighbors, topology.NO_NEIGHBOR, n_triangles),
-        (
-            "vertex_of",
-            "[row|rows]",
-            np.where(is_left_out, 0, tin.vertex_of)[:, None],
-            0,
-            n_vertices,
-        ),
+        ("triangles", "triangle", tin.triangles, 0, n_vertices),
+        ("neighbors", "triangle", tin.neighbors, topology.NO_NEIGHBOR, n_triangles),
+        ("vertex_of", "row", vertex_of, 0, n_vertices),
     )
     for name, things, array, lowest, end in ranges:
         wrong = ((array < lowest) | (array >= end)).any(axis=1)
-        found.report(
-            "index",
-            np.flatnonzero(wrong),
-            f"{{count}} {things} [has|have] an entry of {name} outside {lowest} to {end - 1} "
-            f"(first: {things} {{first}}).",
-        )
+        what = f"[has|have] an entry of {name} outside {lowest} to {end - 1}"
+        found.report("index", wrong, things, what)
 
 
 def _check_left_out(tin: TIN, found: Findings) -> BoolArray:
@@ -116,16 +101,17 @@ def _check_left_out(tin: TIN, found: Findings) -> BoolArray:
     is_known[1:] &= rows[1:] > rows[:-1]
     found.report(
         "left_out",
-        np.flatnonzero(~is_known),
-        "{count} [entry|entries] of the report about rows that were left out [has|have] no such "
-        "row, no such reason or [is|are] out of order (first: [entry|entries] {first}).",
+        ~is_known,
+        "entry",
+        "of the report about rows that were left out [has|have] no such row, no such reason or "
+        "[is|are] out of order",
     )
     is_left_out[rows[is_known]] = True
     found.report(
         "left_out",
-        np.flatnonzero(is_left_out & (tin.vertex_of != NO_VERTEX)),
-        "{count} [row was|rows were] left out by the report, but [has|have] a vertex "
-        "(first: [row|rows] {first}).",
+        is_left_out & (tin.vertex_of != NO_VERTEX),
+        "row",
+        "[was|were] left out by the report, but [has|have] a vertex",
     )
     return is_left_out
 
@@ -133,12 +119,8 @@ def _check_left_out(tin: TIN, found: Findings) -> BoolArray:
 def check_connections(tin: TIN, found: Findings) -> bool:
     """Check neighbours, edges and flags; return whether the neighbours can be relied on."""
     a, b, c = tin.triangles.T
-    found.report(
-        "corners",
-        np.flatnonzero((a == b) | (b == c) | (c == a)),
-        "{count} [triangle uses|triangles use] a vertex twice "
-        "(first: [triangle|triangles] {first}).",
-    )
+    is_flat = (a == b) | (b == c) | (c == a)
+    found.report("corners", is_flat, "triangle", "[uses|use] a vertex twice")
     # find triangles with a neighbour that is not one in return, and with flags that differ
     count = len(tin.triangles)
     lonely, unequal = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
@@ -152,26 +134,17 @@ def check_connections(tin: TIN, found: Findings) -> bool:
             unequal[block] |= is_inner & is_met & (is_flagged != tin.constrained[block, corner])
     found.report(
         "neighbors",
-        np.flatnonzero(lonely),
-        "{count} [triangle has|triangles have] a neighbour that does not have them across the "
-        "same edge, "
-        "walked the other way (first: [triangle|triangles] {first}).",
+        lonely,
+        "triangle",
+        "[has|have] a neighbour that does not have them across the same edge, walked the other way",
     )
     if not found.problems:
         _count_edges(tin, found)
     is_reliable = not found.problems
-    found.report(
-        "constrained",
-        np.flatnonzero(unequal),
-        "{count} [triangle has|triangles have] an edge that is constrained on one side only "
-        "(first: [triangle|triangles] {first}).",
-    )
-    found.report(
-        "unused",
-        np.flatnonzero(~topology.mark_corners(tin.triangles, len(tin.points))),
-        "{count} [vertex belongs|vertices belong] to no triangle "
-        "(first: [vertex|vertices] {first}).",
-    )
+    what = "[has|have] an edge that is constrained on one side only"
+    found.report("constrained", unequal, "triangle", what)
+    is_unused = ~topology.mark_corners(tin.triangles, len(tin.points))
+    found.report("unused", is_unused, "vertex", "[belongs|belong] to no triangle")
     return is_reliable
 
 
@@ -211,6 +184,7 @@ def _count_edges(tin: TIN, found: Findings) -> None:
     found.report(
         "edge",
         np.unique(keys[1:][keys[1:] == keys[:-1]] // len(tin.points)),
-        "Edges at {count} [vertex|vertices] belong to more triangles than two "
-        "(first: [vertex|vertices] {first}).",
+        "vertex",
+        "belong to more triangles than two",
+        before="Edges at ",
     )

@@ -30,16 +30,17 @@ def check_delaunay(tin: TIN, found: Findings, *, conforming: bool = False) -> No
     found.report(
         "delaunay",
         np.concatenate(wrong),
-        "{count} [edge is|edges are] not Delaunay: the far corner lies in the circle of a "
-        "triangle at "
-        "[it|them] (first: [triangle|triangles] {first}).",
+        "edge",
+        "[is|are] not Delaunay: the far corner lies in the circle of a triangle at [it|them]",
+        first="triangle",
     )
     found.note(
         "tie",
         np.concatenate(against_rule),
-        "{count} [edge joins|edges join] four cocircular points the other way than tinsmith "
-        "would, which is "
-        "Delaunay too (first: [triangle|triangles] {first}).",
+        "edge",
+        "[joins|join] four cocircular points the other way than tinsmith would, which is Delaunay "
+        "too",
+        first="triangle",
     )
     found.counts["ties"] = n_ties
     found.counts["ties_against_rule"] = sum(len(triangles) for triangles in against_rule)

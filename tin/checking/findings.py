@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,13 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 _SHOWN = 5
+_WORDS = {
+    **{one: f"[{one}|{one}s]" for one in ("chain", "edge", "line", "row", "segment", "triangle")},
+    "constrained edge": "[constrained edge|constrained edges]",
+    "entry": "[entry|entries]",
+    "vertex": "[vertex|vertices]",
+}
+"""What is counted, as one and as several."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,28 +56,32 @@ class Findings:
         self.notes: list[Problem] = []
         self.counts: dict[str, int] = {}
 
-    def report(self, kind: str, at: ArrayLike, sentence: str) -> None:
-        """Report a problem at the numbers ``at``; nothing if there are none.
+    def report(self, kind: str, at: ArrayLike, things: str, what: str, **words: Any) -> None:
+        """Report a problem of ``things``: at these numbers, or where flags are set, if anywhere.
 
-        ``{count}`` and ``{first}`` in the sentence are filled in, and of ``[is|are]`` the word is
-        taken that fits the count.
+        ``what`` goes on behind their number, with the one of ``[is|are]`` that fits it, ``before``
+        stands in front; ``first`` are what is numbered, if that is something else.
         """
-        _add(self.problems, kind, at, sentence)
+        self.problems += _describe(kind, at, things, what, **words)
 
-    def note(self, kind: str, at: ArrayLike, sentence: str) -> None:
+    def note(self, kind: str, at: ArrayLike, things: str, what: str, **words: Any) -> None:
         """Note what is no fault, as :meth:`report`."""
-        _add(self.notes, kind, at, sentence)
+        self.notes += _describe(kind, at, things, what, **words)
 
-    def fail(self, kind: str, sentence: str) -> None:
+    def fail(self, kind: str, sentence: str, *, first: tuple[int, ...] = ()) -> None:
         """Report a problem of the TIN as a whole."""
-        self.problems.append(Problem(kind, 1, (), sentence))
+        self.problems.append(Problem(kind, 1, first, sentence))
 
 
-def _add(into: list[Problem], kind: str, at: ArrayLike, sentence: str) -> None:
+def _describe(
+    kind: str, at: ArrayLike, things: str, what: str, *, before: str = "", first: str = ""
+) -> list[Problem]:
+    """Return a problem with its sentence; none where there are no numbers."""
     numbers = np.asarray(at)
-    if numbers.size:
-        first = tuple(int(number) for number in numbers[:_SHOWN])
-        text = inflect(sentence, numbers.size).format(
-            count=numbers.size, first=", ".join(map(str, first))
-        )
-        into.append(Problem(kind, int(numbers.size), first, text))
+    numbers = np.flatnonzero(numbers) if numbers.dtype.kind == "b" else numbers
+    if not numbers.size:
+        return []
+    shown = tuple(int(number) for number in numbers[:_SHOWN])
+    where = f"(first: {_WORDS[first or things]} {', '.join(map(str, shown))})."
+    words = filter(None, (f"{before}{numbers.size}", _WORDS[things], what, where))
+    return [Problem(kind, numbers.size, shown, inflect(" ".join(words), numbers.size))]

@@ -49,12 +49,8 @@ def check_rows(tin: TIN, rows: Float64Array, found: Findings) -> None:
     moved = np.abs(tin.points[tin.vertex_of, :2] - rows[:, :2])
     moved[tin.vertex_of < 0] = 0.0
     is_moved = np.hypot(moved[:, 0], moved[:, 1]) > tin.report.snap * (1 + _ROUNDING)
-    found.report(
-        "rows",
-        np.flatnonzero(is_moved),
-        "{count} [row is not where its|rows are not where their] vertex is, "
-        f"within snap {tin.report.snap:g} (first: [row|rows] {{first}}).",
-    )
+    what = f"[is not where its|are not where their] vertex is, within snap {tin.report.snap:g}"
+    found.report("rows", is_moved, "row", what)
     if not has_sound_boundary(found):
         return
     codes = [LEFT_OUT.index(reason) for reason in _OUTSIDE]
@@ -63,8 +59,8 @@ def check_rows(tin: TIN, rows: Float64Array, found: Findings) -> None:
     found.report(
         "rows",
         outside[_is_inside(tin, rows[outside, :2], slack)],
-        "{count} [row is|rows are] left out as outside the surface, but [lies|lie] inside "
-        "(first: [row|rows] {first}).",
+        "row",
+        "[is|are] left out as outside the surface, but [lies|lie] inside",
     )
 
 
@@ -77,12 +73,7 @@ def check_given_lines(tin: TIN, given: LineSet, found: Findings) -> None:
     xy, snap = tin.points[:, :2], tin.report.snap
     unit = _measure_unit(tin, given.xy)
     walk = walk_along(xy, tin.lines, given, snap=snap * (1 + _ROUNDING), unit=unit)
-    found.report(
-        "lines",
-        walk.lost,
-        "{count} [line has|lines have] chains that do not begin on [it|them] "
-        "(first: [line|lines] {first}).",
-    )
+    found.report("lines", walk.lost, "line", "[has|have] chains that do not begin on [it|them]")
     # vertices between those given lie on the line, in order
     vertices, before, after = walk.between.T
     p, a, b = xy[vertices], given.xy[before], given.xy[after]
@@ -93,12 +84,8 @@ def check_given_lines(tin: TIN, given: LineSet, found: Findings) -> None:
     is_same = np.append(False, np.diff(before) == 0)[: len(before)]
     is_wrong = is_same & (np.append(0.0, np.diff(along))[: len(before)] < -2 * allowed)
     is_wrong |= distance(p, a, b) > allowed
-    found.report(
-        "lines",
-        np.unique(given.line_of[before[is_wrong]]),
-        "{count} [line has|lines have] chains that leave their course "
-        "(first: [line|lines] {first}).",
-    )
+    astray = np.unique(given.line_of[before[is_wrong]])
+    found.report("lines", astray, "line", "[has|have] chains that leave their course")
     most = int(cuts.max()) if len(before) else 0
     slack = (1 + most + UNSEEN_CUTS) * unit
     # what is left out of lines lies outside the surface or in water
@@ -106,8 +93,8 @@ def check_given_lines(tin: TIN, given: LineSet, found: Findings) -> None:
     found.report(
         "lines",
         np.unique(np.array(walk.gap_lines, np.int64)[is_wrong]),
-        "{count} [line has|lines have] parts inside the surface that are missing "
-        "(first: [line|lines] {first}).",
+        "line",
+        "[has|have] parts inside the surface that are missing",
     )
     # chains end with their line, at the boundary or at water
     vertices = np.array(walk.end_vertices, np.int64)
@@ -118,8 +105,8 @@ def check_given_lines(tin: TIN, given: LineSet, found: Findings) -> None:
     found.report(
         "lines",
         np.unique(np.array(walk.end_lines, np.int64)[loose[is_wrong]]),
-        "{count} [line ends|lines end] inside the surface, before [its|their] end "
-        "(first: [line|lines] {first}).",
+        "line",
+        "[ends|end] inside the surface, before [its|their] end",
     )
 
 

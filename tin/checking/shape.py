@@ -22,12 +22,7 @@ def check_shape(tin: TIN, found: Findings) -> None:
     """Check turns, boundary, overlaps, Euler count and areas."""
     xy = columns(tin.points)
     clockwise = np.flatnonzero(orientation(xy, *tin.triangles.T) <= 0)
-    found.report(
-        "orientation",
-        clockwise,
-        "{count} [triangle is|triangles are] not counter-clockwise "
-        "(first: [triangle|triangles] {first}).",
-    )
+    found.report("orientation", clockwise, "triangle", "[is|are] not counter-clockwise")
     rings = topology.boundary_rings(tin.triangles, tin.neighbors)
     found.counts["rings"] = len(rings)
     if not rings:
@@ -43,7 +38,8 @@ def check_shape(tin: TIN, found: Findings) -> None:
                 if fault.is_meeting
                 else "Parts of the surface lie over each other"
             )
-            found.report("overlap", [fault.vertex], f"{what} (westernmost: near vertex {{first}}).")
+            sentence = f"{what} (westernmost: near vertex {fault.vertex})."
+            found.fail("overlap", sentence, first=(fault.vertex,))
     if is_free and len(rings) > 1:
         found.fail(
             "boundary",
@@ -75,12 +71,8 @@ def _check_boundary(
     is_constrained, came_constrained = (tin.constrained[triangle[at], corner[at]] for at in slots)
     is_reflex = orientation(xy, before, here, after) < 0
     is_allowed = is_constrained & came_constrained
-    found.report(
-        "hull",
-        np.unique(here[is_reflex & ~is_allowed]),
-        "The boundary turns inwards at {count} [vertex|vertices] "
-        "(first: [vertex|vertices] {first}).",
-    )
+    inwards = np.unique(here[is_reflex & ~is_allowed])
+    found.report("hull", inwards, "vertex", "", before="The boundary turns inwards at ")
     is_start = is_last(xy, before, here) & is_last(xy, after, here)
     if not is_reflex.any() and np.count_nonzero(is_start) != len(rings):
         found.fail("hull", "The boundary winds about itself: a convex ring turns round once.")
