@@ -212,19 +212,14 @@ class HalfEdges(NamedTuple):
 
     Those that start at vertex ``v`` are ``offsets[v]`` to ``offsets[v + 1]``; their triangles are
     the triangles of ``v``.
-
-    Attributes
-    ----------
-    keys : (3 m,) int64 array
-        Start times the number of vertices, plus end; ascending.
-    triangles : (3 m,) int32 array
-        The triangle on the left of each.
-    offsets : (n + 1,) int64 array
     """
 
     keys: Int64Array
+    """(3 m,), start times the number of vertices, plus end; ascending."""
     triangles: Int32Array
+    """(3 m,), the triangle on the left of each."""
     offsets: Int64Array
+    """(n + 1,)."""
 
 
 def sort_half_edges(triangles: Int32Array, n_vertices: int) -> HalfEdges:

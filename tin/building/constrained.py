@@ -30,35 +30,23 @@ if TYPE_CHECKING:
 
 
 class ConstrainedTriangulation(NamedTuple):
-    """The triangulated hull with its lines.
-
-    Attributes
-    ----------
-    surface : Triangulation
-    vertex_of : (n,) int32 array
-        The vertex of each row of points, -1 for rows in water.
-    line_vertices : (k,) int32 array
-        Likewise of each given vertex of the lines.
-    polylines : Polylines
-        What is left of the lines, water excluded.
-    merges : dict
-        Fields of the report about merged rows.
-    noded : Noded
-        Where lines meet; its vertices are numbered as ``number_of`` says.
-    overruled : Overruled
-        Likewise.
-    number_of : (v,) int32 array
-        The vertex of the surface for each vertex before water took its share, -1 for none.
-    """
+    """The triangulated hull with its lines."""
 
     surface: Triangulation
     vertex_of: Int32Array
+    """(n,), the vertex of each row of points, -1 for rows in water."""
     line_vertices: Int32Array
+    """(k,), likewise of each given vertex of the lines."""
     polylines: Polylines
+    """What is left of the lines, water excluded."""
     merges: dict[str, Any]
+    """Fields of the report about merged rows."""
     noded: Noded
+    """Where lines meet; its vertices are numbered as ``number_of`` says."""
     overruled: Overruled
+    """Likewise."""
     number_of: Int32Array
+    """(v,), the vertex of the surface for each vertex before water took its share, -1 for none."""
 
 
 class _Merged(NamedTuple):

@@ -44,41 +44,30 @@ _NAMES = ("points", "breaklines", "boundary", "holes", "erase", "water")
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class BuildInputs:
-    """Points, lines and options, checked: the same inputs give the same TIN.
-
-    Attributes
-    ----------
-    points : (n, 3) float64 array
-    is_masked : (n,) bool array or None
-        Rows that are left out; None if there are none.
-    lines : LineSet
-    boundary, extent : list of (k, 2) float64 arrays
-        Rings, the first corner not repeated.
-    holes, erase : list of lists of (k, 2) float64 arrays
-        The rings of each region: the outer one, then its islands.
-    options : BuildOptions
-    has_own_boundary : bool
-        Whether some of the lines are edges of the boundary of existing triangles.
-    source : str
-        Name of the file that the points come from; empty if there is none.
-    """
+    """Points, lines and options, checked: the same inputs give the same TIN."""
 
     points: Float64Array
+    """(n, 3)."""
     is_masked: BoolArray | None
+    """(n,), rows that are left out; None if there are none."""
     lines: LineSet
     boundary: list[Float64Array]
     extent: list[Float64Array]
+    """Rings, (k, 2) each, the first corner not repeated."""
     holes: list[list[Float64Array]]
     erase: list[list[Float64Array]]
+    """The rings of each region, (k, 2): the outer one, then its islands."""
     options: BuildOptions
     crs: CRS | None
     elevation_unit: Unit | None = None
     has_own_boundary: bool = False
+    """Whether some of the lines are edges of the boundary of existing triangles."""
     from_raster: bool = False
     skipped: Mapping[str, int] = field(default_factory=dict)
     row_sources: RowSources | None = None
     notes: Sequence[str] = ()
     source: str = ""
+    """Name of the file that the points come from; empty if there is none."""
 
     def _require_sound(self, n_rows: int) -> None:
         """Refuse stored inputs of other than so many rows, whose points are still missing."""

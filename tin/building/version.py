@@ -30,24 +30,15 @@ class LineVertices(NamedTuple):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Version(Frozen):
-    """An immutable state of a TIN.
-
-    Attributes
-    ----------
-    triangulation : Triangulation
-    vertex_of : (n,) int32 array
-        The vertex of each input row, those that edits removed included; -1 for none.
-    lines : Lines
-    report : Report
-    snapped : LineVertices or None
-        None where lines were not moved, or where it is not known any more.
-    """
+    """An immutable state of a TIN."""
 
     triangulation: Triangulation
     vertex_of: Int32Array
+    """(n,), the vertex of each input row, those that edits removed included; -1 for none."""
     lines: Lines
     report: Report
     snapped: LineVertices | None = None
+    """None where lines were not moved, or where it is not known any more."""
 
     def _require_sound(self) -> None:
         """Refuse a stored version whose lines and report are not those of its triangles."""

@@ -38,32 +38,21 @@ Point = tuple[float, float]
 
 
 class Boundary(NamedTuple):
-    """The directed edges of the boundary, the surface on their left.
-
-    Attributes
-    ----------
-    points : (n, 3) or (n, 2) float64 array
-    start, end : (k,) int arrays
-        Vertices.
-    """
+    """The directed edges of the boundary, the surface on their left."""
 
     points: Float64Array
+    """(n, 3) or (n, 2)."""
     start: Int64Array
     end: Int64Array
+    """(k,), vertices."""
 
 
 class BoundaryFault(NamedTuple):
-    """Where the sweep found a fault; what lies east of it was not looked at.
-
-    Attributes
-    ----------
-    vertex : int
-    is_meeting : bool
-        Whether edges cross, overlap or hold a vertex; else the surface lies over itself.
-    """
+    """Where the sweep found a fault; what lies east of it was not looked at."""
 
     vertex: int
     is_meeting: bool
+    """Whether edges cross, overlap or hold a vertex; else the surface lies over itself."""
 
 
 class _Edge(NamedTuple):

@@ -28,30 +28,21 @@ _PASSINGS: tuple[Passing, ...] = get_args(Passing)
 
 
 class Walk(NamedTuple):
-    """What was met on the way.
-
-    Attributes
-    ----------
-    between : (k, 3) int64 array
-        Vertices that are none of their line, in order: number, and the rows of the line's vertices
-        before and after.
-    gap_rows : list of int
-        Rows of the line's vertices behind which a part is left out.
-    gap_points, gap_lines : lists of points and of int
-        Vertices left out and middles between them, and their lines.
-    end_vertices, end_lines : lists of int
-        Where chains begin or end, but not their line.
-    lost : list of int
-        Lines with a chain that is not found on them.
-    """
+    """What was met on the way."""
 
     between: Int64Array
+    """(k, 3), vertices that are none of their line, in order: number, and the rows of the line's
+    vertices before and after."""
     gap_rows: list[int]
+    """Rows of the line's vertices behind which a part is left out."""
     gap_points: list[Point]
     gap_lines: list[int]
+    """Vertices left out and middles between them, and their lines."""
     end_vertices: list[int]
     end_lines: list[int]
+    """Where chains begin or end, but not their line."""
     lost: list[int]
+    """Lines with a chain that is not found on them."""
 
 
 def walk_along(xy: Float64Array, lines: Lines, given: LineSet, *, snap: float, unit: float) -> Walk:
@@ -79,25 +70,17 @@ def walk_along(xy: Float64Array, lines: Lines, given: LineSet, *, snap: float, u
 
 
 class _Course(NamedTuple):
-    """How a chain may run along its line.
-
-    Attributes
-    ----------
-    begin, end : int
-        Numbers of the line's vertices passed first, or just before, and last.
-    between : list of Between
-    deviation : float
-        How far it leaves the line, or goes back.
-    is_close, is_kept : bool
-        Whether it is as near to the line as the cuts seen allow, or with unseen ones, too.
-    """
+    """How a chain may run along its line."""
 
     begin: int
     end: int
+    """Numbers of the line's vertices passed first, or just before, and last."""
     between: list[Between]
     deviation: float
+    """How far it leaves the line, or goes back."""
     is_close: bool
     is_kept: bool
+    """Whether it is as near to the line as the cuts seen allow, or with unseen ones, too."""
 
 
 class _Walker:

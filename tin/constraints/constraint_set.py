@@ -33,22 +33,16 @@ BELOW_ALL = -np.inf
 
 
 class LineSet(NamedTuple):
-    """Lines as ragged arrays of places; line ``i`` has the rows ``offsets[i]:offsets[i + 1]``.
-
-    Attributes
-    ----------
-    xy : (k, 2) float64 array
-    elevations : (k,) float64 array
-        NaN for draped lines.
-    offsets : (l + 1,) int64 array
-    table : ConstraintTable
-        What the lines are.
-    """
+    """Lines as ragged arrays of places; line ``i`` has the rows ``offsets[i]:offsets[i + 1]``."""
 
     xy: Float64Array
+    """(k, 2)."""
     elevations: Float64Array
+    """(k,), NaN for draped lines."""
     offsets: Int64Array
+    """(l + 1,)."""
     table: ConstraintTable
+    """What the lines are."""
 
     @property
     def kinds(self) -> tuple[LineKind, ...]:

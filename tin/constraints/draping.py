@@ -20,47 +20,31 @@ if TYPE_CHECKING:
 
 
 class CutBoundary(NamedTuple):
-    """The boundary of a surface that fills its convex hull, as it runs through vertices of lines.
-
-    Attributes
-    ----------
-    lines : LineSet
-        The parts that got vertices.
-    corners : (c, 2) float64 array
-        Along it the places that are vertices of the surface. One that an edge is bent onto occurs
-        again.
-    is_split : (c,) bool array
-        Whether the edge from each corner to the next is one of the lines, which are in this order.
-    is_met : (c,) bool array
-        Whether a line has a vertex on it, its ends included.
-    """
+    """The boundary of a surface that fills its convex hull, through the vertices of lines."""
 
     lines: LineSet
+    """The parts that got vertices."""
     corners: Float64Array
+    """(c, 2), along it the places that are vertices of the surface. One that an edge is bent onto
+    occurs again."""
     is_split: BoolArray
+    """(c,), whether the edge from each corner to the next is one of the lines, which are in this
+    order."""
     is_met: BoolArray
+    """(c,), whether a line has a vertex on it, its ends included."""
 
 
 class CutLines(NamedTuple):
-    """Lines without elevations, cut at the boundary of a surface that fills its convex hull.
-
-    Attributes
-    ----------
-    points : (v, 2) float64 array
-        Places, of which some may be on no line.
-    elevations : (v,) float64 array
-        Of those on the boundary; NaN elsewhere.
-    polylines : Polylines
-        Each line with its parts outside.
-    is_inside : (s,) bool array
-        Whether each segment is on the surface.
-    boundary : CutBoundary
-    """
+    """Lines without elevations, cut at the boundary of a surface that fills its convex hull."""
 
     points: Float64Array
+    """(v, 2), places, of which some may be on no line."""
     elevations: Float64Array
+    """(v,), of those on the boundary; NaN elsewhere."""
     polylines: Polylines
+    """Each line with its parts outside."""
     is_inside: BoolArray
+    """(s,), whether each segment is on the surface."""
     boundary: CutBoundary
 
     @property
@@ -75,18 +59,12 @@ class CutLines(NamedTuple):
 
 
 class Draped(NamedTuple):
-    """Lines with elevations.
-
-    Attributes
-    ----------
-    lines : LineSet
-        The given lines, cut where they leave the surface; kind, source and name are kept.
-    cut : CutLines
-        How they were cut, and the boundary with them.
-    """
+    """Lines with elevations."""
 
     lines: LineSet
+    """The given lines, cut where they leave the surface; kind, source and name are kept."""
     cut: CutLines
+    """How they were cut, and the boundary with them."""
 
 
 def drape(surface: Triangulation, lines: LineSet, *, threads: int) -> Draped:

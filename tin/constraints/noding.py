@@ -38,41 +38,26 @@ if TYPE_CHECKING:
 
 
 class Touches(NamedTuple):
-    """Given vertices that a line passes without naming them.
-
-    Attributes
-    ----------
-    vertex, line : (t,) int32 arrays
-        Sorted by vertex, then by line.
-    elevation : (t,) float64 array
-        The line's own elevation there; NaN if it has none.
-    """
+    """Given vertices that a line passes without naming them."""
 
     vertex: Int32Array
     line: Int32Array
+    """(t,), sorted by vertex, then by line."""
     elevation: Float64Array
+    """(t,), the line's own elevation there; NaN if it has none."""
 
 
 class Noded(NamedTuple):
-    """Lines whose segments hold no vertex but their ends and cross no other segment.
-
-    Attributes
-    ----------
-    new_points : (s, 3) float64 array
-        Vertices made where lines cross, by x, then y; numbered behind the given ones.
-    polylines : Polylines
-    elevations : (k,) float64 array
-        The line's own elevation at each of its vertices; NaN if it has none.
-    crossings : Crossings
-        A row for the line whose elevation counts, which is named first, and each other line
-        there; the same line twice if it crosses itself.
-    touches : Touches
-    """
+    """Lines whose segments hold no vertex but their ends and cross no other segment."""
 
     new_points: Float64Array
+    """(s, 3), vertices made where lines cross, by x, then y; numbered behind the given ones."""
     polylines: Polylines
     elevations: Float64Array
+    """(k,), the line's own elevation at each of its vertices; NaN if it has none."""
     crossings: Crossings
+    """A row for the line whose elevation counts, which is named first, and each other line there;
+    the same line twice if it crosses itself."""
     touches: Touches
 
 

@@ -25,18 +25,15 @@ class Polylines:
         offsets    0           3        5
         vertices   4   7   2   9   4
         segments   4-7 7-2     9-4
-
-    Attributes
-    ----------
-    vertices : (k,) int32 array
-    offsets : (l + 1,) int32 array
-    lines : (l,) int32 array
-        The line that each polyline is, or is a part of: its place in a table of constraints.
     """
 
     vertices: Int32Array
+    """(k,)."""
     offsets: Int32Array
+    """(l + 1,)."""
     lines: Int32Array
+    """(l,), the line that each polyline is, or is a part of: its place in a table of constraints.
+    """
 
     @classmethod
     def whole(cls, vertices: Int32Array, offsets: AnyArray) -> Polylines:

@@ -34,24 +34,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Clip:
-    """Which triangles of the hull are the surface.
-
-    Attributes
-    ----------
-    boundary, extent : lists of (k, 2) float64 arrays
-        Rings.
-    holes : list of lists of (k, 2) float64 arrays
-        The rings of each, the outer one and its islands.
-    has_own_boundary : bool
-        Whether there are lines of a boundary that is there, beyond which is no surface.
-    max_edge : float or None
-    is_trimmed_everywhere : bool
-    """
+    """Which triangles of the hull are the surface."""
 
     boundary: list[Float64Array] = field(default_factory=list)
     extent: list[Float64Array] = field(default_factory=list)
+    """Rings, (k, 2) each."""
     holes: list[list[Float64Array]] = field(default_factory=list)
+    """The rings of each, (k, 2), the outer one and its islands."""
     has_own_boundary: bool = False
+    """Whether there are lines of a boundary that is there, beyond which is no surface."""
     max_edge: float | None = None
     is_trimmed_everywhere: bool = False
 
@@ -89,28 +80,18 @@ class Clip:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Pslg:
-    """Planar straight-line graph: vertices and segments of lines of the whole hull.
-
-    Attributes
-    ----------
-    points : (v, 3) float64 array
-        Distinct places.
-    polylines : Polylines
-    constraints : ConstraintTable
-        What their lines are; source -1 is an edge of the boundary that was cut.
-    groups : (l,) int64 array
-        Of each line whose side it changes, if it is a ring, as in :mod:`.clipping`.
-    clip : Clip
-    vertex_of : (n,) int32 array
-        The vertex of each row of the caller's points, -1 for none.
-    """
+    """Planar straight-line graph: vertices and segments of lines of the whole hull."""
 
     points: Float64Array
+    """(v, 3), distinct places."""
     polylines: Polylines
     constraints: ConstraintTable
+    """What their lines are; source -1 is an edge of the boundary that was cut."""
     groups: Int64Array
+    """(l,), of each line whose side it changes, if it is a ring, as in :mod:`.clipping`."""
     clip: Clip
     vertex_of: Int32Array
+    """(n,), the vertex of each row of the caller's points, -1 for none."""
 
     def surface(self, hull: Triangulation) -> tuple[Triangulation, Int32Array]:
         """Cut the triangulated hull; return the surface and the new number of each vertex."""

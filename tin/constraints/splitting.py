@@ -34,29 +34,20 @@ class Segments(NamedTuple):
         start     0    1    3    4            edges      u-v  v-w  w-x
         edge      u-v  v-w  w-x  v-w
         backward  no   no   yes  yes
-
-    Attributes
-    ----------
-    start : (s,) int64 array
-        Position from which each segment goes.
-    edge : (s,) int64 array
-        The edge of each segment, to which others may belong.
-    is_backward : (s,) bool array
-        Whether it goes from the edge's second end to the first.
-    keys : (m,) int64 array
-        Of the edges, ascending: both vertex numbers in one.
-    ends : (m, 2) int32 array
-        Vertices of each edge, the first by x, then y, in front.
-    first_segment : (m,) int64 array
-        The first segment along each edge.
     """
 
     start: Int64Array
+    """(s,), position from which each segment goes."""
     edge: Int64Array
+    """(s,), the edge of each segment, to which others may belong."""
     is_backward: BoolArray
+    """(s,), whether it goes from the edge's second end to the first."""
     keys: Int64Array
+    """(m,), of the edges, ascending: both vertex numbers in one."""
     ends: Int32Array
+    """(m, 2), vertices of each edge, the first by x, then y, in front."""
     first_segment: Int64Array
+    """(m,), the first segment along each edge."""
 
     @classmethod
     def along(cls, polylines: Polylines, xy: Float64Array) -> Segments:

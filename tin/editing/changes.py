@@ -33,25 +33,17 @@ _NO_XYZ = np.empty((0, 3))
 
 
 class Change(NamedTuple):
-    """What an edit does to the inputs.
-
-    Attributes
-    ----------
-    removed : (r,) int64 array
-        Rows, by their lasting numbers.
-    moved, points : (k,) int64 array, (k, 3) float64 array
-        Rows, and where they are now.
-    added : (a, 3) float64 array
-        New rows.
-    lines : tuple of callable
-        From the set of lines to a changed one, one after the other.
-    """
+    """What an edit does to the inputs."""
 
     removed: Int64Array = _NO_ROWS
+    """(r,), rows, by their lasting numbers."""
     moved: Int64Array = _NO_ROWS
     points: Float64Array = _NO_XYZ
+    """(k,) rows, and (k, 3) where they are now."""
     added: Float64Array = _NO_XYZ
+    """(a, 3), new rows."""
     lines: tuple[Callable[[LineSet], LineSet], ...] = ()
+    """From the set of lines to a changed one, one after the other."""
 
 
 class Done(NamedTuple):
@@ -65,21 +57,14 @@ class Done(NamedTuple):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class NumberedInputs(Frozen):
-    """The inputs of an edited TIN, whose rows keep their numbers.
-
-    Attributes
-    ----------
-    build_inputs : BuildInputs
-        Of the rows and lines that are there.
-    rows : (n,) int64 array
-        The lasting number of each of its rows, ascending.
-    n_rows : int
-        Rows that are or were there.
-    """
+    """The inputs of an edited TIN, whose rows keep their numbers."""
 
     build_inputs: BuildInputs
+    """Of the rows and lines that are there."""
     rows: Int64Array
+    """(n,), the lasting number of each of its rows, ascending."""
     n_rows: int
+    """Rows that are or were there."""
 
     @classmethod
     def of(cls, build_inputs: BuildInputs) -> NumberedInputs:

@@ -28,19 +28,12 @@ if TYPE_CHECKING:
 
 
 class Origin(NamedTuple):
-    """What a TIN was built from, and what was done to it since.
-
-    Attributes
-    ----------
-    inputs : BuildInputs or None
-        What it was built from before all edits; None for one of existing triangles.
-    given : Version or None
-        Existing triangles before the first edit; None without edits.
-    edits : tuple of Edit
-    """
+    """What a TIN was built from, and what was done to it since."""
 
     inputs: BuildInputs | None = None
+    """What it was built from before all edits; None for one of existing triangles."""
     given: Version | None = None
+    """Existing triangles before the first edit; None without edits."""
     edits: tuple[Edit, ...] = ()
 
     def _require_sound(self, version: Version) -> None:

@@ -184,20 +184,14 @@ def _explain_too_many(max_vertices: int) -> str:
 
 
 class _Splits(NamedTuple):
-    """Segments that were split, in order; a half can be split only later.
-
-    Attributes
-    ----------
-    ends : (s, 2) int array
-        Vertices.
-    middle : (s,) int array
-    middle_of : dict
-        The same, by pairs of ends, the smaller one first.
-    """
+    """Segments that were split, in order; a half can be split only later."""
 
     ends: Int32Array
+    """(s, 2), vertices."""
     middle: Int32Array
+    """(s,)."""
     middle_of: dict[tuple[int, int], int]
+    """The same, by pairs of ends, the smaller one first."""
 
     @classmethod
     def of(cls, triples: Int32Array) -> _Splits:

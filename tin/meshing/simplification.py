@@ -98,24 +98,16 @@ class Goal(NamedTuple):
 
 
 class Errors(NamedTuple):
-    """How far points are from a surface, in elevation.
-
-    Attributes
-    ----------
-    far : (k,) int array
-        Rows of the points to be added: those beyond the tolerance.
-    largest, rms : float
-    surface : float or None
-        The largest difference anywhere between the two surfaces, if it was measured.
-    is_done : bool
-        Whether nothing is to be added.
-    """
+    """How far points are from a surface, in elevation."""
 
     far: Int64Array
+    """(k,), rows of the points to be added: those beyond the tolerance."""
     largest: float
     rms: float
     surface: float | None = None
+    """The largest difference anywhere between the two surfaces, if it was measured."""
     is_done: bool = True
+    """Whether nothing is to be added."""
 
 
 def find_rounding(z: Float64Array) -> float:

@@ -18,18 +18,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Triangulation(Frozen):
-    """Triangles over vertices; never changed, all arrays are read-only.
-
-    Attributes
-    ----------
-    points, triangles, neighbors, constrained : arrays
-        As those of :class:`.TIN`.
-    """
+    """Triangles over vertices; never changed, all arrays are read-only."""
 
     points: Float64Array
     triangles: Int32Array
     neighbors: Int32Array
     constrained: BoolArray
+    """As those of :class:`.TIN`."""
 
     @cached_property
     def bounds(self) -> Bounds:

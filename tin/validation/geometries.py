@@ -28,21 +28,16 @@ _TYPES = {*_NESTING, *_GROUPS, *(f"Multi{name}" for name in _NESTING), "Feature"
 
 
 class Geometry(NamedTuple):
-    """A geometry that is no collection.
-
-    Attributes
-    ----------
-    kind : str
-        "Point", "LineString", "Polygon", "missing geometry", or another type that is none of these.
-    rings : list of (k, 2) or (k, 3) arrays
-        Of a polygon the outer ring, then those of its islands; of a point or a line one array.
-    row : int
-        The row that it is, or is a part of.
-    """
+    """A geometry that is no collection."""
 
     kind: str
+    """"Point", "LineString", "Polygon", "missing geometry", or another type that is none of these.
+    """
     rings: list[Any]
+    """list of (k, 2) or (k, 3) arrays, of a polygon the outer ring, then those of its islands; of a
+    point or a line one array."""
     row: int
+    """The row that it is, or is a part of."""
 
 
 class Geometries(NamedTuple):
