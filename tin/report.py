@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..base.lazy import make_html_repr
 from ..base.records import require, require_finite, require_indices, require_offsets
-from ..base.sentences import counted, height
+from ..base.sentences import counted
 from ..base.types import Frozen, RowSources
 
 if TYPE_CHECKING:
@@ -480,48 +480,6 @@ class Report(Frozen):
         differing = int(np.count_nonzero(spread))
         return describe_differing(differing, float(spread.max()), self.duplicates)
 
-    def after_edits(
-        self, vertex_of: Int32Array, n_vertices: int, n_triangles: int, edits: Sequence[Edit]
-    ) -> Report:
-        """Return the report of a TIN that was not built by us, whose rows have these vertices.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> points = [[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]]
-        >>> report = ts.triangulate(points).report
-        >>> report.after_edits(np.array([0, 1, 2, -1]), 3, 1, []).to_dict()["left_out"]
-        {'removed by an edit': [3]}
-        """
-        report = replace(
-            self,
-            n_rows=len(vertex_of),
-            n_vertices=n_vertices,
-            n_triangles=n_triangles,
-            merged_vertices=vertex_of[self.merged_rows[self.merged_offsets[:-1]]],
-            edits=edits,
-            unmended=Unmended.none(),
-            simplification=None,
-        )
-        return report.with_removed(vertex_of)
-
-    def with_removed(self, vertex_of: Int32Array, why: str = "removed by an edit") -> Report:
-        """Return the report with the rows that have no vertex; those that are new, and why.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> points = [[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]]
-        >>> report = ts.triangulate(points).report
-        >>> report.with_removed(np.array([0, 1, 2, -1])).left_out_rows.tolist()
-        [3]
-        """
-        lost = np.flatnonzero(vertex_of < 0).astype(np.int32)
-        codes = np.full(len(lost), LEFT_OUT.index(why), np.int8)
-        before = np.isin(lost, self.left_out_rows)
-        codes[before] = self.left_out_why[np.searchsorted(self.left_out_rows, lost[before])]
-        return replace(self, left_out_rows=lost, left_out_why=codes)
-
     def with_reason(self, rows: Int64Array, why: str) -> Report:
         """Return the report with another reason for some of the rows that were left out.
 
@@ -536,113 +494,6 @@ class Report(Frozen):
         codes = self.left_out_why.copy()
         codes[np.isin(self.left_out_rows, rows)] = LEFT_OUT.index(why)
         return replace(self, left_out_why=codes)
-
-    def with_rows(self, rows: Int64Array, n_rows: int) -> Report:
-        """Return the report with row ``i`` called ``rows[i]``; those between were removed.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> points = [[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]]
-        >>> report = ts.triangulate(points).report
-        >>> report.with_rows(np.array([0, 1, 2, 4]), 5).merged_rows.tolist()
-        [0, 4]
-        """
-        if len(rows) == n_rows:
-            return self
-        is_lost = np.ones(n_rows, np.bool_)
-        is_lost[rows] = False
-        is_lost[rows[self.left_out_rows]] = True
-        return replace(
-            self,
-            n_rows=n_rows,
-            merged_rows=rows[self.merged_rows].astype(np.int32),
-            left_out_rows=rows[self.left_out_rows].astype(np.int32),
-        ).with_removed(np.where(is_lost, np.int32(-1), np.int32(0)))
-
-    def with_merges(self, merges: Report | None) -> Report:
-        """Return the report with the merges of another one, or with none.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> points = [[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]]
-        >>> report = ts.triangulate(points).report
-        >>> list(report.with_merges(None).merges())
-        []
-        """
-        names = [f.name for f in fields(self) if f.name.startswith("merged_")]
-        account = Report(n_rows=0, n_vertices=0, n_triangles=0) if merges is None else merges
-        own = {name: getattr(account, name) for name in [*names, "vertex_elevations"]}
-        return replace(self, **own)
-
-    def with_lines(self, labels: Sequence[str]) -> Report:
-        """Return the report with all lines, when some that meet no others have been added.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> points = [[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]]
-        >>> report = ts.triangulate(points).report
-        >>> report.with_lines(["breakline 'kerb'"]).n_lines
-        1
-        """
-        return replace(self, n_lines=len(labels), line_labels=tuple(labels))
-
-    def describe_crossings(self, label: str) -> list[str]:
-        """Return where a line crosses others, a sentence each.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> lines = [ts.Breakline([[0, 0, 5], [4, 4, 5]]), ts.Breakline([[0, 4, 7], [4, 0, 7]])]
-        >>> report = ts.triangulate([[0, 0, 5], [4, 0, 7], [0, 4, 7]], breaklines=lines).report
-        >>> print(report.describe_crossings(report.line_labels[0])[0])
-        The breakline crosses breakline 1 at x 2.000000, y 2.000000: its elevation there is 5, ...
-        """
-        own = [i for i, name in enumerate(self.line_labels) if name == label]
-        is_own = np.isin(self.crossings.lines, own).any(axis=1)
-        return [self._describe_crossing(row, own) for row in np.flatnonzero(is_own).tolist()]
-
-    def _describe_crossing(self, row: int, own: list[int]) -> str:
-        lines = self.crossings.lines[row]
-        mine = int(lines[1] in own and lines[0] not in own)
-        first, second = lines[[mine, 1 - mine]].tolist()
-        other = "itself" if first == second else self.line_labels[second]
-        (x, y), elevations = (
-            self.crossings.xy[row].tolist(),
-            self.crossings.elevations[row].tolist(),
-        )
-        return (
-            f"The breakline crosses {other} at x {x:.6f}, y {y:.6f}: its elevation there is "
-            f"{height(elevations[mine])}, the other's {height(elevations[1 - mine])}; "
-            f"{height(self.crossings.vertex_elevations[row])} was taken."
-        )
-
-    def renumber(
-        self, number: Int32Array, n_rows: int, n_vertices: int, n_triangles: int
-    ) -> Report:
-        """Return the report with vertex ``v`` of the lines' account called ``number[v]``.
-
-        Examples
-        --------
-        >>> import tinsmith as ts
-        >>> points = [[0, 0, 5], [4, 0, 6], [0, 3, 8], [0, 0, 7]]
-        >>> report = ts.triangulate(points).report
-        >>> report.renumber(np.array([2, 0, 1]), 4, 3, 1).n_vertices
-        3
-        """
-        crossings, overruled = self.crossings, self.overruled
-        return replace(
-            self,
-            n_rows=n_rows,
-            n_vertices=n_vertices,
-            n_triangles=n_triangles,
-            crossings=crossings._replace(vertices=number[crossings.vertices]),
-            overruled=overruled._replace(vertices=number[overruled.vertices]),
-        )
-
-    renumbered = renumber
 
     def merges(self) -> Iterator[Merge]:
         """Walk the merges, one vertex at a time.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
@@ -216,22 +216,6 @@ class Lines(Frozen):
     def _polylines(self) -> Polylines:
         return Polylines.whole(self.vertices, self.offsets)
 
-    def has_breakline(self, source: int) -> bool:
-        """Tell whether some of a breakline is there.
-
-        Examples
-        --------
-        >>> from tinsmith import Breakline, triangulate
-        >>> square = [[0, 0, 5], [4, 0, 6], [4, 3, 7], [0, 3, 8]]
-        >>> tin = triangulate(square, breaklines=[[[0, 0], [4, 3]]])
-        >>> tin.lines.has_breakline(0), tin.lines.has_breakline(1)
-        (True, False)
-        """
-        return any(
-            kind in ("hard", "soft") and own == source
-            for kind, own in zip(self.kinds, self.sources.tolist(), strict=True)
-        )
-
     def is_same(self, other: Lines) -> bool:
         """Tell whether these are the same lines through the same vertices.
 
@@ -244,35 +228,6 @@ class Lines(Frozen):
         return (self.kinds, self.names) == (other.kinds, other.names) and all(
             np.array_equal(getattr(self, name), getattr(other, name)) for name in arrays
         )
-
-    def with_breakline(self, vertices: list[int], line: Breakline) -> Lines:
-        """Return the lines, all of them breaklines, and a further one through some vertices.
-
-        Examples
-        --------
-        >>> Lines().with_breakline([3, 7, 4], Breakline([[0, 0], [1, 1]], kind="soft"))
-        <Lines: 0 hard, 1 soft, 0 boundary, 0 hole, 0 water; 3 vertices>
-        """
-        return Lines(
-            vertices=np.append(self.vertices, np.array(vertices, np.int32)),
-            offsets=np.append(self.offsets, np.int32(len(self.vertices) + len(vertices))),
-            kinds=(*self.kinds, line.kind),
-            sources=np.append(self.sources, np.int32(len(self))),
-            names=(*self.names, line.name),
-        )
-
-    def renumber(self, number: Int32Array) -> Lines:
-        """Return the same lines with vertex ``v`` called ``number[v]``.
-
-        Examples
-        --------
-        >>> lines = Lines(vertices=np.array([0, 2]), offsets=np.array([0, 2]))
-        >>> lines.renumber(np.array([5, 6, 7])).vertices.tolist()
-        [5, 7]
-        """
-        return replace(self, vertices=number[self.vertices])
-
-    renumbered = renumber
 
     def __repr__(self) -> str:
         kinds = ", ".join(f"{self.kinds.count(kind)} {kind}" for kind in get_args(LineKind))

@@ -19,6 +19,7 @@ from ..building.assembly import assemble
 from ..constraints.breaklines import Breakline
 from ..constraints.constraint_set import ABOVE_ALL, LineSet, gather_lines
 from ..topology import find_offsets
+from .accounts import renumber_rows
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
@@ -113,7 +114,7 @@ class NumberedInputs(Frozen):
         built = assemble(self.build_inputs)
         vertex_of = np.full(self.n_rows, -1, np.int32)
         vertex_of[self.rows] = built.vertex_of
-        report = built.report.with_rows(self.rows, self.n_rows)
+        report = renumber_rows(built.report, self.rows, self.n_rows)
         return replace(built, vertex_of=vertex_of, report=report)
 
     def find_line_vertices(self, version: Version) -> Int32Array:

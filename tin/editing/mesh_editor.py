@@ -7,6 +7,7 @@ a fresh build gives. An edit that fails, or that comes near a line, leaves the m
 from __future__ import annotations
 
 from array import array
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -19,6 +20,7 @@ from ..building.duplicates import merge_rows
 from ..building.version import Version
 from ..report import Edit, Report
 from ..triangulation import Triangulation
+from .accounts import account_for_removed, add_chain, renumber_vertices, replace_merges
 from .changes import Change, Done, add_line, make_flipped_edge, require_inner
 
 if TYPE_CHECKING:
@@ -323,7 +325,7 @@ class Editor:
         require_inner(beside)
         line = make_flipped_edge(np.array([self.edited.point(slot) for slot in (a, b, *beside)]))
         self._mesh.force(np.array([beside], np.int32))
-        self._lines = self._lines.with_breakline(beside, line)
+        self._lines = add_chain(self._lines, beside, line)
         self._keep_clear(self.edited.points())
         return Done(Change(lines=(partial(add_line, breakline=line),)))
 
@@ -359,15 +361,14 @@ class Editor:
         vertex_of_row = np.append(number, np.int32(-1))[slot_of_row]
         lines, base = self._lines, self._report
         if self._has_lines:
-            lines = lines.renumber(number)
-        report = base.renumber(
-            number, len(vertex_of_row), len(surface.points), len(surface.triangles)
-        )
-        report = report.with_removed(vertex_of_row).with_merges(
-            _gather_merges(vertex_of_row, self.count - (self._n_base - self._n_rows), inputs)
-        )
-        if self._has_lines:
-            report = report.with_lines(inputs().build_inputs.lines.labels())
+            lines = replace(lines, vertices=number[lines.vertices])
+        counts = len(vertex_of_row), len(surface.points), len(surface.triangles)
+        report = account_for_removed(renumber_vertices(base, number, *counts), vertex_of_row)
+        n_merged = self.count - (self._n_base - self._n_rows)
+        report = replace_merges(report, _gather_merges(vertex_of_row, n_merged, inputs))
+        if self._has_lines:  # some that meet no others have been added
+            labels = tuple(inputs().build_inputs.lines.labels())
+            report = replace(report, n_lines=len(labels), line_labels=labels)
         return Version(triangulation=surface, vertex_of=vertex_of_row, lines=lines, report=report)
 
 

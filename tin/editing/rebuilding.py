@@ -9,6 +9,7 @@ import numpy as np
 
 from ...base.errors import LinesError
 from ...base.sentences import coordinate, height
+from .accounts import describe_crossings
 from .changes import (
     FLIP,
     Change,
@@ -157,10 +158,12 @@ class Rebuild:
         inputs = self._inputs.after([change])
         found, lines = inputs.build(), inputs.build_inputs.lines
         number = count_breaklines(lines) - 1
-        crossings = found.report.describe_crossings(lines.label(number))
+        crossings = describe_crossings(found.report, lines.label(number))
         if crossings and crossing == "error":
             raise LinesError(f'{crossings[0][:-1]}: `crossing="error"` allows none.')
-        if line.is_draped and not found.lines.has_breakline(number):
+        made = zip(found.lines.kinds, found.lines.sources.tolist(), strict=True)
+        is_there = any(kind in ("hard", "soft") and own == number for kind, own in made)
+        if line.is_draped and not is_there:
             raise LinesError("The draped line lies outside the surface.")
         return Done(change, found, notes=tuple(crossings))
 

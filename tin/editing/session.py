@@ -13,6 +13,7 @@ from ...base.interrupts import hold_interrupts
 from ...base.records import require
 from ...base.sentences import counted, inflect
 from ..report import Edit
+from .accounts import account_for_edits
 from .arguments import copy_argument
 from .changes import Change, NumberedInputs
 from .existing_triangles import build_of_triangles, gather_inputs_of_triangles
@@ -154,7 +155,7 @@ class Session:
         vertex_of = np.append(own[self._given.vertex_of], own[self._begin.n_rows : -1])
         surface = found.triangulation
         counts = len(surface.points), len(surface.triangles)
-        report = self._given.report.after_edits(vertex_of, *counts, edits)
+        report = account_for_edits(self._given.report, vertex_of, *counts, edits)
         return replace(found, vertex_of=vertex_of, report=report)
 
     def do(self, name: str, arguments: dict[str, Any]) -> Any:

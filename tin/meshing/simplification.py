@@ -18,6 +18,7 @@ from ...base.progress import Progress
 from .. import _kernel, topology
 from ..building.version import Version
 from ..constraints.pslg import build_mesh_of_growth, find_lines_in
+from ..editing.accounts import account_for_edits, account_for_removed, renumber_vertices
 from ..report import Simplification
 from ..surface import TIN
 from ..triangulation import Triangulation
@@ -350,17 +351,17 @@ class _Part:
         report = self.tin.report
         surface = self.surface
         counts = (len(surface.points), len(surface.triangles))
-        moved = report.after_edits(vertex_of, *counts, report.edits)
-        known = report.renumber(self._number_of, len(vertex_of), *counts)
-        return replace(
-            moved,
+        known = renumber_vertices(report, self._number_of, len(vertex_of), *counts)
+        simplified = replace(
+            account_for_edits(report, vertex_of, *counts, report.edits),
             left_out_rows=report.left_out_rows,
             left_out_why=report.left_out_why,
             crossings=known.crossings,
             overruled=known.overruled,
             notes=(*report.notes, found.sentence(), *describe_flips(self.tin)),
             simplification=found,
-        ).with_removed(vertex_of, "simplified away")
+        )
+        return account_for_removed(simplified, vertex_of, "simplified away")
 
 
 def _describe_overlap() -> PointsError:
