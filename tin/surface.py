@@ -83,6 +83,15 @@ class Surface:
         """Return what it is the build of, edits included; None for existing triangles."""
         return self._keep()._gather_inputs()
 
+    def _with_version(self, version: Version) -> TIN:
+        """Return a TIN of existing triangles, with the CRS, the unit and the rows of this one."""
+        return TIN._of(
+            version,
+            crs=self._crs,
+            elevation_unit=self._elevation_unit,
+            row_attributes=self._row_attributes,
+        )
+
     def snapshot(self) -> Snapshot:
         """Return the surface as it is now, which no edit changes.
 
@@ -855,32 +864,8 @@ class TIN(Editable, Surface):
     """A triangulated irregular network: one elevation for every place inside its boundary.
 
     Built by :func:`tinsmith.triangulate`, or from existing triangles by
-    :meth:`TIN.from_triangles`. All arrays are read-only; edits replace them by others.
-
-    Attributes
-    ----------
-    points : (n, 3) float64 array
-        Easting, northing, elevation of the vertices, in the order given.
-    triangles : (m, 3) int32 array
-        Vertices of each triangle, counter-clockwise seen from above.
-    neighbors : (m, 3) int32 array
-        The triangle across the edge opposite each corner; -1 outside.
-    constrained : (m, 3) bool array
-        Whether that edge is a breakline, boundary or hole.
-    vertex_of : (n_input,) int32 array
-        The vertex that stands for each input row.
-    report : Report
-        What became of every input row.
-    lines : Lines
-        Breaklines, boundary, holes and water, as chains of vertices.
-    crs : CRS or None
-        Coordinate reference system.
-    elevation_unit : Unit or None
-        Unit of elevations; None if it is not known.
-    attributes : mapping of str to (n,) array
-        Further columns of the vertices, such as ``"number"`` and ``"description"``.
-    row_attributes : mapping of str to array
-        The same of the input rows.
+    :meth:`TIN.from_triangles`. All arrays are read-only; edits replace them by others. What the
+    class is made of are the attributes of the same names.
 
     Notes
     -----

@@ -49,10 +49,7 @@ def ends(
 def edges_at(triangles: Int32Array, is_chosen: BoolArray) -> Int32Array:
     """Return the edges opposite the chosen corners, (k, 2) vertex pairs, triangle by triangle.
 
-    Parameters
-    ----------
-    triangles : (m, 3) int32 array
-    is_chosen : (m, 3) bool array
+    ``is_chosen`` has a flag for each corner, (m, 3).
     """
     triangle, corner = np.nonzero(is_chosen)
     return np.stack(
@@ -77,11 +74,7 @@ def mark_corners(triangles: AnyArray, count: int) -> BoolArray:
 def edge_keys(pairs: AnyArray, n_vertices: int) -> Int64Array:
     """Return one number for each edge, whatever its direction: smaller end * n + larger end.
 
-    Parameters
-    ----------
-    pairs : (..., 2) int array
-        Vertices.
-    n_vertices : int
+    ``pairs`` are (..., 2) vertices.
     """
     return _make_keys(pairs[..., 0].astype(np.int64), pairs[..., 1].astype(np.int64), n_vertices)
 
@@ -94,20 +87,8 @@ def _make_keys(start: Int64Array, end: Int64Array, n_vertices: int) -> Int64Arra
 def neighbors_of(triangles: Int32Array, n_vertices: int) -> Int32Array:
     """Match the edges of counter-clockwise triangles.
 
-    Parameters
-    ----------
-    triangles : (m, 3) int32 array
-    n_vertices : int
-
-    Returns
-    -------
-    (m, 3) int32 array
-        The triangle across the edge opposite each corner, ``NO_NEIGHBOR`` outside.
-
-    Raises
-    ------
-    PointsError
-        If an edge is used by more than two triangles or twice in the same direction.
+    Returns the triangle across the edge opposite each corner, (m, 3), ``NO_NEIGHBOR`` outside.
+    Raises PointsError if an edge is used by more than two triangles or twice in the same direction.
     """
     neighbors, is_sound = _kernel.join_triangles(np.ascontiguousarray(triangles), n_vertices)
     if not is_sound:

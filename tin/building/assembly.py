@@ -14,7 +14,7 @@ from ..constraints.breaklines import Lines
 from ..constraints.clipping import BOUNDARY, EXTENT, HOLES, in_rings
 from ..constraints.constraint_set import LineSet
 from ..constraints.draping import drape
-from ..constraints.pslg import Clip, Pslg, find_lines_in
+from ..constraints.pslg import Pslg, find_lines_in
 from ..report import LEFT_OUT, Overruled, Report
 from ..topology import find_offsets
 from ..triangulation import Triangulation
@@ -109,8 +109,7 @@ def _with_lines(inputs: BuildInputs, progress: Progress) -> Version:
     progress(0.4)
     made, pslg = _triangulate_with_lines(inputs, ground, rows, progress.stage(0.4, 0.7))
     progress(0.9)
-    has_rings = bool(inputs.boundary or inputs.extent or inputs.holes or inputs.has_own_boundary)
-    if not has_rings and pslg.loses_vertices_at_own_boundary(made.surface):
+    if not inputs.clip.has_rings and pslg.loses_vertices_at_own_boundary(made.surface):
         ground = ground.drop_own_boundary()
         made, pslg = _triangulate_with_lines(inputs, ground, rows)
     surface, number_of = pslg.surface(made.surface)
@@ -148,19 +147,13 @@ def _gather_pslg(
     lines = ground.lines
     vertex_of = np.full(len(inputs.points), -1, np.int32)
     vertex_of[rows] = made.vertex_of
+    has_own_boundary = ground.has_own_boundary or inputs.has_own_boundary
     return Pslg(
         points=made.surface.points,
         polylines=made.polylines,
         constraints=lines.table,
         groups=find_ring_groups(inputs, lines),
-        clip=Clip(
-            boundary=inputs.boundary,
-            extent=inputs.extent,
-            holes=inputs.holes,
-            has_own_boundary=ground.has_own_boundary or inputs.has_own_boundary,
-            max_edge=inputs.options.max_edge,
-            is_trimmed_everywhere=inputs.options.trim == "everywhere",
-        ),
+        clip=replace(inputs.clip, has_own_boundary=has_own_boundary),
         vertex_of=vertex_of,
     )
 

@@ -26,11 +26,7 @@ _EXACT = 2**53
 class Attributes(Mapping[str, "AnyArray"]):
     """Columns of some rows of a table; each is taken when it is asked for.
 
-    Parameters
-    ----------
-    columns : mapping of str to (n,) array
-    find_rows : callable
-        Gives the row of each value, -1 for one that is missing: NaN, empty text or None.
+    ``find_rows`` gives the row of each value, -1 for one that is missing: NaN, empty text or None.
     """
 
     def __init__(
@@ -135,14 +131,7 @@ def as_row_attributes(given: Any, n_rows: int) -> dict[str, AnyArray]:
 
 
 def as_columns(attributes: Any, shape: tuple[int, ...] | None) -> dict[str, AnyArray]:
-    """Return columns as arrays of one value a point; those of a data frame too.
-
-    Parameters
-    ----------
-    attributes : mapping or data frame
-    shape : tuple of int, optional
-        That all must have; default any, of one axis.
-    """
+    """Return columns as arrays of one value a point, of a shape; those of a data frame too."""
     if hasattr(attributes, "columns") and not isinstance(attributes, Mapping):
         columns = attributes.columns
         is_mapping = isinstance(columns, Mapping)

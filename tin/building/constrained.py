@@ -68,17 +68,8 @@ def triangulate_constrained(
 ) -> ConstrainedTriangulation:
     """Triangulate rows of points, and lines; all lines have elevations.
 
-    Parameters
-    ----------
-    progress : callable, optional
-        Is told the fraction done of the triangulation of the points.
-
-    Raises
-    ------
-    PointsError
-        If there is no triangle, or rows coincide that must not.
-    LinesError
-        If lines cross that must not.
+    ``progress`` is told the fraction done of the triangulation of the points. Raises PointsError if
+    there is no triangle, or rows coincide that must not; LinesError if lines cross that must not.
     """
     xyz, threads = points[rows], thread_count(options.threads, len(points))
     merged = _merge(xyz, rows, lines, options, threads=threads, progress=progress)

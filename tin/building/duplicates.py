@@ -12,7 +12,7 @@ from ...base.sentences import height, inflect
 from ..validation.points import SHOWN
 
 if TYPE_CHECKING:
-    from ...base.arrays import Float64Array, Int32Array, Int64Array
+    from ...base.arrays import AnyArray, Float64Array, Int32Array, Int64Array
 
 
 class Merged(NamedTuple):
@@ -31,21 +31,10 @@ def merge_rows(
 ) -> Merged:
     """Merge rows that share a kept row.
 
-    Parameters
-    ----------
-    xyz : (n, 3) float64 array
-    kept_row : (n,) int32 array or None
-        For each row the row whose place it takes (its own for a kept one); None if all are kept.
-    policy : DuplicatePolicy
-        How the elevation of a merged vertex is chosen. ``"mean"`` adds in order of elevation, so
-        that it does not depend on the order of the rows.
-    rows_of : (n,) int array, optional
-        Their numbers in the caller's input, for the sentence of an error.
-
-    Raises
-    ------
-    PointsError
-        If rows are merged and the policy is ``"error"``.
+    ``kept_row``, (n,), is for each row the row whose place it takes (its own for a kept one); None
+    if all are kept. The policy ``"mean"`` adds in order of elevation, so that it does not depend on
+    the order of the rows; ``"error"`` raises PointsError, whose sentence calls rows by ``rows_of``,
+    (n,), their numbers in the caller's input.
     """
     n = len(xyz)
     if kept_row is None:
@@ -64,7 +53,7 @@ def merge_rows(
     if policy == "error" and len(rows):
         _refuse(xyz, rows, offsets, rows_of)
     points = xyz[is_kept]
-    elevations = _choose_elevations(xyz[rows, 2], offsets, policy)
+    elevations = choose_elevations(xyz[rows, 2], offsets, policy)
     points[vertices, 2] = elevations
     account = {
         "merged_vertices": vertices,
@@ -77,9 +66,10 @@ def merge_rows(
     return Merged(points, vertex_of, account)
 
 
-def _choose_elevations(
-    elevations: Float64Array, offsets: Int32Array, policy: DuplicatePolicy
+def choose_elevations(
+    elevations: Float64Array, offsets: AnyArray, policy: DuplicatePolicy
 ) -> Float64Array:
+    """Return the elevation for each group of rows; ``offsets`` tell where groups begin and end."""
     starts, ends = offsets[:-1], offsets[1:]
     if policy == "first":
         return elevations[starts]

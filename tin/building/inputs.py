@@ -25,6 +25,7 @@ from ..constraints.constraint_set import (
     require_length,
 )
 from ..constraints.polygons import starts_with_elevations
+from ..constraints.pslg import Clip
 from ..validation.points import as_masked_points, require_three
 from ..validation.threads import thread_count
 from .reference import adds_to, settle_crs
@@ -92,10 +93,21 @@ class BuildInputs:
         return is_whole and self.is_masked is None
 
     @property
+    def clip(self) -> Clip:
+        """Which part of the hull is the surface."""
+        return Clip(
+            boundary=self.boundary,
+            extent=self.extent,
+            holes=self.holes,
+            has_own_boundary=self.has_own_boundary,
+            max_edge=self.options.max_edge,
+            is_trimmed_everywhere=self.options.trim == "everywhere",
+        )
+
+    @property
     def is_clipped(self) -> bool:
         """Whether only a part of the hull may be the surface."""
-        has_rings = bool(self.boundary or self.extent or self.holes or self.has_own_boundary)
-        return has_rings or self.is_trimmed
+        return not self.clip.is_none
 
     @property
     def is_trimmed(self) -> bool:

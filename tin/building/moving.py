@@ -24,22 +24,11 @@ if TYPE_CHECKING:
 def move_inputs(
     inputs: BuildInputs, move: Move, *, length: float, crs: CRS | None, elevation_unit: Unit | None
 ) -> BuildInputs:
-    """Return inputs whose points and lines a function has moved.
+    """Return inputs whose points and lines a function has moved, with the CRS and unit of these.
 
-    Parameters
-    ----------
-    inputs : BuildInputs
-    move : callable
-        Takes and returns (n, 3) points.
-    length : float
-        Factor of lengths in the plane, for ``max_edge`` and ``snap``.
-    crs, elevation_unit
-        Of the moved points.
-
-    Notes
-    -----
-    Draped vertices have no elevation before and after. Water stays flat, at the mean of what
-    becomes of its corners.
+    ``move`` takes and returns (n, 3) points; ``length`` is the factor of lengths in the plane, for
+    ``max_edge`` and ``snap``. Draped vertices have no elevation before and after. Water stays flat,
+    at the mean of what becomes of its corners.
     """
     lines = inputs.lines
     xyz = _move_places(np.column_stack([lines.xy, lines.elevations]), move)

@@ -47,17 +47,8 @@ def require_crs(given: Any, crs: CRS | None, what: str) -> None:
 def settle_crs(crs: CRS | None, given: Mapping[str, Any]) -> tuple[CRS | None, list[str]]:
     """Return the CRS of points and lines together, and a note if only lines tell it.
 
-    Parameters
-    ----------
-    crs : CRS or None
-        The one that is known already.
-    given : mapping of str to object
-        Points first, then lines of each kind, by what they are called.
-
-    Raises
-    ------
-    CrsError
-        If one of them is in another.
+    ``crs`` is the one that is known already, ``given`` has points first, then lines of each kind,
+    by what they are called. Raises CrsError if one of them is in another.
     """
     notes = []
     for what, things in given.items():

@@ -48,16 +48,8 @@ class Walk(NamedTuple):
 def walk_along(xy: Float64Array, lines: Lines, given: LineSet, *, snap: float, unit: float) -> Walk:
     """Follow the chains of every given line.
 
-    Parameters
-    ----------
-    xy : (n, 2) float64 array
-        The vertices of the TIN.
-    lines : Lines
-    given : LineSet
-    snap : float
-        How far a vertex of a line may have been moved.
-    unit : float
-        How far a line may be moved by one cut.
+    ``xy`` are the vertices of the TIN, (n, 2). A vertex of a line may have been moved by ``snap``,
+    a line by ``unit`` with each cut.
     """
     walker = _Walker(lines.vertices.tolist(), xy[lines.vertices].tolist(), given, snap, unit)
     chains: dict[tuple[str, int], list[range]] = {}

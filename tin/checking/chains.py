@@ -14,11 +14,6 @@ if TYPE_CHECKING:
     from .findings import Findings
 
 
-def has_sound_chains(found: Findings) -> bool:
-    """Tell whether :func:`check_chains` found nothing."""
-    return all(problem.kind != "chains" for problem in found.problems)
-
-
 def check_chains(tin: TIN, found: Findings) -> None:
     """Check the arrays of the lines; the triangles do not depend on them."""
     lines = tin.lines
@@ -37,7 +32,7 @@ def check_chains(tin: TIN, found: Findings) -> None:
         return
     _check_labels(tin, found)
     _check_ranges(tin, found)
-    if count and has_sound_chains(found):
+    if count and found.lack("chains"):
         found.counts["chains"] = count
 
 

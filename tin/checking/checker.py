@@ -35,7 +35,7 @@ from ...base.products import product
 from ..building.survey import Survey
 from ..constraints.constraint_set import as_sequence, gather_lines
 from ..validation.points import as_masked_points
-from .chains import check_chains, check_segments, has_sound_chains
+from .chains import check_chains, check_segments
 from .connections import check_arrays, check_connections
 from .delaunay import check_delaunay
 from .findings import Findings, Problem
@@ -256,7 +256,7 @@ def _as_lines(
 
 def _check_given(tin: TIN, rows: Float64Array | None, lines: LineSet, found: Findings) -> None:
     """Check lines and rows, as far as the surface is fit to be asked about them."""
-    if has_sound_chains(found):
+    if found.lack("chains"):
         check_segments(tin, found)
         if lines.kinds and has_sound_boundary(found):
             check_given_lines(tin, lines, found)

@@ -72,6 +72,10 @@ class Findings:
         """Report a problem of the TIN as a whole."""
         self.problems.append(Problem(kind, 1, first, sentence))
 
+    def lack(self, *kinds: str) -> bool:
+        """Whether no problem is of one of some kinds."""
+        return all(problem.kind not in kinds for problem in self.problems)
+
 
 def _describe(
     kind: str, at: ArrayLike, things: str, what: str, *, before: str = "", first: str = ""

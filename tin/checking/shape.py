@@ -81,8 +81,7 @@ def _check_boundary(
 
 def has_sound_boundary(found: Findings) -> bool:
     """Tell whether a level 2 without faults says which places lie inside the surface."""
-    faults = {"orientation", "boundary", "hull", "overlap"}
-    return faults.isdisjoint(problem.kind for problem in found.problems)
+    return found.lack("orientation", "boundary", "hull", "overlap")
 
 
 def find_boundary(tin: TIN) -> Boundary:

@@ -11,6 +11,7 @@ from ...base.errors import LinesError
 from .. import _kernel, topology
 from ..topology import edge_keys, find_offsets
 from ..triangulation import Triangulation
+from .ring_cover import find_crossings
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int8Array, Int32Array, Int64Array
@@ -86,7 +87,10 @@ def is_inside(
     point: Float64Array = a + ((b - a) + (c - a)) / 3.0
     (x, y), (u, v) = (b - a).T, (c - a).T
     side = _Sides(boundary, extent, holes)
-    beside = _find_regions_beside(surface, region, half)
+    across = surface.neighbors[half.triangle, half.corner]
+    is_inner = across != topology.NO_NEIGHBOR
+    here, there = region[half.triangle[is_inner]], region[across[is_inner]]
+    beside = find_crossings(here, there, half.key[is_inner])
     known: dict[int, int] = {}  # bits of regions, from the largest one across the rings
     for start in np.argsort(-(x * v - y * u), kind="stable").tolist():
         if start in known:
@@ -94,11 +98,11 @@ def is_inside(
         known[start] = side.at(point[start])
         pending = [start] if not is_out[start] else []
         while pending:
-            here = pending.pop()
-            for there, key in beside.get(here, ()):
-                if there not in known and not is_out[there]:
-                    known[there] = known[here] ^ toggles[key]
-                    pending.append(there)
+            inside = pending.pop()
+            for beyond, key in beside.get(inside, ()):
+                if beyond not in known and not is_out[beyond]:
+                    known[beyond] = known[inside] ^ toggles[key]
+                    pending.append(beyond)
     bits = [known[number] for number in range(len(largest))]
     keep = ~is_out & np.array([side.is_kept(own) for own in bits])
     _require_all_cut(bits, is_out, side)
@@ -153,22 +157,6 @@ class _Sides:
 
     def is_kept(self, bits: int) -> bool:
         return self.is_within(bits) and bits >> HOLES == 0
-
-
-def _find_regions_beside(
-    surface: Triangulation, region: Int32Array, half: _HalfEdges
-) -> dict[int, list[tuple[int, int]]]:
-    """Return for each region those across a ring, with an edge between them."""
-    across = surface.neighbors[half.triangle, half.corner]
-    inner = across != topology.NO_NEIGHBOR
-    pairs = np.stack([region[half.triangle[inner]], region[across[inner]]], axis=1)
-    _, first = np.unique(pairs, axis=0, return_index=True)
-    found: dict[int, list[tuple[int, int]]] = {}
-    for (here, there), key in zip(
-        pairs[first].tolist(), half.key[inner][first].tolist(), strict=True
-    ):
-        found.setdefault(here, []).append((there, key))
-    return found
 
 
 def _require_all_cut(bits: list[int], is_out: BoolArray, side: _Sides) -> None:

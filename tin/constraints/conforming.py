@@ -51,28 +51,11 @@ def conform(
 ) -> tuple[_kernel.Mesh, Float64Array, Polylines]:
     """Split segments that are not Delaunay.
 
-    Parameters
-    ----------
-    mesh : Mesh
-        Of the points, with the segments of all lines fixed. Not to be used any more.
-    points : (n, 3) float64 array
-    polylines : Polylines
-        Noded.
-    priorities : (l,) array
-        Of the lines: whose elevation counts where two meet anew.
-    threads : int
-
-    Returns
-    -------
-    mesh : Mesh
-    points : (n + s, 3) float64 array
-        With the new vertices, elevations linear along the segments.
-    polylines : Polylines
-
-    Raises
-    ------
-    LinesError
-        If a segment is too short to be split, or too many vertices would be needed.
+    The mesh is that of the points, (n, 3), with the segments of all lines, which are noded, fixed;
+    it is not to be used any more. ``priorities``, (l,), of the lines tell whose elevation counts
+    where two meet anew. Returns mesh, points and lines with the new vertices, whose elevations are
+    linear along the segments. Raises LinesError if a segment is too short to be split, or too many
+    vertices would be needed.
     """
     n_given, most = len(points), max(_LEAST_LIMIT, _NEW_PER_VERTEX * len(points))
     for _ in range(_MOST_ROUNDS):

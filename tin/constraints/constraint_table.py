@@ -11,6 +11,15 @@ if TYPE_CHECKING:
 
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array
     from ...base.policies import LineKind
+    from .breaklines import Lines
+
+
+def label_line(lines: Lines | ConstraintTable, line: int) -> str:
+    """Return what one of some lines is called in sentences, such as "breakline 2 'kerb'"."""
+    kind = lines.kinds[line]
+    noun = "breakline" if kind in ("hard", "soft") else kind
+    name = f" '{lines.names[line]}'" if lines.names[line] else ""
+    return f"{noun} {int(lines.sources[line])}{name}"
 
 
 class ConstraintTable(NamedTuple):
@@ -57,7 +66,4 @@ class ConstraintTable(NamedTuple):
 
     def label(self, line: int) -> str:
         """Return what a line is called in sentences."""
-        kind = self.kinds[line]
-        noun = "breakline" if kind in ("hard", "soft") else kind
-        name = f" '{self.names[line]}'" if self.names[line] else ""
-        return f"{noun} {int(self.sources[line])}{name}"
+        return label_line(self, line)

@@ -81,12 +81,7 @@ def drape(surface: Triangulation, lines: LineSet, *, threads: int) -> Draped:
 def cut_at_boundary(ring: Float64Array, lines: LineSet, *, threads: int) -> CutLines:
     """Cut lines at the boundary of a surface that fills its convex hull.
 
-    Parameters
-    ----------
-    ring : (k, 3) float64 array
-        All vertices on the boundary, counter-clockwise.
-    lines : LineSet
-    threads : int
+    ``ring`` has all vertices on the boundary, counter-clockwise, (k, 3).
     """
     if (in_rings(lines.xy, [ring[:, :2]]) >= 0).all():
         # the places of the lines' vertices, and the lines through these

@@ -21,18 +21,9 @@ _LEVELS = ("z", "level", "elevation", "height")
 
 
 def convert_geometries(found: Geometries, what: str) -> list[Any]:
-    """Return geometries as what they are given for.
+    """Return geometries as what they are given for, or raise LinesError.
 
-    Parameters
-    ----------
-    found : Geometries
-    what : str
-        "breaklines", "water", or what regions are called.
-
-    Raises
-    ------
-    LinesError
-        If one of them is no such thing.
+    ``what`` is "breaklines", "water", or what regions are called.
     """
     convert = _CONVERTERS.get(what)
     return list(list_regions(found, what) if convert is None else convert(found))

@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int32Array, Int64Array
 
 
-class Touches(NamedTuple):
-    """Given vertices that a line passes without naming them."""
+class Visits(NamedTuple):
+    """Lines that come through vertices; twice along the same segments counts once."""
 
     vertex: Int32Array
     line: Int32Array
@@ -58,7 +58,8 @@ class Noded(NamedTuple):
     crossings: Crossings
     """A row for the line whose elevation counts, which is named first, and each other line there;
     the same line twice if it crosses itself."""
-    touches: Touches
+    touches: Visits
+    """Given vertices that a line passes without naming them."""
 
 
 def accept_noded(polylines: Polylines, elevations: Float64Array) -> Noded:
@@ -68,7 +69,7 @@ def accept_noded(polylines: Polylines, elevations: Float64Array) -> Noded:
         np.empty((0, 3)),
         *drop_repeats(polylines, elevations),
         Crossings.none(),
-        Touches(none, none, np.empty(0)),
+        Visits(none, none, np.empty(0)),
     )
 
 
@@ -145,22 +146,9 @@ def node_again(
 ) -> tuple[Float64Array, Polylines]:
     """Node parts of lines that were bent by a rounding; a vertex keeps its elevation.
 
-    Parameters
-    ----------
-    points : (n, 3) float64 array
-        Distinct places.
-    polylines : Polylines
-        Of several parts of one line, too, the lowest elevation counts, for their order is the
-        direction of the line.
-    priority : (l,) int array
-        Of each polyline, as for :func:`node`.
-    threads : int
-
-    Returns
-    -------
-    points : (n + s, 3) float64 array
-        With the vertices made where lines cross.
-    polylines : Polylines
+    Of several parts of one line, too, the lowest elevation counts, for their order is the direction
+    of the line; else ``priority``, (l,), of each as for :func:`node`. Returns the points, (n, 3),
+    with the vertices made where lines cross, and the lines.
     """
     xy = np.ascontiguousarray(points[:, :2])
     work = Splitting(xy, polylines, points[polylines.vertices, 2], 0.0, threads)
@@ -172,15 +160,7 @@ def node_again(
 # -------------------------------------------------------------------- account
 
 
-class _Visits(NamedTuple):
-    """Lines that come through vertices; twice along the same segments counts once."""
-
-    vertex: Int32Array
-    line: Int32Array
-    elevation: Float64Array
-
-
-def _gather_visits(work: Splitting, at: Int64Array) -> _Visits:
+def _gather_visits(work: Splitting, at: Int64Array) -> Visits:
     """Gather what passes the positions ``at``, in order of vertex, line and position.
 
     A line may come through a vertex several times. Twice between the same neighbours, forwards or
@@ -203,7 +183,7 @@ def _gather_visits(work: Splitting, at: Int64Array) -> _Visits:
     is_first[1:] = np.any([np.diff(key[order]) != 0 for key in keys], axis=0)
     at = np.sort(at[order[is_first]])
     at = at[np.lexsort((line[at], vertices[at]))]
-    return _Visits(vertices[at], line[at], work.elevations[at])
+    return Visits(vertices[at], line[at], work.elevations[at])
 
 
 def _number_and_account(work: Splitting, priority: AnyArray) -> Noded:
@@ -225,13 +205,13 @@ def _number_and_account(work: Splitting, priority: AnyArray) -> Noded:
         work.polylines,
         work.elevations,
         crossings,
-        Touches(*_gather_visits(work, np.flatnonzero(passed))),
+        _gather_visits(work, np.flatnonzero(passed)),
     )
 
 
 def _gather_crossings(
     work: Splitting, is_crossing: BoolArray, priority: AnyArray
-) -> tuple[Crossings, _Visits]:
+) -> tuple[Crossings, Visits]:
     """Return the crossings, and whose elevation counts at each vertex, by vertex.
 
     The visits are sorted by vertex, at each the one that counts in front::
@@ -256,7 +236,7 @@ def _gather_crossings(
     crossings = Crossings(
         vertex[other], work.xy[vertex[other]], line[pair], elevation[pair], elevation[winner[other]]
     )
-    return crossings, _Visits(vertex[is_winner], line[is_winner], elevation[is_winner])
+    return crossings, Visits(vertex[is_winner], line[is_winner], elevation[is_winner])
 
 
 def _explain_crossing(

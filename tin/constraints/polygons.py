@@ -17,21 +17,11 @@ if TYPE_CHECKING:
 
 
 def gather_rings_of_regions(regions: Sequence[Any], what: str) -> list[list[Float64Array]]:
-    """Return the rings of regions, one list for each.
+    """Return the rings of regions, one list for each; LinesError for anything else.
 
-    Parameters
-    ----------
-    regions : sequence
-        Of each: a ring, (k, 2) or (k, 3); a sequence of rings; or an object that has a
-        ``__geo_interface__`` with polygons, such as one of shapely, every polygon of which is a
-        region.
-    what : str
-        What the rings are, for sentences.
-
-    Raises
-    ------
-    LinesError
-        For anything else.
+    A region is a ring, (k, 2) or (k, 3), a sequence of rings, or an object that has a
+    ``__geo_interface__`` with polygons, such as one of shapely, every polygon of which is a region.
+    ``what`` the rings are is said in sentences.
 
     Examples
     --------

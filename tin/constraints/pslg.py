@@ -49,10 +49,11 @@ class Clip:
     @property
     def is_none(self) -> bool:
         """Whether all of the hull is the surface."""
-        return not self._has_rings and self.max_edge is None
+        return not self.has_rings and self.max_edge is None
 
     @property
-    def _has_rings(self) -> bool:
+    def has_rings(self) -> bool:
+        """Whether rings tell what the surface is."""
         return bool(self.boundary or self.extent or self.holes or self.has_own_boundary)
 
     def keeps(self, surface: Triangulation, ring_segments: RingSegments) -> BoolArray:
@@ -64,7 +65,7 @@ class Clip:
             If there are none, or if a hole cuts nothing away.
         """
         keep = np.ones(len(surface.triangles), np.bool_)
-        if self._has_rings:
+        if self.has_rings:
             keep = is_inside(surface, ring_segments, self.boundary, self.extent, self.holes)
             require_triangles(bool(keep.any()))
         if self.max_edge is not None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from ...base.arrays import Int64Array
+    from ...base.arrays import AnyArray, Int64Array
 
 
 class Crossing(NamedTuple):
@@ -32,9 +32,7 @@ def gather_odd(keys: Int64Array, rings: Int64Array) -> dict[int, list[int]]:
     return found
 
 
-def find_crossings(
-    here: Int64Array, there: Int64Array, keys: Int64Array
-) -> dict[int, list[Crossing]]:
+def find_crossings(here: AnyArray, there: AnyArray, keys: Int64Array) -> dict[int, list[Crossing]]:
     """Return the ways out of each region: one edge to each of those beside it."""
     _, first = np.unique(np.stack([here, there], axis=1), axis=0, return_index=True)
     ways: dict[int, list[Crossing]] = {}

@@ -150,10 +150,7 @@ class Splitting:
     def split_everywhere(self, refuse: Callable[[Int64Array], LinesError] | None = None) -> None:
         """Split segments where they touch and cross until nothing does.
 
-        Parameters
-        ----------
-        refuse : callable, optional
-            Makes the error of pairs of edges that cross, if they must not.
+        ``refuse`` makes the error of pairs of edges that cross, if they must not.
         """
         self.split_at_touches()
         for number in range(MOST_ROUNDS):

@@ -216,10 +216,7 @@ def require_inner(beside: Sequence[int]) -> None:
 def make_flipped_edge(points: Float64Array) -> Breakline:
     """Return the edge that comes in the place of another one; refuse what is not convex.
 
-    Parameters
-    ----------
-    points : (4, 3) float64 array
-        The ends of the edge, and the corners of the triangles left and right of it.
+    ``points`` are the ends of the edge, and the corners of the triangles left and right of it.
     """
     quad = np.ascontiguousarray(points[[0, 2, 1, 3], :2])
     following = (np.ascontiguousarray(np.roll(quad, -k, axis=0)) for k in (1, 2))

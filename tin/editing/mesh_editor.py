@@ -16,7 +16,7 @@ import numpy as np
 from ...base.errors import PointsError
 from ...base.sentences import coordinate, height
 from .. import _kernel
-from ..building.duplicates import merge_rows
+from ..building.duplicates import choose_elevations, merge_rows
 from ..building.version import Version
 from ..report import Edit, Report
 from ..triangulation import Triangulation
@@ -466,15 +466,7 @@ def merge_elevations(old: float, new: float, policy: DuplicatePolicy) -> float:
             "to be inserted: "
             '`duplicates="error"` allows none.'
         )
-    return {
-        "first": old,
-        "last": new,
-        "lowest": min(old, new),
-        "highest": max(old, new),
-        "mean": old / 2 + new / 2
-        if abs(old - new) == np.inf
-        else min(old, new) + abs(old - new) / 2,
-    }[policy]
+    return float(choose_elevations(np.array([old, new]), np.array([0, 2]), policy)[0])
 
 
 def explain_occupied(vertex: int, x: float, y: float) -> PointsError:

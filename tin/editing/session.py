@@ -80,16 +80,7 @@ class Session:
     def resume(cls, origin: Origin, version: Version) -> Session:
         """Return the session of a TIN that was stored: its edits are done again.
 
-        Parameters
-        ----------
-        origin : Origin
-        version : Version
-            Where the edits led.
-
-        Raises
-        ------
-        PointsError, LinesError
-            If they lead elsewhere now.
+        ``version`` is where they led; PointsError or LinesError if they lead elsewhere now.
         """
         given = origin.given
         if origin.inputs is not None:

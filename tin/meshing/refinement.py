@@ -349,12 +349,7 @@ def _build(
         ),
         lines=find_lines_in(pslg.polylines, pslg.constraints, number_of, surface, is_whole=False),
     )
-    return TIN._of(
-        version,
-        crs=tin.crs,
-        elevation_unit=tin.elevation_unit,
-        row_attributes=tin.row_attributes,
-    )
+    return tin._with_version(version)
 
 
 def _force(mesh: _kernel.Mesh, pslg: Pslg, splits: _Splits) -> set[tuple[int, int]] | None:

@@ -322,12 +322,7 @@ class _Part:
             report=self._report(found, vertex_of),
             lines=self._find_lines(),
         )
-        return TIN._of(
-            version,
-            crs=tin.crs,
-            elevation_unit=tin.elevation_unit,
-            row_attributes=tin.row_attributes,
-        )
+        return tin._with_version(version)
 
     def _find_lines(self) -> Lines:
         pslg = self._pslg
@@ -376,25 +371,11 @@ def simplify_convex(
 ) -> tuple[Int64Array, Int32Array, float]:
     """Return few vertices of a TIN that is convex but for rounding, and their triangulation.
 
-    Parameters
-    ----------
-    tin : TIN
-    required : (k,) int64 array
-        Vertices that stay, ascending; corners of the boundary do as well.
-    barred : (n,) bool array
-        Vertices on the boundary that are not to be among them, unless they are required: the
-        required ones hold them within the tolerance.
-    tolerance : float
-        Within which all vertices are held, and what lies between them as far as vertices can.
-
-    Returns
-    -------
-    rows : (n,) int64 array
-        Vertices of the TIN, ascending.
-    triangles : (m, 3) int32 array
-        The Delaunay triangulation of these, by their places among the rows.
-    error : float
-        The largest vertical difference of the two surfaces anywhere.
+    The ``required`` ones stay, ascending, and so do corners of the boundary. Those that are
+    ``barred``, (n,), on the boundary, are not to be among them: the required ones hold them within
+    the tolerance, in which all vertices are held, and what lies between them as far as vertices
+    can. Returns the rows of vertices, ascending, their Delaunay triangulation by their places among
+    the rows, (m, 3), and the largest vertical difference of the two surfaces anywhere.
     """
     corners = [ring[~are_straight(tin.points[ring])] for ring in tin.rings]
     required = np.unique(np.concatenate([required, *corners]))

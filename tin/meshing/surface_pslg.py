@@ -35,24 +35,10 @@ def gather_pslg(
 ) -> Pslg:
     """Return vertices, and the segments of a TIN's lines, of edges of no line, of its boundary.
 
-    Parameters
-    ----------
-    tin : TIN
-    points : (v, 3) float64 array
-        The vertices.
-    follow : callable
-        Takes a chain of vertices of the TIN, and returns it as one of ``points``.
-    rings : list of list of int
-        The rings of the boundary in the order of :func:`list_rings`, as chains of ``points``.
-    names_boundary : bool
-        Whether the boundary becomes a line if none is.
-    more_edges : (k, 2) array of int, optional
-        Further edges of the TIN that are segments of no line.
-
-    Returns
-    -------
-    Pslg
-        Its boundary is there (``Clip.has_own_boundary``).
+    ``follow`` takes a chain of vertices of the TIN, and returns it as one of ``points``, (v, 3);
+    ``rings`` are those of the boundary in the order of :func:`list_rings`, as such chains, which
+    become lines with ``names_boundary`` if none is. ``more_edges``, (k, 2), of the TIN are segments
+    of no line. The boundary of what is returned is there (``Clip.has_own_boundary``).
     """
     lines = [chain.tolist() for chain in tin.lines.chains()]
     more: list[list[int]] = [] if more_edges is None else more_edges.tolist()

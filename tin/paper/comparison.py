@@ -17,9 +17,10 @@ from ...base.sentences import counted
 from .. import _kernel
 from ..building.survey import Survey
 from ..construction import triangulate
+from ..meshing.shape_quality import measure_smallest_angles
 from ..validation.points import as_points
 from .cover import cover
-from .faults import find_overlapping, find_violating, measure_minimum_angles
+from .faults import find_overlapping, find_violating
 from .growth import Network, improved, original
 
 if TYPE_CHECKING:
@@ -301,7 +302,7 @@ def _find_faults(triangles: Int32Array, tin: TIN) -> dict[str, Any]:
         "overlapping": find_overlapping(tin.points, triangles),
         "overlap": areas.overlap,
         "gap": areas.gap,
-        "angles": measure_minimum_angles(tin.points, triangles),
+        "angles": measure_smallest_angles(tin.points[triangles, :2]),
     }
 
 

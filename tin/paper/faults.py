@@ -1,4 +1,4 @@
-"""Faults of triangles in a heap: a point in the circle, an overlap, a small angle."""
+"""Faults of triangles in a heap: a point in the circle, an overlap."""
 
 from __future__ import annotations
 
@@ -18,18 +18,7 @@ _CHUNK = 32  # neighbours of each looked at before asking whether an overlap is 
 
 
 def find_violating(points: Float64Array, triangles: Int32Array) -> BoolArray:
-    """Tell which triangles have a point strictly inside their circle; exactly.
-
-    Parameters
-    ----------
-    points : (n, 3) float64 array
-    triangles : (m, 3) int32 array
-        Counter-clockwise.
-
-    Returns
-    -------
-    (m,) bool array
-    """
+    """Tell which counter-clockwise triangles have a point strictly inside their circle; exactly."""
     xy = columns(points)
     everywhere = np.arange(len(points))
     found = np.zeros(len(triangles), np.bool_)
@@ -84,15 +73,3 @@ def _is_apart(xy: Columns, first: Int32Array, second: Int32Array) -> BoolArray:
         outer = [orientation(xy, a, b, second[:, corner]) <= 0 for corner in range(3)]
         apart |= np.logical_and.reduce(outer)
     return apart
-
-
-def measure_minimum_angles(points: Float64Array, triangles: Int32Array) -> Float64Array:
-    """Return the smallest angle of every triangle, (m,) array in degrees."""
-    corners = points[triangles, :2]
-    angles = []
-    for k in range(3):
-        ahead = corners[:, (k + 1) % 3] - corners[:, k]
-        back = corners[:, (k + 2) % 3] - corners[:, k]
-        cross = ahead[:, 0] * back[:, 1] - ahead[:, 1] * back[:, 0]
-        angles.append(np.degrees(np.arctan2(np.abs(cross), (ahead * back).sum(axis=1))))
-    return np.asarray(np.min(angles, axis=0), np.float64)

@@ -28,17 +28,9 @@ Rule = Callable[[Columns, int, int, "Int64Array"], Choice]
 def widest_angle(xy: Columns, p1: int, p2: int, qualified: Int64Array) -> Choice:
     """Choose the point that sees p1-p2 under the largest angle; of equals the first in the list.
 
-    Parameters
-    ----------
-    xy : Columns
-    p1, p2 : int
-    qualified : (k,) int64 array
-        Points strictly left of the edge, in ascending order.
-
-    Notes
-    -----
-    Whether P sees the edge under a larger angle than P' is whether P lies in the circle through
-    p1, p2 and P'. Cotangents in doubles propose, exact tests decide.
+    ``qualified`` are points strictly left of the edge, in ascending order. Whether P sees the edge
+    under a larger angle than P' is whether P lies in the circle through p1, p2 and P'. Cotangents
+    in doubles propose, exact tests decide.
     """
     widest = _find_widest(xy, p1, p2, qualified)
     return Choice(int(widest[0]) if len(widest) else None, max(len(qualified) - 1, 0))

@@ -29,18 +29,10 @@ _REPEATS = 3
 class ElevationSummary:
     """Elevations of blocks, of which the extremes and some others are kept.
 
-    Parameters
-    ----------
-    what : str
-        What has the elevations.
-    keeps_all : bool
-        Keep all of them, where memory holds them anyway.
-
-    Notes
-    -----
-    One block is described by all of its elevations. Of several, an elevation that may stand for no
-    data is found among those kept, and counted in the blocks where it is one of the four lowest or
-    highest values.
+    ``what`` has the elevations is said in sentences; all of them are kept where memory holds them
+    anyway (``keeps_all``). One block is described by all of its elevations. Of several, an
+    elevation that may stand for no data is found among those kept, and counted in the blocks where
+    it is one of the four lowest or highest values.
     """
 
     def __init__(self, what: str, *, keeps_all: bool = False) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...base.crs import assume_elevation_unit, scale_elevations
+from ...base.georeference.units import find_scales
 from ...base.sentences import counted
 from .. import _kernel
 from ..constraints.clipping import trim
@@ -47,11 +47,6 @@ _SLIVERS = 1e-2
 _SAMPLE = 20_000
 _FLAT = 1e-3
 """Triangles of so much of the median area tell nothing of how long edges usually are."""
-
-_EARTH_RADIUS = 6_371_000.0
-"""Metres."""
-_POLE = 1e-3
-"""Meridians are no nearer to each other than this share of their distance at the equator."""
 
 
 class _Limit(NamedTuple):
@@ -249,23 +244,12 @@ def _compute_gradients(surface: Triangulation, chosen: Any) -> Float64Array:
 
 
 def _measure_slopes(tin: TIN, chosen: Int64Array) -> Float64Array:
-    """Return the slopes of some triangles in degrees, elevations in the unit of eastings."""
-    a, b, c = (tin.points[tin.triangles[chosen, k]] * _find_factors(tin) for k in range(3))
+    """Return the slopes of some triangles in degrees, all coordinates in one unit of length."""
+    scales = find_scales(tin.crs, tin.elevation_unit, float(np.median(tin.points[:, 1])))
+    a, b, c = (tin.points[tin.triangles[chosen, k]] * scales for k in range(3))
     east, north, up = np.cross(b - a, c - a).T
     slopes: Float64Array = np.degrees(np.arctan2(np.hypot(east, north), up))
     return slopes
-
-
-def _find_factors(tin: TIN) -> Float64Array:
-    """Return factors that make all coordinates lengths; degrees are those of a sphere."""
-    crs = tin.crs
-    if crs is None or not crs.is_geographic:
-        return np.array([1.0, 1.0, scale_elevations(crs, tin.elevation_unit)])
-    up = assume_elevation_unit(crs, tin.elevation_unit)
-    metres = None if up is None else up.metres
-    along = _EARTH_RADIUS * float(crs.to_pyproj().axis_info[0].unit_conversion_factor)
-    latitude = float(np.median(tin.points[:, 1])) * along / _EARTH_RADIUS
-    return np.array([along * max(np.cos(latitude), _POLE), along, metres or 1.0])
 
 
 def _count_triangles(count: int) -> str:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..constraints.constraint_table import label_line
 from ..topology import find_offsets, find_owners
 from .nodata import CUSTOMARY, is_beyond_range, is_customary
 from .residuals import Residuals, fit_planes, measure_offsets
@@ -143,7 +144,7 @@ def find_wrong_lines(
     for part in np.split(np.arange(len(judged.lines)), np.flatnonzero(np.diff(judged.lines)) + 1):
         own = judged.choose(part)
         line = int(own.lines[0]) if len(part) else 0
-        kind, name = lines.kinds[chains[line]], _name(lines, int(chains[line]))
+        kind, name = lines.kinds[chains[line]], label_line(lines, int(chains[line]))
         told = _find_wrong(own, kind, span, metre)
         if told is not None:
             wrong = own.choose(told.chosen)
@@ -185,12 +186,6 @@ def _choose_own(
     return chosen
 
 
-def _name(lines: Lines, chain: int) -> str:
-    kind, name = lines.kinds[chain], lines.names[chain]
-    quoted = f" '{name}'" if name else ""
-    return f"{_NOUNS.get(kind, kind)} {int(lines.sources[chain])}{quoted}"
-
-
 def mark_rings(lines: Lines, count: int) -> BoolArray:
     """Mark which of so many vertices are on a boundary, a hole or water."""
     is_ring = np.array([kind not in ("hard", "soft") for kind in lines.kinds], np.bool_)
@@ -209,7 +204,7 @@ def name_lines_at(lines: Lines, vertices: Int32Array) -> list[str]:
     chains = find_owners(lines.offsets)[first]
     is_there = lines.vertices[first] == vertices
     return [
-        _name(lines, chain) if found else ""
+        label_line(lines, chain) if found else ""
         for chain, found in zip(chains.tolist(), is_there.tolist(), strict=True)
     ]
 

@@ -17,17 +17,9 @@ if TYPE_CHECKING:
 def mark_illegal_edges(surface: Triangulation) -> BoolArray:
     """Mark the edges that triangulating the vertices and lines of a surface anew would not make.
 
-    Parameters
-    ----------
-    surface : Triangulation
-        Any triangles, as files have them.
-
-    Returns
-    -------
-    (m, 3) bool array
-        Of the edge opposite each corner: inner ones that are not constrained, and not Delaunay or
-        the other diagonal of four cocircular points. Each is marked in one of its two triangles. A
-        triangulation with these edges constrained, too, is ``surface``.
+    Returns flags of the edge opposite each corner, (m, 3): inner ones that are not constrained, and
+    not Delaunay or the other diagonal of four cocircular points. Each is marked in one of its two
+    triangles. A triangulation with these edges constrained, too, is ``surface``.
     """
     xy = columns(surface.points)
     marks = np.zeros((len(surface.triangles), 3), np.bool_)

@@ -26,15 +26,8 @@ _WEIGHTS = {
 class Interpolator:
     """What interpolation needs of a surface, made when first asked for; it is never changed.
 
-    Parameters
-    ----------
-    surface : Triangulation
-    find_barriers : callable
-        Gives the edges that are breaks of slope, (m, 3) flags of the edge opposite each corner.
-
-    Notes
-    -----
-    Any number of threads may ask it at a time.
+    ``find_barriers`` gives the edges that are breaks of slope, (m, 3) flags of the edge opposite
+    each corner. Any number of threads may ask it at a time.
     """
 
     def __init__(self, surface: Triangulation, find_barriers: Callable[[], BoolArray]) -> None:
@@ -49,16 +42,9 @@ class Interpolator:
         extrapolate: bool,
         threads: int | None,
     ) -> Float64Array:
-        """Return the elevation at each place of a (k, 2) array, NaN outside or, if wished, nearest.
+        """Return the elevation at each place of a (k, 2) array, NaN outside and for NaN.
 
-        Parameters
-        ----------
-        xy : (k, 2) float64 array
-            NaN is allowed and has no elevation.
-        method : InterpolationMethod
-        extrapolate : bool
-            Take the nearest place of the surface for one outside.
-        threads : int or None
+        With ``extrapolate`` a place outside has the elevation of the nearest place of the surface.
         """
         n_threads = thread_count(threads, len(xy))
         elevations = self._interpolate_inside(xy, method, n_threads)

@@ -30,12 +30,9 @@ _MOST_PAIRS = 4_000_000
 
 
 class NearestVertex:
-    """An index of points; it is never changed.
+    """An index of (n, 3) points; it is never changed.
 
-    Parameters
-    ----------
-    points : (n, 3) float64 array
-        Of several at one place the first is found. At least three places, not collinear.
+    Of several at one place the first is found. At least three places, not collinear.
     """
 
     def __init__(self, points: Float64Array) -> None:

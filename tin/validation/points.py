@@ -157,15 +157,9 @@ def _allowed_elevations() -> str:
 
 
 def require_exact_range(xy: Float64Array, what: str, names: Sequence[str] = ("x", "y")) -> None:
-    """Refuse coordinates for which the predicates are not exact; NaN passes.
+    """Refuse coordinates, (n, k), for which the predicates are not exact; NaN passes.
 
-    Parameters
-    ----------
-    xy : (n, k) float64 array
-    what : str
-        In the plural: the sentence begins with it.
-    names : sequence of str
-        Of the columns.
+    The sentence begins with ``what``, in the plural; ``names`` are those of the columns.
     """
     if xy.flags.c_contiguous and _kernel.are_in_exact_range(xy):
         return

@@ -52,17 +52,10 @@ class Table(NamedTuple):
 
 
 def as_table(given: Any, what: str, *, least: int = 3, most: int = 3) -> Table:
-    """Return coordinates as numbers.
+    """Return coordinates as numbers: ``least`` are needed, ``most`` are taken if they are there.
 
-    Parameters
-    ----------
-    given : array-like, masked array, structured array, data frame, mapping or points
-        Columns are found by their names if they have some: x, y, z; easting, northing, elevation;
-        lon, lat, height. Others are not looked at.
-    what : str
-        What the sentence of an error begins with, in the plural.
-    least, most : int
-        How many coordinates are needed, and how many are taken if they are there.
+    Columns are found by their names if they have some: x, y, z; easting, northing, elevation; lon,
+    lat, height. Others are not looked at. Errors begin with ``what``, in the plural.
     """
     if _is_plain(given):
         return Table(_as_numbers(given, what))

@@ -14,17 +14,9 @@ MOST_THREADS = 1024
 
 
 def thread_count(threads: int | None, n_points: int) -> int:
-    """Return the number of threads for so many points.
+    """Return the number of threads for so many points, as asked for; OptionError if it is none.
 
-    Parameters
-    ----------
-    threads : int or None
-        As asked for; None takes every core that this process may use, where it pays.
-
-    Raises
-    ------
-    OptionError
-        If it is no whole number above 0.
+    None takes every core that this process may use, where it pays.
     """
     if threads is None:
         most = n_points // LEAST_POINTS_PER_THREAD

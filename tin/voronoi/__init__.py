@@ -1,6 +1,5 @@
 """The Voronoi diagram of a TIN's vertices: the dual of their Delaunay triangulation."""
 
-from .construction import voronoi
-from .diagram import Voronoi
+from .diagram import Voronoi, voronoi
 
 __all__ = ["Voronoi", "voronoi"]

@@ -44,14 +44,7 @@ class HalfPlane(NamedTuple):
 
 
 class ExactPlane:
-    """Places and a box in whole numbers.
-
-    Parameters
-    ----------
-    xy : (n, 2) float64 array
-    box : Bounds
-        Holds them all.
-    """
+    """Places, (n, 2), and a box that holds them all, in whole numbers."""
 
     def __init__(self, xy: Float64Array, box: Bounds) -> None:
         self._mantissas, self._exponents = np.frexp(xy)
@@ -91,11 +84,7 @@ class ExactPlane:
     def cell(self, vertex: int, neighbors: Iterable[int]) -> list[tuple[float, float]]:
         """Return the corners of a vertex's cell within the box, counter-clockwise.
 
-        Parameters
-        ----------
-        vertex : int
-        neighbors : iterable of int
-            Those of the Delaunay triangulation, counter-clockwise.
+        ``neighbors`` are those of the Delaunay triangulation, counter-clockwise.
         """
         origin = self.point(vertex)
         sides = [_bisect(origin, self.point(other)) for other in neighbors]
@@ -158,11 +147,7 @@ def _intersect(half_planes: list[HalfPlane]) -> list[Corner]:
 def _sort_by_direction(sides: list[HalfPlane], walls: Iterable[HalfPlane]) -> list[HalfPlane]:
     """Return all by direction, from west on; of a side and a wall in one direction the narrower.
 
-    Parameters
-    ----------
-    sides : list of HalfPlane
-        Counter-clockwise, of different directions, the first one any.
-    walls : iterable of HalfPlane
+    Sides come counter-clockwise, of different directions, the first one any.
     """
     octants = [_find_octant(side) for side in sides]
     begin = next((k for k in range(1, len(sides)) if octants[k] < octants[k - 1]), 0)

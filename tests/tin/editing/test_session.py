@@ -10,8 +10,7 @@ import pytest
 from support.point_sets import small_integers, tenths, utm_floats
 
 import tinsmith as ts
-from tinsmith.tin.editing.history import apply_edits
-from tinsmith.tin.editing.operations import OPERATIONS
+from tinsmith.tin.editing.operations import OPERATIONS, apply_edits
 
 
 def with_elevations(kind):

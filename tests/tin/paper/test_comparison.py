@@ -13,8 +13,9 @@ from support import oracles
 
 import tinsmith as ts
 from tinsmith.tin import PointsError, compare, paper
+from tinsmith.tin.meshing.shape_quality import measure_smallest_angles
 from tinsmith.tin.paper.cover import cover
-from tinsmith.tin.paper.faults import find_overlapping, find_violating, measure_minimum_angles
+from tinsmith.tin.paper.faults import find_overlapping, find_violating
 
 SURVEY = Path(__file__).parents[3] / "sample_data" / "site_survey.csv"
 NAMES = ("original", "improved", "improved (open)", "improved (ties)", "exact")
@@ -127,7 +128,7 @@ def test_touching_triangles_do_not_overlap():
 
 def test_minimum_angles_of_known_triangles():
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.5, np.sqrt(0.75), 0], [9, 0.001, 0]])
-    angles = measure_minimum_angles(points, np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]], np.int32))
+    angles = measure_smallest_angles(points[np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]]), :2])
     assert angles == pytest.approx(
         [45, 60, np.degrees(np.arctan(0.001 / 8) - np.arctan(0.001 / 9))]
     )

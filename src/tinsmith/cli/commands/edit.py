@@ -41,7 +41,7 @@ def edit(file: Path, script: Path, report: Path | None, job: Job) -> None:
        {"op": "set_elevation", "vertices": [4, 5], "z": [320.0, 320.5]},
        {"op": "add_breakline", "coords": [[752650, 4024200, 321], [752700, 4024300, 323]]}]
     """
-    from ...tin.editing.history import apply_edits
+    from ...tin.editing.operations import apply_edits
     from ..output.console import format_json
     from ..outputs import write_text
 
