@@ -19,7 +19,7 @@ from .maps import PIXELS, draw_scale, draw_shade, start_map
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
-    from ...base.results import Features, Raster
+    from ...base.results import Features
     from ...tin import TIN, Grid
     from .maps import Map
 
@@ -88,7 +88,8 @@ def earthwork_map(
     )
     axes = drawn.axes
     if ground is not None:
-        draw_shade(axes, _shade_around(ground, axes), limits=_LIGHTS)
+        shade = hillshade(ground, grid=_choose_grid(ground, axes), smooth=True)
+        draw_shade(axes, shade, limits=_LIGHTS)
     _draw_difference(drawn, surface)
     _draw_zero_line(axes, surface, draw_north_up(difference.zero_line))
     drawn.write_caption(_write_caption(difference), size=10)
@@ -111,11 +112,6 @@ def _write_caption(difference: Difference) -> str:
 def _write_rounded(value: float) -> str:
     """Write a number with about four digits, and no less than whole ones."""
     return f"{value:,.{max(4 - len(f'{abs(value):.0f}'), 0)}f}"
-
-
-def _shade_around(ground: TIN, axes: Any) -> Raster:
-    """Return the hillshade of the part of the ground that is in view."""
-    return hillshade(ground, grid=_choose_grid(ground, axes), smooth=True)
 
 
 def _choose_grid(tin: TIN, axes: Any) -> Grid:

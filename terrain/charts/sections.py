@@ -121,16 +121,16 @@ def section_picture(
     along, up = curves.read_units(table, system)
     require_count("columns", columns, most=6)
     sheet = _plan_sheet(sections, curves.find_ratio(along, up), exaggeration, int(columns))
-    figure = _start_figure(sheet)
+    height = _TOP + sheet.rows * (sheet.height + _HEAD) + _BOTTOM
+    figure = start_figure(_PURPOSE, _WIDTH, height)
     _write_heading(figure, heading, sheet, system)
     for number, section in enumerate(sections):
         axes = figure.add_axes(_find_box(figure, sheet, number))
         _draw_section(axes, section, sheet, station=along.unit.symbol if along.unit else "")
         is_lowest = number + sheet.columns >= len(sections)
-        _label_axes(
-            axes,
-            offset=along.caption("offset") if is_lowest else "",
-            elevation=up.caption("elevation") if number % sheet.columns == 0 else "",
+        axes.set_xlabel(along.caption("offset") if is_lowest else "", color=INK, fontsize=9)
+        axes.set_ylabel(
+            up.caption("elevation") if number % sheet.columns == 0 else "", color=INK, fontsize=9
         )
     _write_legend(figure, sections)
     return figure
@@ -181,11 +181,6 @@ def _plan_sheet(sections: list[_Section], ratio: float, wanted: Any, most: int) 
 
 
 # ---------------------------------------------------------------- drawing
-
-
-def _start_figure(sheet: _Sheet) -> Any:
-    height = _TOP + sheet.rows * (sheet.height + _HEAD) + _BOTTOM
-    return start_figure(_PURPOSE, _WIDTH, height)
 
 
 def _find_box(figure: Any, sheet: _Sheet, number: int) -> tuple[float, float, float, float]:
@@ -241,11 +236,6 @@ def _describe_middle(section: _Section) -> str:
     if len(middle) == 2 and np.isfinite(middle).all():
         texts[1] += f" ({curves.write_elevation(middle[1] - middle[0], sign='+')})"
     return ", ".join(texts)
-
-
-def _label_axes(axes: Any, *, offset: str, elevation: str) -> None:
-    axes.set_xlabel(offset, color=INK, fontsize=9)
-    axes.set_ylabel(elevation, color=INK, fontsize=9)
 
 
 def _write_legend(figure: Any, sections: list[_Section]) -> None:

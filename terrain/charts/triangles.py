@@ -89,7 +89,8 @@ def plot_tin(
         given = (triangles,) if is_flat else (triangles, numbers)
         mapped = ax.tripcolor(*given, **(how | options))
         if is_new and with_bar:
-            ax.figure.colorbar(mapped, ax=ax, shrink=0.7, label=_write_caption(name, ground))
+            unit = {"elevation": ground.elevation_caption, "slope": "degrees"}.get(name, "")
+            ax.figure.colorbar(mapped, ax=ax, shrink=0.7, label=f"{name}, {unit}" if unit else name)
     if with_edges:
         ax.triplot(triangles, color="0.25", linewidth=0.3)
     if with_lines:
@@ -117,11 +118,6 @@ def _find_values(tin: TIN, values: Any) -> tuple[Float64Array | None, str]:
             "triangle)",
         )
     return numbers, ""
-
-
-def _write_caption(name: str, ground: Ground) -> str:
-    unit = {"elevation": ground.elevation_caption, "slope": "degrees"}.get(name, "")
-    return f"{name}, {unit}" if unit else name
 
 
 def _draw_lines(ax: Any, tin: TIN) -> None:

@@ -257,11 +257,7 @@ def choose_palette(background: Color) -> Palette:
     is_light = float(compute_lightness(np.array([background], np.uint8))[0]) >= _LEAST_OF_LIGHT
     ink = usual.ink if is_light else _LIGHT_INK
     warning = usual.warning if is_light else parse_hex("#ffaa82")
-    return Palette(ink, _mix(ink, background), background, warning)
-
-
-def _mix(ink: Color, paper: Color) -> Color:
     red, green, blue = (
-        round(one + _GREY_SHARE * (other - one)) for one, other in zip(ink, paper, strict=True)
+        round(one + _GREY_SHARE * (other - one)) for one, other in zip(ink, background, strict=True)
     )
-    return red, green, blue
+    return Palette(ink, (red, green, blue), background, warning)

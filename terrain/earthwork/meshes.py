@@ -189,7 +189,9 @@ def _find_walls(points: Float64Array) -> BoolArray:
 def _remove_flat(points: Float64Array, triangles: Int32Array, flat: Int64Array) -> Int32Array:
     """Drop the flat triangles along the boundary; if there are none, flip edges of the others."""
     neighbors = topology.neighbors_of(triangles, len(points))
-    longest = _find_corners_on_edges(points, triangles[flat])
+    xy = points[triangles[flat], :2]
+    edges = xy[:, [2, 0, 1]] - xy[:, [1, 2, 0]]
+    longest = np.argmax(np.hypot(edges[..., 0], edges[..., 1]), axis=1)  # corners opposite
     is_outside = neighbors[flat] == topology.NO_NEIGHBOR
     loose = is_outside[np.arange(len(flat)), longest] | (is_outside.sum(axis=1) > 1)
     if loose.any():
@@ -205,14 +207,6 @@ def _remove_flat(points: Float64Array, triangles: Int32Array, flat: Int64Array) 
         far = int(next(v for v in corners[across] if v not in (start, end)))
         corners[triangle], corners[across] = (apex, start, far), (apex, far, end)
     return corners
-
-
-def _find_corners_on_edges(points: Float64Array, triangles: Int32Array) -> Int64Array:
-    """Return the corner of each triangle that lies opposite its longest edge."""
-    xy = points[triangles, :2]
-    edges = xy[:, [2, 0, 1]] - xy[:, [1, 2, 0]]
-    longest: Int64Array = np.argmax(np.hypot(edges[..., 0], edges[..., 1]), axis=1)
-    return longest
 
 
 def drop_unused(points: Float64Array, triangles: Int32Array) -> tuple[Float64Array, Int32Array]:
@@ -252,16 +246,11 @@ def cut_at_zero(points: Float64Array, triangles: Int32Array) -> tuple[Float64Arr
 
 def _turn_alone_first(corners: Int32Array, signs: Int8Array) -> tuple[Int32Array, Int8Array]:
     """Turn triangles until corner 0 alone has its sign; one at 0, if there is one, is corner 1."""
-    first = np.argmax(signs * np.sign(-_sum_signs(signs))[:, None], axis=1)
+    first = np.argmax(signs * np.sign(-signs.sum(axis=1, dtype=np.int64))[:, None], axis=1)
     zero = np.argmin(np.abs(signs), axis=1)
     first = np.where((signs == 0).any(axis=1), (zero + 2) % 3, first)
     turned = (first[:, None] + np.arange(3)) % 3
     return np.take_along_axis(corners, turned, axis=1), np.take_along_axis(signs, turned, axis=1)
-
-
-def _sum_signs(signs: Int8Array) -> Int64Array:
-    total: Int64Array = signs.sum(axis=1, dtype=np.int64)
-    return total
 
 
 def _place_zeros(

@@ -73,7 +73,8 @@ def _choose_surface(
     least = np.inf
     for mesh in candidates:
         surface = as_mesh(*mesh, crs=reference.crs, elevation_unit=reference.elevation_unit)
-        apart = _measure_disagreement(surface, sums)
+        found = _sum_classes(surface)
+        apart = max(abs(found[name] - sums[name]) for name in ("cut", "fill"))
         most = max(sums["highest"], -sums["lowest"])
         if apart <= _SHARE_OF_VOLUME * sums["area"] * most + _ROUNDINGS * slack:
             return surface
@@ -166,12 +167,6 @@ def _measure_rises(surface: Surface) -> Float64Array:
     with np.errstate(invalid="ignore", over="ignore"):
         rises: Float64Array = 0.5 * np.hypot(uy * vz - uz * vy, uz * vx - ux * vz)
     return rises
-
-
-def _measure_disagreement(surface: TIN, sums: Mapping[str, float]) -> float:
-    """Return by how much a volume of a TIN is not that of the surfaces."""
-    found = _sum_classes(surface)
-    return max(abs(found[name] - sums[name]) for name in ("cut", "fill"))
 
 
 def _sum_classes(surface: TIN) -> dict[str, float]:

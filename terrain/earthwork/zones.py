@@ -38,21 +38,18 @@ def trace_zero_line(mesh: Triangulation, reference: Reference) -> Features:
     chains = join_segments(start, end)
     offsets = np.cumsum([0, *map(len, chains)])
     vertices = np.concatenate([np.array(chain) for chain in chains]) if chains else np.zeros(0, int)
+    xy = mesh.points[vertices, :2].reshape(-1, 2)
+    steps = np.hypot(*np.diff(xy, axis=0, prepend=xy[:1]).T)
+    steps[offsets[:-1]] = 0.0
     return Features.of_lines(
-        mesh.points[vertices, :2].reshape(-1, 2),
+        xy,
         offsets,
-        columns={"length": _measure_lengths(mesh.points[vertices, :2], offsets)},
+        columns={"length": np.add.reduceat(steps, offsets[:-1]) if len(steps) else steps},
         units={"length": reference.units.length},
         crs=reference.crs,
         name="zero line",
         notes=reference.notes,
     )
-
-
-def _measure_lengths(xy: Float64Array, offsets: Int64Array) -> Float64Array:
-    steps = np.hypot(*np.diff(xy.reshape(-1, 2), axis=0, prepend=xy[:1].reshape(-1, 2)).T)
-    steps[offsets[:-1]] = 0.0
-    return np.add.reduceat(steps, offsets[:-1]) if len(steps) else steps
 
 
 def join_segments(start: Int64Array, end: Int64Array) -> list[list[int]]:

@@ -11,7 +11,6 @@ from .bands import SurfaceBand
 from .grids import describe_extent
 
 if TYPE_CHECKING:
-    from ...base.arrays import Float64Array
     from ...tin import TIN, Grid
 
 _SAMPLE = 1000
@@ -45,18 +44,12 @@ def _sample_covers(tin: TIN, grid: Grid, is_mean: bool) -> bool:
     """Whether the cells at the middle of some triangles hold a part of the surface."""
     chosen = tin.triangles[:: max(1, len(tin.triangles) // _SAMPLE)]
     xy = tin.points[chosen, :2].mean(axis=1)
-    at = _find_cells(grid, xy)
-    rows, columns = grid.shape
+    bounds, (rows, columns) = grid.bounds, grid.shape
+    from_corner = np.column_stack([xy[:, 0] - bounds.xmin, bounds.ymax - xy[:, 1]])
+    at = np.floor(from_corner / grid.spacing)  # column and row
     at = at[((at >= 0) & (at < (columns, rows))).all(axis=1)]
     if is_mean or len(at) == 0:
         return len(at) > 0
-    x = grid.bounds.xmin + (at[:, 0] + 0.5) * grid.spacing
-    y = grid.bounds.ymax - (at[:, 1] + 0.5) * grid.spacing
+    x = bounds.xmin + (at[:, 0] + 0.5) * grid.spacing
+    y = bounds.ymax - (at[:, 1] + 0.5) * grid.spacing
     return bool((tin.locate(np.column_stack([x, y])) >= 0).any())
-
-
-def _find_cells(grid: Grid, xy: Float64Array) -> Float64Array:
-    """Return column and row of places."""
-    bounds = grid.bounds
-    from_corner = np.column_stack([xy[:, 0] - bounds.xmin, bounds.ymax - xy[:, 1]])
-    return np.asarray(np.floor(from_corner / grid.spacing), np.float64)

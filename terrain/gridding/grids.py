@@ -164,7 +164,7 @@ def as_cells(like: Any) -> Cells:
         return Cells(like.grid, like.crs)
     if all(hasattr(like, name) for name in ("transform", "shape", "crs")):
         affine, crs = like.transform, like.crs
-        return Cells(to_grid(tuple(affine)[:6], like.shape), _as_crs(crs))
+        return Cells(to_grid(tuple(affine)[:6], like.shape), CRS.of(crs.to_wkt()) if crs else None)
     if all(hasattr(like, name) for name in ("coords", "dims")):
         return _take_coordinates(like)
     raise OptionError(
@@ -206,11 +206,6 @@ def _take_coordinates(like: Any) -> Cells:
     transform = (across, 0.0, float(x[0]) - across / 2, 0.0, up, float(y[0]) - up / 2)
     named = like.coords["spatial_ref"].attrs if "spatial_ref" in like.coords else {}
     return Cells(to_grid(transform, (len(y), len(x)), like), CRS.of(named.get("crs_wkt")))
-
-
-def _as_crs(crs: Any) -> CRS | None:
-    """Return the CRS that rasterio has; an empty one is none."""
-    return CRS.of(crs.to_wkt()) if crs else None
 
 
 def locate_edges(grid: Grid, rows: slice, columns: slice) -> tuple[Float64Array, Float64Array]:

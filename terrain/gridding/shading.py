@@ -90,8 +90,9 @@ def hillshade(
     if spacing is not None and grid is not None:
         raise OptionError("spacing", spacing, allowed="None where a grid is given")
     is_smooth, note = choose_smooth(tin, smooth)
-    side = _choose_spacing(tin) if spacing is None and grid is None else spacing
-    cells, _ = as_grid(tin, spacing=side, grid=grid, in_memory=True)
+    if spacing is None and grid is None:
+        spacing = round_down(max(tin.bounds.width, tin.bounds.height) / _USUAL_SIDE)
+    cells, _ = as_grid(tin, spacing=spacing, grid=grid, in_memory=True)
     require_covered(tin, cells)
     lights = ReliefBand(tin, cells, PlaneMeasure("hillshade", light, factor), is_smooth=is_smooth)
     band, height = np.zeros(cells.shape, np.uint8), max(1, _BLOCK_CELLS // cells.shape[1])
@@ -107,7 +108,3 @@ def hillshade(
         name="hillshade",
         notes=[*describe_unknown(tin.crs, tin.elevation_unit), note],
     )
-
-
-def _choose_spacing(tin: TIN) -> float:
-    return round_down(max(tin.bounds.width, tin.bounds.height) / _USUAL_SIDE)

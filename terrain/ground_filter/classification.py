@@ -241,7 +241,9 @@ def ground(
     width, height = metric[:, :2].max(axis=0).tolist()
     frame = Frame.of_all((width, height), parameters.cell, len(metric))
     classes, heights = classify(metric, is_candidate, frame, parameters, done)
-    _keep_noise(classes, survey)
+    is_noise = are_noise(survey.attributes, len(survey))
+    if is_noise.any():
+        classes[is_noise] = survey.attributes["classification"][is_noise]
     found = GroundPoints(
         given=survey,
         classification=classes,
@@ -396,10 +398,3 @@ def _lie_on(heights: Float64Array, slopes: Float64Array, parameters: Parameters)
     """Tell which points lie no higher above the surface than the tolerances allow."""
     is_on: BoolArray = heights <= parameters.tolerance + parameters.horizontal_tolerance * slopes
     return is_on
-
-
-def _keep_noise(classes: UInt8Array, survey: Survey) -> None:
-    """Leave points that were given as noise in their class."""
-    is_noise = are_noise(survey.attributes, len(survey))
-    if is_noise.any():
-        classes[is_noise] = survey.attributes["classification"][is_noise]

@@ -105,11 +105,6 @@ def _place_cuts(
     )
 
 
-def _name_edges(corners: Int32Array, count: int) -> Int64Array:
-    """Return a number for each edge, the same in both of its triangles: opposite corners."""
-    return topology.edge_keys(corners[:, [[1, 2], [2, 0], [0, 1]]], count)
-
-
 def _cut_triangles(
     network: Network, cuts: _Cuts, triangles: Int64Array, whole: Int32Array
 ) -> tuple[Int32Array, Int32Array]:
@@ -117,7 +112,7 @@ def _cut_triangles(
     falls, count = network.walker.falls, len(network.walker.falls.points)
     turns = np.array([1, 2, 0]) + network.surface.bases_of(triangles).edges[:, None]
     corners = falls.triangles[triangles[:, None], turns % 3]  # start, end, apex
-    keys = _name_edges(corners, count)[:, [2, 1, 0]]
+    keys = topology.edge_keys(corners[:, [[1, 2], [2, 0], [0, 1]]], count)[:, [2, 1, 0]]
     ranges = np.stack([cuts.edges.searchsorted(keys, side) for side in ("left", "right")], axis=2)
     offsets = np.append(cuts.triangles.searchsorted(triangles), len(cuts.triangles))
     numbers, cells, vertices = _kernel.cut_cells(

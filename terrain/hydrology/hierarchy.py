@@ -10,7 +10,7 @@ from ...tin.topology import find_boundary_vertices
 from .vertices import NOWHERE
 
 if TYPE_CHECKING:
-    from ...base.arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import Float64Array, Int64Array
     from ...tin import TIN
 
 
@@ -125,7 +125,9 @@ def _list_passes(tin: TIN, rank: Int64Array, edges: Int64Array, number: Int64Arr
     """Return the lowest pass between any two basins, in the order in which water comes to them."""
     rim = np.flatnonzero(find_boundary_vertices(tin.triangles, tin.neighbors, len(tin.points)))
     edges = edges[number[edges[:, 0]] != number[edges[:, 1]]]
-    vertices = np.append(np.where(_is_higher(rank, edges), edges[:, 0], edges[:, 1]), rim)
+    vertices = np.append(
+        np.where(rank[edges[:, 0]] > rank[edges[:, 1]], edges[:, 0], edges[:, 1]), rim
+    )
     pairs = np.sort(number[edges], axis=1)
     one = np.append(pairs[:, 0], np.full(len(rim), NOWHERE))
     other = np.append(pairs[:, 1], number[rim])
@@ -135,11 +137,6 @@ def _list_passes(tin: TIN, rank: Int64Array, edges: Int64Array, number: Int64Arr
     one, other, vertices = one[first], other[first], vertices[first]
     order = np.lexsort((other, one, rank[vertices]))
     return _Passes(vertices[order], one[order], other[order])
-
-
-def _is_higher(rank: Int64Array, edges: Int64Array) -> BoolArray:
-    is_higher: BoolArray = rank[edges[:, 0]] > rank[edges[:, 1]]
-    return is_higher
 
 
 class _Joining:

@@ -15,7 +15,7 @@ from .strips import Strips, cut_strips, leave_strips, settle
 from .vertices import NOWHERE
 
 if TYPE_CHECKING:
-    from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int32Array, Int64Array
     from ...base.progress import Tell
     from ...tin import TIN
     from .descent import Drops
@@ -86,7 +86,9 @@ def build_network(
     surface = _read_falls(walker.falls, filling)
     strips = cut_strips(surface)
     done(0.6)
-    grounds = _connect_level_ground(tin)
+    z = tin.points[:, 2]
+    level = tin.edges[z[tin.edges[:, 0]] == z[tin.edges[:, 1]]].astype(np.int64)
+    grounds = join_components(len(z), level[:, 0], level[:, 1]).astype(np.int32)
     nexts, uppers = surface.link_strips(*strips, grounds)
     areas = _measure_areas(walker.falls)
     found = Network(walker, surface, strips, grounds, nexts, uppers, areas)
@@ -129,20 +131,6 @@ def _measure_areas(falls: Falls) -> Float64Array:
     return areas
 
 
-def _connect_level_ground(tin: TIN) -> Int32Array:
-    z = tin.points[:, 2]
-    level = tin.edges[z[tin.edges[:, 0]] == z[tin.edges[:, 1]]].astype(np.int64)
-    return join_components(len(z), level[:, 0], level[:, 1]).astype(np.int32)
-
-
-def _runs_on(drops: Drops) -> BoolArray:
-    """Tell which drops are about to enter a triangle."""
-    on: BoolArray = (
-        (drops.vertices == NOWHERE) & (drops.targets == NOWHERE) & (drops.ends == MOVING)
-    )
-    return on
-
-
 def _link_vertices(found: Network) -> None:
     """Set what is below vertices; where doubles do not decide that, fractions do."""
     nexts, uppers, undecided = found.surface.link_vertices(
@@ -183,7 +171,9 @@ def _break_circles(found: Network) -> None:
     strips = nodes[nodes < found.first_vertex]
     if len(strips):
         left = leave_strips(found.walker, found.surface, found.strips, strips)
-        on = np.flatnonzero(_runs_on(left))
+        on = np.flatnonzero(
+            (left.vertices == NOWHERE) & (left.targets == NOWHERE) & (left.ends == MOVING)
+        )
         drops, _ = settle(found.walker, left.choose(on))
         _link(found, strips[on], drops)
 

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ...base.arrays import Float64Array
     from ...base.crs import CRS, Unit
     from ...tin import TIN
     from .levels import Levels
@@ -110,7 +109,7 @@ def as_features(
     numbers, first = np.unique(parts.band, return_index=True)
     areas = measure_ring_areas(crs, parts.points, parts.ring_offsets)
     rings = sum_parts(areas, parts.polygon_offsets[:-1])
-    bounds = _list_bounds(chosen.values)
+    bounds = np.concatenate([[np.nan], chosen.values, [np.nan]])
     columns = {
         "from": bounds[numbers],
         "to": bounds[numbers + 1],
@@ -129,8 +128,3 @@ def as_features(
         name="contour bands",
         notes=[*describe_unknown(crs, elevation_unit), *notes],
     )
-
-
-def _list_bounds(levels: Float64Array) -> Float64Array:
-    """Return where bands begin and end, from below all levels to above them."""
-    return np.concatenate([[np.nan], levels, [np.nan]])

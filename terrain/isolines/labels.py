@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -75,7 +75,9 @@ def contour_labels(
     >>> labels.columns["text"], labels.columns["rotation"], labels.columns["uphill"]
     (array(['5'], dtype=object), array([90.]), array(['below'], dtype=object))
     """
-    _require_contours(lines)
+    names = ("elevation", "is_index", "is_closed")
+    if not isinstance(lines, Features) or not all(name in lines.columns for name in names):
+        raise OptionError("lines", lines, "contours, as tinsmith.contours returns them")
     if spacing is None:
         spacing = _choose_spacing(lines)
     spacing = as_length("spacing", spacing)
@@ -84,12 +86,6 @@ def contour_labels(
         is_chosen = np.ones(len(lines), np.bool_)
     placed = _place_labels(lines, np.flatnonzero(is_chosen), spacing)
     return _as_features(lines, placed)
-
-
-def _require_contours(lines: Any) -> None:
-    names = ("elevation", "is_index", "is_closed")
-    if not isinstance(lines, Features) or not all(name in lines.columns for name in names):
-        raise OptionError("lines", lines, "contours, as tinsmith.contours returns them")
 
 
 def _choose_spacing(lines: Features) -> float:

@@ -72,7 +72,13 @@ def clip_paths(paths: Paths, box: Bounds) -> Paths:
     is_begin = np.ones(len(at), np.bool_)
     goes_on = (np.diff(at) == 1) & (owners[at[1:]] == owners[at[:-1]])
     is_begin[1:] = ~(goes_on & (leave[:-1] >= 1) & (enter[1:] <= 0))
-    return _chain(first, last, is_begin, paths.sources[owners[at]])
+    begins = np.flatnonzero(is_begin)
+    number = np.cumsum(is_begin) - 1
+    coordinates = np.empty((len(first) + len(begins), 2))
+    coordinates[begins + np.arange(len(begins))] = first[begins]
+    coordinates[np.arange(len(first)) + number + 1] = last
+    offsets = np.append(begins + np.arange(len(begins)), len(coordinates)).astype(np.int64)
+    return Paths(coordinates, offsets, paths.sources[owners[at]][begins])
 
 
 def _find_ratios(
@@ -91,19 +97,3 @@ def _find_ratios(
         enter, leave = np.maximum(enter, near), np.minimum(leave, far)
     is_point = (step == 0).all(axis=1)
     return enter, np.where(is_point, -1.0, leave)
-
-
-def _chain(
-    first: Float64Array,
-    last: Float64Array,
-    is_begin: BoolArray,
-    sources: Int64Array,
-) -> Paths:
-    """Join segments into paths; one begins where ``is_begin``."""
-    begins = np.flatnonzero(is_begin)
-    number = np.cumsum(is_begin) - 1
-    coordinates = np.empty((len(first) + len(begins), 2))
-    coordinates[begins + np.arange(len(begins))] = first[begins]
-    coordinates[np.arange(len(first)) + number + 1] = last
-    offsets = np.append(begins + np.arange(len(begins)), len(coordinates)).astype(np.int64)
-    return Paths(coordinates, offsets, sources[begins])

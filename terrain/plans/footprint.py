@@ -66,16 +66,11 @@ def _find_water(tin: TIN, faces: AnyArray, triangles: Int32Array, edges: Int32Ar
     is_water = np.zeros(len(faces), np.bool_)
     for k in np.flatnonzero(is_flat).tolist():
         outer = shapely.get_coordinates(shapely.get_exterior_ring(faces[k])).tolist()
-        if not _touches(outer, shores):
+        if not any(tuple(a) in shores and tuple(b) in shores for a, b in pairwise(outer)):
             continue
         inside = shapely.contains_properly(rings, shapely.point_on_surface(faces[k]))
         is_water[k] = inside.sum() % 2 == 1 if len(rings) else True
     return is_water
-
-
-def _touches(outer: list[list[float]], shores: set[tuple[float, ...]]) -> bool:
-    """Tell whether a ring runs along a shore for a segment or more."""
-    return any(tuple(a) in shores and tuple(b) in shores for a, b in pairwise(outer))
 
 
 def _list_water_rings(tin: TIN) -> AnyArray:

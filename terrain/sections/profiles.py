@@ -21,7 +21,7 @@ from .surfaces import as_surfaces
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ...base.arrays import AnyArray, Float64Array, Int64Array, StrArray
+    from ...base.arrays import AnyArray, Float64Array, Int64Array
     from ...base.results import Features
     from ...tin import TIN
     from ..surface import Segments
@@ -153,7 +153,8 @@ def measure_rows(
     }
     scale = scale_elevations(surfaces.crs, surfaces.elevation_unit)
     grades = measure_grades(surfaces, segments, rows) * scale
-    crossed = _name_stations(rows.crossed)
+    crossed = rows.crossed.copy()
+    crossed[(rows.crossed == "").all(axis=1)] = "station"  # which was asked for
     for k in range(len(surfaces.tins)):
         own = {"elevation": rows.elevations[:, k]}
         if k > 0:
@@ -164,13 +165,6 @@ def measure_rows(
         columns[surfaces.column("crossed", k)] = crossed[:, k]
     notes = (*notes, *_describe_gaps(surfaces, rows))
     return Table(columns, units=units, name=name, notes=notes)
-
-
-def _name_stations(crossed: StrArray) -> StrArray:
-    """Say of rows where no surface has a break that they were asked for."""
-    named = crossed.copy()
-    named[(crossed == "").all(axis=1)] = "station"
-    return named
 
 
 def _describe_gaps(surfaces: Surfaces, rows: Rows) -> list[str]:

@@ -76,13 +76,18 @@ def cut_rows(
         trace_to_rim(tin, segments, is_computed=is_computed).scale_elevations(factor)
         for tin, factor in zip(surfaces.tins, surfaces.factors, strict=True)
     ]
-    sources = [_find_places(breaks, segments) for breaks in traced]
+    sources = [
+        Places(breaks.segments, segments.stations(breaks.segments, breaks.ratios), breaks.xy)
+        for breaks in traced
+    ]
     if extra is not None:
         sources.append(extra)
     turns = [_number_turns(breaks, places) for breaks, places in zip(traced, sources, strict=False)]
     turns += [np.zeros(len(extra.xy), np.int64)] if extra is not None else []
     places, own = _merge(sources, turns, segments)
-    keep, is_last = _find_ends(places, segments)
+    is_end = np.append(np.diff(places.segments) != 0, True)
+    is_continued = segments.is_continued[places.segments]
+    keep, is_last = ~(is_end & is_continued), is_end & ~is_continued  # a kink is one row
     before = np.stack([np.maximum.accumulate(one) for one in own[: len(traced)]], axis=1)
     rows = Rows(
         places,
@@ -99,10 +104,6 @@ def _choose(rows: Rows, chosen: BoolArray) -> Rows:
         return rows
     places = Places._make(array[chosen] for array in rows.places)
     return Rows._make([places, *(array[chosen] for array in rows[1:])])
-
-
-def _find_places(breaks: Breaks, segments: Segments) -> Places:
-    return Places(breaks.segments, segments.stations(breaks.segments, breaks.ratios), breaks.xy)
 
 
 def _number_turns(breaks: Breaks, places: Places) -> Int64Array:
@@ -147,13 +148,6 @@ def _merge(
         own.append(numbers)
         begin += len(source.xy)
     return places, own
-
-
-def _find_ends(places: Places, segments: Segments) -> tuple[BoolArray, BoolArray]:
-    """Tell which rows stay, all but ends of segments that are continued, and which end a line."""
-    is_end = np.append(np.diff(places.segments) != 0, True)
-    is_continued = segments.is_continued[places.segments]
-    return ~(is_end & is_continued), is_end & ~is_continued
 
 
 def _interpolate_places(breaks: Breaks, own: Int64Array, xy: Float64Array) -> Float64Array:

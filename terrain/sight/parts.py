@@ -46,7 +46,7 @@ def divide(tin: TIN, view: View) -> tuple[DividedMesh, BoolArray]:
     owners, counts = found.triangles.astype(np.int64), np.diff(found.offsets)
     cells = _Cells(owners, found.is_seen, counts, numbers, found.lines)
     cells, parts = _join_thin(tin, cells, found.parts)
-    cells = _drop_points(cells)
+    cells = _choose(cells, cells.corners != cells.corners[_find_next(cells.counts)])
     cells, is_cut = _add_whole_triangles(tin, cells, parts)
     cells = _complete_sides(cells, points)
     kept = np.flatnonzero(~is_cut)
@@ -81,11 +81,6 @@ def _join_thin(tin: TIN, cells: _Cells, parts: UInt8Array) -> tuple[_Cells, UInt
     joined[is_thin] = 0
     joined[cells.owners[is_thin[cells.owners] & cells.is_seen]] = _SEEN
     return _choose(cells, np.repeat(~is_thin[cells.owners], cells.counts)), joined
-
-
-def _drop_points(cells: _Cells) -> _Cells:
-    """Leave out sides without a length, and cells without an area."""
-    return _choose(cells, cells.corners != cells.corners[_find_next(cells.counts)])
 
 
 def _choose(cells: _Cells, keep: BoolArray) -> _Cells:

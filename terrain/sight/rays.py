@@ -76,7 +76,10 @@ def find_blocks(tin: TIN, rays: Rays, fall: float) -> Blocks:
     curved earth the ground bulges between edges, too: the highest place of each bulge is found in
     closed form, in doubles.
     """
-    breaks = _trace(tin, rays)
+    starts, ends = (np.ascontiguousarray(end[:, :2]) for end in rays)
+    lengths = np.hypot(*(ends - starts).T)
+    segments = Segments(starts, ends, np.zeros(len(starts)), lengths, np.arange(len(starts)))
+    breaks = trace_breaks(tin, segments)
     owner = breaks.segments
     heights = _measure_heights(breaks, rays, fall)
     if fall == 0.0:
@@ -97,13 +100,6 @@ def find_blocks(tin: TIN, rays: Rays, fall: float) -> Blocks:
         np.where(np.isfinite(clearances), clearances, np.nan),
         np.bincount(owner, is_gap, minlength=count) > 0,
     )
-
-
-def _trace(tin: TIN, rays: Rays) -> Breaks:
-    starts, ends = (np.ascontiguousarray(end[:, :2]) for end in rays)
-    lengths = np.hypot(*(ends - starts).T)
-    segments = Segments(starts, ends, np.zeros(len(starts)), lengths, np.arange(len(starts)))
-    return trace_breaks(tin, segments)
 
 
 def _measure_heights(breaks: Breaks, rays: Rays, fall: float) -> Float64Array:

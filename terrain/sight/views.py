@@ -103,7 +103,10 @@ def viewshed(
     is_near = _find_near(tin, view)
     reach = float(measure_distances(tin.points, view.eye)[tin.triangles[is_near]].max())
     if reach > view.radius:
-        notes.append(_describe_reach(view.radius, reach))
+        notes.append(
+            f"Triangles that come within the radius of {view.radius:g} are taken whole: what is "
+            f"told reaches as far as {reach:.6g}."
+        )
         view = view._replace(radius=reach)
     mesh, classes, owners = _judge_triangles(tin, view) if as_whole else _divide(tin, view)
     done(0.7)
@@ -127,19 +130,16 @@ def _find_near(tin: TIN, view: View) -> BoolArray:
     return is_near
 
 
-def _describe_reach(radius: float, reach: float) -> str:
-    return (
-        f"Triangles that come within the radius of {radius:g} are taken whole: what is told "
-        f"reaches as far as {reach:.6g}."
-    )
-
-
 def _judge_triangles(tin: TIN, view: View) -> tuple[Mesh, _Numbers, _Numbers]:
     """Return the surface, the class of each triangle by its corners, and their numbers."""
     seen = see_vertices(tin, view)
     classes = np.array([2, 1, 1, 0])[seen[tin.triangles].sum(axis=1)]
     if view.target_height == 0.0 and view.fall == 0.0:
-        classes[_faces_away(tin, view.eye)] = 2
+        a, b, c = (tin.points[tin.triangles[:, k]] for k in range(3))
+        normals = np.cross(b - a, c - a)
+        sizes = np.abs(normals) * np.abs(view.eye - a)
+        heights = (normals * (view.eye - a)).sum(axis=1)  # of the eye above the planes
+        classes[heights < -_DOUBT * sizes.sum(axis=1)] = 2
     return tin, classes.astype(np.int64), np.arange(len(classes))
 
 
@@ -147,16 +147,6 @@ def _divide(tin: TIN, view: View) -> tuple[Mesh, _Numbers, _Numbers]:
     """Return parts of triangles, the class of each, and the triangle that it is a part of."""
     parts, is_seen = divide(tin, view)
     return parts, np.where(is_seen, 0, 2), parts.owners
-
-
-def _faces_away(tin: TIN, eye: Float64Array) -> BoolArray:
-    """Tell which triangles have the eye below their plane."""
-    a, b, c = (tin.points[tin.triangles[:, k]] for k in range(3))
-    normals = np.cross(b - a, c - a)
-    sizes = np.abs(normals) * np.abs(eye - a)
-    offsets = (normals * (eye - a)).sum(axis=1)
-    away: BoolArray = offsets < -_DOUBT * sizes.sum(axis=1)
-    return away
 
 
 def _as_features(

@@ -195,7 +195,8 @@ class _Work:
         required = np.union1d(required[is_used.ravel()[required]], kept)
         if len(required) < 3:
             return _Chosen(np.empty(0, np.int64), np.empty(0), 0, np.empty(0, np.int64))
-        self._require_count(len(required), int(is_used.sum()))
+        if self.goal.points is not None:
+            self.goal.require_count(len(required), int(is_used.sum()))
         skeleton = self._build_skeleton(block, z, valid, required)
         tolerance, most = self.goal.limits(self.frame.rounding)
         cells, needless = _kernel.simplify_cells(
@@ -215,10 +216,6 @@ class _Work:
         return _Chosen(
             block.to_raster(left, width), z.ravel()[left], needless, block.to_raster(kept, width)
         )
-
-    def _require_count(self, n_required: int, n_points: int) -> None:
-        if self.goal.points is not None:
-            self.goal.require_count(n_required, n_points)
 
     def _build_skeleton(
         self,

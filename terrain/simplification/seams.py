@@ -82,7 +82,9 @@ def _join(elevations: Elevations, parts: Frame, heights: Heights, goal: Goal) ->
     """Return the boundary of all blocks together, with the vertices on their seams."""
     start = np.concatenate(parts.rings)
     end = np.concatenate([np.roll(ring, -1) for ring in parts.rings])
-    is_seam = _find_shared(start, end)
+    pairs = np.column_stack([np.minimum(start, end), np.maximum(start, end)])
+    _, place, count = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
+    is_seam = count[place.ravel()] > 1  # another block has the edge in the other direction
     edges = np.sort(np.column_stack([start, end])[is_seam], axis=1)
     limit = goal.limits(parts.rounding)[0]
     chosen = [
@@ -100,13 +102,6 @@ def _find_corners(elevations: Elevations, rings: list[Int64Array]) -> list[Int64
     found = [ring[~are_straight(elevations.points(ring, np.zeros(len(ring))))] for ring in rings]
     cells, visits = np.unique(np.concatenate(rings), return_counts=True)
     return [*found, cells[visits > 1]]
-
-
-def _find_shared(start: Int64Array, end: Int64Array) -> BoolArray:
-    """Tell which edges another block has in the other direction."""
-    pairs = np.column_stack([np.minimum(start, end), np.maximum(start, end)])
-    _, place, count = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
-    return np.asarray(count[place.ravel()] > 1)
 
 
 def _list_chains(edges: Int64Array, required: Int64Array, width: int) -> Iterator[Int64Array]:

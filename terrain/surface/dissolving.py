@@ -78,7 +78,8 @@ def dissolve(tin: Mesh, classes: Int64Array) -> Dissolved:
     if len(wanted) == 0:
         nothing = np.zeros(1, np.int64)
         return Dissolved(nothing[:0], nothing, nothing, nothing, nothing[:0])
-    neighbors = _part_classes(tin.neighbors, classes)
+    is_same = (tin.neighbors != NO_NEIGHBOR) & (classes[tin.neighbors] == classes[:, None])
+    neighbors = np.where(is_same, tin.neighbors, np.int32(NO_NEIGHBOR))
     parts = number_components(neighbors)
     rings = _trace_rings(tin.triangles, neighbors, parts, classes)
     return _as_levels(rings, _sort_exteriors_first(rings, classes, tin.points), classes)
@@ -117,12 +118,6 @@ class _Rings(NamedTuple):
     vertices: Int64Array
     offsets: Int64Array
     parts: Int64Array
-
-
-def _part_classes(neighbors: Int32Array, classes: Int64Array) -> Int32Array:
-    """Return the neighbours of the same class, ``NO_NEIGHBOR`` for others."""
-    is_same = (neighbors != NO_NEIGHBOR) & (classes[neighbors] == classes[:, None])
-    return np.where(is_same, neighbors, np.int32(NO_NEIGHBOR))
 
 
 def number_components(neighbors: Int32Array) -> Int64Array:

@@ -138,18 +138,15 @@ def _gather(items: list[_Item], crs: CRS | None, what: str) -> Features:
     of_pieces = find_offsets([len(piece) for piece in pieces])
     has_parts = any(len(item.parts) > 1 for item in items)
     levels = {"points": (), "lines": (of_pieces,), "polygons": (of_pieces, of_parts)}[kinds[0]]
+    rows = [item.properties for item in items]
+    names = dict.fromkeys(str(name) for row in rows for name in row)
     return Features(
         kind=kinds[0],  # type: ignore[arg-type]
         coordinates=coordinates,
         offsets=(*levels, of_items) if has_parts else levels,
-        columns=_gather_columns([item.properties for item in items]),
+        columns={name: _as_column([row.get(name) for row in rows]) for name in names},
         crs=crs,
     )
-
-
-def _gather_columns(rows: list[Mapping[str, Any]]) -> dict[str, AnyArray]:
-    names = dict.fromkeys(str(name) for row in rows for name in row)
-    return {name: _as_column([row.get(name) for row in rows]) for name in names}
 
 
 def _as_column(values: list[Any]) -> AnyArray:

@@ -74,16 +74,8 @@ def as_segments(
         )
     steps = xy[at + 1] - xy[at]
     lengths = np.hypot(steps[:, 0], steps[:, 1])
-    ends = _sum_by_line(lengths, lines[at], start)
     is_first = np.append(True, np.diff(lines[at]) != 0)
+    by_line = np.split(lengths, np.flatnonzero(is_first)[1:])
+    ends = np.concatenate([np.cumsum(np.append(start, part))[1:] for part in by_line])
     begins = np.where(is_first, start, np.roll(ends, 1))
     return Segments(xy[at], xy[at + 1], begins, ends, lines[at])
-
-
-def _sum_by_line(lengths: Float64Array, lines: Int64Array, start: float) -> Float64Array:
-    """Add lengths up, from the start again for each line."""
-    firsts = np.flatnonzero(np.append(True, np.diff(lines) != 0))
-    sums = [
-        np.cumsum(np.concatenate([[start], part]))[1:] for part in np.split(lengths, firsts[1:])
-    ]
-    return np.concatenate(sums)

@@ -76,7 +76,10 @@ def annotate(overlay: Overlay, layout: Layout, title_block: TitleBlock, camera: 
     """
     overlay.clear()
     palette = title_block.palette
-    _draw_margins(overlay, layout, palette)
+    # The paper behind the words stays free, however far a user zooms into the terrain.
+    frame, top = layout.frame, layout.height - layout.frame.ymax
+    overlay.draw_rectangle((0.0, 0.0), (layout.width, frame.ymin - 8.0), palette.paper)
+    overlay.draw_rectangle((0.0, frame.ymax + 8.0), (layout.width, top), palette.paper)
     _draw_title(overlay, layout, title_block)
     _draw_north_arrow(overlay, camera, palette)
     pixels = measure_pixels_per_unit(camera, layout.height)
@@ -95,13 +98,6 @@ def scale_bar_length(unit: Unit, pixels: float) -> tuple[float, float, str]:
     if unit.symbol == "m" and length >= 1000:
         return length, length / 1000, "km"
     return length, length, unit.symbol
-
-
-def _draw_margins(overlay: Overlay, layout: Layout, palette: Palette) -> None:
-    """Keep the paper behind the words free, however far a user zooms into the terrain."""
-    frame, top = layout.frame, layout.height - layout.frame.ymax
-    overlay.draw_rectangle((0.0, 0.0), (layout.width, frame.ymin - 8.0), palette.paper)
-    overlay.draw_rectangle((0.0, frame.ymax + 8.0), (layout.width, top), palette.paper)
 
 
 def _draw_title(overlay: Overlay, layout: Layout, title_block: TitleBlock) -> None:
@@ -155,7 +151,10 @@ def _draw_scale_bar(overlay: Overlay, unit: Unit, pixels: float, palette: Palett
 
 def _draw_notes(overlay: Overlay, title_block: TitleBlock, view: View) -> None:
     left, palette = _NOTES_LEFT, title_block.palette
-    words = _describe_exaggeration(title_block.exaggeration, view)
+    # From above only the hillshade shows it.
+    what = "Hillshade with vertical" if view.is_map else "Vertical"
+    true = " (true to scale)" if title_block.exaggeration == 1 else ""
+    words = f"{what} exaggeration {title_block.exaggeration:g}\N{MULTIPLICATION SIGN}{true}"
     overlay.draw_text((left, 84.0), words, palette.ink, size=17)
     overlay.draw_text((left, 61.0), view.caption, palette.grey, size=14)
     overlay.draw_text((left, 38.0), _describe_light(title_block.sun), palette.grey, size=14)
@@ -173,13 +172,6 @@ def _describe_light(sun: Light) -> str:
     if sun.altitude > 89.5:
         return "Light from straight above"
     return f"Light from the {name_direction(sun.azimuth)}, {sun.altitude:.3g}° high"
-
-
-def _describe_exaggeration(factor: float, view: View) -> str:
-    """Say how much heights are exaggerated; from above only the hillshade shows it."""
-    what = "Hillshade with vertical" if view.is_map else "Vertical"
-    true = " (true to scale)" if factor == 1 else ""
-    return f"{what} exaggeration {factor:g}\N{MULTIPLICATION SIGN}{true}"
 
 
 def _draw_legend(overlay: Overlay, layout: Layout, title_block: TitleBlock) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from .scene import add_scene, fit_layout, open_plotter
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ...base.arrays import Float64Array, UInt8Array
+    from ...base.arrays import UInt8Array
     from .annotations import Layout
     from .corridor import Strips
     from .scene import Scene, ScenePlotter
@@ -85,26 +85,17 @@ def _draw_strips(scene: Scene, strips: Strips, factor: float) -> Iterator[UInt8A
         for surface in surfaces:
             fade_edges(surface, scene.tin, scene.ground, strips.scale)
         for k, height in enumerate(heights):
-            _look_at_strip(plotter, seen, scene, strips, k, window[1] / scale)
+            middle = (
+                float(strips.edges[k] + strips.edges[k + 1]) / 2,
+                float(strips.lows[k] + strips.highs[k]) / 2,
+            )
+            place_camera(
+                plotter.camera, seen, view=scene.view, middle=middle, height=window[1] / scale
+            )
+            plotter.renderer.ResetCameraClippingRange()
             plotter.render()  # a screenshot alone keeps the picture before
             shot = np.array(plotter.screenshot(return_img=True))
             spare = (window[1] - height) // 2
             yield shot[spare : spare + height]
     finally:
         plotter.close()
-
-
-def _look_at_strip(
-    plotter: Any,
-    seen: Float64Array,
-    scene: Scene,
-    strips: Strips,
-    k: int,
-    height: float,
-) -> None:
-    middle = (
-        float(strips.edges[k] + strips.edges[k + 1]) / 2,
-        float(strips.lows[k] + strips.highs[k]) / 2,
-    )
-    place_camera(plotter.camera, seen, view=scene.view, middle=middle, height=height)
-    plotter.renderer.ResetCameraClippingRange()

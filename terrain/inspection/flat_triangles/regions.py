@@ -43,15 +43,7 @@ class Border(NamedTuple):
 
     def take(self, part: slice) -> Border:
         """Return some of the edges."""
-        return Border(
-            self.triangles[part],
-            self.corners[part],
-            self.regions[part],
-            self.is_contour[part],
-            self.is_exit[part],
-            self.rises[part],
-            self.runs[part],
-        )
+        return Border._make(array[part] for array in self)
 
 
 class Regions(NamedTuple):
@@ -97,14 +89,10 @@ def find_regions(tin: TIN) -> Regions:
     first[region_of[flat][::-1]] = flat[::-1]
     elevations = tin.points[tin.triangles[first, 0], 2] if count else np.empty(0)
     is_cap = np.isin(kinds, CAPS)
-    rises[is_cap] = _limit_rises(rises[is_cap], elevations[is_cap], _find_levels(tin))
-    return Regions(region_of, count, kinds, elevations, rises, slopes, border)
-
-
-def _find_levels(tin: TIN) -> Float64Array:
-    """Return the elevations of contours: of constrained edges that are level."""
     z = tin.points[edges_at(tin.triangles, tin.constrained), 2]
-    return np.unique(z[z[:, 0] == z[:, 1], 0])
+    levels = np.unique(z[z[:, 0] == z[:, 1], 0])  # of contours, whose edges are level
+    rises[is_cap] = _limit_rises(rises[is_cap], elevations[is_cap], levels)
+    return Regions(region_of, count, kinds, elevations, rises, slopes, border)
 
 
 def _limit_rises(

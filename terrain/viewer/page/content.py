@@ -103,7 +103,9 @@ def describe_page(
         _describe_surface(name, tin, steps, changes.get(name)) for name, tin in surfaces.items()
     ]
     if labels is not None:
-        described[-1]["labels"] = _describe_labels(labels, steps)
+        places = pack_rows(steps.round(labels.points))
+        texts = list(labels.texts)
+        described[-1]["labels"] = {"title": "Points", "places": places, "texts": texts}
     last = list(surfaces.values())[-1]
     counts = f"{len(last.points):,} points, {counted(len(last.triangles), 'triangle')}"
     return {
@@ -243,11 +245,6 @@ def _join_pairs(pairs: Int32Array) -> tuple[Int64Array, Int64Array]:
     firsts = np.where(begins)[0]
     vertices = np.insert(pairs[:, 1], firsts, pairs[firsts, 0])
     return vertices.astype(np.int64), counts.astype(np.int64)
-
-
-def _describe_labels(labels: Labels, steps: _Steps) -> dict[str, Any]:
-    rows = steps.round(labels.points)
-    return {"title": "Points", "places": pack_rows(rows), "texts": list(labels.texts)}
 
 
 def _make_ramps() -> dict[str, list[str]]:

@@ -21,13 +21,14 @@ def make_document(content: Mapping[str, Any]) -> str:
     request.
     """
     folder = files(__package__)
+    text = json.dumps(content, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
     parts = {
         "title": escape(content["title"]),
         "subtitle": escape(content["subtitle"]),
         "notes": escape(content["notes"]),
         "colors": _write_colors(),
         "style": folder.joinpath("style.css").read_text("utf-8"),
-        "payload": _write_json(content),
+        "payload": text.replace("<", "\\u003c"),
         "viewer": folder.joinpath("viewer.js").read_text("utf-8"),
     }
     pieces = folder.joinpath("template.html").read_text("utf-8").split("{{")
@@ -46,8 +47,3 @@ def _write_colors() -> str:
         for selector, theme in themes
     ]
     return "\n".join([f":root {{ --sample: {SAMPLE_FRAME}; }}", *rules])
-
-
-def _write_json(content: Mapping[str, Any]) -> str:
-    text = json.dumps(content, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
-    return text.replace("<", "\\u003c")

@@ -37,7 +37,8 @@ def pack_counts(counts: Int64Array) -> dict[str, Any]:
 
 def pack_triangles(triangles: Int64Array) -> dict[str, Any]:
     """Pack (m, 3) triangles: their least corners ascend, and the others are told from these."""
-    turned = _turn_to_least(triangles)
+    first = triangles.argmin(axis=1)
+    turned = np.take_along_axis(triangles, (first[:, None] + np.arange(3)) % 3, axis=1)
     ordered = turned[np.lexsort((turned[:, 2], turned[:, 1], turned[:, 0]))]
     differences = ordered - ordered[:, :1]
     differences[:, 0] = np.diff(ordered[:, 0], prepend=0)
@@ -53,12 +54,6 @@ def sort_in_morton_order(xy: Int64Array) -> Int64Array:
         _spread_bits(cells[:, 0]) | (_spread_bits(cells[:, 1]) << np.uint64(1)), kind="stable"
     )
     return order
-
-
-def _turn_to_least(triangles: Int64Array) -> Int64Array:
-    """Return the triangles with their least corner first, turned the same way round."""
-    first = triangles.argmin(axis=1)
-    return np.take_along_axis(triangles, (first[:, None] + np.arange(3)) % 3, axis=1)
 
 
 def _spread_bits(values: UInt64Array) -> UInt64Array:
