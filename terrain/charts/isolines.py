@@ -11,7 +11,7 @@ from ...base.checks import require_tin
 from ..drawing import interpolate_tints, palette, parse_title, require_features
 from ..isolines.labels import contour_labels
 from .figures import picture
-from .maps import draw_scale, draw_shade, find_paths, shade_for_map, start_map
+from .maps import draw_polygons, draw_scale, draw_shade, shade_for_map, start_map
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
@@ -25,7 +25,6 @@ _LIGHTS = (-60, 255)
 """What is black and what is white: paler than a hillshade alone, so that lines are read."""
 _SCALE = 0.95
 """Inches beside the map."""
-_BAND_VEIL = 0.72
 
 
 @picture
@@ -162,12 +161,8 @@ def _draw_labels(axes: Any, labels: Features) -> None:
 
 def _draw_bands(drawn: Map, bands: Features) -> None:
     colors = optional.load("matplotlib.colors", _PURPOSE)
-    patches = optional.load("matplotlib.patches", _PURPOSE)
     ramp = interpolate_tints(max(len(bands), 2)) / 255.0
-    for path, color in zip(find_paths(bands, _PURPOSE), ramp, strict=False):
-        drawn.axes.add_patch(
-            patches.PathPatch(path, facecolor=color, edgecolor="none", alpha=_BAND_VEIL, zorder=1)
-        )
+    draw_polygons(drawn.axes, bands, ramp[: len(bands)], _PURPOSE)
     bounds = _list_bounds(bands)
     scale = optional.load("matplotlib.cm", _PURPOSE).ScalarMappable(
         colors.BoundaryNorm(bounds, len(bounds) - 1),

@@ -16,6 +16,8 @@ from ..gridding.shading import hillshade
 from .figures import INK, color_frame, start_figure, write_title
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from ...base.georeference.units import Ground
     from ...base.results import Features, Raster
     from ...tin import TIN
@@ -30,6 +32,8 @@ _LEFT, _TOP, _BOTTOM, _EDGE = 1.0, 0.58, 0.72, 0.25
 _LEAST, _MOST = 0.3, 1.5
 """How tall a map is by its width."""
 _SHADES = (1, 255)
+VEIL = 0.72
+"""Opacity of polygons on a hillshade."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -140,7 +144,15 @@ def draw_scale(drawn: Map, mapped: Any, name: str, **how: Any) -> None:
     bar.ax.tick_params(colors=INK, labelsize=8)
 
 
-def find_paths(features: Features, purpose: str) -> list[Any]:
+def draw_polygons(axes: Any, features: Features, colors: Iterable[Any], purpose: str) -> None:
+    """Fill each feature of polygons with a colour, through which the light is seen."""
+    patches = optional.load("matplotlib.patches", purpose)
+    how = {"edgecolor": "none", "alpha": VEIL, "zorder": 1}
+    for path, color in zip(_find_paths(features, purpose), colors, strict=True):
+        axes.add_patch(patches.PathPatch(path, facecolor=color, **how))
+
+
+def _find_paths(features: Features, purpose: str) -> list[Any]:
     """Return one path of matplotlib for each feature of polygons, of all its rings."""
     path = optional.load("matplotlib.path", purpose).Path
     rings, polygons, *parts = features.offsets

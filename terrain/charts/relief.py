@@ -9,14 +9,13 @@ from ...base.checks import require_tin, require_type
 from ...base.results import Raster
 from ..drawing import parse_title, require_features
 from .figures import picture
-from .maps import draw_shade, find_paths, shade_for_map, start_map
+from .maps import VEIL, draw_polygons, draw_shade, shade_for_map, start_map
 
 if TYPE_CHECKING:
     from ...base.results import Features
     from ...tin import TIN
 
 _PURPOSE = "A relief map"
-_VEIL = 0.72
 _COLUMNS = ("color", "label", "share")
 _SOURCE = "slope_classes or aspect_classes"
 _LEGEND = 1.8
@@ -92,12 +91,9 @@ def _draw_classes(axes: Any, classes: Features) -> None:
     """Draw the polygons of each class, and name them in a legend."""
     patches = optional.load("matplotlib.patches", _PURPOSE)
     columns = classes.columns
-    for path, color in zip(find_paths(classes, _PURPOSE), columns["color"], strict=True):
-        axes.add_patch(
-            patches.PathPatch(path, facecolor=color, edgecolor="none", alpha=_VEIL, zorder=1)
-        )
+    draw_polygons(axes, classes, columns["color"], _PURPOSE)
     keys = [
-        patches.Patch(facecolor=color, alpha=_VEIL, label=f"{label}, {share:.1f} %")
+        patches.Patch(facecolor=color, alpha=VEIL, label=f"{label}, {share:.1f} %")
         for color, label, share in zip(
             columns["color"], columns["label"], columns["share"], strict=True
         )

@@ -1,7 +1,7 @@
 """Drawing: what pages, plans, charts and notebooks share: lines, numbers, 3D models, HTML."""
 
 from .arguments import parse_text, parse_title, require_features
-from .linework import EDGE_KINDS, LineEdges, add_lines, add_polylines, find_line_edges
+from .linework import EDGE_KINDS, LineEdges, add_lines, add_polylines, find_line_edges, join_edges
 from .models import choose_origin
 from .north_up import draw_north_up
 from .palette import (
@@ -45,6 +45,7 @@ __all__ = [
     "format_number",
     "interpolate_colors",
     "interpolate_tints",
+    "join_edges",
     "mix_tints",
     "parse_hex",
     "parse_text",

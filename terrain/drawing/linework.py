@@ -81,6 +81,18 @@ def _find_constrained_edges(tin: TIN) -> LineEdges:
     return LineEdges(pairs, np.where(on_rim, ranks[1], ranks[0]).astype(np.int8))
 
 
+def join_edges(pairs: AnyArray) -> tuple[Int64Array, Int64Array]:
+    """Return polylines of edges, (k, 2), that follow one another: vertices, and how many of each.
+
+    An edge that begins where the one before ends goes on with it.
+    """
+    begins = np.append(True, pairs[1:, 0] != pairs[:-1, 1])[: len(pairs)]
+    starts = np.flatnonzero(begins)
+    counts = np.diff(np.append(starts, len(pairs))) + 1
+    vertices = np.insert(pairs[:, 1], starts, pairs[starts, 0])
+    return vertices.astype(np.int64), counts.astype(np.int64)
+
+
 # ----------------------------------------------------------------------- drawing
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from ...base.errors import LinesError, PointsError
 from ...tin import TIN, check, topology, triangulate
 from ...tin.report import Report
-from ..surface import turns
+from ..surface import double_areas, number_components, turns
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -128,18 +128,10 @@ def number_parts(neighbors: Int32Array, barrier: BoolArray) -> Int32Array:
 
     Both arrays are (m, 3); an edge without a neighbour divides anyway.
     """
-    part = np.arange(len(neighbors))
-    triangle, corner = np.nonzero(~barrier & (neighbors >= 0))
-    other = neighbors[triangle, corner].astype(np.int64)
-    while True:
-        smallest = part.copy()
-        np.minimum.at(smallest, triangle, part[other])
-        np.minimum.at(smallest, part[triangle], part[other])
-        smallest = smallest[smallest]
-        if (smallest == part).all():
-            break
-        part = smallest
-    numbers: Int32Array = np.unique(part, return_inverse=True)[1].astype(np.int32)
+    joined = np.where(barrier, np.int32(topology.NO_NEIGHBOR), neighbors)
+    numbers: Int32Array = np.unique(number_components(joined), return_inverse=True)[1].astype(
+        np.int32
+    )
     return numbers
 
 
@@ -164,8 +156,8 @@ def part_places(points: Float64Array, triangles: Int32Array) -> Float64Array:
     """
     is_wall = _find_walls(points)
     corners = points[triangles, :2]
-    (ux, uy), (vx, vy) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
-    ways = (corners.mean(axis=1)[:, None] - corners) * np.abs(ux * vy - uy * vx)[:, None, None]
+    weights = np.abs(double_areas(points, triangles))[:, None, None]
+    ways = (corners.mean(axis=1)[:, None] - corners) * weights
     pull = np.zeros((len(points), 2))
     np.add.at(pull, triangles, ways)
     with np.errstate(divide="ignore", invalid="ignore"):

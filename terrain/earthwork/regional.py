@@ -8,7 +8,6 @@ import numpy as np
 
 from ...base.errors import LinesError, PointsError
 from ...base.results import Features
-from ...tin import topology
 from .. import _kernel
 from ..surface import Pieces, Surface, cut_pieces
 from .meshes import as_mesh, drop_unused, unite
@@ -112,22 +111,12 @@ def _unite(regions: Sequence[Surface]) -> Surface:
     starts = np.cumsum([0, *(len(one.points) for one in regions)])[:-1].tolist()
     points = np.concatenate([one.points for one in regions])
     pairs = np.concatenate(
-        [_find_border(one) + start for one, start in zip(regions, starts, strict=True)]
+        [one.find_border() + start for one, start in zip(regions, starts, strict=True)]
     )
     holds = _hold_too(lambda xy: np.ones(len(xy), bool), regions)
     for united in unite(points, pairs, holds):
         return Surface(*united)
     raise LinesError("Borders of the regions cross where coordinates cannot tell them apart.")
-
-
-def _find_border(surface: Surface) -> Int64Array:
-    """Return the edges with one triangle, (k, 2)."""
-    start, end = topology.directed_edges(surface.triangles)
-    edges = np.stack([start.ravel(), end.ravel()], axis=1).astype(np.int64)
-    keys = topology.edge_keys(edges, len(surface.points))
-    _, first, counts = np.unique(keys, return_index=True, return_counts=True)
-    border: Int64Array = edges[first[counts == 1]]
-    return border
 
 
 def _sum(pieces: Pieces, second: Surface) -> dict[str, float]:

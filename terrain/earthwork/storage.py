@@ -13,7 +13,6 @@ from ...base.errors import OptionError, PointsError
 from ...base.georeference import require_same_crs
 from ...base.products import product
 from ...base.results import Features, Table
-from ...tin import topology
 from .. import _kernel
 from ..surface import Surface, cut_pieces, find_reference, require_finite
 from .regions import as_regions
@@ -101,7 +100,7 @@ def stage_storage(
         "area": sums[:, 0],
         "wetted_area": sums[:, 1],
         "volume": sums[:, 2] * reference.up,
-        "is_contained": wanted <= _find_spill_level(surface),
+        "is_contained": wanted <= surface.points[surface.find_border(), 2].min(),
     }
     units = dict.fromkeys(("level", "depth"), reference.elevation_unit)
     square, cube = reference.units.area, reference.units.volume
@@ -122,16 +121,6 @@ def _cut_out(surface: Surface, region: Any, crs: CRS | None) -> tuple[Surface, t
     if len(pieces.triangles) == 0:
         raise PointsError("The region lies outside the surface: it holds nothing.")
     return pieces, notes
-
-
-def _find_spill_level(surface: Surface) -> float:
-    """Return the lowest elevation on the boundary."""
-    start, end = topology.directed_edges(surface.triangles)
-    edges = np.stack([start.ravel(), end.ravel()], axis=1)
-    keys = topology.edge_keys(edges, len(surface.points))
-    _, first, counts = np.unique(keys, return_index=True, return_counts=True)
-    boundary = edges[first[counts == 1]]
-    return float(surface.points[boundary.ravel(), 2].min())
 
 
 def _as_levels(levels: Any, interval: Any, lowest: float, highest: float) -> Float64Array:

@@ -10,7 +10,14 @@ from ...base.errors import PointsError
 from ...base.sentences import coordinate
 from ...tin import topology
 from .. import _kernel
-from ..surface import Surface, fan_out, leave_out_slivers, measure_rounding, require_finite
+from ..surface import (
+    Surface,
+    double_areas,
+    fan_out,
+    leave_out_slivers,
+    measure_rounding,
+    require_finite,
+)
 from . import zones as parts
 from .meshes import as_mesh, cut_at_zero, mend, part_places, rebuild
 
@@ -141,22 +148,15 @@ def _measure_rounding(
 
     That is the rounding times the rise over run of both, summed over the area of their overlay.
     """
-    areas = np.abs(_measure_doubled(vertices, triangles))
+    areas = np.abs(double_areas(vertices, triangles))
     total = 0.0
     for k, surface in enumerate((first, second)):
-        whole = np.abs(_measure_doubled(surface.points, surface.triangles))[pairs[:, k]]
+        whole = np.abs(double_areas(surface.points, surface.triangles))[pairs[:, k]]
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             shares = np.fmin(areas / whole, 1.0)  # of a triangle thinner than its rounding, all
             total += float((shares * _measure_rises(surface)[pairs[:, k]]).sum())
     moved = float(np.spacing(np.abs(vertices[:, :2]).max())) * total
     return moved if np.isfinite(moved) else 0.0
-
-
-def _measure_doubled(points: Float64Array, triangles: Int32Array) -> Float64Array:
-    xy = points[triangles, :2]
-    (ux, uy), (vx, vy) = (xy[:, 1] - xy[:, 0]).T, (xy[:, 2] - xy[:, 0]).T
-    doubled: Float64Array = ux * vy - uy * vx
-    return doubled
 
 
 def _measure_rises(surface: Surface) -> Float64Array:

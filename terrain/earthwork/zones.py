@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from ...base.results import Features
 from ...tin import topology
 from .. import _kernel
+from ..surface import cut_at_repeats
 from .meshes import number_parts
 
 if TYPE_CHECKING:
@@ -123,56 +125,23 @@ def _close_rings(
 ) -> tuple[Int64Array, Int64Array, Int64Array]:
     """Return the closed rings of the parts, each part's exterior first."""
     cut = np.where(barrier, np.int32(topology.NO_NEIGHBOR), mesh.neighbors)
-    walks = topology.boundary_rings(mesh.triangles, cut)
-    rings = [ring for walk in walks for ring in _split_where_it_touches_itself(walk)]
-    owner = _find_owners(mesh, barrier, part, rings)
+    edges, offsets = topology.boundary_walks(mesh.triangles, cut)
+    starts = mesh.triangles[edges // 3, (edges % 3 + 1) % 3]
+    rings, owners = [], []
+    for first, last in pairwise(offsets.tolist()):
+        # A part around another one up to a vertex has an exterior and a hole that touch there.
+        found = cut_at_repeats(starts[first:last].tolist())
+        rings += found
+        owners += [int(part[edges[first] // 3])] * len(found)
+    owner = np.array(owners, np.int64)
     is_hole = np.array([_measure_doubled_area(mesh.points[ring, :2]) < 0 for ring in rings])
     order = np.lexsort((is_hole, owner))
-    closed = [np.append(rings[i], rings[i][0]).astype(np.int64) for i in order]
+    closed = [np.array([*rings[i], rings[i][0]], np.int64) for i in order]
     return (
         np.concatenate(closed),
         np.cumsum([0, *map(len, closed)]),
         np.append(0, np.cumsum(np.bincount(owner, minlength=count))),
     )
-
-
-def _split_where_it_touches_itself(walk: Int32Array) -> list[Int32Array]:
-    """Return the rings of a walk that goes through vertices more than once.
-
-    A part that surrounds another one up to a vertex has an exterior and a hole that touch there.
-    """
-    if len(np.unique(walk)) == len(walk):
-        return [walk]
-    rings: list[Int32Array] = []
-    way: list[int] = []
-    place: dict[int, int] = {}
-    for vertex in walk.tolist():
-        if vertex in place:
-            ring = way[place[vertex] :]
-            del way[place[vertex] :]
-            rings.append(np.array(ring, np.int32))
-            for passed in ring:
-                del place[passed]
-        place[vertex] = len(way)
-        way.append(vertex)
-    return [*rings, np.array(way, np.int32)]
-
-
-def _find_owners(
-    mesh: Triangulation,
-    barrier: BoolArray,
-    part: Int32Array,
-    rings: list[Int32Array],
-) -> Int32Array:
-    """Return the part on the left of each ring."""
-    triangle, corner = np.nonzero(barrier)
-    start, end = topology.ends(mesh.triangles, triangle.astype(np.int64), corner.astype(np.int64))
-    size = len(mesh.points)
-    keys = start * size + end
-    order = np.argsort(keys)
-    wanted = np.array([int(ring[0]) * size + int(ring[1]) for ring in rings], np.int64)
-    found: Int32Array = part[triangle[order[np.searchsorted(keys[order], wanted)]]]
-    return found
 
 
 def _measure_doubled_area(ring: Float64Array) -> float:

@@ -39,10 +39,6 @@ class Cells:
         grid.reshape(-1)[self.number[rows]] = elevations[rows]
         return grid
 
-    def values_at(self, grid: Float64Array, rows: Int64Array) -> Float64Array:
-        """Return the values of a grid in the cells of some points."""
-        return grid.reshape(-1)[self.number[rows]]
-
 
 def lay_cells(points: Float64Array, frame: Frame) -> Cells:
     """Lay the square cells of a frame over points that lie in it, in metres."""

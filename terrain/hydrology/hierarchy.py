@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...tin.topology import find_boundary_vertices
+from ..surface import follow_to_end
 from .vertices import NOWHERE
 
 if TYPE_CHECKING:
@@ -30,20 +31,8 @@ class Hierarchy(NamedTuple):
 
     def find_roots(self) -> Int64Array:
         """Return the outermost depression of each."""
-        roots = np.where(self.parents == NOWHERE, np.arange(len(self.parents)), self.parents)
-        while True:
-            further = roots[roots]
-            if np.array_equal(further, roots):
-                return roots
-            roots = further
-
-    def find_depths(self) -> Int64Array:
-        """Return how many depressions each is a part of."""
-        depths = np.zeros(len(self.parents), np.int64)
-        for one in range(len(depths) - 1, -1, -1):  # parents stand behind their parts
-            if self.parents[one] != NOWHERE:
-                depths[one] = depths[self.parents[one]] + 1
-        return depths
+        is_outermost = self.parents == NOWHERE
+        return follow_to_end(np.where(is_outermost, np.arange(len(self.parents)), self.parents))
 
 
 def build_hierarchy(tin: TIN, rank: Int64Array | None = None) -> Hierarchy:
@@ -105,12 +94,7 @@ def _find_basins(rank: Int64Array, edges: Int64Array) -> Int64Array:
         np.minimum.at(lowest, near, rank[far])
     order = np.empty(len(rank), np.int64)
     order[rank] = np.arange(len(rank))
-    pit = order[lowest]
-    while True:
-        further = pit[pit]
-        if np.array_equal(further, pit):
-            return pit
-        pit = further
+    return follow_to_end(order[lowest])
 
 
 class _Passes(NamedTuple):

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...base.progress import Progress
 from .. import _kernel
-from ..surface import join_components
+from ..surface import double_areas, join_components
 from .descent import BOUNDARY, MOVING, Walker, make_drops
 from .falls import find_falls
 from .strips import Strips, cut_strips, leave_strips, settle
@@ -90,7 +90,7 @@ def build_network(
     level = tin.edges[z[tin.edges[:, 0]] == z[tin.edges[:, 1]]].astype(np.int64)
     grounds = join_components(len(z), level[:, 0], level[:, 1]).astype(np.int32)
     nexts, uppers = surface.link_strips(*strips, grounds)
-    areas = _measure_areas(walker.falls)
+    areas = np.abs(double_areas(tin.points, tin.triangles)) / 2
     found = Network(walker, surface, strips, grounds, nexts, uppers, areas)
     done(0.8)
     _link_vertices(found)
@@ -122,13 +122,6 @@ def _read_falls(falls: Falls, filling: Filling | None) -> _kernel.FallingSurface
             filling.levels, filling.ponds, filling.nexts, filling.steps, filling.ranks
         )
     return _kernel.FallingSurface(*falls, water)
-
-
-def _measure_areas(falls: Falls) -> Float64Array:
-    x, y = (axis[falls.triangles.T] for axis in falls.points.T[:2])
-    twice = (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0])
-    areas: Float64Array = np.abs(twice) / 2
-    return areas
 
 
 def _link_vertices(found: Network) -> None:

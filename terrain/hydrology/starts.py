@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from ..surface import cross_exactly
 from .descent import FLAT, MOVING, Drops, Walker, make_drops
 from .falls import measure_fall, round_share
 
@@ -116,15 +117,8 @@ class _Start:
         falls, filling = self._walker.falls, self._walker.filling
         apex, *ends = falls.triangles[triangle, [edge, edge - 2, edge - 1]].tolist()
         is_water = filling is not None and len(set(filling.levels[[apex, *ends]].tolist())) == 1
-        return not is_water, self._measure_steepness(triangle)
-
-    def _measure_steepness(self, triangle: int) -> Fraction:
-        """Return the squared slope of a triangle."""
-        points = self._walker.falls.points[self._walker.falls.triangles[triangle]].tolist()
-        a, b, c = ([Fraction(value) for value in point] for point in points)
-        u, v = ([end - start for start, end in zip(a, other, strict=True)] for other in (b, c))
-        east, north, area = (u[i] * v[j] - u[j] * v[i] for i, j in ((1, 2), (2, 0), (0, 1)))
-        return (east * east + north * north) / area**2
+        east, north, area = cross_exactly(falls.points[falls.triangles[triangle]])
+        return not is_water, (east * east + north * north) / area**2
 
 
 def _turn(p: _Place, q: _Place, r: _Place) -> Fraction:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...tin.topology import NO_NEIGHBOR, find_triangles, gather, sort_half_edges
+from ..surface import cross_exactly
 from .falls import find_corners
 
 if TYPE_CHECKING:
@@ -133,7 +134,7 @@ def _measure_triangles(falls: Falls, triangles: Int64Array) -> Float64Array:
     with np.errstate(divide="ignore", invalid="ignore"):  # those are measured again below
         slopes = np.hypot(east, north) / area
     for row in np.flatnonzero(poor).tolist():
-        x, y, whole = _cross_exactly(falls, int(triangles[row]))
+        x, y, whole = cross_exactly(falls.points[falls.triangles[triangles[row]]])
         slopes[row] = math.hypot(float(x / whole), float(y / whole))
     found: Float64Array = slopes
     return found
@@ -148,14 +149,6 @@ def _cross(u: Float64Array, v: Float64Array) -> tuple[Any, BoolArray]:
         poor |= np.abs(left - right) * _CLOSE < (np.abs(left) + np.abs(right)) * _ROUNDING
     level = [one == 0.0 for one in normals[:2]]
     return normals, poor & ~(level[0] & level[1])
-
-
-def _cross_exactly(falls: Falls, triangle: int) -> tuple[Fraction, Fraction, Fraction]:
-    corners = falls.points[falls.triangles[triangle]].tolist()
-    a, b, c = ([Fraction(value) for value in corner] for corner in corners)
-    u, v = ([end - start for start, end in zip(a, other, strict=True)] for other in (b, c))
-    east, north, area = (u[i] * v[j] - u[j] * v[i] for i, j in ((1, 2), (2, 0), (0, 1)))
-    return east, north, area
 
 
 def _leave_out_water(
@@ -201,7 +194,7 @@ def _measure_exactly(
         east, north, fall = (end - start for start, end in zip(p, q, strict=True))
         square = fall * fall / (east * east + north * north)
     else:
-        east, north, area = _cross_exactly(falls, int(found.triangles[number]))
+        east, north, area = cross_exactly(falls.points[falls.triangles[found.triangles[number]]])
         square = (east * east + north * north) / area**2
     largest = max(abs(east), abs(north))
     return -square, math.atan2(east / largest, north / largest) % math.tau

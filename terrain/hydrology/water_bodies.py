@@ -11,7 +11,7 @@ from ...base.errors import OptionError
 from ...base.products import product
 from ...base.results import Features
 from ...tin.topology import NO_NEIGHBOR, find_boundary_vertices, gather
-from ..surface import find_reference, find_slivers, number_components
+from ..surface import find_reference, find_slivers, follow_to_end, number_components
 from .descent import Walker
 from .falls import find_falls
 from .filling import fill
@@ -242,14 +242,8 @@ def _skip_to(parents: Int64Array, numbers: Int64Array) -> Int64Array:
 
     The last one returned is for ``NOWHERE``.
     """
-    outward = np.append(
-        np.where(numbers[:-1] != NOWHERE, np.arange(len(parents)), parents), NOWHERE
-    )
-    while True:
-        further = np.where(numbers[outward] != NOWHERE, outward, outward[outward])
-        if np.array_equal(further, outward):
-            return outward
-        outward = further
+    own = np.where(numbers[:-1] != NOWHERE, np.arange(len(parents)), parents)
+    return follow_to_end(np.append(own, NOWHERE))
 
 
 def _gather_triangles(
@@ -327,13 +321,9 @@ def _run_over(tin: TIN, filling: Filling, ponds: Int64Array, is_listed: BoolArra
     nexts = np.full(len(is_listed), NOWHERE)  # the last one is for NOWHERE
     nexts[roots] = _find_next_ponds(Walker(find_falls(tin), filling), roots)
     further = np.where(is_listed, np.arange(len(nexts)), nexts)  # skips those that are not listed
-    further[-1] = -1
-    while True:
-        skipped = further[further]
-        if np.array_equal(skipped, further):
-            into: Int64Array = further[nexts[ponds]]
-            return into
-        further = skipped
+    further[-1] = NOWHERE
+    into: Int64Array = follow_to_end(further)[nexts[ponds]]
+    return into
 
 
 def _find_next_ponds(walker: Walker, ponds: Int64Array) -> Int64Array:

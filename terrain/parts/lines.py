@@ -67,12 +67,8 @@ class SurfacePart(NamedTuple):
 
 def find_reach(box: Bounds, options: LineOptions) -> Bounds | None:
     """Return the box of which a part is needed, within that of a tile; None if no line is there."""
-    reach = None
-    for segments in _list_near(box, options):
-        ends = np.concatenate([segments.starts, segments.ends])
-        near = Bounds.of(ends)
-        reach = near if reach is None else _join(reach, near)
-    return None if reach is None else intersect(reach, box)
+    ends = [end for segments in _list_near(box, options) for end in segments[:2]]
+    return intersect(Bounds.of(np.concatenate(ends)), box) if ends else None
 
 
 def _list_near(box: Bounds, options: LineOptions) -> Iterator[Segments]:
@@ -84,15 +80,6 @@ def _list_near(box: Bounds, options: LineOptions) -> Iterator[Segments]:
         rows = near.all(axis=1) & (starts != ends).any(axis=1)
         if rows.any():
             yield Segments._make(array[rows] for array in segments)
-
-
-def _join(one: Bounds, other: Bounds) -> Bounds:
-    return Bounds(
-        min(one.xmin, other.xmin),
-        min(one.ymin, other.ymin),
-        max(one.xmax, other.xmax),
-        max(one.ymax, other.ymax),
-    )
 
 
 def compute_part(part: LocalTriangulation, box: Bounds, options: LineOptions) -> SurfacePart:

@@ -14,10 +14,10 @@ from ...base.georeference import require_same_crs
 from ...base.georeference.axes import label_axes
 from ...base.sentences import counted
 from ...tin.topology import find_offsets
-from ..drawing import EDGE_KINDS, LineEdges, find_line_edges, round_down
+from ..drawing import EDGE_KINDS, LineEdges, find_line_edges, join_edges, round_down
 from ..isolines import contours
 from ..isolines.levels import elevation_range
-from .clipping import Paths, join_paths
+from .clipping import Paths
 from .lettering import clean_text
 
 if TYPE_CHECKING:
@@ -156,17 +156,8 @@ def find_lines(tin: TIN) -> LineEdges:
 
 
 def _chain_edges(points: Float64Array, pairs: AnyArray) -> Paths:
-    """Return edges as paths; one that begins where the one before ends goes on with it."""
-    if len(pairs) == 0:
-        return join_paths([])
-    begins = np.append(True, pairs[1:, 0] != pairs[:-1, 1])
-    starts = np.flatnonzero(begins)
-    lengths = np.diff(np.append(starts, len(pairs))) + 1
-    number = np.cumsum(begins) - 1
-    vertices = np.empty(int(lengths.sum()), np.int64)
-    vertices[starts + np.arange(len(starts))] = pairs[starts, 0]
-    vertices[np.arange(len(pairs)) + number + 1] = pairs[:, 1]
-    return Paths.whole(points[vertices, :2], find_offsets(lengths))
+    vertices, counts = join_edges(pairs)
+    return Paths.whole(points[vertices, :2], find_offsets(counts))
 
 
 # ---------------------------------------------------------------- points

@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import _kernel
+from ..surface import multiply_exactly
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array
-
-_SPLITTER = 2.0**27 + 1
-"""Dekker's: cuts a double into two halves of 26 bits."""
 
 
 def list_terms(values: Float64Array, weights: Float64Array) -> Float64Array:
@@ -23,8 +21,8 @@ def list_terms(values: Float64Array, weights: Float64Array) -> Float64Array:
     Each as doubles that add up to it, exactly: products are split into what is rounded and the
     rest, which a double holds for values that are no smaller than some 1e-140.
     """
-    first, rest = _multiply(values, weights)
-    second = [*_multiply(first, values), *_multiply(rest, values)]
+    first, rest = multiply_exactly(values, weights)
+    second = [*multiply_exactly(first, values), *multiply_exactly(rest, values)]
     rows = ([weights], [first, rest], second)
     return np.concatenate([_kernel.merge_terms(np.concatenate(row)[None, :]) for row in rows])
 
@@ -32,19 +30,6 @@ def list_terms(values: Float64Array, weights: Float64Array) -> Float64Array:
 def merge_terms(one: Float64Array, other: Float64Array) -> Float64Array:
     """Return the sums of two parts together."""
     return _kernel.merge_terms(np.concatenate([one, other], axis=1))
-
-
-def _multiply(a: Float64Array, b: Float64Array) -> tuple[Float64Array, Float64Array]:
-    """Return products, and what these are short of the true ones."""
-    product = a * b
-    (p, q), (r, s) = _split(a), _split(b)
-    return product, q * s - (((product - p * r) - q * r) - p * s)
-
-
-def _split(value: Float64Array) -> tuple[Float64Array, Float64Array]:
-    scaled = _SPLITTER * value
-    high = scaled - (scaled - value)
-    return high, value - high
 
 
 def summarise(terms: Float64Array) -> tuple[float, float, float]:

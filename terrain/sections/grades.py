@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...tin.topology import NO_NEIGHBOR
+from ..surface import multiply_exactly
 
 if TYPE_CHECKING:
     from ...base.arrays import Float64Array, Int32Array, Int64Array
@@ -14,9 +15,6 @@ if TYPE_CHECKING:
     from ..surface import Segments
     from .rows import Rows
     from .surfaces import Surfaces
-
-_SPLITTER = 2.0**27 + 1
-"""Dekker's: cuts a double into two halves of 26 bits."""
 
 
 def measure_grades(surfaces: Surfaces, segments: Segments, rows: Rows) -> Float64Array:
@@ -87,18 +85,6 @@ def _subtract_products(
     a: Float64Array, b: Float64Array, c: Float64Array, d: Float64Array
 ) -> Float64Array:
     """Return a b - c d, good to a few roundings: what each product loses is given back."""
-    left, right = a * b, c * d
-    mended = (left - right) + (_find_lost(a, b, left) - _find_lost(c, d, right))
+    (left, left_rest), (right, right_rest) = multiply_exactly(a, b), multiply_exactly(c, d)
+    mended = (left - right) + (left_rest - right_rest)
     return np.where(np.isfinite(mended), mended, left - right)
-
-
-def _find_lost(a: Float64Array, b: Float64Array, product: Float64Array) -> Float64Array:
-    """Return what a rounded product is short of the true one."""
-    (p, q), (r, s) = _split(a), _split(b)
-    return q * s - (((product - p * r) - q * r) - p * s)
-
-
-def _split(value: Float64Array) -> tuple[Float64Array, Float64Array]:
-    scaled = _SPLITTER * value
-    high = scaled - (scaled - value)
-    return high, value - high

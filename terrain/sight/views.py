@@ -11,7 +11,7 @@ from ...base.georeference import find_plane_units
 from ...base.products import product
 from ...base.progress import Progress
 from ..drawing import palette
-from ..surface import dissolve, find_reference, make_polygons
+from ..surface import dissolve, double_areas, find_reference, make_polygons
 from .eyes import as_view, measure_distances
 from .parts import divide
 from .rays import find_curvature
@@ -20,7 +20,7 @@ from .vertices import are_heights_exact, see_vertices
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...base.arrays import BoolArray, Float64Array, Int64Array
+    from ...base.arrays import BoolArray, Int64Array
     from ...base.results import Features
     from ...tin import TIN
     from ..surface import Mesh
@@ -153,7 +153,7 @@ def _as_features(
     tin: TIN, mesh: Mesh, classes: _Numbers, owners: _Numbers, notes: list[str]
 ) -> Features:
     found = dissolve(mesh, classes)
-    ground = _measure_areas(mesh)
+    ground = 0.5 * double_areas(mesh.points, mesh.triangles)
     inside = classes >= 0
     measured = np.bincount(classes[inside], ground[inside], len(_CLASSES))[found.classes]
     pairs = np.unique(np.column_stack([classes, owners])[inside], axis=0)
@@ -174,10 +174,3 @@ def _as_features(
         notes=notes,
         points=mesh.points,
     )
-
-
-def _measure_areas(mesh: Mesh) -> Float64Array:
-    a, b, c = (mesh.points[mesh.triangles[:, k], :2] for k in range(3))
-    one, other = b - a, c - a
-    measured: Float64Array = 0.5 * (one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
-    return measured

@@ -16,7 +16,7 @@ from ..surface import find_border, trace_cycles
 from .elevations import Heights
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...tin.meshing.simplification import Goal
@@ -125,14 +125,28 @@ def choose_vertices(z: Float64Array, limit: float) -> Int64Array:
     >>> choose_vertices(np.array([0.0, 0.1, 2.0, 1.0, 0.0]), 0.5)
     array([1, 2])
     """
+
+    def measure(start: int, end: int) -> Float64Array:
+        line = z[start] + (z[end] - z[start]) / (end - start) * np.arange(1, end - start)
+        return np.abs(z[start + 1 : end] - line)
+
+    return halve_at_farthest(len(z), measure, limit)
+
+
+def halve_at_farthest(
+    count: int, measure: Callable[[int, int], Float64Array], limit: float
+) -> Int64Array:
+    """Return the places between the ends of a line that keep the others within a limit of it.
+
+    ``measure`` returns how far those between two places are from the straight line between these.
+    """
     chosen: list[int] = []
-    waiting = [(0, len(z) - 1)]
+    waiting = [(0, count - 1)]
     while waiting:
         start, end = waiting.pop()
         if end - start < 2:
             continue
-        line = z[start] + (z[end] - z[start]) / (end - start) * np.arange(1, end - start)
-        error = np.abs(z[start + 1 : end] - line)
+        error = measure(start, end)
         worst = int(error.argmax())
         if error[worst] > limit:
             middle = start + 1 + worst

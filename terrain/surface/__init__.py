@@ -5,7 +5,9 @@ from .cells import Pieces, cut_pieces, fan_out, turns
 from .dissolving import (
     DividedMesh,
     Mesh,
+    cut_at_repeats,
     dissolve,
+    follow_to_end,
     join_components,
     make_polygons,
     number_components,
@@ -14,6 +16,8 @@ from .geometries import as_features
 from .light import Light, PlaneMeasure, as_light, normalise
 from .normals import (
     compute_normals,
+    cross_exactly,
+    double_areas,
     measure_areas,
     measure_aspects,
     measure_plane_areas,
@@ -44,7 +48,7 @@ from .reference import (
     make_reference,
     require_finite,
 )
-from .roundings import find_rounding, find_written_rounding
+from .roundings import find_rounding, find_written_rounding, multiply_exactly
 from .segments import Segments, as_segments
 from .slivers import (
     find_slivers,
@@ -75,8 +79,11 @@ __all__ = [
     "as_places",
     "as_segments",
     "compute_normals",
+    "cross_exactly",
+    "cut_at_repeats",
     "cut_pieces",
     "dissolve",
+    "double_areas",
     "fan_out",
     "find_border",
     "find_common_reference",
@@ -86,6 +93,7 @@ __all__ = [
     "find_surface",
     "find_thin",
     "find_written_rounding",
+    "follow_to_end",
     "has_area",
     "is_whole",
     "join_components",
@@ -101,6 +109,7 @@ __all__ = [
     "measure_ring_areas",
     "measure_rounding",
     "measure_slopes",
+    "multiply_exactly",
     "normalise",
     "number_components",
     "repair_polygons",

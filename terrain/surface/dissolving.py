@@ -137,14 +137,19 @@ def join_components(count: int, one: Int64Array, other: Int64Array) -> Int64Arra
     while len(one):
         near, far = root[one], root[other]
         np.minimum.at(root, np.maximum(near, far), np.minimum(near, far))
-        while True:
-            shorter = root[root]
-            if np.array_equal(shorter, root):
-                break
-            root = shorter
+        root = follow_to_end(root)
         apart = root[one] != root[other]
         one, other = one[apart], other[apart]
     return root
+
+
+def follow_to_end(nexts: Int64Array) -> Int64Array:
+    """Return for each number the last one of the way that ``nexts`` lead, which is its own next."""
+    while True:
+        further = nexts[nexts]
+        if np.array_equal(further, nexts):
+            return nexts
+        nexts = further
 
 
 def _trace_rings(
@@ -180,7 +185,7 @@ def _drop_repeats(walks: _Rings) -> _Rings:
     owners: list[int] = []
     for number in repeated.tolist():
         begin, end = walks.offsets[number : number + 2].tolist()
-        for piece in _cut_at_repeats(walks.vertices[begin:end].tolist()):
+        for piece in cut_at_repeats(walks.vertices[begin:end].tolist()):
             pieces += piece
             counts.append(len(piece))
             owners.append(int(walks.parts[number]))
@@ -190,7 +195,7 @@ def _drop_repeats(walks: _Rings) -> _Rings:
     return _Rings(vertices, np.append(0, np.cumsum(lengths)), parts)
 
 
-def _cut_at_repeats(walk: list[int]) -> list[list[int]]:
+def cut_at_repeats(walk: list[int]) -> list[list[int]]:
     """Cut a closed walk into rings, each of which meets every vertex once."""
     rings: list[list[int]] = []
     path: list[int] = []

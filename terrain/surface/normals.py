@@ -18,7 +18,7 @@ from .. import _kernel
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...base.arrays import Float64Array
+    from ...base.arrays import Float64Array, Int32Array
     from ...base.crs import CRS
     from ...tin import TIN, Surface
 
@@ -67,6 +67,14 @@ def measure_areas(tin: TIN) -> Float64Array:
     return measured
 
 
+def double_areas(points: Float64Array, triangles: Int32Array) -> Float64Array:
+    """Return twice the signed area of triangles in the plane, (m,), each computed in doubles."""
+    a, b, c = (points[triangles[:, k], :2] for k in range(3))
+    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
+    doubled: Float64Array = ux * vy - uy * vx
+    return doubled
+
+
 def measure_ring_area(crs: CRS | None, ring: Float64Array) -> float:
     """Measure the area inside a ring in the plane on the ground, as :func:`measure_areas` does.
 
@@ -98,7 +106,8 @@ def compute_normals(tin: Surface) -> Float64Array:
     workers = thread_count(None, len(surface.triangles))
     normals, slivers = _kernel.triangle_normals(surface.points, surface.triangles, workers)
     for row in slivers.tolist():
-        normals[row] = _compute_exact_normal(*surface.points[surface.triangles[row]])
+        # The corners of a sliver lie nearly in a line, so that the products of its sides cancel.
+        normals[row] = [float(one) for one in cross_exactly(surface.points[surface.triangles[row]])]
     for axis, factor in enumerate(_find_normal_factors(tin)):
         if np.ndim(factor) > 0 or factor != 1.0:
             normals[:, axis] *= factor
@@ -112,15 +121,12 @@ def _find_normal_factors(tin: Surface) -> tuple[Any, Any, Any]:
     return north * up, east * up, east * north
 
 
-def _compute_exact_normal(*corners: Float64Array) -> list[float]:
-    """Return the normal of a triangle, each component rounded once.
-
-    The corners of a sliver lie nearly in a line, so that the products of its sides cancel.
-    """
-    a, b, c = ([Fraction(value) for value in corner.tolist()] for corner in corners)
+def cross_exactly(corners: Float64Array) -> tuple[Fraction, Fraction, Fraction]:
+    """Return the normal of a triangle of corners (3, 3), without any rounding."""
+    a, b, c = ([Fraction(value) for value in corner] for corner in corners.tolist())
     u, v = ([end - start for start, end in zip(a, other, strict=True)] for other in (b, c))
-    turns = ((1, 2), (2, 0), (0, 1))
-    return [float(u[i] * v[j] - u[j] * v[i]) for i, j in turns]
+    east, north, area = (u[i] * v[j] - u[j] * v[i] for i, j in ((1, 2), (2, 0), (0, 1)))
+    return east, north, area
 
 
 def sum_normals(tin: TIN, per: SurfacePart) -> Float64Array:

@@ -11,9 +11,10 @@ from ...base.checks import require_tin
 from ...base.crs import scale_elevations
 from ...base.errors import CrsError, PointsError
 from ...base.georeference import agree, describe_unknown, find_plane_units
+from ...tin import topology
 
 if TYPE_CHECKING:
-    from ...base.arrays import Float64Array, Int32Array
+    from ...base.arrays import Float64Array, Int32Array, Int64Array
     from ...base.crs import CRS, Unit
     from ...base.georeference import PlaneUnits, Referenced
     from ...tin import TIN
@@ -45,6 +46,15 @@ class Surface:
     """(n, 3)."""
     triangles: Int32Array
     """(m, 3), counter-clockwise."""
+
+    def find_border(self) -> Int64Array:
+        """Return the edges with one triangle, (k, 2)."""
+        start, end = topology.directed_edges(self.triangles)
+        edges = np.stack([start.ravel(), end.ravel()], axis=1).astype(np.int64)
+        keys = topology.edge_keys(edges, len(self.points))
+        _, first, counts = np.unique(keys, return_index=True, return_counts=True)
+        border: Int64Array = edges[first[counts == 1]]
+        return border
 
 
 def find_reference(tin: TIN, purpose: str) -> Reference:

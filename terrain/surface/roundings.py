@@ -1,4 +1,4 @@
-"""How closely coordinates are known: as far as their last decimal."""
+"""Rounding: how closely coordinates are known, and what products lose by it."""
 
 from __future__ import annotations
 
@@ -17,6 +17,9 @@ _SPACINGS = 4.0
 
 _MEANINGFUL = 16.0
 """Spacings: a last decimal below is one that every number of this size has."""
+
+_SPLITTER = 2.0**27 + 1
+"""Dekker's: cuts a double into two halves of 26 bits."""
 
 
 def find_rounding(xy: Float64Array) -> float:
@@ -40,3 +43,16 @@ def find_written_rounding(xy: Float64Array) -> float:
 
 def _find_spacing(xy: Float64Array) -> float:
     return float(np.spacing(np.abs(xy).max(initial=1.0)))
+
+
+def multiply_exactly(a: Float64Array, b: Float64Array) -> tuple[Float64Array, Float64Array]:
+    """Return products, and what these are short of the true ones."""
+    product = a * b
+    (p, q), (r, s) = _split(a), _split(b)
+    return product, q * s - (((product - p * r) - q * r) - p * s)
+
+
+def _split(value: Float64Array) -> tuple[Float64Array, Float64Array]:
+    scaled = _SPLITTER * value
+    high = scaled - (scaled - value)
+    return high, value - high

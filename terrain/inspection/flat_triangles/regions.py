@@ -142,7 +142,7 @@ def _find_border(tin: TIN, region_of: Int64Array) -> Border:
     has_beyond = (across != NO_NEIGHBOR) & (beyond[triangles, corners] < 0)
     start = tin.points[tin.triangles[triangles, (corners + 1) % 3]]
     end = tin.points[tin.triangles[triangles, (corners + 2) % 3]]
-    apex = tin.points[_find_apexes(tin, triangles, across)]
+    apex = tin.points[find_apexes(tin, triangles, across)]
     rise = np.where(has_beyond, apex[:, 2] - start[:, 2], 0.0)
     along, out = (end - start)[:, :2], (apex - start)[:, :2]
     width = np.hypot(*along.T)
@@ -152,7 +152,7 @@ def _find_border(tin: TIN, region_of: Int64Array) -> Border:
     return Border(triangles, corners, region_of[triangles], is_line, is_exit, rise, run)
 
 
-def _find_apexes(tin: TIN, triangles: Int64Array, across: Int32Array) -> Int64Array:
+def find_apexes(tin: TIN, triangles: Int64Array, across: Int32Array) -> Int64Array:
     """Return the corner of each triangle beyond an edge that is not on the edge."""
     back = tin.neighbors[across] == triangles[:, None]
     apexes: Int64Array = tin.triangles[across, back.argmax(axis=1)].astype(np.int64)

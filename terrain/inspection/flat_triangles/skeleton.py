@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .regions import CAPS
+from .regions import CAPS, find_apexes
 
 if TYPE_CHECKING:
     from ....base.arrays import BoolArray, Float64Array, Int64Array
@@ -52,7 +52,9 @@ def trace_skeleton(tin: TIN, regions: Regions) -> Skeleton:
     widths = np.hypot(*(tin.points[ends[1], :2] - tin.points[ends[0], :2]).T)
     nodes_of = _gather_nodes(tin, triangles, corners, is_exit)
     exits = np.full(len(xy), np.inf)
-    exits[is_exit] = _measure_exits(tin, triangles[is_exit], corners[is_exit], xy[is_exit])
+    leaving = triangles[is_exit]
+    apexes = find_apexes(tin, leaving, tin.neighbors[leaving, corners[is_exit]])
+    exits[is_exit] = np.hypot(*(tin.points[apexes, :2] - xy[is_exit]).T)
     tips, arcs = _link(tin, xy, nodes_of)
     xy, of_node, lonely = _add_lonely(tin, regions, xy, regions.region_of[triangles])
     radii = _measure_radii(tin, regions, xy, of_node)
@@ -96,9 +98,7 @@ def _gather_nodes(
     nodes_of: dict[int, list[tuple[int, int]]] = {}
     across = tin.neighbors[triangles, corners]
     opposite = tin.triangles[triangles, corners]
-    back = tin.neighbors[across] == triangles[:, None]
-    beyond = tin.triangles[across, back.argmax(axis=1)]
-    columns = (triangles, across, opposite, beyond, is_exit)
+    columns = (triangles, across, opposite, find_apexes(tin, triangles, across), is_exit)
     for node, (t, n, v, w, leaves) in enumerate(
         zip(*(column.tolist() for column in columns), strict=True)
     ):
@@ -106,15 +106,6 @@ def _gather_nodes(
         if not leaves:
             nodes_of.setdefault(n, []).append((node, w))
     return nodes_of
-
-
-def _measure_exits(
-    tin: TIN, triangles: Int64Array, corners: Int64Array, xy: Float64Array
-) -> Float64Array:
-    across = tin.neighbors[triangles, corners]
-    back = tin.neighbors[across] == triangles[:, None]
-    apex = tin.points[tin.triangles[across, back.argmax(axis=1)], :2]
-    return np.asarray(np.hypot(*(apex - xy).T))
 
 
 def _link(

@@ -9,6 +9,7 @@ import numpy as np
 from ....base.errors import PointsError
 from ....tin import TIN
 from ....tin.meshing import simplify_convex
+from ..seams import halve_at_farthest
 from .cutting import Mesh, cut, explain_narrow, settle
 
 if TYPE_CHECKING:
@@ -137,18 +138,10 @@ def choose_on_line(along: Float64Array, z: Float64Array, limit: float) -> Int64A
     >>> choose_on_line(np.arange(5.0), z, 0.5)
     array([0, 1, 2, 4])
     """
-    chosen = {0, len(z) - 1}
-    waiting = [(0, len(z) - 1)]
-    while waiting:
-        start, end = waiting.pop()
-        if end - start < 2:
-            continue
+
+    def measure(start: int, end: int) -> Float64Array:
         inner = slice(start + 1, end)
         share = (along[inner] - along[start]) / (along[end] - along[start])
-        error = np.abs(z[start] + share * (z[end] - z[start]) - z[inner])
-        worst = int(error.argmax())
-        if error[worst] > limit:
-            middle = start + 1 + worst
-            chosen.add(middle)
-            waiting += [(start, middle), (middle, end)]
-    return np.array(sorted(chosen), np.int64)
+        return np.abs(z[start] + share * (z[end] - z[start]) - z[inner])
+
+    return np.unique([0, *halve_at_farthest(len(z), measure, limit), len(z) - 1])

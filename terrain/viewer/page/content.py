@@ -12,13 +12,21 @@ from ....base.errors import OptionError
 from ....base.georeference.axes import label_axes
 from ....base.georeference.units import find_ellipsoid
 from ....base.sentences import counted
-from ...drawing import EDGE_KINDS, choose_ramp, find_line_edges, mix_tints, palette, write_hex
+from ...drawing import (
+    EDGE_KINDS,
+    choose_ramp,
+    find_line_edges,
+    join_edges,
+    mix_tints,
+    palette,
+    write_hex,
+)
 from .packing import pack_counts, pack_rows, pack_triangles, sort_in_morton_order
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ....base.arrays import Float64Array, Int32Array, Int64Array
+    from ....base.arrays import Float64Array, Int64Array
     from ....base.georeference.units import Ground
     from ....base.policies import Tint
     from ....tin import TIN, Survey
@@ -228,23 +236,13 @@ def _describe_lines(tin: TIN, rows: Int64Array) -> list[dict[str, Any]]:
         if len(pairs) == 0:
             continue
         title, color, is_dashed, width = _PENS[kind]
-        vertices, counts = _join_pairs(pairs)
+        vertices, counts = join_edges(pairs)
         lines = {"vertices": pack_rows(rows[vertices]), "counts": pack_counts(counts)}
         layers.append(
             {"kind": kind, "title": title, "color": color, "dashed": is_dashed, "width": width}
             | {"lines": lines}
         )
     return layers
-
-
-def _join_pairs(pairs: Int32Array) -> tuple[Int64Array, Int64Array]:
-    """Return polylines of edges that follow one another: vertices, and the count of each line."""
-    begins = np.append(True, pairs[1:, 0] != pairs[:-1, 1])
-    starts = np.flatnonzero(begins)
-    counts = np.diff(np.append(starts, len(pairs))) + 1
-    firsts = np.where(begins)[0]
-    vertices = np.insert(pairs[:, 1], firsts, pairs[firsts, 0])
-    return vertices.astype(np.int64), counts.astype(np.int64)
 
 
 def _make_ramps() -> dict[str, list[str]]:
