@@ -12,8 +12,7 @@ from ...base.products import product
 from ...base.progress import Progress
 from ...base.results import Raster
 from ..surface import PlaneMeasure, as_light
-from .bands import SurfaceBand
-from .coverage import require_covered
+from .bands import SurfaceBand, require_covered
 from .grids import as_grid
 from .relief_bands import ReliefBand, choose_smooth
 

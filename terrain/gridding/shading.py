@@ -13,7 +13,7 @@ from ...base.products import product
 from ...base.results import Raster
 from ..drawing import round_down
 from ..surface import PlaneMeasure, as_light
-from .coverage import require_covered
+from .bands import require_covered
 from .grids import as_grid
 from .relief_bands import ReliefBand, choose_smooth
 

@@ -16,8 +16,7 @@ from ...base.sentences import counted
 from ...tin import TIN, Survey, triangulate
 from ...tin.validation import as_points
 from .. import _kernel
-from .cells import lay_cells
-from .frame import Frame, Units
+from .frame import Frame, Units, lay_cells
 from .parameters import Parameters
 from .returns import Candidates, are_noise
 from .seeds import find_low_noise, find_seeds
@@ -33,7 +32,7 @@ if TYPE_CHECKING:
     from ...base.crs import CRS, Unit
     from ...base.policies import GroundReturns
     from ...base.progress import Tell
-    from .cells import Cells
+    from .frame import Cells
 
 UNCLASSIFIED, GROUND, LOW_NOISE = 1, 2, 7
 """Classes of the ASPRS LAS specification 1.4."""

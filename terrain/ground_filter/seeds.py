@@ -22,7 +22,7 @@ from .morphology import find_covered, least_around, list_windows, open_grid, spl
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...base.progress import Tell
-    from .cells import Cells
+    from .frame import Cells
     from .parameters import Parameters
 
 _FRAMES = ((2, 7, False), (1, 4, True), (3, 10, True))

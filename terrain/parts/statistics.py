@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..relief.moments import list_terms, merge_terms, summarise
+from ..relief.statistics import list_terms, merge_terms, summarise
 from ..surface import compute_normals, measure_slopes
 from .surfaces import are_owned_triangles, as_surface
 

@@ -1,12 +1,19 @@
-"""Lettering: how wide texts are, and how they are made to fit."""
+"""Lettering: how wide texts are, how they are made to fit, and where they have room."""
 
 from __future__ import annotations
 
 import unicodedata
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from ...base import optional
+from .windows import turn
+
+if TYPE_CHECKING:
+    from ...base.arrays import Float64Array
+    from ...tin import Bounds
 
 FONT = "DejaVu Sans"
 """Comes with matplotlib, and is embedded in a PDF."""
@@ -17,6 +24,9 @@ _ELLIPSIS = "\N{HORIZONTAL ELLIPSIS}"
 _LONGEST = 1000
 """Letters that are looked at: no cell holds more."""
 _SMALLER = 0.94
+
+_CELL = 8.0
+"""Millimetres; a text is looked for in the cells that it covers."""
 
 
 class Lettering(NamedTuple):
@@ -137,3 +147,46 @@ def _wrap(text: str, width: float, size: float) -> list[str]:
                 lines.append("")
             lines[-1] += letter
     return lines
+
+
+def outline_text(
+    center: tuple[float, float], width: float, height: float, rotation: float = 0.0
+) -> Float64Array:
+    """Return the corners of the rectangle around a text, (4, 2)."""
+    half = np.array([(-width, -height), (width, -height), (width, height), (-width, height)]) / 2
+    corners: Float64Array = turn(half, rotation) + np.asarray(center)
+    return corners
+
+
+class Room:
+    """What is left of a frame for texts."""
+
+    def __init__(self, frame: Bounds) -> None:
+        self._frame = frame
+        self._taken: dict[tuple[int, int], list[Float64Array]] = {}
+
+    def take(self, corners: Float64Array) -> bool:
+        """Take the room of a text, unless it leaves the frame or meets another one."""
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        frame = self._frame
+        if not (frame.xmin <= low[0] and high[0] <= frame.xmax):
+            return False
+        if not (frame.ymin <= low[1] and high[1] <= frame.ymax):
+            return False
+        (left, bottom), (right, top) = ((one // _CELL).astype(int).tolist() for one in (low, high))
+        cells = [(i, j) for i in range(left, right + 1) for j in range(bottom, top + 1)]
+        if any(_overlap(corners, other) for cell in cells for other in self._taken.get(cell, ())):
+            return False
+        for cell in cells:
+            self._taken.setdefault(cell, []).append(corners)
+        return True
+
+
+def _overlap(one: Float64Array, other: Float64Array) -> bool:
+    """Tell whether two rectangles overlap: no side of either parts them."""
+    for sides in (one, other):
+        for across in (sides[1] - sides[0], sides[3] - sides[0]):
+            first, second = one @ across, other @ across
+            if first.max() <= second.min() or second.max() <= first.min():
+                return False
+    return True

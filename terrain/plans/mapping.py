@@ -16,8 +16,7 @@ from ..isolines import contour_labels
 from .canvas import Canvas, Pen
 from .clipping import Paths, clip_paths, join_paths
 from .grid import draw_grid
-from .lettering import measure_text
-from .placing import Room, outline_text
+from .lettering import Room, measure_text, outline_text
 from .windows import list_corners, turn
 
 if TYPE_CHECKING:

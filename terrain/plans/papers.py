@@ -1,4 +1,4 @@
-"""Papers: the sizes that drawings are printed on, millimetres."""
+"""Papers: the sizes that drawings are printed on, and what lies where on a sheet; millimetres."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any, get_args
 from ...base.checks import is_finite_number
 from ...base.errors import OptionError, choice
 from ...base.policies import PaperOrientation
+from ...tin import Bounds
 
 if TYPE_CHECKING:
     from typing import TypeAlias
 
     PaperLike: TypeAlias = "str | tuple[float, float]"
+
 
 MM_PER_INCH = 25.4
 
@@ -41,6 +43,20 @@ _SIZES = {
 
 _LEAST, _MOST = 190.0, 5000.0
 """Millimetres: narrower, a title block has no room; PDF pages end at 5080."""
+
+_MARGIN = 8.0
+"""Between the edge of the paper and the border: office printers leave 5 mm white."""
+
+_LABELS = 6.0
+"""Around the map, for the labels of the coordinate grid."""
+
+_BLOCK = 40.0
+
+_TITLE, _SCALES = 84.0, 44.0
+
+_MOST_ENLARGED = 1.7
+
+_A4 = 210.0 * 297.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,3 +118,47 @@ def _as_own_paper(size: Any, orientation: str | None) -> Paper:
 
 def _describe_allowed() -> str:
     return f"one of {', '.join(_SIZES)}, or width and height in millimetres"
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Rectangles of a sheet."""
+
+    paper: Paper
+    factor: float
+    """By which title block and letters in it are larger than on A4."""
+    border: Bounds
+    frame: Bounds
+    """Of the map."""
+    legend: Bounds
+    scales: Bounds
+    title: Bounds
+    """All three are cells of the title block."""
+
+
+def arrange_sheet(paper: Paper) -> Layout:
+    """Return the layout of a sheet: the title block below the map, all of its width.
+
+    Examples
+    --------
+    >>> from tinsmith.terrain.plans.papers import Paper
+    >>> frame = arrange_sheet(Paper.choices("A4", "landscape")[0]).frame
+    >>> frame.width, frame.height
+    (269.0, 142.0)
+    """
+    factor = min(_MOST_ENLARGED, max(1.0, (paper.width * paper.height / _A4) ** 0.25))
+    factor = min(factor, (paper.width - 2 * _MARGIN) / (_TITLE + _SCALES + 46.0))
+    left, right = _MARGIN, paper.width - _MARGIN
+    low, top = _MARGIN, paper.height - _MARGIN
+    block = low + _BLOCK * factor
+    title = right - _TITLE * factor
+    scales = title - _SCALES * factor
+    return Layout(
+        paper=paper,
+        factor=factor,
+        border=Bounds(left, low, right, top),
+        frame=Bounds(left + _LABELS, block + _LABELS, right - _LABELS, top - _LABELS),
+        legend=Bounds(left, low, scales, block),
+        scales=Bounds(scales, low, title, block),
+        title=Bounds(title, low, right, block),
+    )

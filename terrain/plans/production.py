@@ -27,10 +27,9 @@ from .contents import describe_count, gather_contents
 from .files import list_files, write_sheets
 from .footprint import find_footprint
 from .index_sheet import draw_index
-from .layout import arrange_sheet
 from .lettering import PURPOSE, clean_text, find_missing_letters
 from .mapping import draw_map
-from .papers import Paper
+from .papers import Paper, arrange_sheet
 from .scales import Scale, find_ground_unit, measure_scale_factor
 from .title_block import Caption, draw_title_block
 
@@ -43,9 +42,8 @@ if TYPE_CHECKING:
     from ...base.crs import Unit, UnitLike
     from ...tin import TIN
     from .contents import Contents
-    from .layout import Layout
     from .mapping import Drawn
-    from .papers import PaperLike
+    from .papers import Layout, PaperLike
     from .windows import Window
 
 _FACTOR_TOLD = 1e-3

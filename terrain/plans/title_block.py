@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from ...base.crs import Unit
     from .canvas import Canvas
-    from .layout import Layout
+    from .papers import Layout
     from .windows import Window
 
 _BORDER = Pen(INK, 0.5)

@@ -22,8 +22,7 @@ from .profiles import (
     require_few,
     require_surface,
 )
-from .rows import cut_rows
-from .runs import find_runs
+from .rows import cut_rows, find_runs
 from .surfaces import as_surfaces
 
 if TYPE_CHECKING:

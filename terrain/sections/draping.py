@@ -15,8 +15,7 @@ from ...base.results import Features
 from ...base.sentences import counted
 from ...tin.topology import find_offsets, find_owners
 from ..surface import as_features, as_segments
-from .rows import cut_rows
-from .runs import find_runs
+from .rows import cut_rows, find_runs
 from .surfaces import as_surfaces
 
 if TYPE_CHECKING:

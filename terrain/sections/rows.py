@@ -1,4 +1,4 @@
-"""Rows: the breaks of all surfaces along the same segments, each with every surface's elevation."""
+"""Rows: the breaks of all surfaces along the same segments; runs: parts of lines without a gap."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...tin.topology import NO_NEIGHBOR
+from ...tin.topology import NO_NEIGHBOR, find_offsets
 from ..surface import CROSSED
 from .rims import trace_to_rim
 
@@ -188,3 +188,25 @@ def _mark_gaps(rows: Rows, traced: Sequence[Breaks], before: Int64Array) -> Rows
         np.insert(rows.crossed, at + 1, crossed, axis=0),
         np.insert(rows.triangles, at + 1, rows.triangles[at], axis=0),
     )
+
+
+class Runs(NamedTuple):
+    """Lines without gaps."""
+
+    coordinates: Float64Array
+    """(n, 3)."""
+    offsets: Int64Array
+    """(r + 1,), run i is ``coordinates[offsets[i]:offsets[i + 1]]``."""
+    first_rows: Int64Array
+    """(r,), the row where each begins."""
+
+
+def find_runs(rows: Rows, k: int = 0) -> Runs:
+    """Return the runs of surface ``k``; where a line only touches it there is none."""
+    goes_on = ~rows.is_gap[:, k] & ~rows.is_last
+    comes_on = np.append(False, goes_on[:-1])
+    chosen = np.flatnonzero(goes_on | comes_on)
+    is_first = ~comes_on[chosen]
+    firsts = np.flatnonzero(is_first)
+    xyz = np.column_stack([rows.places.xy[chosen], rows.elevations[chosen, k]])
+    return Runs(xyz, find_offsets(np.diff(np.append(firsts, len(chosen)))), chosen[firsts])

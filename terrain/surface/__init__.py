@@ -12,7 +12,7 @@ from .dissolving import (
     make_polygons,
     number_components,
 )
-from .geometries import as_features
+from .geometries import as_features, as_places
 from .light import Light, PlaneMeasure, as_light, normalise
 from .normals import (
     compute_normals,
@@ -26,7 +26,6 @@ from .normals import (
     sum_at_vertices,
     sum_normals,
 )
-from .places import as_places
 from .polygons import (
     PolygonParts,
     as_parts,
@@ -48,16 +47,18 @@ from .reference import (
     make_reference,
     require_finite,
 )
-from .roundings import find_rounding, find_written_rounding, multiply_exactly
-from .segments import Segments, as_segments
-from .slivers import (
+from .roundings import (
+    find_rounding,
     find_slivers,
     find_thin,
+    find_written_rounding,
     keep_triangles,
     leave_out_slivers,
     measure_rounding,
+    multiply_exactly,
     take_without_slivers,
 )
+from .segments import Segments, as_segments
 from .voids import find_border, find_surface, trace_cycles, trace_rings
 
 __all__ = [

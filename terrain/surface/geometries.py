@@ -1,4 +1,4 @@
-"""Geometries: points, lines and polygons as callers give them become Features."""
+"""Geometries: points, lines and polygons as callers give them become Features, or places."""
 
 from __future__ import annotations
 
@@ -11,16 +11,19 @@ import numpy as np
 from ...base.checks import is_collection
 from ...base.crs import CRS
 from ...base.errors import LinesError, PointsError
+from ...base.georeference import require_same_crs
 from ...base.results import Features
-from ...base.sentences import shown
-from ...tin import Breakline
+from ...base.sentences import counted, shown
+from ...tin import Breakline, validation
+from ...tin.building import find_crs
 from ...tin.constraints.breaklines import as_coords
 from ...tin.topology import find_offsets
 from ...tin.validation.geometries import find_geometries
 from ...tin.validation.points import require_exact_range
 
 if TYPE_CHECKING:
-    from ...base.arrays import AnyArray
+    from ...base.arrays import AnyArray, Float64Array
+    from ...tin import TIN
     from ...tin.validation.geometries import Geometries
 
 _KINDS = {"Point": "points", "LineString": "lines", "Polygon": "polygons"}
@@ -158,3 +161,33 @@ def _as_column(values: list[Any]) -> AnyArray:
     if kinds <= {int, float, type(None)} and kinds != {type(None)}:
         return np.array([np.nan if value is None else value for value in plain], float)
     return np.array([None if value is None else str(value) for value in plain], object)
+
+
+def as_places(tin: TIN, points: Any, what: str) -> tuple[Float64Array, tuple[str, ...]]:
+    """Return places on a surface, (k, 2), and what was assumed of them.
+
+    They are one place or several, as arrays, shapes, data frames or Features.
+
+    Raises CrsError if their CRS is another one. Raises PointsError if there is none, or one lies
+    outside the surface.
+    """
+    is_named = isinstance(points, Features)
+    if is_named and points.kind != "points":
+        raise PointsError(f"Points are needed for {what}, and there are {points.kind}.")
+    notes = require_same_crs(find_crs(points), tin.crs, what, is_plain=not is_named)
+    if is_named:
+        notes += tuple(points.notes)
+        points = points.coordinates[:, :2]
+    xy = validation.as_places(points)[0] + 0.0
+    if len(xy) == 0:
+        raise PointsError(f"There is no point for {what}: at least one is needed.")
+    outside = np.flatnonzero(tin.locate(xy) < 0)
+    if len(outside):
+        first = int(outside[0])
+        raise PointsError(
+            f"{len(outside):,} of {counted(len(xy), 'point')} for {what} "
+            f"{'lies' if len(outside) == 1 else 'lie'} outside the surface (first: number {first}, "
+            f"at {tuple(xy[first].tolist())}).",
+            rows=outside[:5],
+        )
+    return xy, notes

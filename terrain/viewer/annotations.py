@@ -12,7 +12,7 @@ from ..drawing import Palette, choose_ramp, choose_ticks, format_number, round_d
 from .actors import NORTHWEST
 from .camera import View, measure_pixels_per_unit, name_direction, project_ground_axes
 from .legend import Legend
-from .titles import fit_title, shorten
+from .overlay import fit_title, shorten
 
 if TYPE_CHECKING:
     from ...base.crs import Unit

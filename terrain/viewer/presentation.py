@@ -22,8 +22,7 @@ from .actors import choose_exaggeration, measure_relief
 from .alignment import Aligned, align
 from .options import PreviewKeywords, PreviewOptions
 from .ortho import Ortho, read_ortho
-from .page.content import Start, describe_page, find_labels
-from .page.document import make_document
+from .page.content import Start, describe_page, find_labels, make_document
 from .picture import PICTURE_SUFFIXES, write_picture
 from .scene import describe_far_off
 from .window import open_window

@@ -14,9 +14,9 @@ from ....base.progress import Progress
 from ....base.sentences import coordinate, height
 from ....tin.constraints.polygons import gather_rings_of_regions
 from ...surface import find_reference
-from .outlines import find_area
 from .pads import build_patch
 from .pasting import join_surfaces
+from .seams import find_area
 from .slopes import find_slope
 
 if TYPE_CHECKING:

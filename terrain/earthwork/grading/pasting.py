@@ -19,8 +19,7 @@ from ....tin.building.attributes import join_columns
 from ....tin.constraints.clipping import in_rings
 from ....tin.topology import edge_keys, mark_corners
 from ....tin.triangulation.illegal_edges import mark_illegal_edges
-from .outlines import arrange_rings, fills_hull, find_area
-from .seams import Seam, find_sides, measure_tolerance
+from .seams import Seam, arrange_rings, fills_hull, find_area, find_sides, measure_tolerance
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
