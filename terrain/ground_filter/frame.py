@@ -23,19 +23,13 @@ _SMALLEST = 2.0**-100
 
 @dataclass(frozen=True, eq=False)
 class Units:
-    """How coordinates become metres from the least easting, northing and elevation of all points.
-
-    Attributes
-    ----------
-    low : (3,) float64 array
-        The least ones.
-    across, up : float
-        Metres of the unit of eastings and northings, and of that of elevations.
-    """
+    """How coordinates become metres from the least easting, northing and elevation of all."""
 
     low: Float64Array
+    """(3,), the least ones, of all points."""
     across: float
     up: float
+    """Both, metres of the unit of eastings and northings, and of that of elevations."""
 
     def to_metric(self, points: Float64Array) -> Float64Array:
         """Return fresh points in metres, (n, 3)."""
@@ -47,22 +41,15 @@ class Units:
 
 @dataclass(frozen=True)
 class Frame:
-    """A rectangle of cells among those of all points, in metres from the least of these.
-
-    Attributes
-    ----------
-    size : (float, float)
-        Extents of all points along easting and northing.
-    side : float
-        Of a cell.
-    first, shape : (int, int)
-        The first column (from the west) and row (from the south), and how many there are.
-    """
+    """A rectangle of cells among those of all points, in metres from the least of these."""
 
     size: tuple[float, float]
+    """Extents of all points along easting and northing."""
     side: float
+    """Of a cell."""
     first: tuple[int, int]
     shape: tuple[int, int]
+    """Both, the first column (from the west) and row (from the south), and how many there are."""
 
     @classmethod
     def of_all(cls, size: tuple[float, float], side: float, count: int) -> Frame:

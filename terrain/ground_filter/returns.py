@@ -28,20 +28,15 @@ class Candidates:
 
     A pulse that went through leaves has several returns, and only the last can be the ground.
     Numbers that make no sense tell nothing. Points that are given as noise are none.
-
-    Attributes
-    ----------
-    returns : {"last", "all"}
-    total : int
-        Points so far.
-    odd, others : int
-        Those whose numbers of returns make no sense, and those of returns that are not the last.
     """
 
     returns: GroundReturns
     total: int = 0
+    """Points so far."""
     odd: int = 0
     others: int = 0
+    """Both, those whose numbers of returns make no sense, and those of returns that are not the
+    last."""
 
     def find(self, attributes: Mapping[str, AnyArray], count: int) -> BoolArray:
         """Tell which of some points may be ground; (count,) array."""

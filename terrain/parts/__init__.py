@@ -7,11 +7,6 @@ plane. It equals the product of the whole surface to the last bit, whatever the 
 whatever order their parts are computed.
 """
 
-from .surfaces import are_owned, as_surface
-
-__all__ = ["are_owned", "as_surface"]
-
-from .refusals import require_local
-from .surfaces import are_inner, are_owned_triangles
+from .surfaces import are_inner, are_owned, are_owned_triangles, as_surface, require_local
 
 __all__ = ["are_inner", "are_owned", "are_owned_triangles", "as_surface", "require_local"]

@@ -44,44 +44,29 @@ _NEARLY = 0.99
 
 
 class BandOptions(NamedTuple):
-    """What bands are filled.
-
-    Attributes
-    ----------
-    levels : Levels
-    rounding : float
-        Distance of neighbouring doubles at the largest coordinate of the whole surface: thinner
-        triangles along its boundary are left out.
-    extent : float
-        Width and height of the whole surface together.
-    """
+    """What bands are filled."""
 
     levels: Levels
     rounding: float
+    """Distance of neighbouring doubles at the largest coordinate of the whole surface: thinner
+    triangles along its boundary are left out."""
     extent: float
+    """Width and height of the whole surface together."""
     crs: CRS | None = None
     elevation_unit: Unit | None = None
 
 
 class BandPart(NamedTuple):
-    """Segments around bands in a tile.
-
-    Attributes
-    ----------
-    segments : (n, 4) float64 array
-        From and to, the band on the left.
-    offsets : (b + 1,) int64 array
-        Those of band i are ``segments[offsets[i]:offsets[i + 1]]``.
-    areas : (1, t) float64 array
-        Doubles that add up to the area of the tile's triangles, exactly.
-    under : (k,) float64 array
-        Area of the tile's triangles below each level.
-    """
+    """Segments around bands in a tile."""
 
     segments: Float64Array
+    """(n, 4), from and to, the band on the left."""
     offsets: Int64Array
+    """(b + 1,), those of band i are ``segments[offsets[i]:offsets[i + 1]]``."""
     areas: Float64Array
+    """(1, t), doubles that add up to the area of the tile's triangles, exactly."""
     under: Float64Array
+    """(k,), area of the tile's triangles below each level."""
 
 
 def compute_part(part: LocalTriangulation, box: Bounds, options: BandOptions) -> BandPart:

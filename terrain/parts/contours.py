@@ -48,43 +48,30 @@ class ContourOptions(NamedTuple):
 
 
 class Lines(NamedTuple):
-    """Lines one after the other, with all points that they run through.
-
-    Attributes
-    ----------
-    points : (n, 2) float64 array
-        The first of a closed line is not repeated.
-    offsets : (k + 1,) int64 array
-    level : (k,) int32 array
-        Place in the levels.
-    is_closed : (k,) bool array
-    """
+    """Lines one after the other, with all points that they run through."""
 
     points: Float64Array
+    """(n, 2), the first of a closed line is not repeated."""
     offsets: Int64Array
+    """(k + 1,)."""
     level: Int32Array
+    """(k,), place in the levels."""
     is_closed: BoolArray
+    """(k,)."""
 
 
 class ContourPart(NamedTuple):
-    """The contours in a tile.
-
-    Attributes
-    ----------
-    finished : Lines
-    points, offsets, level : arrays
-        Pieces of lines that begin or end in other tiles, as those of :class:`Lines`.
-    first, next : (k, 3) int64 arrays
-        The corners of the triangle that a piece begins in, and of the one that it goes on in; -1
-        at the boundary of the surface.
-    """
+    """The contours in a tile."""
 
     finished: Lines
     points: Float64Array
     offsets: Int64Array
     level: Int32Array
+    """All three, pieces of lines that begin or end in other tiles, as those of :class:`Lines`."""
     first: Int64Array
     next: Int64Array
+    """Both (k, 3), the corners of the triangle that a piece begins in, and of the one that it goes
+    on in; -1 at the boundary of the surface."""
 
 
 def compute_part(part: LocalTriangulation, box: Bounds, options: ContourOptions) -> ContourPart:

@@ -32,19 +32,12 @@ def choose_reach(parameters: Parameters) -> float:
 
 @dataclass(frozen=True)
 class GroundWindow:
-    """A tile with its margin.
-
-    Attributes
-    ----------
-    units : Units
-        Of all points.
-    frame : Frame
-        Cells of the tile and its margin, among those of all points.
-    parameters : Parameters
-    """
+    """A tile with its margin."""
 
     units: Units
+    """Of all points."""
     frame: Frame
+    """Cells of the tile and its margin, among those of all points."""
     parameters: Parameters
 
     @classmethod

@@ -30,39 +30,27 @@ RINGS = 1
 
 
 class LineOptions(NamedTuple):
-    """Lines over a surface.
-
-    Attributes
-    ----------
-    segments : Segments
-        Of the lines.
-    rim : (k, 3) float64 array
-        The vertices on the boundary of the whole surface, of which the skeleton of its points has
-        all where no ring cuts it. Lines along it are followed as far beside it as its coordinates
-        are rounded.
-    """
+    """Lines over a surface."""
 
     segments: Segments
+    """Of the lines."""
     rim: Float64Array
+    """(k, 3), the vertices on the boundary of the whole surface, of which the skeleton of its
+    points has all where no ring cuts it. Lines along it are followed as far beside it as its
+    coordinates are rounded."""
 
 
 class SurfacePart(NamedTuple):
-    """Some triangles of a surface.
-
-    Attributes
-    ----------
-    points : (n, 3) float64 array
-    numbers : (n,) int64 array
-        Of the vertices in the whole.
-    triangles : (m, 3) int32 array
-    constrained : (m, 3) bool array
-        Whether the edge opposite each corner is a segment of a line.
-    """
+    """Some triangles of a surface."""
 
     points: Float64Array
+    """(n, 3)."""
     numbers: Int64Array
+    """(n,), of the vertices in the whole."""
     triangles: Int32Array
+    """(m, 3)."""
     constrained: BoolArray
+    """(m, 3), whether the edge opposite each corner is a segment of a line."""
 
 
 def find_reach(box: Bounds, options: LineOptions) -> Bounds | None:

@@ -1,4 +1,4 @@
-"""Parts of a surface as surfaces, and the triangles that a tile owns."""
+"""Parts of a surface as surfaces, what of them a tile owns, and what no tile can compute."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...base.errors import OptionError
 from ...tin import TIN, Report
 from ...tin.tiling import find_around, find_triangles_at
 
@@ -15,6 +16,39 @@ if TYPE_CHECKING:
     from ...base.types import Bounds
     from ...tin.tiling import LocalTriangulation
     from ..surface import Surface
+
+_WATER = (
+    "water that falls on one tile runs through others, so that each place depends on all of the "
+    "surface above it"
+)
+
+_SIGHT = "what is seen from a place may be hidden by any part of the surface between"
+
+NOT_LOCAL = {
+    "catchments": _WATER,
+    "depressions": "a depression is as deep as the lowest way out of it, wherever that leads",
+    "flow_accumulation": _WATER,
+    "flow_path": "where water runs is known only by following it, from tile to tile",
+    "ponds": "a pond is as deep as the lowest way out of it, wherever that leads",
+    "ridges_and_valleys": _WATER,
+    "line_of_sight": _SIGHT,
+    "viewshed": _SIGHT,
+    "visible_vertices": _SIGHT,
+    "max_edge": (
+        "triangles with long edges are removed one after the other from the boundary on, so that "
+        "each depends on all between it and the boundary"
+    ),
+    "smooth": (
+        "each line is rounded in what room the lines before it have left, so that each depends on "
+        "all others"
+    ),
+    "simplify": (
+        "points are dropped in the order of what they change along the whole line, or over the "
+        "whole surface"
+    ),
+    "extrapolate": "the nearest place of the boundary may lie in any tile",
+}
+"""Why products and options are not local, by name: the surface is needed as a whole."""
 
 
 def as_surface(
@@ -66,3 +100,22 @@ def are_inner(part: LocalTriangulation, box: Bounds, rings: int) -> BoolArray:
         chosen = find_around(part.triangles, chosen, len(part.points))
     is_inner[chosen] = True
     return is_inner
+
+
+def require_local(name: str) -> None:
+    """Refuse a product, or an option of one, that needs the surface as a whole.
+
+    Raises
+    ------
+    OptionError
+
+    Examples
+    --------
+    >>> require_local("slope")
+    >>> require_local("viewshed")
+    Traceback (most recent call last):
+    ...
+    tinsmith.base.errors.OptionError: ...
+    """
+    if name in NOT_LOCAL:
+        raise OptionError(name, "a surface in tiles", f"a surface in memory: {NOT_LOCAL[name]}")

@@ -27,46 +27,31 @@ if TYPE_CHECKING:
 
 
 class VolumeOptions(NamedTuple):
-    """What is measured: the arguments of :func:`tinsmith.volume`, settled.
-
-    Attributes
-    ----------
-    reference : Reference
-        Units, and the factor from elevations to the unit of eastings.
-    plane : Plane or None
-        The base; None to measure to another surface.
-    names : list of str
-        Of the regions; ``["all"]`` for none.
-    regions : Pieces or None
-        Triangles of the regions, with the number of each one's.
-    scales : (float, float)
-        Factors of the elevations of the surface and of the other one to a common unit.
-    """
+    """What is measured: the arguments of :func:`tinsmith.volume`, settled."""
 
     reference: Reference
+    """Units, and the factor from elevations to the unit of eastings."""
     plane: Plane | None = None
+    """The base; None to measure to another surface."""
     names: tuple[str, ...] = ("all",)
+    """Of the regions; ``["all"]`` for none."""
     regions: Pieces | None = None
+    """Triangles of the regions, with the number of each one's."""
     scales: tuple[float, float] = (1.0, 1.0)
+    """Factors of the elevations of the surface and of the other one to a common unit."""
 
 
 class VolumePart(NamedTuple):
-    """Exact sums of groups, each as doubles that add up to it.
-
-    Attributes
-    ----------
-    terms : (g, 8, t) float64 array
-        Of the columns of ``_kernel.SUMS`` but the last two.
-    extremes : (g, 2) float64 array
-        The last two.
-    areas, other_areas : (g, t) float64 array
-        Of the surface, and of the other one; of regions, if there are any, the part of these.
-    """
+    """Exact sums of groups, each as doubles that add up to it."""
 
     terms: Float64Array
+    """(g, 8, t), of the columns of ``_kernel.SUMS`` but the last two."""
     extremes: Float64Array
+    """(g, 2), the last two."""
     areas: Float64Array
     other_areas: Float64Array
+    """Both (g, t), of the surface, and of the other one; of regions, if there are any, the part of
+    these."""
 
 
 def find_reach(part: LocalTriangulation, box: Bounds) -> Bounds:

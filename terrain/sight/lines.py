@@ -1,12 +1,12 @@
-"""Lines of sight between places on a surface, or above it."""
+"""Lines of sight between places on a surface, or above it, and eyes that see all around."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...base.checks import as_number
+from ...base.checks import as_length, as_number
 from ...base.errors import PointsError
 from ...base.products import product
 from ...base.results import Features
@@ -148,3 +148,30 @@ def _require_apart(rays: Rays) -> None:
             f"Target {same[0]} lies where its eye is, at {place}: they must be apart.",
             rows=same[:5],
         )
+
+
+class View(NamedTuple):
+    """An eye, and how it sees."""
+
+    eye: Float64Array
+    target_height: float
+    radius: float
+    fall: float
+
+
+def as_view(
+    tin: TIN, eye: Any, heights: tuple[Any, Any], radius: Any, fall: float
+) -> tuple[View, tuple[str, ...]]:
+    """Return how an eye sees, from what a caller gives, and what is to be told about it."""
+    above = as_height("eye_height", heights[0]), as_height("target_height", heights[1])
+    reach = np.inf if radius is None else as_length("radius", radius, or_none=True)
+    xy, notes = as_places(tin, eye, "the eye")
+    if len(xy) != 1:
+        raise PointsError(f"There are {len(xy)} eyes: a viewshed has one.")
+    return View(raise_places(tin, xy, above[0])[0], above[1], reach, fall), notes
+
+
+def measure_distances(points: Float64Array, eye: Float64Array) -> Float64Array:
+    """Return the distances of points from the eye in the plane."""
+    found: Float64Array = np.hypot(points[:, 0] - eye[0], points[:, 1] - eye[1])
+    return found

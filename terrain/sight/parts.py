@@ -13,7 +13,7 @@ from ..surface import DividedMesh
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int32Array, Int64Array, UInt8Array
     from ...tin import TIN
-    from .eyes import View
+    from .lines import View
 
 _SEEN, _DIVIDED = 1, 2
 """What the kernel says of a triangle."""

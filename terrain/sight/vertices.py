@@ -12,13 +12,13 @@ from ...tin.predicates import EXACT_RANGE
 from ...tin.validation import thread_count
 from .. import _kernel
 from ..surface import find_reference
-from .eyes import as_view, measure_distances
+from .lines import as_view, measure_distances
 from .rays import Rays, find_blocks, find_curvature
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array, UInt8Array
     from ...tin import TIN
-    from .eyes import View
+    from .lines import View
 
 _HIDDEN, _SEEN, _UNKNOWN = 0, 1, 2
 """What the kernel says of a vertex."""

@@ -12,7 +12,7 @@ from ...base.products import product
 from ...base.progress import Progress
 from ..drawing import palette
 from ..surface import dissolve, double_areas, find_reference, make_polygons
-from .eyes import as_view, measure_distances
+from .lines import as_view, measure_distances
 from .parts import divide
 from .rays import find_curvature
 from .vertices import are_heights_exact, see_vertices
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ...base.results import Features
     from ...tin import TIN
     from ..surface import Mesh
-    from .eyes import View
+    from .lines import View
 
     _Numbers = Int64Array
 

@@ -1,7 +1,6 @@
 """What products share: places, lines and polygons on a surface, and its measures."""
 
-from .breaks import CROSSED, Breaks, trace_breaks
-from .cells import Pieces, cut_pieces, fan_out, turns
+from .breaks import CROSSED, Breaks, Segments, as_segments, trace_breaks
 from .dissolving import (
     DividedMesh,
     Mesh,
@@ -13,8 +12,10 @@ from .dissolving import (
     number_components,
 )
 from .geometries import as_features, as_places
-from .light import Light, PlaneMeasure, as_light, normalise
 from .normals import (
+    Light,
+    PlaneMeasure,
+    as_light,
     compute_normals,
     cross_exactly,
     double_areas,
@@ -23,6 +24,7 @@ from .normals import (
     measure_plane_areas,
     measure_ring_area,
     measure_slopes,
+    normalise,
     sum_at_vertices,
     sum_normals,
 )
@@ -39,13 +41,17 @@ from .polygons import (
     take_polygons,
 )
 from .reference import (
+    Pieces,
     Reference,
     Surface,
     agree_on_reference,
+    cut_pieces,
+    fan_out,
     find_common_reference,
     find_reference,
     make_reference,
     require_finite,
+    turns,
 )
 from .roundings import (
     find_rounding,
@@ -58,7 +64,6 @@ from .roundings import (
     multiply_exactly,
     take_without_slivers,
 )
-from .segments import Segments, as_segments
 from .voids import find_border, find_surface, trace_cycles, trace_rings
 
 __all__ = [

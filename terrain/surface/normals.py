@@ -1,13 +1,14 @@
-"""Normals of triangles and at vertices, slopes and aspects of planes, areas of triangles."""
+"""Normals of triangles and at vertices, slopes, aspects and light of planes, areas of triangles."""
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...base.checks import require_tin
+from ...base.checks import as_number, require_tin
 from ...base.errors import choice
 from ...base.georeference.axes import find_axes
 from ...base.georeference.units import find_scales
@@ -18,9 +19,13 @@ from .. import _kernel
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ...base.arrays import Float64Array, Int32Array
+    from ...base.arrays import Float64Array, Int32Array, UInt8Array
     from ...base.crs import CRS
+    from ...base.policies import RasterValue
     from ...tin import TIN, Surface
+
+DARKEST, BRIGHTEST = 1, 255
+"""As gdaldem writes them; 0 is outside."""
 
 
 def measure_slopes(upward: Float64Array, unit: SlopeUnit) -> Float64Array:
@@ -157,3 +162,66 @@ def _average_northings(tin: Surface) -> Any:
         return 0.0
     south, middle, north = np.sort(tin.points[:, 1][tin.triangles], axis=1).T
     return (south + middle + north) / 3.0
+
+
+class Light(NamedTuple):
+    """Where the light comes from, degrees."""
+
+    azimuth: float
+    """Clockwise from north."""
+    altitude: float
+    """Above the horizon."""
+
+
+def as_light(azimuth: Any, altitude: Any) -> Light:
+    """Return a light, or say which number is out of range."""
+    return Light(
+        as_number("azimuth", azimuth, unit="of degrees"),
+        as_number("altitude", altitude, least=0, most=90, unit="degrees"),
+    )
+
+
+def shade(upward: Float64Array, light: Light) -> UInt8Array:
+    """Return the light on planes: 1 (none) to 255 (from straight above), the cosine of the angle.
+
+    Parameters
+    ----------
+    upward : (k, 3) float64 array
+        Normals of any length.
+    light : Light
+
+    Examples
+    --------
+    >>> shade(np.array([[0.0, 0.0, 2.0]]), Light(315.0, 45.0))
+    array([181], dtype=uint8)
+    """
+    turn, rise = math.radians(light.azimuth), math.radians(light.altitude)
+    towards = (math.sin(turn) * math.cos(rise), math.cos(turn) * math.cos(rise), math.sin(rise))
+    return _kernel.shade_planes(upward, *towards, DARKEST, BRIGHTEST)
+
+
+def normalise(vectors: Float64Array) -> Float64Array:
+    """Return vectors of length 1, NaN for those without a direction."""
+    with np.errstate(invalid="ignore"):
+        small = vectors / np.abs(vectors).max(axis=1, keepdims=True)  # no square is 0 or infinite
+        return np.asarray(small / np.linalg.norm(small, axis=1, keepdims=True), np.float64)
+
+
+class PlaneMeasure(NamedTuple):
+    """What is measured of a plane: degrees of slope or aspect, or light from 1 to 255."""
+
+    value: RasterValue
+    light: Light
+    exaggeration: float = 1.0
+
+    def of(self, upward: Float64Array) -> Float64Array:
+        """Return the value of planes with some upward normals, (k, 3); NaN where there is none."""
+        factor = self.exaggeration
+        normals = upward if factor == 1.0 else upward * (factor, factor, 1.0)
+        if self.value == "slope":
+            return measure_slopes(normals, "degrees")
+        if self.value == "aspect":
+            return measure_aspects(normals)
+        lights = shade(normals, self.light).astype(np.float64)
+        lights[np.isnan(normals[:, 2])] = np.nan
+        return lights

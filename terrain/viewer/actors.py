@@ -11,8 +11,7 @@ from ...base import optional
 from ...tin.topology import edges_at
 from ..drawing import choose_origin, choose_ramp, palette, parse_hex
 from ..surface import Light
-from .elevations import ElevationRange, find_elevation_range
-from .legend import measure_tint
+from .legend import ElevationRange, find_elevation_range, measure_tint
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float32Array, Float64Array, Int32Array

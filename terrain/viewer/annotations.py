@@ -165,7 +165,7 @@ def _describe_light(sun: Light) -> str:
 
     Examples
     --------
-    >>> from ..surface.light import Light
+    >>> from ..surface.normals import Light
     >>> _describe_light(Light(250.0, 30.0))
     'Light from the west-southwest, 30° high'
     """

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from ...base.arrays import Float64Array
     from ...base.georeference.units import Ground
-    from .elevations import ElevationRange
+    from .legend import ElevationRange
 
 PAGE_SUFFIXES = (".html", ".htm")
 PREVIEW_SUFFIXES = (*PICTURE_SUFFIXES, *PAGE_SUFFIXES)

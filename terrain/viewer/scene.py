@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from ...tin import TIN
     from .camera import View
     from .corridor import Corridor, Strips
-    from .elevations import ElevationRange
+    from .legend import ElevationRange
     from .options import PreviewOptions
     from .ortho import Ortho
 

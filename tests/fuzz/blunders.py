@@ -9,8 +9,7 @@ from support.leave_one_out import interpolate_without, rounding_of
 from support.point_sets import points
 
 import tinsmith as ts
-from tinsmith.terrain.inspection.dropping import drop_blunders, list_wrong_rows
-from tinsmith.terrain.inspection.findings import screen
+from tinsmith.terrain.inspection.findings import drop_blunders, list_wrong_rows, screen
 from tinsmith.tin import _kernel
 
 from .campaign import Campaign, Case

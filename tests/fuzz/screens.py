@@ -8,8 +8,7 @@ import numpy as np
 from support.point_sets import points
 
 import tinsmith as ts
-from tinsmith.terrain.inspection.dropping import drop_blunders, list_wrong_rows
-from tinsmith.terrain.inspection.findings import screen
+from tinsmith.terrain.inspection.findings import drop_blunders, list_wrong_rows, screen
 from tinsmith.tin.screening import describe_findings
 
 from .campaign import Campaign, Case

@@ -21,21 +21,15 @@ if TYPE_CHECKING:
 
 
 class Mesh(NamedTuple):
-    """A part of a surface.
-
-    Attributes
-    ----------
-    points : (n, 3) float64 array
-        Vertices, each once, ordered by easting, then northing.
-    triangles : (m, 3) int32 array
-        Counter-clockwise from the first vertex, in order: the same for the same triangles.
-    error : float
-        Largest vertical distance from the whole surface.
-    """
+    """A part of a surface."""
 
     points: Float64Array
+    """(n, 3), vertices, each once, ordered by easting, then northing."""
     triangles: Int32Array
+    """(m, 3), counter-clockwise from the first vertex, in order: the same for the same
+    triangles."""
     error: float = 0.0
+    """Largest vertical distance from the whole surface."""
 
 
 def cut(points: Float64Array, triangles: Int32Array, box: Bounds) -> Mesh:

@@ -55,21 +55,15 @@ class Quadtree:
 
     Lines between squares are whole multiples of the finest side: no coordinate of a line is
     rounded.
-
-    Attributes
-    ----------
-    side : float
-        Of a square of the finest level, CRS units.
-    column, row : int
-        Of the south-westernmost square, in sides from the origin of the CRS.
-    levels : int
-        Of the finest; the root is level 0.
     """
 
     side: float
+    """Of a square of the finest level, CRS units."""
     column: int
     row: int
+    """Both, of the south-westernmost square, in sides from the origin of the CRS."""
     levels: int
+    """Of the finest; the root is level 0."""
 
     @classmethod
     def over(cls, bounds: Bounds, count: int, node_points: int) -> Quadtree:

@@ -10,8 +10,7 @@ import pytest
 import tinsmith as ts
 from tinsmith.base.results.gridded import locate_centers
 from tinsmith.base.types import Bounds, Grid
-from tinsmith.terrain.surface.light import as_light, shade
-from tinsmith.terrain.surface.normals import sum_normals
+from tinsmith.terrain.surface.normals import as_light, shade, sum_normals
 
 
 def plane(east, north, **about):

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.terrain.inspection.dropping import drop_blunders, list_wrong_rows
-from tinsmith.terrain.inspection.findings import screen
+from tinsmith.terrain.inspection.findings import drop_blunders, list_wrong_rows, screen
 from tinsmith.tin.screening.slips import FACTORS, name_factor
 
 SAMPLES = Path(__file__).parents[3] / "sample_data"

@@ -7,7 +7,7 @@ import pytest
 
 import tinsmith as ts
 from tinsmith.terrain._kernel import trace_contours
-from tinsmith.terrain.isolines.smoothing import _find_places
+from tinsmith.terrain.isolines.lines import _find_places
 
 ROUNDING = 1e-12
 
@@ -146,7 +146,7 @@ def test_the_checker_refuses_what_are_no_contours():
 
 
 def test_more_points_than_smoothing_can_number_are_refused(monkeypatch):
-    monkeypatch.setattr("tinsmith.terrain.isolines.smoothing.MOST_POINTS", 9)
+    monkeypatch.setattr("tinsmith.terrain.isolines.lines.MOST_POINTS", 9)
     tin = ts.triangulate([[0, 0, 0], [4, 0, 4], [4, 4, 4], [0, 4, 0]])
     sentence = "it must be left out where contours have more than 9 points: here 12"
     for option in ("smooth", "simplify"):

@@ -15,7 +15,7 @@ from support.sight_oracle import find_first_block, require_parts_as_lines
 from support.surfaces import triangulate_whole_numbers
 
 import tinsmith as ts
-from tinsmith.terrain.sight.eyes import as_view, measure_distances
+from tinsmith.terrain.sight.lines import as_view, measure_distances
 from tinsmith.terrain.sight.vertices import judge_vertices, look_one_by_one, see_vertices
 
 

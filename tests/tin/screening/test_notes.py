@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.terrain.inspection.dropping import drop_blunders
-from tinsmith.terrain.inspection.findings import screen
+from tinsmith.terrain.inspection.findings import drop_blunders, screen
 from tinsmith.tin.screening import describe_findings
 from tinsmith.tin.screening.gaps import describe_gaps
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import tinsmith as ts
-from tinsmith.terrain.inspection.dropping import list_wrong_rows
-from tinsmith.terrain.inspection.findings import screen
+from tinsmith.terrain.inspection.findings import list_wrong_rows, screen
 from tinsmith.tin.screening import describe_findings
 from tinsmith.tin.screening.voids import find_voids
 

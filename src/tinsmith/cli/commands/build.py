@@ -186,8 +186,7 @@ def _read(points: Sequence[Path], job: Job, *, is_contours: bool) -> Survey:
 
 def _find_blunders(tin: TIN, job: Job, *, drop: bool) -> tuple[TIN, Suspects]:
     """Look for points that look like blunders, and leave them out where that is asked for."""
-    from ...terrain.inspection.dropping import drop_blunders
-    from ...terrain.inspection.findings import blunders, screen
+    from ...terrain.inspection.findings import blunders, drop_blunders, screen
     from ..output.blunder_summaries import Suspects
 
     with job.step("Checking points") as progress:
