@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.errors import ReadError
-from ...base.sentences import counted
+from ...base.sentences import FILE, counted
 from .cells import BLANKS, is_number, is_number_like, is_padded, split_line
 from .columns import (
     Columns,
@@ -43,7 +43,6 @@ from .page_breaks import PageBreaks, find_page_breaks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-    from pathlib import Path
 
     from ...base.arrays import Int64Array
     from .headings import Heading
@@ -90,12 +89,12 @@ class Layout:
     """Columns with whole numbers that have leading zeros."""
     divided: frozenset[int]
     """Columns with a decimal mark or an exponent."""
-    is_scan: bool
-    """Whether the suffix says that rows begin with x, y, z."""
     announced: int | None
     """Points that a line above the table tells of."""
     skipped: Mapping[str, int]
     """Lines that are no rows."""
+    is_scan: bool = False
+    """Whether the suffix says that rows begin with x, y, z."""
     notes: tuple[str, ...] = ()
     """What was assumed, in sentences."""
     heading: Heading | None = None
@@ -119,7 +118,7 @@ class Layout:
 
 
 @dataclass(frozen=True, slots=True)
-class _Options:
+class LayoutOptions:
     """What the caller says about the layout; None is found by looking."""
 
     columns: str | Sequence[str] | Mapping[str, str | int] | None = None
@@ -141,15 +140,7 @@ class _Top:
     counts: Counter[str] = field(default_factory=Counter)
 
 
-def find_layout(
-    lines: TextLines,
-    path: Path,
-    *,
-    columns: str | Sequence[str] | Mapping[str, str | int] | None = None,
-    delimiter: str | None = None,
-    decimal: str | None = None,
-    comment: str | None = None,
-) -> Layout:
+def find_layout(lines: TextLines, suffix: str, options: LayoutOptions) -> Layout:
     """Find how to read a table; what the caller does not know of it is found by looking.
 
     A ReadError is raised if no table is there, or its columns cannot be told, a FormatError if an
@@ -163,32 +154,33 @@ def find_layout(
     4. Columns are found by the caller's word, else by the header; their content is judged when all
        of it has been read.
     """
-    options = _Options(columns, parse_delimiter(delimiter), parse_decimal_mark(decimal), comment)
+    options = replace(
+        options,
+        delimiter=parse_delimiter(options.delimiter),
+        decimal=parse_decimal_mark(options.decimal),
+    )
     data, skipped = _select_data_lines(lines, options)
-    if len(data) == 0:
-        raise ReadError(f"'{path}' holds no points: only blank and comment lines.", path=path)
     sample = lines.decode_lines(_sample_lines(data))
-    found = options.delimiter or find_delimiter(sample)
-    if found is None and all(text.lstrip().startswith(COMMENT_PREFIXES) for text in sample):
-        raise ReadError(f"'{path}' holds no points: only blank and comment lines.", path=path)
+    found = options.delimiter or (find_delimiter(sample) if sample else None)
+    if not sample or (
+        found is None and all(text.lstrip().startswith(COMMENT_PREFIXES) for text in sample)
+    ):
+        raise ReadError(f"{FILE} holds no points: only blank and comment lines.")
     if found is None:
         raise ReadError(
-            f"'{path}' holds no table of points: no delimiter (comma, semicolon, tab, pipe, spaces)"
-            f" gives three columns of numbers; its first line is '{sample[0][:60]}'.",
-            path=path,
+            f"{FILE} holds no table of points: no delimiter (comma, semicolon, tab, pipe, spaces) "
+            f"gives three columns of numbers; its first line is '{sample[0][:60]}'."
         )
     data, skipped = _drop_fillers(lines, data, skipped, found, options)
     rows = lines.decode_lines(_sample_lines(data))
     cells = _split_rows(rows, found)
-    try:
-        if found == "," and options.delimiter is None:
-            require_one_kind_of_comma(rows)
-        if found == BLANKS:
-            require_no_blank_groups(rows, count_stated_columns(options.columns))
-        mark = _choose_decimal_mark(lines, data, cells, found, options)
-        return _lay_out_table(lines, data, skipped, cells, (found, mark), options, path)
-    except ReadError as error:
-        raise ReadError(f"'{path}': {error}", path=path, lines=error.lines) from None
+    if found == "," and options.delimiter is None:
+        require_one_kind_of_comma(rows)
+    if found == BLANKS:
+        require_no_blank_groups(rows, count_stated_columns(options.columns))
+    mark = _choose_decimal_mark(lines, data, cells, found, options)
+    layout = _lay_out_table(lines, data, skipped, cells, (found, mark), options)
+    return replace(layout, is_scan=suffix.lower() in _SCAN_SUFFIXES)
 
 
 def _split_rows(rows: Sequence[str], delimiter: str) -> list[list[str]]:
@@ -216,7 +208,7 @@ def _choose_decimal_mark(
     data: Int64Array,
     cells: list[list[str]],
     delimiter: str,
-    options: _Options,
+    options: LayoutOptions,
 ) -> DecimalMark:
     """Return the mark that the caller names, else that of the lines looked at, else of any."""
     if options.decimal is not None:
@@ -238,8 +230,7 @@ def _lay_out_table(
     skipped: Counter[str],
     cells: list[list[str]],
     marks: tuple[str, DecimalMark],
-    options: _Options,
-    path: Path,
+    options: LayoutOptions,
 ) -> Layout:
     delimiter, (decimal, note) = marks
     count, has_text_tail = _count_columns(cells, delimiter, decimal, options)
@@ -269,7 +260,6 @@ def _lay_out_table(
         mostly_text=kinds.mostly_text,
         padded=kinds.padded,
         divided=kinds.divided,
-        is_scan=path.suffix.lower() in _SCAN_SUFFIXES,
         announced=top.announced,
         has_semicolons=delimiter != ";" and bool(lines.starts_with(";")[rows - lines.first].any()),
         headers=tuple(_take_headers(lines, data, top)),
@@ -325,7 +315,7 @@ def continue_layout(lines: TextLines, head: Layout, *, comment: str | None) -> L
     comment : str, optional
         As of :func:`find_layout`.
     """
-    options = _Options(delimiter=head.delimiter, decimal=head.decimal, comment=comment)
+    options = LayoutOptions(delimiter=head.delimiter, decimal=head.decimal, comment=comment)
     data, skipped = _select_data_lines(lines, options)
     if not head.has_semicolons:
         data, skipped = _drop_fillers(
@@ -356,7 +346,7 @@ def _select_even_rows(
 # ------------------------------------------------------------------ lines
 
 
-def _select_data_lines(lines: TextLines, options: _Options) -> tuple[Int64Array, Counter[str]]:
+def _select_data_lines(lines: TextLines, options: LayoutOptions) -> tuple[Int64Array, Counter[str]]:
     """Set blank and comment lines aside; ``;`` is judged when the delimiter is known."""
     is_blank = lines.is_blank
     is_comment = np.zeros(len(lines), np.bool_)
@@ -377,7 +367,7 @@ def _drop_fillers(
     data: Int64Array,
     skipped: Counter[str],
     delimiter: str,
-    options: _Options,
+    options: LayoutOptions,
     *,
     may_be_data: bool = True,
 ) -> tuple[Int64Array, Counter[str]]:
@@ -405,7 +395,7 @@ def _sample_lines(data: Int64Array) -> list[int]:
 
 
 def _count_columns(
-    rows: Sequence[Sequence[str]], delimiter: str, decimal: str, options: _Options
+    rows: Sequence[Sequence[str]], delimiter: str, decimal: str, options: LayoutOptions
 ) -> tuple[int, bool]:
     """Return the number of columns, and whether the last is text that may hold the delimiter."""
     body = [row for row in rows if sum(is_number(cell, decimal) for cell in row) >= 2] or rows
@@ -431,7 +421,7 @@ def _is_headed(rows: Sequence[Sequence[str]], count: int) -> bool:
     return any(names_coordinates(row) is not None for row in top)
 
 
-def _count_named_columns(rows: Sequence[Sequence[str]], options: _Options) -> int | None:
+def _count_named_columns(rows: Sequence[Sequence[str]], options: LayoutOptions) -> int | None:
     """Return the number of columns if caller or header say that the last is a description."""
     if options.columns is not None and not isinstance(options.columns, Mapping):
         given = list_meanings(options.columns)

@@ -11,7 +11,7 @@ from ...base.errors import WriteError
 from ...base.progress import Progress
 from ...base.sentences import FILE
 from ...tin import TIN, Survey
-from ..registry import PointChunk, StreamHead, gather
+from ..registry import PointChunk, StreamHead, gather, taking
 from ..registry.losses import keep_on_one_line
 from .columns import find_unit_word
 from .lines import BLOCK_BYTES, COMMENT_PREFIXES, iterate_lines
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ...base.arrays import AnyArray
-    from ...base.crs import CrsLike, UnitLike
     from ...base.progress import Tell
     from ..registry import Blocks
     from ..reprojection import Placing
@@ -32,21 +31,8 @@ _SUFFIX_DELIMITERS = {".tsv": "\t", ".xyz": " ", ".pts": " "}
 _BARE_SUFFIXES = frozenset({".xyz", ".pts"})
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    elevation_unit: UnitLike | None = None,
-    columns: str | Sequence[str] | Mapping[str, str | int] | None = None,
-    delimiter: str | None = None,
-    decimal: str | None = None,
-    comment: str | None = None,
-    encoding: str | None = None,
-    source_crs: CrsLike | None = None,
-    nodata: float | Sequence[float] | None = None,
-    skip_bad: bool = False,
-    progress: Tell | None = None,
-) -> Survey:
+@taking(Asked)
+def read(path: Path, asked: Asked) -> Survey:
     """Read survey points.
 
     Longitude and latitude (WGS 84) are reprojected to ``crs``. An ``encoding`` that is not given is
@@ -101,23 +87,11 @@ def read(
     A number is the float64 nearest to its text. One million rows take about half a second
     on one core, two seconds where quotes stand inside cells or descriptions hold blanks.
     """
-    asked = Asked(
-        crs=crs,
-        elevation_unit=elevation_unit,
-        columns=columns,
-        delimiter=delimiter,
-        decimal=decimal,
-        comment=comment,
-        encoding=encoding,
-        source_crs=source_crs,
-        nodata=nodata,
-        skip_bad=skip_bad,
-        progress=progress,
-    )
     return gather(_read_blocks(path, asked, None), path)
 
 
-def stream(path: Path, **options: Any) -> Blocks:
+@taking(Asked)
+def stream(path: Path, asked: Asked) -> Blocks:
     """Read survey points block by block; the options are those of :func:`read`.
 
     Notes
@@ -127,11 +101,11 @@ def stream(path: Path, **options: Any) -> Blocks:
     contradicts is refused with its line, once it is reached. What is odd of the rows of a block by
     themselves is told with their lines.
     """
-    return _read_blocks(path, Asked(**options), BLOCK_BYTES)
+    return _read_blocks(path, asked, BLOCK_BYTES)
 
 
 def _read_blocks(path: Path, asked: Asked, block_bytes: int | None) -> Blocks:
-    done, reader = Progress(asked.progress), TableReader(path, asked)
+    done, reader = Progress(asked.progress), TableReader(path.suffix, asked)
     placing: Placing | None = None
     notes: list[str] = []
     for lines in iterate_lines(path, encoding=asked.encoding, block_bytes=block_bytes):

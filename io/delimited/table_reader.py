@@ -39,7 +39,7 @@ from .findings import (
     require_unit_of_crs,
 )
 from .headings import find_axes_line, find_unit_line
-from .layout import continue_layout, find_layout, require_announced
+from .layout import LayoutOptions, continue_layout, find_layout, require_announced
 from .table import (
     describe_columns,
     describe_faults_of_rows,
@@ -50,8 +50,7 @@ from .table import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
+    from collections.abc import Sequence
 
     from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ...base.crs import CrsLike, UnitLike
@@ -72,15 +71,12 @@ _MOST_NOTES = 20
 """Notes of single blocks that are told."""
 
 
-class Asked(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Asked(LayoutOptions):
     """The options of :func:`read`."""
 
     crs: CrsLike | None = None
     elevation_unit: UnitLike | None = None
-    columns: str | Sequence[str] | Mapping[str, str | int] | None = None
-    delimiter: str | None = None
-    decimal: str | None = None
-    comment: str | None = None
     encoding: str | None = None
     source_crs: CrsLike | None = None
     nodata: float | Sequence[float] | None = None
@@ -165,12 +161,13 @@ class TableReader:
 
     Parameters
     ----------
-    path : Path
+    suffix : str
+        Of the file.
     asked : Asked
     """
 
-    def __init__(self, path: Path, asked: Asked) -> None:
-        self._path, self._asked = path, asked
+    def __init__(self, suffix: str, asked: Asked) -> None:
+        self._suffix, self._asked = suffix, asked
         self._nodata = parse_nodata(asked.nodata)
         self._declared, self._target = CRS.of(asked.source_crs), CRS.of(asked.crs)
         self._is_stated = asked.columns is not None
@@ -203,14 +200,8 @@ class TableReader:
 
     def _begin(self, lines: TextLines, progress: Tell | None) -> tuple[Layout, Cells]:
         """Find what the columns are, and where the points lie."""
-        asked, account = self._asked, self._account
-        layout = find_layout(
-            *(lines, self._path),
-            columns=asked.columns,
-            delimiter=asked.delimiter,
-            decimal=asked.decimal,
-            comment=asked.comment,
-        )
+        account = self._account
+        layout = find_layout(lines, self._suffix, self._asked)
         account.add_lines(layout)
         cells = read_cells(lines, layout, progress=progress)
         self._require_no_faults(cells.faults, lines, layout)
@@ -538,15 +529,12 @@ def _find_columns(
     """Return what the columns mean, by word or header, else by what is in them."""
     if layout.columns is not None:
         return layout.columns, []
-    try:
-        columns = [one.without(nodata) for one in describe_columns(cells, layout)]
-        found, note = find_columns_by_content(
-            columns,
-            area,
-            is_scan=layout.is_scan,
-            is_announced=layout.is_announced,
-            heading=layout.heading.label if layout.heading else "",
-        )
-    except ReadError as error:
-        raise ReadError(str(error)) from None
+    columns = [one.without(nodata) for one in describe_columns(cells, layout)]
+    found, note = find_columns_by_content(
+        columns,
+        area,
+        is_scan=layout.is_scan,
+        is_announced=layout.is_announced,
+        heading=layout.heading.label if layout.heading else "",
+    )
     return found, [note]

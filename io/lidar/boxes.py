@@ -2,69 +2,51 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...base import optional
-from ...base.crs import CRS, Unit
 from ...base.errors import OptionError, ReadError
+from ...base.sentences import FILE
 from ...tin import Bounds
 from ..isolated import choose_limits, start_early, stream_isolated
-from ..registry import PointChunk, SourceHeader, join_chunks, make_source_header
+from ..registry import PointChunk, SourceHeader, join_chunks, make_source_header, taking
 from ..reprojection import Placing, are_small_degrees, find_bounds
-from .reading import CHILD, Tile, describe_surplus, locate_tiles, name_attributes, scale
-from .selection import Selection, parse_selection
+from .reading import CHILD, Cloud, describe_surplus, locate_tiles, name_attributes, scale
+from .selection import Asked
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ...base.crs import CrsLike, UnitLike
 
-
-def describe(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    elevation_unit: UnitLike | None = None,
-    **options: Any,
-) -> SourceHeader:
-    """Tell what the headers of a file, or of the tiles of a folder, say of its points.
-
-    Parameters
-    ----------
-    path : Path
-    crs, elevation_unit, **options
-        As of the reader.
-
-    Raises
-    ------
-    ReadError, CrsError, OptionError, MissingExtraError
-        As the reader, as far as headers tell.
-    """
+@taking(Asked)
+def describe(path: Path, asked: Asked) -> SourceHeader:
+    """Tell what the headers of a file, or of the tiles of a folder, say of its points."""
     optional.require("laspy", "Reading lidar")
-    selection = parse_selection(**options)
-    target = CRS.of(crs)
-    tiles, head = locate_tiles(path, selection, target, Unit.of(elevation_unit))
+    cloud = locate_tiles(path, asked)
+    tiles, head = cloud.tiles, cloud.head
     notes = [note for tile in tiles for note in tile.reference.notes]
     notes += [note for tile in tiles for note in describe_surplus(tile.header)]
     return make_source_header(
         path,
         "las",
         count=head.most_points,
-        bounds=_find_bounds(tiles, target),
+        bounds=_find_bounds(cloud),
         crs=head.crs,
         elevation_unit=head.elevation_unit,
-        has_boxes=not _find_obstacle(tiles, target, selection),
+        has_boxes=not _find_obstacle(cloud),
         records=" and ".join(dict.fromkeys(one.header.records_format for one in tiles)),
         notes=tuple(dict.fromkeys(notes)),
     )
 
 
-def _find_bounds(tiles: list[Tile], target: CRS | None) -> Bounds | None:
+def _find_bounds(cloud: Cloud) -> Bounds | None:
     """Return the bounds that the headers give, in the CRS that is wanted."""
-    boxes = [(one.header.low, one.header.high, one.reference.crs) for one in tiles]
-    found = [find_bounds(low[:2], high[:2], source, target) for low, high, source in boxes]
+    found = [
+        find_bounds(one.header.low[:2], one.header.high[:2], one.reference.crs, cloud.target)
+        for one in cloud.tiles
+    ]
     known = [box for box in found if box is not None]
     if not known or len(known) < len(found):
         return None
@@ -72,8 +54,9 @@ def _find_bounds(tiles: list[Tile], target: CRS | None) -> Bounds | None:
     return Bounds(*sides[:, :2].min(axis=0).tolist(), *sides[:, 2:].max(axis=0).tolist())
 
 
-def _find_obstacle(tiles: list[Tile], target: CRS | None, selection: Selection) -> str:
+def _find_obstacle(cloud: Cloud) -> str:
     """Return why points cannot be read by box; empty if they can."""
+    tiles, _, selection, target = cloud
     if len(tiles) > 1 or not tiles[0].header.is_copc:
         return "has no octree (COPC)"
     source, header = tiles[0].reference.crs, tiles[0].header
@@ -87,23 +70,14 @@ def _find_obstacle(tiles: list[Tile], target: CRS | None, selection: Selection) 
     return ""
 
 
-def read_box(
-    path: Path,
-    bounds: Bounds,
-    *,
-    crs: CrsLike | None = None,
-    elevation_unit: UnitLike | None = None,
-    **options: Any,
-) -> PointChunk:
+@taking(Asked)
+def read_box(path: Path, bounds: Bounds, asked: Asked) -> PointChunk:
     """Read the points of an octree that lie in a box, in the order of the file.
 
     Parameters
     ----------
-    path : Path
     bounds : Bounds
         In the CRS of the file; the edges belong to it.
-    crs, elevation_unit, **options
-        As of the reader.
 
     Raises
     ------
@@ -115,18 +89,12 @@ def read_box(
     """
     optional.require("laspy", "Reading lidar")
     start_early(CHILD)
-    selection = parse_selection(**options)
-    target = CRS.of(crs)
-    tiles, _ = locate_tiles(path, selection, target, Unit.of(elevation_unit))
-    obstacle = _find_obstacle(tiles, target, selection)
-    if obstacle:
-        raise ReadError(f"'{path}' {obstacle}: its points cannot be read by box.", path=path)
+    cloud = locate_tiles(path, asked)
+    if obstacle := _find_obstacle(cloud):
+        raise ReadError(f"{FILE} {obstacle}: its points cannot be read by box.")
+    tile, selection, target = cloud.tiles[0], cloud.selection, cloud.target
     if selection.every > 1:
         raise OptionError("every", selection.every, "1, where points are read by box")
-    return _read_nodes(tiles[0], bounds, selection, target)
-
-
-def _read_nodes(tile: Tile, bounds: Bounds, selection: Selection, target: CRS | None) -> PointChunk:
     header = tile.header
     placing = Placing(tile.reference.crs or target, target, tile.unit)
     box = [bounds.xmin, bounds.ymin, bounds.xmax, bounds.ymax]
@@ -140,6 +108,4 @@ def _read_nodes(tile: Tile, bounds: Bounds, selection: Selection, target: CRS | 
         for part in parts:
             placed = placing.add(scale(part.arrays["xyz"], header))
             chunks.append(PointChunk(placed.points, part.arrays["rows"], name_attributes(part)))
-    return (
-        join_chunks(chunks) if chunks else PointChunk(np.empty((0, 3)), np.empty(0, np.int64), {})
-    )
+    return join_chunks(chunks)

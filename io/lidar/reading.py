@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -20,27 +20,19 @@ from ..registry import (
     StreamEnd,
     StreamHead,
     gathering,
+    taking,
 )
 from ..reprojection import Placing, find_conversion_factor, place, settle_unit
 from .crs import Reference, find_reference
 from .header import Header, parse_header
-from .selection import (
-    N_CLASSES,
-    Selection,
-    Tally,
-    count_points,
-    parse_selection,
-)
+from .selection import N_CLASSES, Asked, Selection, Tally, count_points
 from .signatures import SUFFIXES, is_virtual_cloud, list_named_files, list_tiles
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Sequence
+    from collections.abc import Generator
     from pathlib import Path
 
     from ...base.arrays import AnyArray, Float64Array, Int64Array
-    from ...base.crs import CrsLike, UnitLike
-    from ...base.progress import Tell
-    from ...tin import Bounds
     from ..isolated import Answer
     from ..registry import Blocks
 
@@ -49,20 +41,8 @@ _SOME = 4_096
 """Points that are compared with the bounds of the header, spread over all."""
 
 
-def stream(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    elevation_unit: UnitLike | None = None,
-    classes: int | str | Sequence[int] | None = None,
-    returns: int | str | Sequence[int | str] | None = None,
-    window: Bounds | Sequence[float] | None = None,
-    resolution: float | None = None,
-    every: int = 1,
-    withheld: bool = False,
-    attributes: str | Sequence[str] | None = None,
-    progress: Tell | None = None,
-) -> Blocks:
+@taking(Asked)
+def stream(path: Path, asked: Asked) -> Blocks:
     """Read a lidar file, or a folder of tiles as one survey.
 
     Of a folder all files ``.las`` and ``.laz`` in it are read, in the order of their names; a
@@ -116,12 +96,10 @@ def stream(
     """
     optional.require("laspy", "Reading lidar")
     start_early(CHILD)
-    selection = parse_selection(classes, returns, window, resolution, every, withheld, attributes)
-    target = CRS.of(crs)
-    tiles, head = locate_tiles(path, selection, target, Unit.of(elevation_unit))
+    tiles, head, selection, target = locate_tiles(path, asked)
     yield head
     tally = Tally(np.zeros(N_CLASSES, np.int64))
-    seen = _Seen(tally, head.most_points or 0, Progress(progress))
+    seen = _Seen(tally, head.most_points or 0, Progress(asked.progress))
     notes: list[str] = []
     for tile in tiles:
         notes += yield from _stream_tile(tile, selection, target, head, seen)
@@ -134,9 +112,16 @@ def stream(
 read = gathering(stream)
 
 
-def locate_tiles(
-    path: Path, selection: Selection, target: CRS | None, declared: Unit | None
-) -> tuple[list[Tile], StreamHead]:
+class Cloud(NamedTuple):
+    """The files of points, which of these are taken, and in which CRS they are wanted."""
+
+    tiles: list[Tile]
+    head: StreamHead
+    selection: Selection
+    target: CRS | None
+
+
+def locate_tiles(path: Path, asked: Asked) -> Cloud:
     """Read the headers of a file, or of those in a folder: where the points are, and how many.
 
     Raises
@@ -144,13 +129,16 @@ def locate_tiles(
     ReadError, CrsError, OptionError
         As :func:`stream`.
     """
+    selection, target = asked.select(), CRS.of(asked.crs)
+    declared = Unit.of(asked.elevation_unit)
     headers = [parse_header(one) for one in _list_files(path)]
     _require_levels(headers, selection)
     tiles = [_locate(header, target, declared) for header in headers]
     _require_one_crs(tiles, target, path)
     units = _require_comparable_units(tiles, target, path)
     total = sum(header.count for header in headers)
-    return tiles, StreamHead(target or tiles[0].reference.crs, units[0], total)
+    head = StreamHead(target or tiles[0].reference.crs, units[0], total)
+    return Cloud(tiles, head, selection, target)
 
 
 def _list_files(path: Path) -> list[Path]:

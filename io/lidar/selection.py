@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ...base.arrays import Int64Array
+    from ...base.crs import CrsLike, UnitLike
+    from ...base.progress import Tell
 
 CHEAP_ATTRIBUTES = ("classification", "intensity", "return_number", "number_of_returns")
 """Attributes that are kept without asking: five bytes a point."""
@@ -48,6 +50,42 @@ _CLASS_NAMES = {
 }
 _UNCLASSIFIED = frozenset({0, 1, 12})
 _GROUND = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """The options of the reader."""
+
+    crs: CrsLike | None = None
+    elevation_unit: UnitLike | None = None
+    classes: int | str | Sequence[int] | None = None
+    returns: int | str | Sequence[int | str] | None = None
+    window: Bounds | Sequence[float] | None = None
+    resolution: float | None = None
+    every: int = 1
+    withheld: bool = False
+    attributes: str | Sequence[str] | None = None
+    progress: Tell | None = None
+
+    def select(self) -> Selection:
+        """Return which points are taken.
+
+        Raises
+        ------
+        OptionError
+            If a value is none that its option can have.
+        """
+        require_count("every", self.every)
+        fine = self.resolution
+        return Selection(
+            None if self.classes is None else _parse_classes(self.classes),
+            None if self.returns is None else _parse_returns(self.returns),
+            None if self.window is None else _parse_window(self.window),
+            None if fine is None else as_length("resolution", fine, or_none=True),
+            int(self.every),
+            bool(self.withheld),
+            _parse_attributes(self.attributes),
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,34 +155,6 @@ class Tally:
             "points of other returns": self.of_other_returns,
         }
         return {what: count for what, count in found.items() if count}
-
-
-def parse_selection(
-    classes: int | str | Sequence[int] | None = None,
-    returns: int | str | Sequence[int | str] | None = None,
-    window: Bounds | Sequence[float] | None = None,
-    resolution: float | None = None,
-    every: int = 1,
-    withheld: bool = False,
-    attributes: str | Sequence[str] | None = None,
-) -> Selection:
-    """Check what the caller asks for.
-
-    Raises
-    ------
-    OptionError
-        If a value is none that its option can have.
-    """
-    require_count("every", every)
-    return Selection(
-        None if classes is None else _parse_classes(classes),
-        None if returns is None else _parse_returns(returns),
-        None if window is None else _parse_window(window),
-        None if resolution is None else as_length("resolution", resolution, or_none=True),
-        int(every),
-        bool(withheld),
-        _parse_attributes(attributes),
-    )
 
 
 def _split(given: object) -> list[object]:

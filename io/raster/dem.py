@@ -23,8 +23,8 @@ from ...tin.screening.elevation_summary import ElevationSummary
 from ...tin.screening.nodata import parse_nodata
 from ..door import names_its_file
 from ..isolated.limits import measure_free_memory
-from ..registry import PointChunk, StreamEnd, StreamHead, gather
-from ..reprojection import Placing, place, settle_unit
+from ..registry import PointChunk, StreamEnd, StreamHead, gather, taking
+from ..reprojection import Placing, place, settle_unit, stays
 from .header import Affine, Header, read_header, stream_strips
 from .meaning import Meaning, find_meaning, settle_axes
 
@@ -63,15 +63,18 @@ _CELLS_ARE = "; a part in cells (column, row, width, height) is the option `cell
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """What of a raster is taken, in the words of :func:`read`."""
+    """What of a raster is taken and where it is wanted: the options of :func:`read`."""
 
-    band: int | None
-    window: Sequence[float] | Bounds | None
-    cells: Sequence[int] | None
-    stride: int | None
-    nodata: float | Sequence[float] | None
-    fill: bool
+    crs: CrsLike | None = None
+    elevation_unit: UnitLike | None = None
+    band: int | None = None
+    window: Sequence[float] | Bounds | None = None
+    cells: Sequence[int] | None = None
+    stride: int | None = None
     most_cells: int | None = None
+    nodata: float | Sequence[float] | None = None
+    fill: bool = False
+    progress: Tell | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,20 +104,8 @@ class Cells:
         return np.arange(first, stop, self.stride)
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    elevation_unit: UnitLike | None = None,
-    band: int | None = None,
-    window: Sequence[float] | Bounds | None = None,
-    cells: Sequence[int] | None = None,
-    stride: int | None = None,
-    most_cells: int | None = None,
-    nodata: float | Sequence[float] | None = None,
-    fill: bool = False,
-    progress: Tell | None = None,
-) -> Survey:
+@taking(Choice)
+def read(path: Path, choice: Choice) -> Survey:
     """Read a raster as points, one at the centre of every cell that has an elevation.
 
     The points are transformed to ``crs``, nothing is resampled. ``elevation_unit`` may also be that
@@ -165,47 +156,22 @@ def read(
     for each valid cell at most, and a strip.
     """
     header = read_header(path)
-    choice = Choice(band, window, cells, stride, nodata, fill, most_cells)
-    return make_survey(
-        header,
-        partial(stream_strips, header),
-        choice,
-        crs=crs,
-        elevation_unit=elevation_unit,
-        progress=progress,
-    )
+    return make_survey(header, partial(stream_strips, header), choice)
 
 
-def make_survey(
-    dataset: Header,
-    open_strips: OpenStrips,
-    choice: Choice,
-    *,
-    crs: CrsLike | None,
-    elevation_unit: UnitLike | None,
-    progress: Tell | None = None,
-) -> Survey:
+def make_survey(dataset: Header, open_strips: OpenStrips, choice: Choice) -> Survey:
     """Make a survey of the cells of a raster, as :func:`read` does.
 
     ``open_strips`` takes what to read, and gives the strips that ``gdal_child.read_strips`` yields.
     """
     valid: list[BoolArray] = []
-    blocks = _read_blocks(
-        dataset, open_strips, choice, _Placed(crs, elevation_unit, progress), valid
-    )
-    survey = gather(blocks, dataset.path)
+    survey = gather(_read_blocks(dataset, open_strips, choice, valid), dataset.path)
     whole = np.concatenate(valid)
     return survey if choice.fill or whole.all() else _add_void_rings(survey, whole)
 
 
-def stream(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    elevation_unit: UnitLike | None = None,
-    progress: Tell | None = None,
-    **options: Any,
-) -> Blocks:
+@taking(Choice)
+def stream(path: Path, choice: Choice) -> Blocks:
     """Read a raster as points strip by strip; the options are those of :func:`read`.
 
     Notes
@@ -214,24 +180,7 @@ def stream(
     points alone do not.
     """
     header = read_header(path)
-    choice = make_choice(options)
-    placed = _Placed(crs, elevation_unit, progress)
-    return _read_blocks(header, partial(stream_strips, header), choice, placed, None)
-
-
-def make_choice(options: Mapping[str, Any]) -> Choice:
-    """Return what of a raster is taken, from options of :func:`read` that are given."""
-    names = ("band", "window", "cells", "stride", "nodata")
-    usual = {**dict.fromkeys(names), "fill": False}
-    return Choice(**{**usual, **options})
-
-
-class _Placed(NamedTuple):
-    """Where the points are wanted, and who is told how far reading is."""
-
-    crs: CrsLike | None
-    elevation_unit: UnitLike | None
-    progress: Tell | None = None
+    return _read_blocks(header, partial(stream_strips, header), choice, None)
 
 
 class Plan(NamedTuple):
@@ -242,41 +191,44 @@ class Plan(NamedTuple):
     cells: Cells
     source: CRS | None
     unit: Unit | None
+    target: CRS | None
     marks: Float64Array
     said: list[str]
     """What is to be told of it."""
 
+    @property
+    def stays(self) -> bool:
+        """Whether the points are not reprojected."""
+        return stays(self.source, self.target)
 
-def plan_cells(dataset: Header, choice: Choice, target: CRS | None, declared: Unit | None) -> Plan:
+
+def plan_cells(dataset: Header, choice: Choice) -> Plan:
     """Choose the cells to read, as :func:`read` tells; refuse what the header shows."""
+    target = CRS.of(choice.crs)
     number, dataset, said = choose_elevations(dataset, choice.band)
     dataset, source, noted = settle_axes(dataset, target)
+    declared = Unit.of(choice.elevation_unit)
     unit, noted_unit = find_elevation_unit(dataset, number, source, declared)
     cells = _choose_cells(dataset, choice)
     said = [*said, *noted, *noted_unit, *_describe_window(dataset, choice)]
     marks = parse_nodata(choice.nodata)
-    return Plan(dataset, number, cells, source, unit, marks, said)
+    return Plan(dataset, number, cells, source, unit, target, marks, said)
 
 
 def _read_blocks(
-    dataset: Header,
-    open_strips: OpenStrips,
-    choice: Choice,
-    wanted: _Placed,
-    kept: list[BoolArray] | None,
+    dataset: Header, open_strips: OpenStrips, choice: Choice, kept: list[BoolArray] | None
 ) -> Blocks:
     """Yield the points of strips; which cells are valid is added to ``kept``, if it is a list."""
-    target = CRS.of(wanted.crs)
-    plan = plan_cells(dataset, choice, target, Unit.of(wanted.elevation_unit))
+    plan = plan_cells(dataset, choice)
     cells = plan.cells
     left_out = 0 if choice.most_cells is None else cells.width * cells.height - cells.count
     if kept is not None:
         _require_few_cells(cells)
-    place(find_middle(plan.dataset), source=plan.source, target=target)
-    placing = Placing(plan.source, target, plan.unit)
+    place(find_middle(plan.dataset), source=plan.source, target=plan.target)
+    placing = Placing(plan.source, plan.target, plan.unit)
     heights, voids = ElevationSummary("cell", keeps_all=kept is not None), _Voids()
     n_nodata = n_points = 0
-    for strip in read_strips(plan, cells, open_strips, wanted.progress):
+    for strip in read_strips(plan, cells, open_strips, choice.progress):
         n_nodata += strip.n_nodata
         voids.add(strip.valid)
         if kept is not None:

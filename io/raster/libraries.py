@@ -103,11 +103,9 @@ def from_raster(
         limits=None,
         **{**(about := describe(dataset)), "transform": Affine(*about["transform"])},
     )
-    choice = Choice(number, window, cells, stride, nodata, fill)
+    choice = Choice(*(crs, elevation_unit, number, window, cells, stride), nodata=nodata, fill=fill)
     with naming_file(header.path):
-        return make_survey(
-            header, partial(_cut, dataset), choice, crs=crs, elevation_unit=elevation_unit
-        )
+        return make_survey(header, partial(_cut, dataset), choice)
 
 
 @contextmanager

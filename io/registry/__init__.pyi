@@ -6,6 +6,7 @@ from .chunks import PointChunk as PointChunk
 from .chunks import SourceHeader as SourceHeader
 from .chunks import StreamEnd as StreamEnd
 from .chunks import StreamHead as StreamHead
+from .chunks import find_inside as find_inside
 from .chunks import gather as gather
 from .chunks import gathering as gathering
 from .chunks import join_chunks as join_chunks
@@ -15,3 +16,4 @@ from .format import SURFACES as SURFACES
 from .format import Format as Format
 from .lookup import find_writer as find_writer
 from .lookup import list_writers as list_writers
+from .options import taking as taking

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from ...base.arrays import AnyArray, Float64Array, Int64Array
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ...base.crs import CRS, Unit
     from ...tin import Bounds
 
@@ -209,9 +209,11 @@ def yield_survey(found: Survey | TIN) -> Blocks:
 
 
 def join_chunks(chunks: Sequence[PointChunk]) -> PointChunk:
-    """Return chunks as one; attributes that some of them lack are 0 there."""
+    """Return chunks as one, empty if there are none; attributes that some lack are 0 there."""
     if len(chunks) == 1:
         return chunks[0]
+    if not chunks:
+        return PointChunk(np.empty((0, 3)), _NO_ROWS, {})
     names = dict.fromkeys(name for chunk in chunks for name in chunk.attributes)
     return PointChunk(
         np.concatenate([chunk.points for chunk in chunks]),
@@ -228,6 +230,13 @@ def _join_columns(chunks: Sequence[PointChunk], name: str) -> AnyArray:
         if len(chunk)
     ]
     return np.concatenate(columns) if columns else known
+
+
+def find_inside(points: Float64Array, bounds: Bounds) -> BoolArray:
+    """Return which points, (n, 3), lie in a box or on its edges."""
+    x, y = points[:, 0], points[:, 1]
+    inside: BoolArray = (x >= bounds.xmin) & (x <= bounds.xmax)
+    return inside & (y >= bounds.ymin) & (y <= bounds.ymax)
 
 
 def gathering(stream: Callable[..., Blocks]) -> Callable[..., Survey]:

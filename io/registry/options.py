@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import inspect
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import wraps
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -53,6 +54,34 @@ _SHARED = {
     ),
 }
 """Options of several readers, which their docstrings need not say again."""
+
+
+def taking(options: type[Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Let a function whose last argument is of a class take the fields of the class as options.
+
+    Parameters
+    ----------
+    options : type
+        A dataclass; each field is an option of a reader, or what every reader may take.
+    """
+
+    def decorate(function: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(function)
+        def call(*given: Any, **named: Any) -> Any:
+            return function(*given, options(**named))
+
+        whole = inspect.signature(function)
+        own = list(whole.parameters.values())[:-1]
+        of_class = [
+            inspect.Parameter(
+                one.name, inspect.Parameter.KEYWORD_ONLY, default=one.default, annotation=one.type
+            )
+            for one in fields(options)
+        ]
+        vars(call)["__signature__"] = whole.replace(parameters=[*own, *of_class])
+        return call
+
+    return decorate
 
 
 def list_options(function: Callable[..., Any]) -> tuple[FormatOption, ...]:

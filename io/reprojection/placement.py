@@ -70,6 +70,11 @@ def place(
     return placed._replace(notes=(*noted, *placed.notes), noted=noted)
 
 
+def stays(source: CRS | None, target: CRS | None) -> bool:
+    """Whether points are certainly not reprojected."""
+    return target is None or (source is not None and source.is_same(target))
+
+
 class Placing:
     """Points of a file that are placed block by block, each by itself: see :func:`place`.
 

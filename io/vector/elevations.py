@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ...base.crs import FOOT, US_SURVEY_FOOT, Unit
+from ...base.crs import CRS, FOOT, US_SURVEY_FOOT, Unit
 from ...base.errors import OptionError, ReadError
 from ...base.sentences import FILE, counted, height
 from ..delimited.columns import find_role, find_unit_word
@@ -46,12 +46,16 @@ def find_elevation_unit(features: Layer, declared: Unit | None) -> Unit | None:
     OptionError
         If the two differ.
     """
+    return settle_stated_unit(features.elevation_unit, features.crs, declared)
+
+
+def settle_stated_unit(word: str | None, crs: CRS | None, declared: Unit | None) -> Unit | None:
+    """Return the unit that a file's word, else the vertical axis of its CRS, or a caller tells."""
     try:
-        stated = Unit.of(features.elevation_unit or None)
+        stated = Unit.of(word or None)
     except OptionError:  # such as "unknown", which is what we write
         stated = None
-    vertical = None if features.crs is None else features.crs.vertical_unit
-    return settle_unit(declared, stated or vertical)
+    return settle_unit(declared, stated or (None if crs is None else crs.vertical_unit))
 
 
 def list_elevation_columns(features: Layer) -> list[str]:

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
+from ...base import optional
 from ...base.sentences import FILE
 
 if TYPE_CHECKING:
@@ -13,6 +16,9 @@ if TYPE_CHECKING:
 
     from ...base.arrays import AnyArray, Int64Array, ObjectArray
     from ...base.crs import CRS
+
+
+_POLYGON = 3
 
 
 class Layer(NamedTuple):
@@ -43,6 +49,29 @@ class Layer(NamedTuple):
             return self.columns[name]
         same = [key for key in self.columns if key.lower() == name.lower()]
         return self.columns[same[0]] if len(same) == 1 else None
+
+
+def take_apart(features: Layer) -> tuple[ObjectArray, Int64Array]:
+    """Return single geometries, and the row of the feature of each; collections may be nested."""
+    shapely = optional.load("shapely")
+    shapes, rows = features.geometries, np.arange(len(features.geometries))
+    while (shapely.get_type_id(shapes) > _POLYGON).any():
+        shapes, index = shapely.get_parts(shapes, return_index=True)
+        rows = rows[index]
+    there = ~shapely.is_empty(shapes)
+    return shapes[there], rows[there]
+
+
+def list_lines(features: Layer) -> tuple[ObjectArray, Int64Array, Int64Array]:
+    """Return lines and rings, the row of the feature of each, and the number of its geometry."""
+    shapely = optional.load("shapely")
+    shapes, rows = take_apart(features)
+    is_polygon = shapely.get_type_id(shapes) == _POLYGON
+    rings, of_polygon = shapely.get_rings(shapes[is_polygon], return_index=True)
+    slots = np.concatenate([np.flatnonzero(~is_polygon), np.flatnonzero(is_polygon)[of_polygon]])
+    order = np.argsort(slots, kind="stable")
+    slots = slots[order]
+    return np.concatenate([shapes[~is_polygon], rings])[order], rows[slots], slots
 
 
 def name_apart(names: Sequence[str]) -> list[str]:

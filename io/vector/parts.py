@@ -14,13 +14,12 @@ from ...tin.topology import find_offsets
 from ..reprojection.placement import place
 from ..reprojection.transformation import find_conversion_factor
 from .elevations import find_elevation_unit
+from .layers import list_lines, take_apart
 
 if TYPE_CHECKING:
     from ...base.arrays import BoolArray, Float64Array, Int64Array
     from ...base.crs import CRS, Unit
     from .layers import Layer
-
-_POLYGON = 3
 
 
 class Part(NamedTuple):
@@ -69,26 +68,15 @@ def split_into_parts(
         If the lines cannot be brought into the CRS.
     """
     shapely = optional.load("shapely")
-    shapes, rows = features.geometries, np.arange(len(features.geometries))
-    while (shapely.get_type_id(shapes) > _POLYGON).any():
-        shapes, index = shapely.get_parts(shapes, return_index=True)
-        rows = rows[index]
-    there = ~shapely.is_empty(shapes)
-    shapes, rows = shapes[there], rows[there]
-    types = shapely.get_type_id(shapes)
-    points = np.flatnonzero(types == 0)
+    shapes, of_shapes = take_apart(features)
+    points = np.flatnonzero(shapely.get_type_id(shapes) == 0)
     if len(points):
         raise ReadError(
             f"{FILE} has {counted(len(points), 'point')} (first: feature "
-            f"{features.numbers[rows[points[0]]]}): lines or polygons are needed."
+            f"{features.numbers[of_shapes[points[0]]]}): lines or polygons are needed."
         )
-    is_polygon = types == _POLYGON
-    ring_shapes, of_polygon = shapely.get_rings(shapes[is_polygon], return_index=True)
-    slots = np.concatenate([np.flatnonzero(~is_polygon), np.flatnonzero(is_polygon)[of_polygon]])
-    order = np.argsort(slots, kind="stable")
-    slots = slots[order]
+    lines, rows, slots = list_lines(features)
     numbers = np.arange(len(slots)) - np.searchsorted(slots, slots)
-    lines, rows = np.concatenate([shapes[~is_polygon], ring_shapes])[order], rows[slots]
     xyz = shapely.get_coordinates(lines, include_z=True)
     bounds = find_offsets(shapely.get_num_coordinates(lines))
     has_z = shapely.has_z(lines) & (not drape)

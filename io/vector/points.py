@@ -5,7 +5,7 @@ Elevations are those of the geometry or of a column, never a guess between two t
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -19,16 +19,17 @@ from ...tin import TIN, Breakline, Survey
 from ...tin.screening.nodata import describe_elevations, parse_nodata
 from ...tin.topology import find_offsets
 from ..mesh.common import Reference, join_places, make_tin
+from ..registry import taking
 from ..reprojection import place, settle_unit
 from .elevations import find_elevation_unit, find_elevations
 from .features import read_features
-from .layers import Layer
+from .layers import Layer, list_lines, take_apart
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array, ObjectArray
+    from ...base.arrays import AnyArray, BoolArray, Float64Array, Int64Array
     from ...base.crs import CrsLike, UnitLike
     from ...base.policies import FacePolicy
 
@@ -36,18 +37,41 @@ POINT, _LINE, _RING, _POLYGON = range(4)
 _TRIANGLE_CORNERS = 4
 
 
-def read(
-    path: Path,
-    *,
-    crs: CrsLike | None = None,
-    elevation_unit: UnitLike | None = None,
-    layer: str | None = None,
-    z_field: str | None = None,
-    where: str | None = None,
-    lines_as: LineReading | None = None,
-    nodata: float | Sequence[float] | None = None,
-    faces: FacePolicy = "most",
-) -> Survey | TIN:
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """The options of :func:`read`."""
+
+    crs: CrsLike | None = None
+    elevation_unit: UnitLike | None = None
+    layer: str | None = None
+    z_field: str | None = None
+    where: str | None = None
+    lines_as: LineReading | None = None
+    nodata: float | Sequence[float] | None = None
+    faces: FacePolicy = "most"
+
+    @property
+    def target(self) -> CRS | None:
+        """The CRS that is wanted."""
+        return CRS.of(self.crs)
+
+    @property
+    def declared(self) -> Unit | None:
+        """The unit of elevations that the caller tells."""
+        return Unit.of(self.elevation_unit)
+
+    @property
+    def marks(self) -> Float64Array:
+        """Elevations that stand for none."""
+        return parse_nodata(self.nodata)
+
+    def describe_marks(self) -> ReadError:
+        """Return the error of a layer of no elevation but these."""
+        return ReadError(f"{FILE} has no elevation but nodata ({self.marks.tolist()}).")
+
+
+@taking(Asked)
+def read(path: Path, asked: Asked) -> Survey | TIN:
     """Read the points of a vector layer, or the triangles that another program wrote as polygons.
 
     Points are reprojected to ``crs``.
@@ -85,16 +109,18 @@ def read(
     MissingExtraError
         If pyogrio is not installed.
     """
-    role = None if lines_as is None else choice("lines_as", lines_as, LineReading)
-    features = read_features(path, layer=layer, where=where)
-    declared = Unit.of(elevation_unit)
-    unit = find_elevation_unit(features, declared)
-    asked = _Asked(CRS.of(crs), declared, unit, z_field, parse_nodata(nodata))
+    return read_layer(path, asked)
+
+
+def read_layer(path: Path, asked: Asked) -> Survey | TIN:
+    """Read a layer as :func:`read` does."""
+    role = None if asked.lines_as is None else choice("lines_as", asked.lines_as, LineReading)
+    features = read_features(path, layer=asked.layer, where=asked.where)
     kinds = list_kinds(features)
     if kinds == {POINT}:
         return _make_survey(gather_points(features), features, asked)
     if role is None and kinds == {_POLYGON} and _are_triangles(features):
-        return _make_triangles(features, asked, faces)
+        return _make_triangles(features, asked)
     if POINT in kinds:
         raise ReadError(
             f"{FILE} holds both points and lines or polygons: one kind is needed; the option "
@@ -107,16 +133,6 @@ def read(
             "points, or them as breaklines."
         )
     return _make_line_survey(_gather_lines(features), features, asked, role)
-
-
-class _Asked(NamedTuple):
-    """What the caller asks for; ``unit`` is the file's, or else the one declared."""
-
-    crs: CRS | None
-    declared: Unit | None
-    unit: Unit | None
-    z_field: str | None
-    nodata: Float64Array
 
 
 class _Vertices(NamedTuple):
@@ -134,19 +150,9 @@ class _Vertices(NamedTuple):
 def list_kinds(features: Layer) -> set[int]:
     """Return the kinds of single geometries, with collections taken apart."""
     shapely = optional.load("shapely")
-    shapes, _ = _take_apart(features)
+    shapes, _ = take_apart(features)
     found = np.unique(shapely.get_type_id(shapes[~shapely.is_empty(shapes)])).tolist()
     return {_LINE if kind == _RING else int(kind) for kind in found}
-
-
-def _take_apart(features: Layer) -> tuple[ObjectArray, Int64Array]:
-    """Return single geometries, and the row of the feature of each; collections may be nested."""
-    shapely = optional.load("shapely")
-    shapes, rows = features.geometries, np.arange(len(features.geometries))
-    while (shapely.get_type_id(shapes) > _POLYGON).any():
-        shapes, index = shapely.get_parts(shapes, return_index=True)
-        rows = rows[index]
-    return shapes, rows
 
 
 def gather_points(features: Layer) -> _Vertices:
@@ -160,22 +166,29 @@ def gather_points(features: Layer) -> _Vertices:
 def _gather_lines(features: Layer) -> _Vertices:
     """Return the vertices of lines and rings; the last of a closed one is left out of no line."""
     shapely = optional.load("shapely")
-    shapes, rows = _take_apart(features)
-    is_polygon = shapely.get_type_id(shapes) == _POLYGON
-    rings, of_polygon = shapely.get_rings(shapes[is_polygon], return_index=True)
-    lines = np.concatenate([shapes[~is_polygon], rings])
-    of_lines = np.concatenate([rows[~is_polygon], rows[is_polygon][of_polygon]])
-    there = ~shapely.is_empty(lines)
-    lines, of_lines = lines[there], of_lines[there]
-    order = np.argsort(of_lines, kind="stable")
-    lines, of_lines = lines[order], of_lines[order]
+    lines, of_lines, _ = list_lines(features)
     xyz, line = shapely.get_coordinates(lines, include_z=True, return_index=True)
     bounds = find_offsets(shapely.get_num_coordinates(lines))
     return _Vertices(xyz, of_lines[line], bounds, shapely.has_z(lines)[line])
 
 
-def require_finite(vertices: _Vertices, features: Layer) -> None:
-    """Refuse coordinates that are not finite."""
+# ------------------------------------------------------------------------ the survey
+
+
+class Taken(NamedTuple):
+    """Points of features that have an elevation, as they are in the file."""
+
+    points: Float64Array
+    unit: Unit | None
+    """Of their elevations."""
+    rows: Int64Array
+    """Of their features."""
+    notes: tuple[str, ...]
+    skipped: dict[str, int]
+
+
+def take_points(vertices: _Vertices, features: Layer, asked: Asked) -> Taken:
+    """Find the elevations of vertices; leave out those that have none."""
     wrong = ~np.isfinite(vertices.xyz[:, :2]).all(axis=1)
     if wrong.any():
         row = int(np.argmax(wrong))
@@ -183,41 +196,39 @@ def require_finite(vertices: _Vertices, features: Layer) -> None:
             f"{features.label(int(vertices.rows[row]))} has a coordinate that is not finite, "
             f"{vertices.xyz[row, :2].tolist()}: every coordinate must be a finite number."
         )
-
-
-# ------------------------------------------------------------------------ the survey
-
-
-def _make_survey(vertices: _Vertices, features: Layer, asked: _Asked) -> Survey:
-    require_finite(vertices, features)
     found = find_elevations(
         features, vertices.xyz[:, 2], vertices.has_z, vertices.rows, asked.z_field
     )
-    is_nodata = np.isin(found.z, asked.nodata)
+    is_nodata = np.isin(found.z, asked.marks)
     keep = np.isfinite(found.z) & ~is_nodata
-    if not keep.any():
-        raise ReadError(f"{FILE} has no elevation but nodata ({asked.nodata.tolist()}).")
-    points = np.column_stack([vertices.xyz[keep, :2], found.z[keep]])
-    unit = settle_unit(asked.declared, found.unit) if found.unit else asked.unit
-    placed = place(points, source=features.crs, target=asked.crs, unit=unit)
-    rows = vertices.rows[keep]
     skipped = {
         "features without an elevation": len(np.unique(vertices.rows[np.isnan(found.z)])),
         "nodata points": int(is_nodata.sum()),
     }
+    unit = find_elevation_unit(features, asked.declared)
+    return Taken(
+        np.column_stack([vertices.xyz[keep, :2], found.z[keep]]),
+        settle_unit(asked.declared, found.unit) if found.unit else unit,
+        vertices.rows[keep],
+        found.notes,
+        {what: count for what, count in skipped.items() if count},
+    )
+
+
+def _make_survey(vertices: _Vertices, features: Layer, asked: Asked) -> Survey:
+    taken = take_points(vertices, features, asked)
+    if not len(taken.points):
+        raise asked.describe_marks()
+    placed = place(taken.points, source=features.crs, target=asked.target, unit=taken.unit)
+    told = describe_elevations(taken.points[:, 2])
     return Survey(
         points=placed.points,
-        attributes=collect_attributes(features, rows),
+        attributes=collect_attributes(features, taken.rows),
         crs=placed.crs,
         elevation_unit=placed.elevation_unit,
         source=features.path.name,
-        skipped={what: count for what, count in skipped.items() if count},
-        notes=[
-            *features.notes,
-            *found.notes,
-            *describe_elevations(points[:, 2]),
-            *placed.notes,
-        ],
+        skipped=taken.skipped,
+        notes=[*features.notes, *taken.notes, *told, *placed.notes],
     )
 
 
@@ -229,7 +240,7 @@ def collect_attributes(features: Layer, rows: Int64Array) -> dict[str, AnyArray]
 
 
 def _make_line_survey(
-    vertices: _Vertices, features: Layer, asked: _Asked, role: LineReading
+    vertices: _Vertices, features: Layer, asked: Asked, role: LineReading
 ) -> Survey:
     """Return the vertices as points, those that close a ring once, and the lines if asked for."""
     is_open = ~_find_closing(vertices)
@@ -279,7 +290,7 @@ def _take_rows(survey: Survey, keep: BoolArray) -> Survey:
 def _are_triangles(features: Layer) -> bool:
     """Whether every polygon has three corners with elevations, and no island."""
     shapely = optional.load("shapely")
-    shapes, _ = _take_apart(features)
+    shapes, _ = take_apart(features)
     return bool(
         shapely.has_z(shapes).all()
         and (shapely.get_num_coordinates(shapes) == _TRIANGLE_CORNERS).all()
@@ -287,25 +298,26 @@ def _are_triangles(features: Layer) -> bool:
     )
 
 
-def _make_triangles(features: Layer, asked: _Asked, faces: FacePolicy) -> TIN:
+def _make_triangles(features: Layer, asked: Asked) -> TIN:
     """Return the TIN of triangles; corners at one place, to the last bit, are one vertex."""
     shapely = optional.load("shapely")
     if asked.z_field not in (None, "geometry"):
         raise OptionError("z_field", asked.z_field, "geometry, where polygons are triangles")
-    if len(asked.nodata):
-        raise OptionError("nodata", asked.nodata.tolist(), "none, where polygons are triangles")
+    if len(asked.marks):
+        raise OptionError("nodata", asked.marks.tolist(), "none, where polygons are triangles")
     xyz = shapely.get_coordinates(features.geometries, include_z=True)
     corners = np.delete(xyz.reshape(-1, _TRIANGLE_CORNERS, 3), 3, axis=1).reshape(-1, 3)
     if not np.isfinite(corners).all():
         raise ReadError("a corner of a triangle is not finite.")
     points, numbers = join_places(corners)
     triangles = numbers.reshape(-1, 3)
-    placed = place(points, source=features.crs, target=asked.crs, unit=asked.unit)
+    unit = find_elevation_unit(features, asked.declared)
+    placed = place(points, source=features.crs, target=asked.target, unit=unit)
     tin = make_tin(
         placed.points,
         triangles,
         reference=Reference(placed.crs, placed.elevation_unit),
-        faces=faces,
+        faces=asked.faces,
         looks_at_crs=False,
     )
     notes = [*features.notes, *placed.notes]

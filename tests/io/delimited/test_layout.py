@@ -10,7 +10,7 @@ import pytest
 from tinsmith.base.notes import naming_file
 from tinsmith.io import ReadError
 from tinsmith.io.delimited import layout as layouts
-from tinsmith.io.delimited.layout import find_layout
+from tinsmith.io.delimited.layout import LayoutOptions, find_layout
 from tinsmith.io.delimited.lines import TextLines, decode_head, read_lines
 
 USUAL = {
@@ -218,7 +218,9 @@ CASES = {
 
 
 def found_in(text, name="a.csv", **options):
-    return find_layout(TextLines.of(text.encode()), Path(name), **options)
+    lines = TextLines.of(text.encode())
+    with naming_file(Path(name)):
+        return find_layout(lines, Path(name).suffix, LayoutOptions(**options))
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 import tinsmith as ts
 from tinsmith.io import CrsError, FormatError, OptionError, ReadError, WriteError, read, write
-from tinsmith.io.delimited.layout import find_layout
+from tinsmith.io.delimited.layout import LayoutOptions, find_layout
 from tinsmith.io.delimited.lines import read_lines
 
 ROWS = [
@@ -457,7 +457,7 @@ def test_one_column_cannot_be_two_coordinates(survey):
 def test_units_in_a_header(tmp_path, top, unit):
     path = tmp_path / "a.csv"
     path.write_text(f"{top}1,2,3\n4,5,6\n")
-    assert find_layout(read_lines(path), path).elevation_unit == unit
+    assert find_layout(read_lines(path), path.suffix, LayoutOptions()).elevation_unit == unit
 
 
 # ------------------------------------------------------------------ rows that are odd

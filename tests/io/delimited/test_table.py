@@ -12,7 +12,7 @@ import pytest
 from tinsmith.io import ReadError
 from tinsmith.io.delimited.cell_bounds import find_cell_bounds
 from tinsmith.io.delimited.columns import find_columns_by_word
-from tinsmith.io.delimited.layout import find_layout
+from tinsmith.io.delimited.layout import LayoutOptions, find_layout
 from tinsmith.io.delimited.lines import TextLines
 from tinsmith.io.delimited.table import (
     describe_columns,
@@ -26,7 +26,7 @@ PATH = Path("a.csv")
 
 def cells_of(text, **options):
     lines = TextLines.of(text.encode())
-    layout = find_layout(lines, PATH, **options)
+    layout = find_layout(lines, ".csv", LayoutOptions(**options))
     return read_cells(lines, layout), layout, lines
 
 
@@ -53,7 +53,7 @@ PILES = [
 def test_rows_taken_as_regular_read_as_by_csv(first, second):
     """Whatever is called regular must be what Python's csv module makes of each line."""
     lines = TextLines.of(f"{first}\n{second}\n{first}".encode())
-    layout = find_layout(TextLines.of(b"1,2,3\n4,5,6\n"), PATH)
+    layout = find_layout(TextLines.of(b"1,2,3\n4,5,6\n"), ".csv", LayoutOptions())
     data = lines.join(np.arange(3))
     rows = [next(csv.reader(io.StringIO(line), strict=True), []) for line in (second,)]
     try:
@@ -79,7 +79,7 @@ def test_rows_taken_as_regular_read_as_by_csv(first, second):
     ],
 )  # fmt: skip
 def test_words_between_blanks_are_counted_line_by_line(text, expected):
-    layout = find_layout(TextLines.of(b"1 2 3\n4 5 6\n"), PATH)
+    layout = find_layout(TextLines.of(b"1 2 3\n4 5 6\n"), ".csv", LayoutOptions())
     assert is_regular(text.encode(), layout) is expected
 
 

@@ -267,7 +267,7 @@ def test_a_strip_is_scaled_after_its_mask_and_before_nodata_of_the_caller():
     values = np.array([[1, 2, 3], [4, 5, 6]], np.int16)
     valid = np.array([[255, 0, 255], [1, 255, 255]], np.uint8)
     arrays = {"values": values, "valid": valid}
-    plan = dem.Plan(raster, 2, cells, None, None, np.array([12.0]), [])
+    plan = dem.Plan(raster, 2, cells, None, None, None, np.array([12.0]), [])
     points, numbers, keep, missing = dem._read_strip(plan, cells, np.array([0, 1]), arrays)
     assert numbers.tolist() == [0, raster.width + 1]
     assert points.tolist() == [[101, 498.5, 10.5], [103, 495.5, 12.5]]
