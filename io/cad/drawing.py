@@ -255,15 +255,6 @@ def choose_length_unit(
         Whether the format has a unit.
     format_name : str
 
-    Raises
-    ------
-    CrsError
-        If coordinates are angles.
-    OptionError
-        If the unit declared is not that of the CRS.
-    WriteError
-        If the format does not have the unit.
-
     Warns
     -----
     LossWarning

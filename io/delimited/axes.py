@@ -92,13 +92,7 @@ def _find_language(columns: Columns) -> str:
 
 
 def _lies_turned(xy: Float64Array, area: AreaOfUse | None, language: str, columns: Columns) -> bool:
-    """Whether only with X as the northing the points lie in the area of use.
-
-    Raises
-    ------
-    ReadError
-        If the area leaves it open.
-    """
+    """Whether only with X as the northing the points lie in the area of use."""
     lies = area is not None and area.covers_most(xy)
     lies_turned = area is not None and area.covers_most(xy[:, ::-1])
     if lies != lies_turned:
@@ -151,13 +145,7 @@ def are_named_plainly(columns: Columns) -> bool:
 
 
 def require_one_hemisphere(attributes: Mapping[str, AnyArray]) -> None:
-    """Refuse degrees beside a column that turns their sign: N or S, E or W.
-
-    Raises
-    ------
-    ReadError
-        Unless all of it is N and E.
-    """
+    """Refuse degrees beside a column that turns their sign: N or S, E or W."""
     for name, values in attributes.items():
         letters = {str(one).strip(" .").casefold() for one in values.tolist()} - {""}
         is_named = parse_name(name).role == "hemisphere"
@@ -171,12 +159,7 @@ def require_one_hemisphere(attributes: Mapping[str, AnyArray]) -> None:
 
 
 def require_no_geocentric(points: Float64Array, columns: Columns) -> None:
-    """Refuse X, Y, Z that count from the centre of the earth.
-
-    Raises
-    ------
-    ReadError
-    """
+    """Refuse X, Y, Z that count from the centre of the earth."""
     names = (parse_name(columns.names[column]) for column in columns.coordinates)
     if len(points) == 0 or any(name.kind != "axis" for name in names):
         return

@@ -148,11 +148,6 @@ def find_columns_by_header(header: Sequence[str], units: Sequence[str] = ()) -> 
     header : sequence of str
     units : sequence of str, optional
         Cells of the line of units below the header.
-
-    Raises
-    ------
-    ReadError
-        If the names leave open which column is which coordinate.
     """
     group = find_group(header)
     if group is None:
@@ -193,13 +188,7 @@ def describe_doubts(header: Sequence[str]) -> str:
 def _find_unit_words(
     header: Sequence[str], units: Sequence[str], roles: Mapping[str, int]
 ) -> dict[str, str]:
-    """Return the words for the units of the coordinates, in the header or the line below it.
-
-    Raises
-    ------
-    ReadError
-        If they contradict each other.
-    """
+    """Return the words for the units of the coordinates, in the header or the line below it."""
     found: dict[str, str] = {}
     for role in COORDINATES:
         column = roles[role]
@@ -235,11 +224,6 @@ def find_columns_by_word(
         Number of columns of the file.
     units : sequence of str, optional
         Cells of the line of units below the header.
-
-    Raises
-    ------
-    OptionError
-        If the word names no such column, a role twice, or not all three coordinates.
     """
     if isinstance(word, Mapping):
         roles = {

@@ -99,11 +99,6 @@ def find_columns_by_content(
     columns : Columns
     note : str
         What they are taken for, and why.
-
-    Raises
-    ------
-    ReadError
-        If no layout fits, or more than one.
     """
     if _are_angles_in_parts(columns):
         raise ReadError(

@@ -295,11 +295,6 @@ def require_unit_of_crs(columns: Columns, crs: CRS | None, *, is_stated: bool) -
         Of the coordinates in the file.
     is_stated : bool
         Whether the caller has said what the columns are, against the header.
-
-    Raises
-    ------
-    CrsError
-        If they are not both feet, of either kind, and the caller has not told the columns.
     """
     if crs is None:
         return _require_units_of_a_kind(columns, is_stated=is_stated)
@@ -388,10 +383,6 @@ def require_ground(z: Float64Array, unit: Unit | None, *, is_free: bool) -> list
     is_free : bool
         Whether they may be what they are: no CRS places them on the earth, or the caller or the
         format says which column is the elevation.
-
-    Raises
-    ------
-    ReadError
     """
     if len(z) == 0 or are_plausible_elevations(z, unit):
         return []

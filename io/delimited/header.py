@@ -174,13 +174,7 @@ def join_brackets(header: Sequence[str]) -> list[str]:
 
 
 def join_numbers(header: Sequence[str], body: Sequence[Sequence[str]]) -> list[str]:
-    """Join two words for the number of a point, where blanks split them: "Point No.".
-
-    Raises
-    ------
-    ReadError
-        If they may be two columns as well.
-    """
+    """Join two words for the number of a point, where blanks split them: "Point No."."""
     are_numbers = [parse_name(name).role == "number" for name in header]
     at = next((i for i in range(len(header) - 1) if all(are_numbers[i : i + 2])), None)
     if at is None or not body:

@@ -73,11 +73,6 @@ def find_heading(lines: TextLines, rows: Int64Array, count: int) -> Heading | No
         Lines of the table, from 0.
     count : int
         Number of its columns.
-
-    Raises
-    ------
-    ReadError
-        If two lines give two orders.
     """
     speaking: Heading | None = None
     giving: Heading | None = None

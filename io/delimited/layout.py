@@ -290,12 +290,7 @@ def _take_headers(lines: TextLines, data: Int64Array, top: _Top) -> list[str]:
 
 
 def require_announced(announced: int | None, n_rows: int) -> None:
-    """Refuse a number of rows that is not the one which stands above the table.
-
-    Raises
-    ------
-    ReadError
-    """
+    """Refuse a number of rows that is not the one which stands above the table."""
     if announced not in (None, n_rows):
         raise ReadError(
             f"the first line announces {counted(announced or 0, 'point')}, but "

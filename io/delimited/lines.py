@@ -166,11 +166,6 @@ def read_lines(path: Path, *, encoding: str | None = None) -> TextLines:
     path : Path
     encoding : str, optional
         Default by looking: a byte-order mark, UTF-8, UTF-16, else Windows-1252.
-
-    Raises
-    ------
-    ReadError
-        If the file cannot be read, holds binary data, or is not in the encoding named.
     """
     try:
         data = path.read_bytes()
@@ -269,11 +264,6 @@ def iterate_lines(
         and Windows-1252 by the first one with a letter beyond ASCII.
     block_bytes : int, optional
         Bytes of a block; the last has up to twice as many. None reads the file as one.
-
-    Raises
-    ------
-    ReadError
-        If the file cannot be read, holds binary data, or is not in its encoding.
     """
     try:
         is_small = block_bytes is None or path.stat().st_size <= 2 * block_bytes

@@ -49,13 +49,7 @@ def looks_like_table(head: bytes) -> bool:
 
 
 def parse_delimiter(word: str | None) -> str | None:
-    """Return the delimiter that the caller names; None stays None.
-
-    Raises
-    ------
-    OptionError
-        If it is neither one letter that may be a delimiter nor the name of one.
-    """
+    """Return the delimiter that the caller names; None stays None."""
     if word is None:
         return None
     delimiter = _SPOKEN.get(word.strip().lower(), word) if word != BLANKS else word
@@ -67,13 +61,7 @@ def parse_delimiter(word: str | None) -> str | None:
 
 
 def parse_decimal_mark(word: str | None) -> str | None:
-    """Return the decimal mark that the caller names; None stays None.
-
-    Raises
-    ------
-    OptionError
-        If it is neither "." nor ",".
-    """
+    """Return the decimal mark that the caller names; None stays None."""
     if word not in (None, ".", ","):
         raise OptionError("decimal", word, "'.' or ','")
     return word
@@ -157,13 +145,7 @@ def _is_header(row: Sequence[str]) -> bool:
 
 
 def require_no_delimiter(mark: str, delimiter: str, cells: Sequence[Sequence[str]]) -> None:
-    """Raise if the decimal mark that the caller names is the delimiter, and stands in no cell.
-
-    Raises
-    ------
-    ReadError
-        If so: 525,20,1072,77 may be two numbers or four, and quotes would have told.
-    """
+    """Raise if the decimal mark that the caller names is the delimiter, and stands in no cell."""
     if mark == delimiter and not any(mark in cell for row in cells for cell in row):
         raise ReadError(
             f"its columns are separated by '{delimiter}', and no cell holds one, though the option "
@@ -201,11 +183,6 @@ def require_no_blank_groups(sample: Sequence[str], n_stated: int) -> None:
     n_stated : int
         Columns that the caller names: as many as there are between blanks of any width leave
         nothing open.
-
-    Raises
-    ------
-    ReadError
-        If every row is like "525.7  1 049.882  5.9", which may be three columns or four.
     """
     rows = [row for row in sample if _count_numbers(split_line(row, BLANKS), BLANKS) >= 2]
     grouped = [
@@ -254,11 +231,6 @@ class DecimalMark(NamedTuple):
 
 def find_decimal_mark(rows: Iterable[Sequence[str]], delimiter: str) -> DecimalMark | None:
     """Choose the decimal mark by the cells of some rows; None if no cell has one.
-
-    Raises
-    ------
-    ReadError
-        If every comma may be a decimal mark, separate thousands or belong to the delimiter.
 
     Notes
     -----

@@ -96,11 +96,6 @@ def read_cells(lines: TextLines, layout: Layout, *, progress: Tell | None = None
     progress : callable, optional
         Called with the fraction done, by blocks of rows that are rewritten, and by columns.
 
-    Raises
-    ------
-    ReadError
-        If not a single row has the right number of cells.
-
     Notes
     -----
     Rows whose quotes and delimiters are regular are parsed as they are; others are rewritten
@@ -356,10 +351,6 @@ def require_one_mark(
 
     ``is_continued`` tells that the head of the file has numbers with the decimal mark, too, where
     the layout says so.
-
-    Raises
-    ------
-    ReadError
     """
     mark = layout.decimal
     texts = {
@@ -477,11 +468,6 @@ def leave_out_cut_row(
     table : Table
     notes : list of str
         Tell where others have several numbers of decimals, so that nothing is certain.
-
-    Raises
-    ------
-    ReadError
-        If there is such a row, and bad rows are not to be left out.
     """
     last = lines.last
     if lines.is_whole or len(table.rows) <= _FEWEST or table.rows[-1] != last:

@@ -265,13 +265,7 @@ class _Reader:
 
 
 def make_rules(rules: Mapping[str, Any]) -> dict[str, Rule]:
-    """Return rules of plain roles.
-
-    Raises
-    ------
-    OptionError
-        If they are no mapping of codes to roles.
-    """
+    """Return rules of plain roles."""
     if not isinstance(rules, Mapping):
         raise OptionError("rules", rules, "a mapping of codes to roles")
     kinds = get_args(CodeKind)

@@ -40,13 +40,7 @@ def split_files(survey: Survey) -> dict[str, Int64Array]:
 def read_each_file(
     survey: Survey, files: dict[str, Int64Array], read: Callable[[Survey], Survey]
 ) -> Survey:
-    """Return the survey with the lines of each of its files.
-
-    Raises
-    ------
-    LinesError
-        If no file has codes, or those of one cannot be read.
-    """
+    """Return the survey with the lines of each of its files."""
     made: dict[str, Survey] = {}
     faults: list[NoCodesError] = []
     for name, rows in files.items():

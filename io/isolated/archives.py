@@ -67,12 +67,6 @@ def unpack(path: Path) -> Iterator[Path]:
     ------
     Path
         Removed at the end if it was unpacked; errors speak of ``path`` all the same.
-
-    Raises
-    ------
-    ReadError
-        If the archive is damaged, encrypted, unpacks to far more than it is large, names places
-        outside of itself, or holds several sets of data.
     """
     start, suffix = _read_start(path), path.suffix.lower()
     if not start.startswith(_STARTS.get(suffix, b"no archive")):

@@ -48,11 +48,6 @@ def download(path: str | os.PathLike[str]) -> Iterator[Path]:
     ----------
     path : path-like
         An address of HTTP or HTTPS; redirections lead to such addresses only.
-
-    Raises
-    ------
-    ReadError
-        If it cannot be read, or ends before its length.
     """
     address = _WEB.sub(r"\1://", str(path), count=1)
     with scratch_folder() as folder:

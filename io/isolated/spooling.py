@@ -99,13 +99,7 @@ def require_readable(path: Path) -> None:
 
 
 def is_pipe(path: Path) -> bool:
-    """Whether a path is a pipe; files, folders and what is missing are left to the reader.
-
-    Raises
-    ------
-    ReadError
-        If there is a device or a socket.
-    """
+    """Whether a path is a pipe; files, folders and what is missing are left to the reader."""
     try:
         mode = path.stat().st_mode
     except (OSError, ValueError):
@@ -122,10 +116,6 @@ _ELSEWHERE = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:/|/vsi[a-z0-9_]+/|\\vsi")
 
 def require_local(path: str | os.PathLike[str]) -> None:
     """Refuse an address in the network, or in a virtual file system of GDAL.
-
-    Raises
-    ------
-    ReadError
 
     Examples
     --------

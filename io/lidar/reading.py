@@ -122,13 +122,7 @@ class Cloud(NamedTuple):
 
 
 def locate_tiles(path: Path, asked: Asked) -> Cloud:
-    """Read the headers of a file, or of those in a folder: where the points are, and how many.
-
-    Raises
-    ------
-    ReadError, CrsError, OptionError
-        As :func:`stream`.
-    """
+    """Read the headers of a file, or of those in a folder: where the points are, and how many."""
     selection, target = asked.select(), CRS.of(asked.crs)
     declared = Unit.of(asked.elevation_unit)
     headers = [parse_header(one) for one in _list_files(path)]

@@ -51,11 +51,6 @@ def list_named_files(path: Path) -> list[Path]:
 
     It is a collection of items of STAC, as PDAL wrench and QGIS write it.
 
-    Raises
-    ------
-    ReadError
-        If it is none, names no file, or one that is no lidar file of this machine.
-
     References
     ----------
     https://github.com/PDAL/wrench/blob/main/vpc-spec.md

@@ -121,13 +121,7 @@ def choose_reference(
 
 
 def require_own_crs(own: CRS | None, declared: CRS | None) -> None:
-    """Refuse to reproject a TIN.
-
-    Raises
-    ------
-    CrsError
-        If another CRS is wanted than that of the file.
-    """
+    """Refuse to reproject a TIN."""
     if declared is not None and own is not None and not own.is_same(declared):
         raise CrsError(
             f"{FILE} is in {own.label}, and {declared.label} is another CRS: a TIN is not "
@@ -341,13 +335,7 @@ def make_survey(
     reference: Reference,
     notes: Sequence[str] = (),
 ) -> Survey:
-    """Make a survey of the points of a file.
-
-    Raises
-    ------
-    ReadError
-        If there are none, or one is not finite.
-    """
+    """Make a survey of the points of a file."""
     if len(points) == 0:
         raise ReadError(f"{FILE} holds no points.")
     wrong = ~np.isfinite(points).all(axis=1)

@@ -273,11 +273,6 @@ def build_solid(tin: TIN, points: Float64Array, thickness: float) -> Solid:
     Solid
         The base has the triangles of the surface, turned over, so that every wall stands on edges.
         Where parts of the surface touch in one vertex, the solid is cut apart there.
-
-    Raises
-    ------
-    WriteError
-        If the surface has no triangle.
     """
     triangles, neighbors = tin.triangles.astype(np.int64), tin.neighbors
     if len(triangles) == 0:

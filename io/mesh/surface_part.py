@@ -113,11 +113,6 @@ def make_surface(
     TIN
     list of str
         Notes of what is left out, and of triangles that overlap and are not.
-
-    Raises
-    ------
-    PointsError
-        As ``make`` raises it; the sentence tells what "surface" leaves out.
     """
     if choice("faces", faces, FacePolicy) == "surface":
         part = _find_part(points, triangles)

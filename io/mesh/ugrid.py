@@ -113,12 +113,7 @@ def read(
 
 
 def _require_units(units: Sequence[str], crs: CRS | None) -> list[str]:
-    """Refuse units of eastings and northings that are not those of the CRS; tell lonely ones.
-
-    Raises
-    ------
-    ReadError
-    """
+    """Refuse units of eastings and northings that are not those of the CRS; tell lonely ones."""
     words = [text.lower() for text in units]
     is_degrees = any(word.startswith("degree") for word in words)
     lengths = [Unit.of(text) for text in units if _is_unit(text)]

@@ -287,12 +287,7 @@ class _Voids:
             self._has_surface = bool((pairs[:, :-1] + pairs[:, 1:] >= _CORNERS).any())
 
     def require_surface(self) -> None:
-        """Refuse cells between which there is no surface.
-
-        Raises
-        ------
-        ReadError
-        """
+        """Refuse cells between which there is no surface."""
         if not self._has_surface:
             raise _describe_no_surface()
 

@@ -105,10 +105,6 @@ def as_picture_path(source: object, option: str) -> Path:
     source : object
     option : str
         Name of the parameter.
-
-    Raises
-    ------
-    OptionError, ReadError
     """
     if not isinstance(source, str | os.PathLike):
         raise OptionError(option, source, "the path of a GeoTIFF, PNG or JPEG file")

@@ -188,13 +188,7 @@ def make_source_header(path: Path, name: str, **told: Any) -> SourceHeader:
 
 
 def yield_survey(found: Survey | TIN) -> Blocks:
-    """Give the points of a survey that was read at once.
-
-    Raises
-    ------
-    ReadError
-        If it is a TIN, or holds lines.
-    """
+    """Give the points of a survey that was read at once."""
     if isinstance(found, TIN):
         raise ReadError(f"{FILE} holds a TIN, not points alone: read_tin reads it.")
     if found.has_lines:
@@ -298,13 +292,7 @@ class _Gathered:
         self._count = 0
 
     def reserve(self, head: StreamHead) -> None:
-        """Reserve room for all points, if there is memory for so many.
-
-        Raises
-        ------
-        ReadError
-            If there is not.
-        """
+        """Reserve room for all points, if there is memory for so many."""
         count, self._has_lines = head.most_points, head.has_lines
         if count is None:
             self._chunks = []

@@ -52,12 +52,7 @@ def checking_crs(is_checked: bool) -> Iterator[None]:
 
 
 def refuse(sentence: str, crs: CRS | None = None) -> str:
-    """Refuse a contradiction; return it as a note where the caller wants no refusal.
-
-    Raises
-    ------
-    CrsError
-    """
+    """Refuse a contradiction; return it as a note where the caller wants no refusal."""
     if not _IS_CHECKED.get():
         return f"{sentence}."
     raise CrsError(f"{sentence}; `check_crs=False` takes them as they are.", crs=crs)
@@ -69,11 +64,6 @@ def look_at_crs(
     """Compare points, (n, 3), that stay where they are with their CRS.
 
     ``is_declared`` tells that the caller names it and the file does not.
-
-    Raises
-    ------
-    CrsError
-        As :meth:`Places.describe`.
     """
     places = Places(crs, None, looks_at_order=is_declared)
     places.add(points)

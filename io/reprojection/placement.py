@@ -108,13 +108,7 @@ class Placing:
         self._last = Placed(np.empty((0, 3)), None, None, ())
 
     def add(self, points: Float64Array) -> Placed:
-        """Place further points, (n, 3); the notes are those of the transformation alone.
-
-        Raises
-        ------
-        ReadError, CrsError
-            As :func:`place`.
-        """
+        """Place further points, (n, 3); the notes are those of the transformation alone."""
         if len(points) == 0:
             return self._last._replace(points=points)
         self.look(points)

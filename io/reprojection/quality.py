@@ -94,11 +94,6 @@ def require_kept(crs: CRS | None, found: str | None) -> None:
     found : str or None
         WKT as GDAL reads it back.
 
-    Raises
-    ------
-    WriteError
-        If a unit has changed, or nothing is left of the CRS.
-
     Warns
     -----
     LossWarning

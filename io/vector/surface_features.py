@@ -72,11 +72,6 @@ def make_features(surface: Writable, kind: FeatureKind | None) -> Features:
     surface : TIN, Survey or Features
     kind : {"triangles", "points", "edges", "lines", "hull"}, optional
         Default triangles, of a survey points.
-
-    Raises
-    ------
-    FormatError, OptionError
-        As :func:`choose_kind`; also if a TIN without lines is asked for lines.
     """
     chosen = choose_kind(surface, kind)
     if isinstance(surface, Features):

@@ -150,12 +150,7 @@ def _require_near(survey: Survey, coords: Sequence[Float64Array]) -> None:
 
 
 def require_near(ours: Bounds, theirs: Bounds) -> None:
-    """Refuse bounds of lines that lie far away from those of points.
-
-    Raises
-    ------
-    ReadError
-    """
+    """Refuse bounds of lines that lie far away from those of points."""
     reach = _FAR * ours.diagonal
     apart = max(
         theirs.xmin - ours.xmax,
@@ -186,11 +181,6 @@ def note_nesting(polygons: Sequence[Sequence[Float64Array]], path: Path) -> list
         Of each the outer ring and its islands.
     path : Path
         For sentences.
-
-    Raises
-    ------
-    ReadError
-        If two overlap or are equal: whether the surface lies there is anybody's guess.
     """
     shapely = optional.load("shapely")
     if len(polygons) < 2:

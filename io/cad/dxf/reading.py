@@ -226,11 +226,6 @@ def make_mesh(faces: Float64Array) -> Mesh:
     ----------
     faces : (m, 4, 3) float64 array
         Corners; a triangle repeats one.
-
-    Raises
-    ------
-    ReadError
-        If no face has three corners.
     """
     points, numbers = join_places(faces.reshape(-1, 3))
     corners = numbers.reshape(-1, 4)

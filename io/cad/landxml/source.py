@@ -34,13 +34,7 @@ _RINGS = {"outer": "boundary", "void": "hole", "island": "island"}
 
 
 def gather_points(points: Points, frame: Drawing) -> Drawing:
-    """Add the survey points that have an elevation to a drawing.
-
-    Raises
-    ------
-    ReadError
-        If there are none.
-    """
+    """Add the survey points that have an elevation to a drawing."""
     kept, skipped = _select_points(points)
     if not len(kept):
         why = "; ".join(f"{count:,} {what}" for what, count in skipped.items())
@@ -94,13 +88,7 @@ def _gather_attributes(points: Points, kept: Int64Array) -> dict[str, AnyArray]:
 
 
 def gather_source(found: Content, surface: Surface, frame: Drawing) -> Drawing:
-    """Add the data that a surface was made of to a drawing, with its lines.
-
-    Raises
-    ------
-    ReadError
-        If there are none, or a line is none.
-    """
+    """Add the data that a surface was made of to a drawing, with its lines."""
     if not surface.has_source:
         raise ReadError(f"surface {surface.label} has no source data.")
     own = [part for one in surface.lines if one.element == "DataPoints" for part in one.coordinates]

@@ -28,14 +28,7 @@ _OPPOSITE = (2, 0, 1)
 
 
 def make_mesh(found: Content, surface: Surface) -> Mesh:
-    """Return the points and the visible triangles of a surface.
-
-    Raises
-    ------
-    ReadError
-        If it has no visible faces or is a grid, a face names a point that there is not, or two
-        points have one id.
-    """
+    """Return the points and the visible triangles of a surface."""
     if surface.kind.lower() == "grid":
         raise ReadError(
             f"surface {surface.label} is a grid (surfType='grid'), and only TIN surfaces are read."
@@ -94,13 +87,7 @@ def _require_unique(ids: Int64Array, points: Float64Array, surface: Surface) -> 
 def resolve_references(
     points: Float64Array, references: dict[int, str], found: Content
 ) -> Float64Array:
-    """Return points with those that refer to survey points by name.
-
-    Raises
-    ------
-    ReadError
-        If there is no such survey point.
-    """
+    """Return points with those that refer to survey points by name."""
     rows, row_of = found.points.rows, {name: k for k, name in enumerate(found.points.names)}
     points = points.copy()
     for row, name in references.items():

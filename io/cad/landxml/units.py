@@ -59,11 +59,6 @@ def find_stated(
         Easting and northing of some points.
     is_crs_declared : bool
         Whether the caller names a CRS, so that one that is unknown does no harm.
-
-    Raises
-    ------
-    ReadError
-        If it contradicts itself.
     """
     crs, notes = _find_crs(content, sample, is_crs_declared=is_crs_declared)
     units = [_parse_units(system, attributes) for system, attributes in content.units]

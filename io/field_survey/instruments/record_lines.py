@@ -57,13 +57,7 @@ def read_records(lines: TextLines, reader: _Reader) -> Book:
 
 
 def parse_coordinate(text: str, line: int) -> float:
-    """Return a coordinate, NaN where there is none.
-
-    Raises
-    ------
-    ReadError
-        If the text is no number.
-    """
+    """Return a coordinate, NaN where there is none."""
     if text in ("", "?"):
         return math.nan
     value = float(text) if is_number(text, ".") else math.inf

@@ -80,13 +80,7 @@ class Book:
         elevation_unit: UnitLike | None,
         source_crs: CrsLike | None = None,
     ) -> Survey:
-        """Return the survey.
-
-        Raises
-        ------
-        ReadError
-            If there are no points, or they are in feet of which nobody says which.
-        """
+        """Return the survey."""
         if not self.points:
             lost = ", ".join(_count(what, len(lines)) for what, lines in self.left_out.items())
             why = f": {lost}" if lost else ""

@@ -220,13 +220,7 @@ class City(NamedTuple):
 
 
 def parse_city(content: bytes) -> City:
-    """Return the city of CityJSON, or of a sequence.
-
-    Raises
-    ------
-    SequenceError
-        If the text is no JSON, or a line behind the first is no feature.
-    """
+    """Return the city of CityJSON, or of a sequence."""
     try:
         return City(json.loads(content), {})
     except json.JSONDecodeError as error:

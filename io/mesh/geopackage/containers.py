@@ -48,12 +48,6 @@ def adding_layers(path: Path, placing: Placing) -> Iterator[Path]:
     path : Path
         If there is no file, or it has no other layers, the new one takes its place.
     placing : Placing
-
-    Raises
-    ------
-    WriteError
-        If the file cannot be written, is open elsewhere or no GeoPackage; if a layer of the name
-        was not written by tinsmith, or was changed since. The file is then as it was.
     """
     require_closed(path)
     with replacing_path(path) as beside:
@@ -498,13 +492,7 @@ _ENDS = ("-wal", "-journal")
 
 
 def require_closed(path: Path) -> None:
-    """Refuse to write a GeoPackage that another program works on.
-
-    Raises
-    ------
-    WriteError
-        If it does.
-    """
+    """Refuse to write a GeoPackage that another program works on."""
     for end in _ENDS:
         journal = path.with_name(path.name + end)
         if journal.exists():

@@ -239,13 +239,7 @@ def unpack_tin(
     triangles: Int32Array,
     constrained: BoolArray,
 ) -> TIN:
-    """Return the TIN of a record and of its points, triangles and flags.
-
-    Raises
-    ------
-    PointsError
-        If the record is not one that :func:`pack_tin` made of these points and triangles.
-    """
+    """Return the TIN of a record and of its points, triangles and flags."""
     try:
         return _unpack_tin(record, points, triangles, constrained)
     except PointsError:

@@ -128,11 +128,6 @@ def encode_glb(mesh: MeshArrays, node: dict[str, Any]) -> list[bytes]:
     mesh : MeshArrays
     node : dict
         Properties of the node that has the mesh, such as its ``translation``.
-
-    Raises
-    ------
-    WriteError
-        If the file would be larger than 4 GiB.
     """
     chunks = _pack(mesh, node)
     length = 12 + sum(8 + len(chunk) for _, chunk in chunks)

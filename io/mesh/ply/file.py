@@ -142,11 +142,6 @@ def find_faces(tables: Mapping[str, Table]) -> Ragged | None:
     -------
     Ragged
         None if there are no faces.
-
-    Raises
-    ------
-    ReadError
-        If faces name their vertices under another name, or by no whole numbers.
     """
     parts = []
     for name in ("face", *STRIPS):

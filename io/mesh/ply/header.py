@@ -91,13 +91,7 @@ class Header:
 
 
 def parse_header(content: bytes) -> Header:
-    """Read the header of a PLY file.
-
-    Raises
-    ------
-    ReadError
-        If it is not the header of a PLY file.
-    """
+    """Read the header of a PLY file."""
     if not is_ply(content[:_LONGEST_FIRST_LINE]):
         raise ReadError(f"{FILE} is no PLY file: it does not begin with 'ply'.")
     mark = content.find(b"\nend_header", 0, LONGEST_HEADER)

@@ -67,13 +67,7 @@ def require_edges(table: Table, n_vertices: int) -> Int64Array:
 
 
 def read_lines(stated: Sequence[LineComment], edges: Int64Array) -> Lines:
-    """Return the lines that the header tells of, as chains of vertices.
-
-    Raises
-    ------
-    ReadError
-        If the edges of a line do not follow each other.
-    """
+    """Return the lines that the header tells of, as chains of vertices."""
     counts = np.array([one.n_edges for one in stated], np.int64)
     if counts.sum() > len(edges) or (counts < 1).any():
         raise ReadError(f"its lines have {counts.sum()} edges, and there are {len(edges)}.")

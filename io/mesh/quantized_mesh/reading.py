@@ -125,13 +125,7 @@ class Placing(NamedTuple):
 def find_placing(
     center: tuple[float, float, float], name: TileName, *, is_declared: bool
 ) -> Placing:
-    """Return where a tile of a name lies, by the centre that its header tells.
-
-    Raises
-    ------
-    ReadError
-        If the centre lies in another tile, and the name is not declared by the caller.
-    """
+    """Return where a tile of a name lies, by the centre that its header tells."""
     west, south, east, _ = name.bounds
     globe = Placing(west, south, east - west)
     if not any(center):

@@ -222,13 +222,7 @@ def _encode_normals(normals: Float64Array) -> bytes:
 
 
 def decode_tile(content: bytes) -> Tile:
-    """Return a tile from its bytes, unzipped.
-
-    Raises
-    ------
-    BrokenTileError
-        If they are no tile.
-    """
+    """Return a tile from its bytes, unzipped."""
     if len(content) < _HEADER.size + 4:
         raise BrokenTileError("it is shorter than a header")
     header = _HEADER.unpack_from(content)

@@ -94,11 +94,6 @@ class Places(NamedTuple):
 def project_to_wgs84(points: Float64Array, crs: CRS | None, elevation_unit: Unit | None) -> Places:
     """Move points, (n, 3), to WGS 84 longitude, latitude and elevation in metres, rounded.
 
-    Raises
-    ------
-    CrsError
-        If the CRS is not known, or puts a point outside the range of longitude and latitude.
-
     Notes
     -----
     The elevation's datum is changed only where the CRS has a vertical part, and then only as far
@@ -173,11 +168,6 @@ def require_one_piece(longitudes: Float64Array) -> None:
     ----------
     longitudes : (m, k) float64 array, degrees
         Of the k corners of each feature.
-
-    Raises
-    ------
-    WriteError
-        If two corners of a feature are more than half a turn apart.
     """
     wide = np.ptp(longitudes, axis=1) > _HALF_TURN
     count = int(wide.sum())
