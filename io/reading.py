@@ -49,14 +49,28 @@ _NO_FALLBACKS: Mapping[str, Any] = MappingProxyType({})
 _SHOWN = 5
 
 
-class _Asked(NamedTuple):
+class Asked(NamedTuple):
     """What a caller says of a file: format, CRS and unit, options, fallbacks, and progress."""
 
     format: str | None
     declared: Mapping[str, Any]
     options: Mapping[str, Any]
-    fallbacks: Mapping[str, Any]
+    fallbacks: Mapping[str, Any] = _NO_FALLBACKS
     progress: Tell | None = None
+
+
+def ask(
+    fallbacks: Mapping[str, Any] = _NO_FALLBACKS,
+    *,
+    format: str | None = None,  # noqa: A002 - as in read
+    crs: CrsLike | None = None,
+    elevation_unit: UnitLike | None = None,
+    **options: Any,
+) -> Asked:
+    """Return what a caller says of a file, by options of :func:`read` and fallbacks for them."""
+    unit = Unit.of(elevation_unit)
+    declared = {"crs": CRS.of(crs)} | ({} if unit is None else {"elevation_unit": unit})
+    return Asked(format, declared, options, fallbacks)
 
 
 @overload
@@ -179,13 +193,10 @@ def read_with_fallbacks(
     path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     fallbacks: Mapping[str, Any],
     *,
-    format: str | None = None,  # noqa: A002 - as in read
-    crs: CrsLike | None = None,
-    elevation_unit: UnitLike | None = None,
     remote: bool = False,
     check_crs: bool = True,
     progress: Callable[[float], None] | None = None,
-    **options: Any,
+    **how: Any,
 ) -> Survey | TIN:
     """Read a file as :func:`read`, with options that count for the formats which have them.
 
@@ -194,11 +205,12 @@ def read_with_fallbacks(
     path : path-like or sequence of path-like
     fallbacks : mapping of str to object
         Options of readers; one that the chosen reader does not have is left out.
+    **how
+        As of :func:`read`.
     """
     remote = as_flag("remote", remote)
     done = Progress(progress)
-    declared = collect_declared(crs, elevation_unit)
-    asked = _Asked(format, declared, options, fallbacks, done.stage(0.0, 1.0))
+    asked = ask(fallbacks, **how)._replace(progress=done.stage(0.0, 1.0))
     places = path if isinstance(path, list | tuple) else [cast("str | os.PathLike[str]", path)]
     with ExitStack() as copies:
         if remote:
@@ -242,7 +254,7 @@ def require_paths(paths: Sequence[Any]) -> list[Path]:
     return [as_path(one) for one in paths]
 
 
-def _read_several(paths: Sequence[Path], asked: _Asked) -> Survey | TIN:
+def _read_several(paths: Sequence[Path], asked: Asked) -> Survey | TIN:
     """Read files as one survey; a single one as what it is."""
     done = Progress(asked.progress)
     found = []
@@ -353,19 +365,13 @@ def _name_apart(paths: Sequence[Path]) -> list[str]:
     return names if len({*names}) == len(names) else [str(path) for path in paths]
 
 
-def _read_path(file: Path, asked: _Asked) -> Survey | TIN:
+def _read_path(file: Path, asked: Asked) -> Survey | TIN:
     if is_folder(file) and (tiles := list_tiles(file, asked.format)):
         found = _read_several(tiles, asked)
         return _name_folder(found, file, tiles) if isinstance(found, Survey) else found
     with naming_file(file), open_ordinary_file(file) as local, unpack(local) as inner:
-        found = _read_file(inner, *asked)
+        found = _read_file(inner, asked)
     return found if inner == file else _restore_source(found, inner, file)
-
-
-def collect_declared(crs: CrsLike | None, elevation_unit: UnitLike | None) -> dict[str, Any]:
-    """Return what the caller says of the coordinates, as options of a reader."""
-    unit = Unit.of(elevation_unit)
-    return {"crs": CRS.of(crs)} | ({} if unit is None else {"elevation_unit": unit})
 
 
 def read_stream(
@@ -373,11 +379,8 @@ def read_stream(
     name: str,
     fallbacks: Mapping[str, Any] = _NO_FALLBACKS,
     *,
-    format: str | None = None,  # noqa: A002 - as in read
-    crs: CrsLike | None = None,
-    elevation_unit: UnitLike | None = None,
     check_crs: bool = True,
-    **options: Any,
+    **how: Any,
 ) -> Survey | TIN:
     """Read elevation points or a TIN from a stream, such as standard input; as :func:`read`.
 
@@ -389,36 +392,26 @@ def read_stream(
     fallbacks : mapping of str to object
         As of :func:`read_with_fallbacks`.
     """
-    source = Path(name)
-    declared = collect_declared(crs, elevation_unit)
+    source, asked = Path(name), ask(fallbacks, **how)
     with (
         naming_file(source),
         spool(stream, source) as local,
         unpack(local) as inner,
         checking_crs(check_crs),
     ):
-        return _restore_source(
-            _read_file(inner, format, declared, options, fallbacks), inner, source
-        )
+        return _restore_source(_read_file(inner, asked), inner, source)
 
 
-def _read_file(
-    file: Path,
-    name: str | None,
-    declared: Mapping[str, Any],
-    options: Mapping[str, Any],
-    fallbacks: Mapping[str, Any],
-    progress: Tell | None = None,
-) -> Survey | TIN:
-    call = prepare_call(file, name, declared, options, fallbacks)
+def _read_file(file: Path, asked: Asked) -> Survey | TIN:
+    call = prepare_call(file, asked)
     reader = call.format.load("read")
-    if progress is not None and takes_progress(reader):
-        call.options["progress"] = progress
+    if asked.progress is not None and takes_progress(reader):
+        call.options["progress"] = asked.progress
     with blaming(call.format, file):
         found = reader(file, **call.options)
     if isinstance(found, Survey | TIN):
-        require_unit(found.crs, call.stated, options)
-        return _name_source(found, file)
+        require_unit(found.crs, call.stated, asked.options)
+        return found if isinstance(found, Survey) else found.with_source(file.name)
     reason = f"it gives a {type(found).__name__}, no Survey and no TIN"
     raise _blame_plug_in(call.format, reason)
 
@@ -432,36 +425,20 @@ class Call(NamedTuple):
     """Unit of lengths that the caller tells, and the reader has no option for."""
 
 
-def prepare_call(
-    file: Path,
-    name: str | None,
-    declared: Mapping[str, Any],
-    options: Mapping[str, Any],
-    fallbacks: Mapping[str, Any] = _NO_FALLBACKS,
-) -> Call:
-    """Choose the format of a file, and check the options of its reader.
-
-    Parameters
-    ----------
-    file : Path
-    name : str, optional
-        Name of the format.
-    declared : mapping
-        As :func:`collect_declared` returns it.
-    options, fallbacks : mapping
-        As of :func:`read_with_fallbacks`.
-    """
-    chosen = _choose_format(file, name, options)
+def prepare_call(file: Path, asked: Asked) -> Call:
+    """Choose the format of a file, and check the options of its reader."""
+    chosen = _choose_format(file, asked.format, asked.options)
     if chosen.read is None:
         raise FormatError(
             f"{FILE} is {chosen.description}, a format that is written, not read: "
             f"{lookup.list_suffixes('read')} can be read.",
             known=lookup.find_suffixes("read"),
         )
-    of_file, stated = _take_options(chosen, declared, options)
+    of_file, stated = _take_options(chosen, asked.declared, asked.options)
     require_options(chosen, "read", chosen.load("read"), of_file)
-    of_file |= {name: fallbacks[name] for name in chosen.options("read") if name in fallbacks}
-    return Call(chosen, {"crs": declared["crs"], **of_file}, stated)
+    usual = asked.fallbacks
+    of_file |= {name: usual[name] for name in chosen.options("read") if name in usual}
+    return Call(chosen, {"crs": asked.declared["crs"], **of_file}, stated)
 
 
 @contextmanager
@@ -507,11 +484,6 @@ def require_unit(crs: CRS | None, stated: Unit | None, options: Mapping[str, Any
     if crs.is_geographic or crs.horizontal_unit != stated:
         unit = crs.horizontal_unit.name
         raise OptionError("unit", stated.name, f"{unit}, the unit of {crs.label}")
-
-
-def _name_source(found: Survey | TIN, file: Path) -> Survey | TIN:
-    """Return a TIN that knows its file; a survey does already."""
-    return found if isinstance(found, Survey) else found.with_source(file.name)
 
 
 def _blame_plug_in(one: Format, reason: str) -> ReadError:
@@ -681,13 +653,18 @@ def detect(path: Path, head: bytes, options: Iterable[str] = ()) -> Format:
         return _choose_recognised(able or shown, path)
     if is_virtual(path):
         return lookup.find_format("raster")
-    _require_not_foreign(head)
+    kind = signatures.find_foreign_kind(head)
+    if kind is not None:
+        raise FormatError(
+            f"{FILE} is {kind}, which cannot be read: {lookup.list_suffixes('read')} can.",
+            known=lookup.find_suffixes("read"),
+        )
     by_suffix = lookup.choose_format(path, "read")
     if by_suffix is not None and (by_suffix.sniff is None or not _is_table(head)):
         return by_suffix
     if by_suffix is not None:
         return lookup.find_format("delimited")
-    if _is_binary(head) and _is_gdal_raster(path):
+    if b"\x00" in head and _is_gdal_raster(path):
         return lookup.find_format("raster")
     return lookup.find_format_of_suffix(path, "read")
 
@@ -718,19 +695,6 @@ def _recognises(one: Format, sniff: Callable[[Any], bool] | None, content: objec
         )
         warn_of_plug_in(f"format '{one.name}'", one.distribution, reason)
         return False
-
-
-def _require_not_foreign(head: bytes) -> None:
-    kind = signatures.find_foreign_kind(head)
-    if kind is not None:
-        raise FormatError(
-            f"{FILE} is {kind}, which cannot be read: {lookup.list_suffixes('read')} can.",
-            known=lookup.find_suffixes("read"),
-        )
-
-
-def _is_binary(head: bytes) -> bool:
-    return b"\x00" in head
 
 
 def _is_table(head: bytes) -> bool:

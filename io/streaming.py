@@ -20,8 +20,8 @@ from ..tin import Bounds
 from .isolated.archives import unpack
 from .isolated.spooling import open_ordinary_file
 from .reading import (
+    ask,
     blaming,
-    collect_declared,
     is_folder,
     list_tiles,
     prepare_call,
@@ -42,12 +42,12 @@ from .reprojection import checking_crs
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Generator, Iterator, Sequence
+    from collections.abc import Generator, Iterator, Mapping, Sequence
     from types import TracebackType
     from typing import Self
 
-    from ..base.crs import CRS, CrsLike, Unit, UnitLike
-    from .reading import Call
+    from ..base.crs import CRS, Unit
+    from .reading import Asked, Call
     from .registry import Blocks
 
 _LARGEST_WHOLE = 1 << 28
@@ -57,12 +57,9 @@ _LARGEST_WHOLE = 1 << 28
 def stream_points(
     path: str | os.PathLike[str],
     *,
-    format: str | None = None,  # noqa: A002 - the word that users of the package know
-    crs: CrsLike | None = None,
-    elevation_unit: UnitLike | None = None,
-    check_crs: bool = True,
     chunk_points: int = 1_000_000,
-    **options: Any,
+    check_crs: bool = True,
+    **how: Any,
 ) -> PointStream:
     """Read the points of a file chunk by chunk, in memory that does not grow with the file.
 
@@ -70,10 +67,10 @@ def stream_points(
     ----------
     path : path-like
         A file, or a folder of lidar tiles.
-    format, crs, elevation_unit, check_crs, **options
-        As of :func:`tinsmith.read`.
     chunk_points : int
         Points of each chunk; the last has the rest.
+    check_crs, **how
+        As of :func:`tinsmith.read`.
 
     Returns
     -------
@@ -105,9 +102,7 @@ def stream_points(
     """
     require_count("chunk_points", chunk_points)
     (file,) = require_paths([path])
-    declared = collect_declared(crs, elevation_unit)
-    blocks = _stream_path(file, format, declared, options, check_crs)
-    return PointStream(blocks, int(chunk_points))
+    return PointStream(_stream_path(file, ask(**how), check_crs), int(chunk_points))
 
 
 class PointStream:
@@ -286,22 +281,16 @@ def _with_end(blocks: Blocks) -> Generator[StreamHead | PointChunk | StreamEnd, 
 # --------------------------------------------------------------------------- the blocks
 
 
-def _stream_path(
-    file: Path,
-    name: str | None,
-    declared: dict[str, Any],
-    options: dict[str, Any],
-    check_crs: bool,
-) -> Blocks:
+def _stream_path(file: Path, asked: Asked, check_crs: bool) -> Blocks:
     with checking_crs(check_crs):
-        if is_folder(file) and list_tiles(file, name):
-            return (yield from _slice_whole(file, file, name, declared | options, "a folder"))
+        if is_folder(file) and list_tiles(file, asked.format):
+            return (yield from _slice_whole(file, file, asked, "a folder"))
         with naming_file(file), open_ordinary_file(file) as local, unpack(local) as inner:
-            call = prepare_call(inner, name, declared, options)
+            call = prepare_call(inner, asked)
             if call.format.stream is None:
-                blocks = _slice_whole(inner, file, name, declared | options, call.format.name)
+                blocks = _slice_whole(inner, file, asked, call.format.name)
             else:
-                blocks = _stream_file(call, inner, options)
+                blocks = _stream_file(call, inner, asked.options)
             end = yield from blocks
     if inner == file:
         return end
@@ -309,7 +298,7 @@ def _stream_path(
     return replace(end, notes=notes)
 
 
-def _stream_file(call: Call, file: Path, options: dict[str, Any]) -> Blocks:
+def _stream_file(call: Call, file: Path, options: Mapping[str, Any]) -> Blocks:
     """Let the format's own generator read a file."""
     with blaming(call.format, file):
         blocks = call.format.load("stream")(file, **call.options)
@@ -323,9 +312,7 @@ def _stream_file(call: Call, file: Path, options: dict[str, Any]) -> Blocks:
             yield item
 
 
-def _slice_whole(
-    file: Path, named: Path, name: str | None, options: dict[str, Any], kind: str
-) -> Blocks:
+def _slice_whole(file: Path, named: Path, asked: Asked, kind: str) -> Blocks:
     """Read a file that is not large whole, and give its points at once."""
     size = _measure_size(file)
     if size > _LARGEST_WHOLE:
@@ -334,7 +321,8 @@ def _slice_whole(
             f"{_LARGEST_WHOLE / 1e6:,.0f} MB: write the points as LAZ, GeoParquet or CSV.",
             path=named,
         )
-    return (yield from yield_survey(read(file, format=name, **options)))
+    how = {**asked.declared, **asked.options}
+    return (yield from yield_survey(read(file, format=asked.format, **how)))
 
 
 def _measure_size(file: Path) -> int:
@@ -347,20 +335,14 @@ def _measure_size(file: Path) -> int:
 
 
 def describe_source(
-    path: str | os.PathLike[str],
-    *,
-    format: str | None = None,  # noqa: A002 - as in read
-    crs: CrsLike | None = None,
-    elevation_unit: UnitLike | None = None,
-    check_crs: bool = True,
-    **options: Any,
+    path: str | os.PathLike[str], *, check_crs: bool = True, **how: Any
 ) -> SourceHeader:
     """Tell what the headers of a file say of its points, without reading them.
 
     Parameters
     ----------
     path : path-like
-    format, crs, elevation_unit, check_crs, **options
+    check_crs, **how
         As of :func:`tinsmith.read`.
 
     Returns
@@ -374,12 +356,12 @@ def describe_source(
         As :func:`tinsmith.read`, as far as headers tell.
     """
     (file,) = require_paths([path])
-    declared = collect_declared(crs, elevation_unit)
-    with _opened(file, format, declared, options, check_crs) as (inner, call):
+    asked = ask(**how)
+    with _opened(file, asked, check_crs) as (inner, call):
         if call.format.describe is None or inner != file:
             return make_source_header(file, call.format.name)
         found: SourceHeader = call.format.load("describe")(inner, **call.options)
-        require_unit(found.crs, call.stated, options)
+        require_unit(found.crs, call.stated, asked.options)
         return found
 
 
@@ -387,11 +369,8 @@ def read_box(
     path: str | os.PathLike[str],
     bounds: Bounds | Sequence[float],
     *,
-    format: str | None = None,  # noqa: A002 - as in read
-    crs: CrsLike | None = None,
-    elevation_unit: UnitLike | None = None,
     check_crs: bool = True,
-    **options: Any,
+    **how: Any,
 ) -> PointChunk:
     """Read the points of a box where they are in the file, without reading the others.
 
@@ -401,7 +380,7 @@ def read_box(
         A file of which :func:`describe_source` says that it ``has_boxes``.
     bounds : Bounds or (4,) sequence of float
         West, south, east, north in the CRS of the points; the edges belong to it.
-    format, crs, elevation_unit, check_crs, **options
+    check_crs, **how
         As of :func:`tinsmith.read`.
 
     Returns
@@ -418,9 +397,8 @@ def read_box(
         If ``bounds`` are none, or an option counts points over the whole file.
     """
     (file,) = require_paths([path])
-    declared = collect_declared(crs, elevation_unit)
     box = _as_bounds(bounds)
-    with _opened(file, format, declared, options, check_crs) as (inner, call):
+    with _opened(file, ask(**how), check_crs) as (inner, call):
         if call.format.read_box is None or inner != file:
             raise ReadError(f"{FILE} has no order in space: its points cannot be read by box.")
         found: PointChunk = call.format.load("read_box")(inner, box, **call.options)
@@ -428,18 +406,12 @@ def read_box(
 
 
 @contextmanager
-def _opened(
-    file: Path,
-    name: str | None,
-    declared: dict[str, Any],
-    options: dict[str, Any],
-    check_crs: bool,
-) -> Iterator[tuple[Path, Call]]:
+def _opened(file: Path, asked: Asked, check_crs: bool) -> Iterator[tuple[Path, Call]]:
     with ExitStack() as stack:
         stack.enter_context(checking_crs(check_crs))
         stack.enter_context(naming_file(file))
         inner = stack.enter_context(unpack(stack.enter_context(open_ordinary_file(file))))
-        call = prepare_call(inner, name, declared, options)
+        call = prepare_call(inner, asked)
         stack.enter_context(blaming(call.format, inner))
         yield inner, call
 

@@ -114,7 +114,10 @@ def _describe_order(east: str, north: str) -> str:
 
 def is_northing(name: str, xy: Float64Array, crs: CRS, area: AreaOfUse | None) -> bool:
     """Whether a column called X is the northing, as its CRS says and the area of use allows."""
-    if parse_name(name).kind != "axis" or not _points_north(crs, "x"):
+    if parse_name(name).kind != "axis" or not any(
+        axis.abbrev.casefold() == "x" and axis.direction == "north"
+        for axis in crs.to_pyproj().axis_info
+    ):
         return False
     return area is None or not area.covers_most(xy) or area.covers_most(xy[:, ::-1])
 
@@ -126,13 +129,6 @@ def describe_turn(crs: CRS, east: str, north: str) -> str:
 
 def _name_turn(east: str, north: str) -> str:
     return f"'{shorten(east)}' is taken as the northing and '{shorten(north)}' as the easting"
-
-
-def _points_north(crs: CRS, name: str) -> bool:
-    return any(
-        axis.abbrev.casefold() == name and axis.direction == "north"
-        for axis in crs.to_pyproj().axis_info
-    )
 
 
 def are_named_plainly(columns: Columns) -> bool:

@@ -450,7 +450,7 @@ def require_no_split_decimals(body: Sequence[Sequence[str]], delimiter: str) -> 
     """Refuse rows that may be decimal commas split at a comma: 4,25,7,50 for 4.25 and 7.50."""
     if delimiter != "," or not body:
         return
-    numbers = [i for i in range(len(body[0])) if _are_whole(body, i)]
+    numbers = [i for i in range(len(body[0])) if all(_WHOLE.fullmatch(row[i]) for row in body)]
     start = len(numbers) - 6
     if start not in (0, 1) or numbers != list(range(len(numbers))):
         return
@@ -459,11 +459,6 @@ def require_no_split_decimals(body: Sequence[Sequence[str]], delimiter: str) -> 
             "its commas may be delimiters or decimal marks: say with the option `columns` what the "
             "columns are, or write the table with another delimiter."
         )
-
-
-def _are_whole(body: Sequence[Sequence[str]], column: int) -> bool:
-    """Whether all cells of a column are whole numbers, which may have an exponent."""
-    return all(_WHOLE.fullmatch(row[column]) for row in body)
 
 
 def _may_be_decimals(cell: str) -> bool:

@@ -209,10 +209,7 @@ def _choose_written_columns(
         return {"number": number, **surveyed, "description": description, **others}
     if letters is None:
         return coordinates if is_bare else {**coordinates, **attributes}
-    return _choose_by_letters(letters, {**attributes, **coordinates})
-
-
-def _choose_by_letters(letters: str, available: dict[str, AnyArray]) -> dict[str, AnyArray]:
+    available = {**attributes, **coordinates}
     roles = {"P": "number", "N": "northing", "Y": "northing", "E": "easting", "X": "easting"}
     roles |= {"Z": "elevation", "H": "elevation", "D": "description"}
     chosen: dict[str, AnyArray] = {}

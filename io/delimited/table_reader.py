@@ -277,7 +277,15 @@ class TableReader:
             taken, columns = self._settle_axes(taken, lines, layout)
         self._places.add(taken, columns)
         in_degrees = is_geographic(head.source)
-        odd = _find_odd(taken, lines, layout, columns, in_degrees=in_degrees)
+        numbers, names = (taken.attributes.get(role) for role in ("number", "description"))
+        odd = [
+            *find_odd_elevations(taken.points, in_degrees=in_degrees),
+            *find_repeated_numbers(numbers, taken.rows),
+            *find_rounded_coordinates(lines, taken.rows, layout.delimiter, columns),
+            *find_summary_rows(taken.points, taken.rows, (numbers, names)),
+            *find_commented_points(lines, layout.rows, layout, columns),
+            *(() if layout.columns is None else _find_split(taken, layout, columns)),
+        ]
         if lines.is_last and lines.first > 0 and len(taken.points):
             total = account.total + taken.points[:-1].sum(axis=0)
             odd += describe_sum_row(total, taken.points[-1:], taken.rows[-1:], account.n_taken)
@@ -463,20 +471,6 @@ def _require_no_headings(lines: TextLines, layout: Layout) -> None:
             "axes of the points, behind many of them: write it above the table.",
             lines=[lines.first + 1],
         )
-
-
-def _find_odd(
-    taken: Taken, lines: TextLines, layout: Layout, columns: Columns, *, in_degrees: bool
-) -> list[str]:
-    numbers, names = (taken.attributes.get(role) for role in ("number", "description"))
-    return [
-        *find_odd_elevations(taken.points, in_degrees=in_degrees),
-        *find_repeated_numbers(numbers, taken.rows),
-        *find_rounded_coordinates(lines, taken.rows, layout.delimiter, columns),
-        *find_summary_rows(taken.points, taken.rows, (numbers, names)),
-        *find_commented_points(lines, layout.rows, layout, columns),
-        *(() if layout.columns is None else _find_split(taken, layout, columns)),
-    ]
 
 
 def _find_split(taken: Taken, layout: Layout, columns: Columns) -> list[str]:

@@ -134,7 +134,11 @@ class _Follower:
 
     def _append(self, one: Coded, row: int, marks: tuple[Meaning, ...]) -> None:
         name = one.name
-        self._note_doubts(name, row, marks)
+        is_alone = name not in self.running and "begin" not in marks
+        if is_alone and "end" in marks:
+            self.faults.append(Fault("end without a begin", name, (row,)))
+        if is_alone and "continue" in marks:
+            self.faults.append(Fault("nothing to continue", name, (row,)))
         figure = self.running.get(name)
         if figure is None or "begin" in marks:
             figure = Figure(name, self.rules[one.code], is_begun="begin" in marks)
@@ -148,13 +152,6 @@ class _Follower:
             figure.is_ended = True
             figure.is_closed = "close" in marks
             figure.is_rectangle = "rectangle" in marks
-
-    def _note_doubts(self, name: str, row: int, marks: tuple[Meaning, ...]) -> None:
-        is_alone = name not in self.running and "begin" not in marks
-        if is_alone and "end" in marks:
-            self.faults.append(Fault("end without a begin", name, (row,)))
-        if is_alone and "continue" in marks:
-            self.faults.append(Fault("nothing to continue", name, (row,)))
 
     def finish(self) -> None:
         """Tell of lines that do not end as others do."""

@@ -37,7 +37,7 @@ def is_jobxml(head: bytes) -> bool:
 
 def _make(name: str, description: str, suffix: str, sniff: Callable[[bytes], bool]) -> Format:
     """Describe a format of an instrument."""
-    read = f"{__package__}.instruments.reading:read_{name}"
+    read = f"{__package__}.instruments.{name}:read"
     return Format(
         name=name, description=description, suffixes=(suffix,), read=read, writes=(), sniff=sniff
     )

@@ -44,7 +44,17 @@ def read_each_file(
     made: dict[str, Survey] = {}
     faults: list[NoCodesError] = []
     for name, rows in files.items():
-        part = _choose_rows(survey, rows)
+        # Some points of a survey, without its lines and what is known of it.
+        nothing: dict[str, Any] = dict.fromkeys((*_LINES, "extent", "notes", "findings"), ())
+        part = replace(
+            survey,
+            points=survey.points[rows],
+            attributes={name: column[rows] for name, column in survey.attributes.items()},
+            skipped={},
+            skipped_lines={},
+            row_sources=None if survey.row_sources is None else survey.row_sources.take(rows),
+            **nothing,
+        )
         try:
             made[name] = read(part)
         except NoCodesError as error:
@@ -55,20 +65,6 @@ def read_each_file(
     if len(faults) == len(files):
         raise faults[0]
     return _join(survey, made, list(files.values()))
-
-
-def _choose_rows(survey: Survey, rows: Int64Array) -> Survey:
-    """Return some points of a survey, without its lines and what is known of it."""
-    nothing: dict[str, Any] = dict.fromkeys((*_LINES, "extent", "notes", "findings"), ())
-    return replace(
-        survey,
-        points=survey.points[rows],
-        attributes={name: column[rows] for name, column in survey.attributes.items()},
-        skipped={},
-        skipped_lines={},
-        row_sources=None if survey.row_sources is None else survey.row_sources.take(rows),
-        **nothing,
-    )
 
 
 def _join(survey: Survey, made: dict[str, Survey], rows: Sequence[Int64Array]) -> Survey:

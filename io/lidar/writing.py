@@ -115,7 +115,13 @@ def write(
     attributes = surface.attributes if isinstance(surface, Survey) else {}
     columns = choose_columns(attributes)
     header = make_header(laspy, scaling, columns, surface.crs)
-    _warn_of_unit(surface)
+    unit, crs = surface.elevation_unit, surface.crs
+    stated = None if crs is None else crs.vertical_unit
+    if unit is not None and stated is None:
+        warn(
+            f"{FILE} does not tell the unit of the elevations, the {unit}: its CRS has no "
+            "vertical axis."
+        )
     with replacing(path) as file:
         is_compressed = path.suffix.lower() == ".laz"
         with laspy.LasWriter(file, header, do_compress=is_compressed, closefd=False) as writer:
@@ -225,16 +231,6 @@ def _require_range(name: str, values: AnyArray) -> AnyArray:
             f"numbers from {low} to {high} there."
         )
     return values
-
-
-def _warn_of_unit(surface: TIN | Survey) -> None:
-    unit, crs = surface.elevation_unit, surface.crs
-    stated = None if crs is None else crs.vertical_unit
-    if unit is not None and stated is None:
-        warn(
-            f"{FILE} does not tell the unit of the elevations, the {unit}: its CRS has no "
-            "vertical axis."
-        )
 
 
 # ---------------------------------------------------------------------------- the file

@@ -322,7 +322,12 @@ def _find_faces(mesh: Any) -> _Found:
     if hasattr(mesh, "cells") and hasattr(mesh, "point_data"):
         return _read_meshio(mesh)
     if hasattr(mesh, "faces") and hasattr(mesh, "vertices"):
-        return _read_trimesh(mesh)
+        faces = np.asarray(mesh.faces, np.int64)
+        metadata = getattr(mesh, "metadata", None)
+        about = metadata if isinstance(metadata, Mapping) else {}
+        offsets = np.arange(0, faces.size + 1, 3)
+        points = np.asarray(mesh.vertices, np.float64)
+        return _Found(points, faces.ravel(), offsets, about, None, {}, points.dtype)
     raise PointsError(
         f"Invalid mesh of type {type(mesh).__name__}: a PolyData or UnstructuredGrid of PyVista, a "
         "meshio.Mesh or a trimesh.Trimesh is needed."
@@ -346,15 +351,6 @@ def _read_pyvista(mesh: Any) -> _Found:
         attributes,
         value["dtype"],
     )
-
-
-def _read_trimesh(mesh: Any) -> _Found:
-    faces = np.asarray(mesh.faces, np.int64)
-    metadata = getattr(mesh, "metadata", None)
-    about = metadata if isinstance(metadata, Mapping) else {}
-    offsets = np.arange(0, faces.size + 1, 3)
-    points = np.asarray(mesh.vertices, np.float64)
-    return _Found(points, faces.ravel(), offsets, about, None, {}, points.dtype)
 
 
 def _read_meshio(mesh: Any) -> _Found:

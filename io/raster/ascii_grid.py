@@ -52,7 +52,9 @@ def write(
     """
     name = _choose_band(raster, band)
     nodata = raster.nodata if math.isfinite(raster.nodata) else _NODATA
-    _warn_of_losses(raster)
+    lost = [what for what, there in (("units", raster.units), ("notes", raster.notes)) if there]
+    if lost:
+        warn(f"{FILE} is a text grid, which has no place for {' and '.join(lost)}.")
     with replacing_data_set(path, "asc") as new:
         with new.open("w", encoding="ascii", newline="") as file:
             file.write(_format_head(raster, nodata))
@@ -72,12 +74,6 @@ def _choose_band(raster: Raster, band: str | None) -> str:
     if band not in names:
         raise OptionError("band", band, f"one of {', '.join(names)}, as a text grid holds one")
     return band
-
-
-def _warn_of_losses(raster: Raster) -> None:
-    lost = [what for what, there in (("units", raster.units), ("notes", raster.notes)) if there]
-    if lost:
-        warn(f"{FILE} is a text grid, which has no place for {' and '.join(lost)}.")
 
 
 def _format_head(raster: Raster, nodata: float) -> str:

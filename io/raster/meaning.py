@@ -73,7 +73,13 @@ def _choose_by_words(header: Header, first: int) -> tuple[int, list[str]]:
     levels = [one for one in numbers if _words(header, one) & _ELEVATION]
     levels = [one for one in levels if not _words(header, one) & _ERROR]
     count = header.count
-    _require_one_time(header)
+    # Refuse bands that differ by a time, a depth or another dimension alone.
+    extra = re.findall(r"[^{},]+", header.tags.get("NETCDF_DIM_EXTRA", ""))
+    if header.count > 1 and extra:
+        raise ReadError(
+            f"{FILE} has {header.count} bands, one for each {' and '.join(extra)}: the "
+            "option band chooses the one to read.",
+        )
     if first in levels or (not levels and not _words(header, first) & _ERROR):
         if count == 1:
             return first, []
@@ -87,16 +93,6 @@ def _choose_by_words(header: Header, first: int) -> tuple[int, list[str]]:
         f"'{_label(header, first)}', which is no elevation: the option `band` chooses the one to "
         "read.",
     )
-
-
-def _require_one_time(header: Header) -> None:
-    """Refuse bands that differ by a time, a depth or another dimension alone."""
-    extra = re.findall(r"[^{},]+", header.tags.get("NETCDF_DIM_EXTRA", ""))
-    if header.count > 1 and extra:
-        raise ReadError(
-            f"{FILE} has {header.count} bands, one for each {' and '.join(extra)}: the "
-            "option band chooses the one to read.",
-        )
 
 
 def _turn_depths(header: Header, band: int, notes: list[str]) -> Meaning:

@@ -171,9 +171,6 @@ class _Gathered:
     def _count_left_out(self, kind: str) -> None:
         self._left_out[kind] = self._left_out.get(kind, 0) + 1
 
-    def _number_layer(self, layer: str) -> int:
-        return self._layers.setdefault(_clean(layer), len(self._layers))
-
     # ------------------------------------------------------------------ entities
 
     def take(self, entity: Any, layer: str, *, is_nested: bool) -> None:
@@ -182,7 +179,7 @@ class _Gathered:
         if not self.is_wanted(layer) or self.is_hidden(entity, layer):
             return
         kind = str(entity.dxftype())
-        number = self._number_layer(layer)
+        number = self._layers.setdefault(_clean(layer), len(self._layers))
         if kind == "POINT":
             self._points.extend(entity.dxf.location.xyz)
             self._point_layers.append(number)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from ....base.crs import METRE
 from ...delimited.lines import read_lines
 from .record_lines import describe_head_fault, find_head, parse_coordinate, read_records
-from .records import Book
+from .records import Book, book_reader
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,8 +33,22 @@ _POSITIONS = ("66", "68")
 _OBSERVATIONS = ("67", "70", "79", "80")
 
 
-def read_book(path: Path, *, encoding: str | None = None) -> Book:
-    """Gather the points of a file."""
+@book_reader
+def read(path: Path, *, encoding: str | None = None) -> Book:
+    """Read points of a Trimble DC file; ``elevation_unit`` says which feet a file in feet is in.
+
+    Returns
+    -------
+    Survey
+        Of the grid positions (69) and coordinates (08), with ``number``, ``description`` (the
+        codes), and ``method`` with the method and classification if there are several. Positions of
+        GNSS and observations of points that have no such record are left out and counted.
+
+    Raises
+    ------
+    ReadError
+        If it has no header, a number is none, or no point has coordinates.
+    """
     lines = read_lines(path, encoding=encoding)
     return read_records(lines, _Reader(lines, path))
 

@@ -22,7 +22,7 @@ from ....base.crs import METRE
 from ....base.errors import OptionError, ReadError
 from ....base.sentences import FILE, counted, inflect
 from ...delimited.lines import read_lines
-from .records import Book, require_refraction
+from .records import Book, book_reader, require_refraction
 from .reduction import Shot, Station, reduce_shot, to_radians
 
 if TYPE_CHECKING:
@@ -67,7 +67,8 @@ class _Block:
         return 41 in self.words and 11 not in self.words
 
 
-def read_book(
+@book_reader
+def read(
     path: Path,
     *,
     encoding: str | None = None,
@@ -75,7 +76,29 @@ def read_book(
     oriented: bool = False,
     refraction: float | None = None,
 ) -> Book:
-    """Gather the points of a file, with the codes that are theirs, and reduce shots."""
+    """Read points of a Leica GSI file.
+
+    Parameters
+    ----------
+    code_blocks : {"before", "after"}, optional
+        Whether a block of codes (word 41) stands before or after the point that it is for; default
+        where the first and last block show it.
+    oriented : bool, optional
+        Whether the circle reads azimuths, so that shots without coordinates are reduced.
+    refraction : float, optional
+        Coefficient of refraction by which shots are corrected, with the earth's curvature.
+
+    Returns
+    -------
+    Survey
+        With ``number``, and ``description`` of the remarks (word 71) or codes (41). Shots without
+        coordinates are reduced where station, heights and orientation are known, and else left out.
+
+    Raises
+    ------
+    ReadError
+        If a word is no word, lengths are in feet and in metres, or no point has coordinates.
+    """
     if code_blocks not in (None, "before", "after"):
         raise OptionError("code_blocks", code_blocks, ("before", "after"))
     coefficient = require_refraction(refraction)

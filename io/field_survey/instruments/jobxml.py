@@ -16,7 +16,7 @@ from xml.parsers import expat
 from ....base.errors import ReadError
 from ....base.sentences import FILE, counted, inflect
 from .record_lines import parse_coordinate
-from .records import Book
+from .records import Book, book_reader
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -35,8 +35,25 @@ _LONGEST = 10_000
 _CHUNK = 1 << 20
 
 
-def read_book(path: Path) -> Book:
-    """Gather the points of a file."""
+@book_reader
+def read(path: Path) -> Book:
+    """Read points of a Trimble JobXML file.
+
+    The file names its coordinate system in words of its own: ``crs`` is that of the grid
+    coordinates, whose metres are converted to its unit; of units only the metre is taken.
+
+    Returns
+    -------
+    Survey
+        With ``number``, ``description`` (the codes), and ``method`` if there are several. Points
+        that are deleted, or have no position in the grid, are left out and counted.
+
+    Raises
+    ------
+    ReadError
+        If it is no well-formed JobXML, declares a document type, has a grid that does not count
+        to north and east, or no point has coordinates.
+    """
     reader = _Reader(path)
     parser = expat.ParserCreate()
     parser.buffer_text = True

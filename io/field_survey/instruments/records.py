@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import wraps
+from inspect import signature
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +21,7 @@ from ...reprojection.placement import place, settle_unit
 from .reduction import NOT_APPLIED
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from ....base.crs import CrsLike, UnitLike
@@ -167,6 +169,32 @@ class Book:
             return []
         points = inflect(f"{counted(count, 'point')} [is|are]", count)
         return [f"{points} reduced from angles and distances, with {NOT_APPLIED} applied."]
+
+
+def book_reader(gather: Callable[..., Book]) -> Callable[..., Survey]:
+    """Make a reader of a function that gathers what a file holds, by its path and options.
+
+    The reader takes ``crs``, ``elevation_unit`` and ``source_crs`` too.
+    """
+
+    @wraps(gather)
+    def read(
+        path: Path,
+        *,
+        crs: CrsLike | None = None,
+        elevation_unit: UnitLike | None = None,
+        source_crs: CrsLike | None = None,
+        **options: Any,
+    ) -> Survey:
+        book = gather(path, **options)
+        return book.make_survey(crs=crs, elevation_unit=elevation_unit, source_crs=source_crs)
+
+    usual = signature(read, follow_wrapped=False).parameters
+    own = dict(signature(gather).parameters)
+    place, *texts = [own.pop(name) for name in ("path", "encoding") if name in own]
+    order = [place, usual["crs"], usual["elevation_unit"], *texts, usual["source_crs"]]
+    vars(read)["__signature__"] = signature(gather).replace(parameters=[*order, *own.values()])
+    return read
 
 
 def _describe_left_out(what: str, lines: Sequence[int]) -> str:

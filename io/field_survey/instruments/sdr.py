@@ -22,7 +22,7 @@ from ....base.sentences import FILE
 from ...delimited.cells import is_number
 from ...delimited.lines import read_lines
 from .record_lines import describe_head_fault, find_head, read_records
-from .records import Book, require_refraction
+from .records import Book, book_reader, require_refraction
 from .reduction import Shot, Station, reduce_shot, to_radians
 
 if TYPE_CHECKING:
@@ -56,8 +56,23 @@ class _Columns:
 _VERSIONS = {"SDR33": _Columns(16, 16), "SDR2": _Columns(4, 10)}
 
 
-def read_book(path: Path, *, encoding: str | None = None, refraction: float | None = None) -> Book:
-    """Gather the points of a file, and reduce observations."""
+@book_reader
+def read(path: Path, *, encoding: str | None = None, refraction: float | None = None) -> Book:
+    """Read points of an SDR file.
+
+    Parameters
+    ----------
+    refraction : float, optional
+        Coefficient of refraction by which shots are corrected, with the earth's curvature.
+
+    Returns
+    -------
+    Survey
+        Of the records of coordinates (08). Observations (09F1, 09F2) of points that have none are
+        reduced where station, back bearing and height of the target are known, and else left out;
+        so are those that the instrument has corrected itself (09MC), of which the file does not say
+        by what.
+    """
     coefficient = require_refraction(refraction)
     lines = read_lines(path, encoding=encoding)
     return read_records(lines, _Reader(lines, path, coefficient))
