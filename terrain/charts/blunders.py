@@ -76,7 +76,9 @@ def blunder_map(tin: TIN, table: Table, *, title: str | None = None) -> Any:
         raise OptionError("table", table, "one of ts.blunders")
     if len(table) and table["row"].max() >= len(tin.vertex_of):
         raise OptionError("table", table, f"one of the {len(tin.vertex_of)} points of the surface")
-    ground, table = _leave_out(tin, table), _turn(table, tin)
+    x, y = turn_into_drawing(np.column_stack([table["x"], table["y"]]), tin.crs).T
+    ground = _leave_out(tin, table)
+    table = replace(table, columns={**table.columns, "x": x, "y": y})
     drawn = start_map(
         ground,
         parse_title(title, "Points that look like blunders"),
@@ -103,12 +105,6 @@ def _leave_out(tin: TIN, table: Table) -> TIN:
     except TinsmithError:
         return tin
     return rest
-
-
-def _turn(table: Table, drawn: TIN) -> Table:
-    """Return the findings with the places that they have in the drawing."""
-    x, y = turn_into_drawing(np.column_stack([table["x"], table["y"]]), drawn.crs).T
-    return replace(table, columns={**table.columns, "x": x, "y": y})
 
 
 def _mark(drawn: Map, table: Table) -> None:

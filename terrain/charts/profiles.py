@@ -104,7 +104,10 @@ def profile_picture(
     rows = len(surfaces) + 1 + (len(surfaces) == 2)
     figure, axes, band = _start_figure(scale, rows)
     write_title(figure, heading, left=_LEFT, drop=0.42)
-    _write_caption(figure, scale, system)
+    text = curves.describe_drawing(system, scale.exaggeration)
+    width, height = figure.get_size_inches()
+    how = {"fontsize": 9, "color": INK, "parse_math": False}
+    figure.text(_LEFT / width, 1 - 0.68 / height, text, **how)
     curves.draw(axes, surfaces, marks, scale.elevations[0])
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=6, frameon=False, fontsize=9)
     _dress(axes, scale, up.caption("elevation"))
@@ -160,13 +163,6 @@ def _start_figure(scale: _Scale, rows: int) -> tuple[Any, Any, Any]:
     axes = figure.add_axes((left, (_BELOW + band) / height, across, scale.height / height))
     below = figure.add_axes((left, _BELOW / height, across, band / height), sharex=axes)
     return figure, axes, below
-
-
-def _write_caption(figure: Any, scale: _Scale, crs: CRS | None) -> None:
-    text = curves.describe_drawing(crs, scale.exaggeration)
-    width, height = figure.get_size_inches()
-    how = {"fontsize": 9, "color": INK, "parse_math": False}
-    figure.text(_LEFT / width, 1 - 0.68 / height, text, **how)
 
 
 def _dress(axes: Any, scale: _Scale, label: str) -> None:

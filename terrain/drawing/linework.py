@@ -112,7 +112,11 @@ def add_lines(plotter: Any, tin: TIN, points: Float64Array, *, factor: float = 1
         if pen.is_dashed:
             extent = float(np.ptp(points[:, :2], axis=0).max())
             ends = cut_into_dashes(ends, pairs, _DASH_SHARE * extent)
-        actors.append(_draw_edges(plotter, ends, pen, factor))
+        pv = optional.load("pyvista", _PURPOSE)
+        count = len(ends)
+        cells = np.column_stack([np.full(count, 2), np.arange(2 * count).reshape(count, 2)])
+        mesh = pv.PolyData(ends.reshape(-1, 3), lines=cells.ravel())
+        actors.append(_draw(plotter, mesh, pen.color, pen.width * factor))
     return actors
 
 
@@ -138,15 +142,6 @@ def cut_into_dashes(ends: Float64Array, pairs: Int32Array, length: float) -> Flo
     edge, cut = edge[kept], cut[kept, :, None]
     made: Float64Array = ends[edge, :1] + cut * (ends[edge, 1:] - ends[edge, :1])
     return made
-
-
-def _draw_edges(plotter: Any, ends: Float64Array, pen: _Pen, factor: float) -> Any:
-    pv = optional.load("pyvista", _PURPOSE)
-
-    count = len(ends)
-    cells = np.column_stack([np.full(count, 2), np.arange(2 * count).reshape(count, 2)])
-    mesh = pv.PolyData(ends.reshape(-1, 3), lines=cells.ravel())
-    return _draw(plotter, mesh, pen.color, pen.width * factor)
 
 
 def _draw(plotter: Any, mesh: Any, color: Color, width: float) -> Any:

@@ -48,17 +48,13 @@ def as_plane(base: Any) -> Plane:
         raise OptionError("base", base, allowed="finite")
     if given.shape == ():
         return Plane((0.0, 0.0, float(given)))
-    return _fit_plane(given)
-
-
-def _fit_plane(points: Float64Array) -> Plane:
-    first, second = points[1] - points[0], points[2] - points[0]
+    first, second = given[1] - given[0], given[2] - given[0]
     doubled = first[0] * second[1] - first[1] * second[0]
     if doubled == 0.0:
-        raise OptionError("base", points.tolist(), allowed="three points that are not on one line")
+        raise OptionError("base", given.tolist(), allowed="three points that are not on one line")
     east = (first[2] * second[1] - second[2] * first[1]) / doubled
     north = (second[2] * first[0] - first[2] * second[0]) / doubled
-    x, y, z = points[0].tolist()
+    x, y, z = given[0].tolist()
     return Plane((x, y, z), float(east), float(north))
 
 

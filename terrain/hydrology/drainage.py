@@ -29,9 +29,8 @@ from .water_bodies import BOUNDARY_NOTE
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...base.arrays import Float64Array, Int32Array, Int64Array, ObjectArray
+    from ...base.arrays import Float64Array, Int32Array, Int64Array
     from ...tin import TIN
-    from .filling import Filling
     from .networks import Network
 
 
@@ -212,7 +211,9 @@ def flow_accumulation(
     coordinates = tin.points[pairs[chosen]].reshape(-1, 3)
     notes: tuple[str, ...] = (BOUNDARY_NOTE,)
     if filling is not None:
-        columns["kind"] = _find_kinds(filling, start, end)
+        is_level = filling.levels[start] == filling.levels[end]
+        is_wet = (filling.ponds[start] != NOWHERE) | (filling.ponds[end] != NOWHERE)
+        columns["kind"] = KINDS[np.where(is_level, np.where(is_wet, POND, FLAT_GROUND), DESCENT)]
         coordinates[:, 2] = filling.levels[pairs[chosen]].ravel()
         notes += (FILLED_NOTE,)
     done.end()
@@ -226,14 +227,6 @@ def flow_accumulation(
         name="flow accumulation",
         notes=[*reference.notes, *notes],
     )
-
-
-def _find_kinds(filling: Filling, start: Int64Array, end: Int64Array) -> ObjectArray:
-    """Tell which edges lead across water or level ground."""
-    is_level = filling.levels[start] == filling.levels[end]
-    is_wet = (filling.ponds[start] != NOWHERE) | (filling.ponds[end] != NOWHERE)
-    kinds: ObjectArray = KINDS[np.where(is_level, np.where(is_wet, POND, FLAT_GROUND), DESCENT)]
-    return kinds
 
 
 def _label(network: Network, numbers: Int32Array) -> tuple[Int32Array, Int32Array]:

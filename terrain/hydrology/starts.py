@@ -58,7 +58,12 @@ class _Start:
         """Follow the fall line to the edge where it leaves the triangle."""
         signs = self._walker.falls.signs[self._triangle].tolist()
         if not any(signs):
-            return self._start_on_level_ground(drop)
+            filling = self._walker.filling
+            if filling is None:
+                drop.ends[0] = FLAT
+            else:
+                drop.targets[:] = filling.choose_way(*np.array(self._corners)[:, None])
+            return drop
         values = [self._measure(k) for k in range(3)]
         for k in range(3):
             if signs[k] <= 0:
@@ -67,14 +72,6 @@ class _Start:
             if 0 <= share <= 1:
                 edge, rounded = k, round_share(float(share))
         return self._walker.arrive(*(np.array([one]) for one in (self._triangle, edge, rounded)))
-
-    def _start_on_level_ground(self, drop: Drops) -> Drops:
-        filling = self._walker.filling
-        if filling is None:
-            drop.ends[0] = FLAT
-        else:
-            drop.targets[:] = filling.choose_way(*np.array(self._corners)[:, None])
-        return drop
 
     def _find_share(self, k: int, values: list[Fraction]) -> Fraction:
         """Return where the fall line meets the line of edge k, from corner k + 1 on.

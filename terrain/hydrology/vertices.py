@@ -115,16 +115,11 @@ def _list_candidates(falls: Falls, half_edges: HalfEdges, vertices: Int64Array) 
         np.empty(len(slot)),
     )
     edges, inside = kind != 2, np.flatnonzero(kind == 2)
-    found.slopes[edges] = _measure_edges(falls, start[slot[edges]], ends[edges])
-    found.slopes[inside] = _measure_triangles(falls, found.triangles[inside])
-    return found
-
-
-def _measure_edges(falls: Falls, starts: Int64Array, ends: Int64Array) -> Float64Array:
-    step = falls.points[ends] - falls.points[starts]
+    step = falls.points[ends[edges]] - falls.points[start[slot[edges]]]
     slopes = -step[:, 2] / np.hypot(step[:, 0], step[:, 1])
     # Of a fall that underflows there is still a descent.
-    found: Float64Array = np.maximum(slopes, 5e-324)
+    found.slopes[edges] = np.maximum(slopes, 5e-324)
+    found.slopes[inside] = _measure_triangles(falls, found.triangles[inside])
     return found
 
 

@@ -219,7 +219,9 @@ def _list_waters(tin: TIN, found: Hierarchy, chosen: Int64Array) -> Waters:
     levels = z[found.spill_vertices]
     numbers = np.full(len(found.pits) + 1, NOWHERE)
     numbers[chosen] = np.arange(len(chosen))
-    outward = _skip_to(found.parents, numbers)
+    # Each depression itself, or the innermost that it is part of and that has a number.
+    own = np.where(numbers[:-1] != NOWHERE, np.arange(len(found.parents)), found.parents)
+    outward = follow_to_end(np.append(own, NOWHERE))
     around = outward[found.basins]
     vertices = np.flatnonzero(around != NOWHERE)
     around = around[vertices]
@@ -235,15 +237,6 @@ def _list_waters(tin: TIN, found: Hierarchy, chosen: Int64Array) -> Waters:
         around = outward[found.parents[around]]
         vertices, around = vertices[around != NOWHERE], around[around != NOWHERE]
     return _gather_triangles(tin, wet, waters, levels[chosen])
-
-
-def _skip_to(parents: Int64Array, numbers: Int64Array) -> Int64Array:
-    """Return for each depression itself if it has a number, else what it is part of that has one.
-
-    The last one returned is for ``NOWHERE``.
-    """
-    own = np.where(numbers[:-1] != NOWHERE, np.arange(len(parents)), parents)
-    return follow_to_end(np.append(own, NOWHERE))
 
 
 def _gather_triangles(

@@ -20,7 +20,7 @@ from ..surface import (
 )
 
 if TYPE_CHECKING:
-    from ...base.arrays import BoolArray, Float64Array, Int32Array, ObjectArray
+    from ...base.arrays import Float64Array, Int32Array, ObjectArray
     from ...tin import TIN
 
 _ROUNDINGS = 32.0
@@ -39,7 +39,11 @@ def rebuild_wrong_bands(
     in the right order. The part of each triangle in a band is convex, and GEOS joins these to valid
     polygons.
     """
-    wrong = np.flatnonzero(_find_wrong(tin, levels, parts))
+    under = _kernel.stage_sums(tin.points, tin.triangles, levels, 1.0)[:, 0]
+    area, rounding = float(tin.triangulation.area), measure_rounding(tin.points)
+    extent = float(np.ptp(tin.points[:, :2], axis=0).sum())
+    off, slack = measure_off(parts, under, area, slack_of=(rounding, extent))
+    wrong = np.flatnonzero(off > slack)
     if len(wrong) == 0:
         return parts, ()
     shapes, numbers = _list_shapes(parts)
@@ -57,16 +61,6 @@ def rebuild_wrong_bands(
         "single triangles."
     )
     return as_parts(every[order], number[order]), (note,)
-
-
-def _find_wrong(tin: TIN, levels: Float64Array, parts: PolygonParts) -> BoolArray:
-    """Tell which bands have another area than the surface has between their levels."""
-    under = _kernel.stage_sums(tin.points, tin.triangles, levels, 1.0)[:, 0]
-    area, rounding = float(tin.triangulation.area), measure_rounding(tin.points)
-    extent = float(np.ptp(tin.points[:, :2], axis=0).sum())
-    off, slack = measure_off(parts, under, area, slack_of=(rounding, extent))
-    wrong: BoolArray = off > slack
-    return wrong
 
 
 def measure_off(

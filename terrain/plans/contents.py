@@ -171,15 +171,6 @@ def _gather_marks(tin: TIN, survey: Survey | None, points: str) -> Marks:
             "points", points, "'marks' or 'elevations' where there is no survey with point numbers"
         )
     xyz = tin.points if survey is None else survey.points
-    _require_same_unit(tin, survey)
-    return Marks(
-        xyz[:, :2],
-        [clean_text(str(number)) for number in numbers] if has_numbers else [],
-        write_elevations(xyz[:, 2]) if points in ("elevations", "both") else [],
-    )
-
-
-def _require_same_unit(tin: TIN, survey: Survey | None) -> None:
     known = [one.elevation_unit for one in (tin, survey) if one is not None]
     if None not in known and known[0] != known[-1]:
         raise OptionError(
@@ -187,6 +178,11 @@ def _require_same_unit(tin: TIN, survey: Survey | None) -> None:
             f"with elevations in {known[-1]}",
             f"one with elevations in {known[0]}, as those of the surface",
         )
+    return Marks(
+        xyz[:, :2],
+        [clean_text(str(number)) for number in numbers] if has_numbers else [],
+        write_elevations(xyz[:, 2]) if points in ("elevations", "both") else [],
+    )
 
 
 def write_elevations(elevations: Iterable[float]) -> list[str]:

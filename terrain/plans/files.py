@@ -69,20 +69,16 @@ def write_sheets(
     optional.load("matplotlib", PURPOSE)
     with drawing_rules():
         if kind == "pdf":
-            _write_pages(files[0], canvases, title)
+            pages = optional.load("matplotlib.backends.backend_pdf", PURPOSE).PdfPages
+            with (
+                replacing(files[0]) as stream,
+                pages(stream, metadata={**METADATA["pdf"], "Title": title}) as document,
+            ):
+                for canvas in canvases:
+                    document.savefig(canvas.figure)
         else:
             _write_each(files, canvases, kind, dpi)
     return files
-
-
-def _write_pages(file: Path, canvases: Iterator[Canvas], title: str) -> None:
-    pages = optional.load("matplotlib.backends.backend_pdf", PURPOSE).PdfPages
-    with (
-        replacing(file) as stream,
-        pages(stream, metadata={**METADATA["pdf"], "Title": title}) as document,
-    ):
-        for canvas in canvases:
-            document.savefig(canvas.figure)
 
 
 def _write_each(files: list[Path], canvases: Iterator[Canvas], kind: str, dpi: int) -> None:

@@ -350,7 +350,11 @@ def plan(
     unit = find_ground_unit(tin.crs, ground_unit)
     line, notes = _as_axis(axis, tin, layout)
     tin, survey = draw_north_up(tin), draw_north_up(survey)
-    ground = _find_ground(tin, unit)
+    shapely = optional.load("shapely")
+    if len(tin.triangles) == 0:
+        raise PointsError("The TIN has no triangle: there is nothing to draw.")
+    footprint = find_footprint(tin)
+    ground = Ground(Bounds.of(shapely.get_coordinates(footprint.faces)), footprint, unit)
     factor = measure_scale_factor(tin.crs, *undo_north_up(ground.bounds.center, tin.crs))
     chosen = None if scale is None else Scale.of(scale, ground.unit)
     contents = gather_contents(
@@ -382,14 +386,6 @@ class _Wording(NamedTuple):
         words = clean_text(parse_text("date", "" if date is None else date))
         given = clean_text(parse_text("title", "" if title is None else title))
         return cls(given or "Terrain surface", words)
-
-
-def _find_ground(tin: TIN, unit: Unit) -> Ground:
-    shapely = optional.load("shapely")
-    if len(tin.triangles) == 0:
-        raise PointsError("The TIN has no triangle: there is nothing to draw.")
-    footprint = find_footprint(tin)
-    return Ground(Bounds.of(shapely.get_coordinates(footprint.faces)), footprint, unit)
 
 
 def _as_axis(axis: Any, tin: TIN, layout: str) -> tuple[Float64Array | None, list[str]]:

@@ -89,7 +89,11 @@ def curvature(
     require_tin(tin)
     choice("kind", kind, CurvatureKind)
     choice("per", per, SurfacePart)
-    derivatives = _fit(tin)
+    points, triangles = tin.triangulation.points, tin.triangulation.triangles
+    scales = find_scales(tin.crs, tin.elevation_unit, points[:, 1])
+    east, north = (np.atleast_1d(np.asarray(side, np.float64)) for side in scales[:2])
+    threads = thread_count(None, len(points))
+    derivatives = _kernel.fit_quadratics(points, triangles, east, north, scales.up, threads)
     found = np.empty(derivatives.shape[1])
     for start in range(0, len(found), _CHUNK):
         rows = slice(start, start + _CHUNK)
@@ -103,15 +107,6 @@ def curvature(
     if per == "triangle":
         found = found[tin.triangles].mean(axis=1)
     return found
-
-
-def _fit(tin: TIN) -> Float64Array:
-    """Return the derivatives of the quadratic surface that fits around each vertex, (5, n)."""
-    points, triangles = tin.triangulation.points, tin.triangulation.triangles
-    scales = find_scales(tin.crs, tin.elevation_unit, points[:, 1])
-    east, north = (np.atleast_1d(np.asarray(side, np.float64)) for side in scales[:2])
-    threads = thread_count(None, len(points))
-    return _kernel.fit_quadratics(points, triangles, east, north, scales.up, threads)
 
 
 # ------------------------------------------------------------------------------ formulas

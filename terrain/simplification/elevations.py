@@ -95,18 +95,15 @@ class Elevations:
     def read(self, block: Block) -> Float64Array:
         """Return the elevations of a block, not to be changed; the last one is kept."""
         if self._last is None or self._last[0] != block:
-            self._last = block, seal(self._read(block))
+            band = np.asarray(self._band[block.rows, block.columns])
+            z = np.array(band, np.float64)
+            is_finite = np.isfinite(z)
+            if not is_finite.all():
+                z[~is_finite] = np.nan
+            if not np.isnan(self._nodata):
+                z[band == self._nodata] = np.nan
+            self._last = block, seal(z)
         return self._last[1]
-
-    def _read(self, block: Block) -> Float64Array:
-        band = np.asarray(self._band[block.rows, block.columns])
-        z = np.array(band, np.float64)
-        is_finite = np.isfinite(z)
-        if not is_finite.all():
-            z[~is_finite] = np.nan
-        if not np.isnan(self._nodata):
-            z[band == self._nodata] = np.nan
-        return z
 
     def is_rectangle(self, rings: Sequence[Int64Array]) -> bool:
         """Whether rings are the outer cells of the raster."""

@@ -113,18 +113,14 @@ def aim(
     right, up, _ = view.axes
     across, along = points @ right, points @ up
     drawn = Bounds(across.min(), along.min(), across.max(), along.max())
-    scale = _fit(drawn, frame)
+    # Seen from the side what is drawn may have no height.
+    sides = ((frame.width, drawn.width), (frame.height, drawn.height))
+    scale = min((room / side for room, side in sides if side > 0), default=1.0)
     middle = [
         part - (spot - full / 2) / scale
         for part, spot, full in zip(drawn.center, frame.center, size, strict=True)
     ]
     place_camera(camera, points, view=view, middle=(middle[0], middle[1]), height=size[1] / scale)
-
-
-def _fit(drawn: Bounds, frame: Bounds) -> float:
-    """Return the scale at which what is drawn fits; seen from the side it may have no height."""
-    sides = ((frame.width, drawn.width), (frame.height, drawn.height))
-    return min((room / side for room, side in sides if side > 0), default=1.0)
 
 
 def place_camera(

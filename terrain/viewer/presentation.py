@@ -139,7 +139,13 @@ class Preview:
         """
         file = _require_path(path)
         if file.suffix.lower() in PAGE_SUFFIXES:
-            self._write_page(file)
+            page = self.to_html()
+            try:
+                with replacing(file) as stream:
+                    stream.write(page.encode("utf-8"))
+            except OSError as error:
+                reason = getattr(error, "strerror", None) or error
+                raise RenderError(f"Cannot write '{file}': {reason}.") from error
         else:
             write_picture(self._require_one("A picture"), file, self._look, self._ortho)
         return file
@@ -208,15 +214,6 @@ class Preview:
         page = escape(self.to_html(), quote=True)
         style = f"width: 100%; height: {_FRAME_HEIGHT}px; border: 0"
         return f'<iframe srcdoc="{page}" style="{style}" title="Terrain in 3D"></iframe>'
-
-    def _write_page(self, file: Path) -> None:
-        page = self.to_html()
-        try:
-            with replacing(file) as stream:
-                stream.write(page.encode("utf-8"))
-        except OSError as error:
-            reason = getattr(error, "strerror", None) or error
-            raise RenderError(f"Cannot write '{file}': {reason}.") from error
 
     def _require_one(self, what: str) -> TIN:
         if len(self._surfaces) > 1:

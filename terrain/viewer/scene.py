@@ -280,7 +280,10 @@ def _make_title_block(
         ground.crs_name,
     ]
     if corridor is not None and strips is not None:
-        parts.append(_describe_strips(strips, ground))
+        length = format_number(strips.length, step=1.0 if strips.length >= 100 else 0.01)
+        unit = f" {ground.unit.symbol}" if ground.unit.symbol else ""
+        strip = counted(len(strips.lows), "strip")
+        parts.append(f"{strip} of {length}{unit}, to read from left to right, then down")
     ends = options.elevations or (shown.low, shown.high)
     return TitleBlock(
         title=" ".join(options.title.split()),
@@ -294,13 +297,6 @@ def _make_title_block(
         palette=options.palette,
         legend=measure_tint(tin, options.tint, ends, ground.elevation_caption)[1],
     )
-
-
-def _describe_strips(strips: Strips, ground: Ground) -> str:
-    length = format_number(strips.length, step=1.0 if strips.length >= 100 else 0.01)
-    unit = f" {ground.unit.symbol}" if ground.unit.symbol else ""
-    strip = counted(len(strips.lows), "strip")
-    return f"{strip} of {length}{unit}, to read from left to right, then down"
 
 
 def _warn(tin: TIN, options: PreviewOptions, shown: ElevationRange) -> str:

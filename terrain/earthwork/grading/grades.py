@@ -107,7 +107,7 @@ def grade(
     fill = -1.0 / (_require_ratio("fill_slope", fill_slope) * up)
     polygon, level = _read_pad(pad, elevation)
     area = find_area(tin)
-    _require_on_ground(area, polygon)
+    _require_on_ground(area, polygon, "The pad lies off")
     local = tin.replace(crs=None, elevation_unit=None)
     used = tin.points[tin.triangles, 2]
     farthest = {cut: (used.max() - level) / cut, fill: (used.min() - level) / fill}
@@ -120,7 +120,8 @@ def grade(
             slopes.append(slope)
         done(number * _SLOPE)
     patch = build_patch(tin, polygon, level, slopes)
-    _require_within(area, patch)
+    most = _SHARE * patch.area
+    _require_on_ground(area, find_area(patch), "A slope reaches beyond", most)
     done(0.5)
     agreed = Agreement(tin.crs, tin.elevation_unit, (1.0, 1.0), reference.notes)
     graded = join_surfaces(tin, patch, agreed, area, "daylight", progress=done.stage(0.5, 1.0))
@@ -166,26 +167,14 @@ def _find_level(ring: Float64Array) -> float:
     return low
 
 
-def _require_within(area: Any, patch: TIN) -> None:
+def _require_on_ground(area: Any, shape: Any, what: str, most: float = 0.0) -> None:
+    """Refuse a shape of which more lies off the ground than an area."""
     import shapely
 
-    beyond = shapely.difference(find_area(patch), area)
-    if beyond.area > _SHARE * patch.area:
+    beyond = shapely.difference(shape, area)
+    if beyond.area > most or (most == 0.0 and not beyond.is_empty):
         place = shapely.point_on_surface(beyond)
-        raise PointsError(
-            f"A slope reaches beyond the ground, at {coordinate(place.x)} {coordinate(place.y)}."
-        )
-
-
-def _require_on_ground(area: Any, pad: Any) -> None:
-    import shapely
-
-    beyond = shapely.difference(pad, area)
-    if not beyond.is_empty:
-        place = shapely.point_on_surface(beyond)
-        raise PointsError(
-            f"The pad lies off the ground, at {coordinate(place.x)} {coordinate(place.y)}."
-        )
+        raise PointsError(f"{what} the ground, at {coordinate(place.x)} {coordinate(place.y)}.")
 
 
 def build_patch(tin: TIN, pad: Any, level: float, slopes: list[Slope]) -> TIN:
