@@ -1,5 +1,6 @@
 """What products share: places, lines and polygons on a surface, and its measures."""
 
+from ...base.georeference import Reference
 from .breaks import CROSSED, Breaks, Segments, as_segments, trace_breaks
 from .dissolving import (
     DividedMesh,
@@ -42,7 +43,6 @@ from .polygons import (
 )
 from .reference import (
     Pieces,
-    Reference,
     Surface,
     agree_on_reference,
     cut_pieces,

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.checks import require_tin
-from ...base.crs import scale_elevations
 from ...base.errors import CrsError, PointsError
-from ...base.georeference import agree, describe_unknown, find_plane_units
+from ...base.georeference import Reference, agree
 from ...tin import topology
 from ...tin.predicates import columns, orientation
 from .. import _kernel
@@ -18,26 +17,8 @@ from .. import _kernel
 if TYPE_CHECKING:
     from ...base.arrays import AnyArray, Float64Array, Int32Array, Int64Array
     from ...base.crs import CRS, Unit
-    from ...base.georeference import PlaneUnits, Referenced
+    from ...base.georeference import Referenced
     from ...tin import TIN
-
-
-@dataclass(frozen=True, slots=True)
-class Reference:
-    """Units of what is measured on a surface."""
-
-    crs: CRS | None
-    elevation_unit: Unit | None
-    """None if it is not known."""
-    up: float
-    """Factor from elevations to the unit of eastings."""
-    notes: tuple[str, ...]
-    """What is not known, was assumed or converted."""
-
-    @property
-    def units(self) -> PlaneUnits:
-        """Units of lengths, areas and volumes."""
-        return find_plane_units(self.crs)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,7 +52,7 @@ def find_reference(tin: TIN, purpose: str) -> Reference:
 def make_reference(crs: CRS | None, unit: Unit | None, purpose: str) -> Reference:
     """Return the units of a CRS and of elevations; errors as of :func:`find_reference`."""
     _require_lengths(crs, purpose)
-    return Reference(crs, unit, scale_elevations(crs, unit), describe_unknown(crs, unit))
+    return Reference.of(crs, unit)
 
 
 def find_common_reference(tin: TIN, other: TIN, purpose: str) -> tuple[Reference, Surface, Surface]:
@@ -81,26 +62,22 @@ def find_common_reference(tin: TIN, other: TIN, purpose: str) -> tuple[Reference
     """
     for one in (tin, other):
         require_tin(one)
-    reference, factors = agree_on_reference(tin, other, purpose)
+    reference = agree_on_reference(tin, other, purpose)
     first, second = (
         Surface(_scale_up(one.triangulation.points, factor), one.triangulation.triangles)
-        for one, factor in zip((tin, other), factors, strict=True)
+        for one, factor in zip((tin, other), reference.factors, strict=True)
     )
     return reference, first, second
 
 
-def agree_on_reference(
-    one: Referenced, other: Referenced, purpose: str
-) -> tuple[Reference, tuple[float, ...]]:
+def agree_on_reference(one: Referenced, other: Referenced, purpose: str) -> Reference:
     """Return the units of two surfaces, and the factors from the elevations of each to them.
 
     Errors as of :func:`find_common_reference`.
     """
     for each in (one, other):
         _require_lengths(each.crs, purpose)
-    found = agree((one, other), ("the first surface", "the other surface"))
-    up = scale_elevations(found.crs, found.elevation_unit)
-    return Reference(found.crs, found.elevation_unit, up, found.notes), found.factors
+    return agree((one, other), ("the first surface", "the other surface"))
 
 
 def _scale_up(points: Float64Array, factor: float) -> Float64Array:

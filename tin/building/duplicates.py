@@ -12,7 +12,7 @@ from ...base.sentences import height, inflect
 from ..validation.points import SHOWN
 
 if TYPE_CHECKING:
-    from ...base.arrays import AnyArray, Float64Array, Int32Array, Int64Array
+    from ...base.arrays import Float64Array, Int32Array, Int64Array
 
 
 class Merged(NamedTuple):
@@ -67,7 +67,7 @@ def merge_rows(
 
 
 def choose_elevations(
-    elevations: Float64Array, offsets: AnyArray, policy: DuplicatePolicy
+    elevations: Float64Array, offsets: Int32Array | Int64Array, policy: DuplicatePolicy
 ) -> Float64Array:
     """Return the elevation for each group of rows; ``offsets`` tell where groups begin and end."""
     starts, ends = offsets[:-1], offsets[1:]

@@ -85,10 +85,11 @@ def require_writable(path: Path) -> None:
     """
     with _finding_target(path) as target:
         if not os.access(target.parent, os.W_OK | os.X_OK):
-            raise WriteError(
-                f"Cannot write '{path}': the folder '{path.parent}' may not be written to.",
-                path=path,
-            )
+            raise _refuse(path, f"the folder '{path.parent}' may not be written to")
+
+
+def _refuse(path: Path, why: str) -> WriteError:
+    return WriteError(f"Cannot write '{path}': {why}.", path=path)
 
 
 @contextmanager
@@ -97,17 +98,12 @@ def _finding_target(path: Path) -> Iterator[Path]:
     with _translate_faults(path):
         target = _find_target(path)
         if target.is_dir():
-            raise WriteError(
-                f"Cannot write '{path}': it is a folder; name a file in it.", path=path
-            )
+            raise _refuse(path, "it is a folder; name a file in it")
         _require_parent(path, target)
         if target.exists() and not target.is_file():
-            raise WriteError(
-                f"Cannot write '{path}': it is a device or a pipe; name an ordinary file.",
-                path=path,
-            )
+            raise _refuse(path, "it is a device or a pipe; name an ordinary file")
         if target.exists() and not os.access(target, os.W_OK):
-            raise WriteError(f"Cannot write '{path}': the file there is read-only.", path=path)
+            raise _refuse(path, "the file there is read-only")
         yield target
 
 
@@ -126,7 +122,7 @@ def _translate_faults(path: Path) -> Iterator[None]:
         reason = error.strerror or str(error) or type(error).__name__
         if reason.endswith(_CUT_SHORT):
             reason = "the disk is full, or files may not be so large"
-        raise WriteError(f"Cannot write '{path}': {reason}.", path=path) from error
+        raise _refuse(path, reason) from error
 
 
 @contextmanager
@@ -139,9 +135,7 @@ def _naming_full_disks(path: Path, target: Path) -> Iterator[None]:
         yield
     except (WriteError, OSError, RuntimeError) as error:
         if shutil.disk_usage(target.parent).free < _FULL:
-            raise WriteError(
-                f"Cannot write '{path}': no space is left on the disk.", path=path
-            ) from error
+            raise _refuse(path, "no space is left on the disk") from error
         raise
 
 
@@ -155,10 +149,7 @@ def _find_target(path: Path) -> Path:
 
 def _require_parent(path: Path, target: Path) -> None:
     if not target.parent.is_dir():
-        raise WriteError(
-            f"Cannot write '{path}': there is no folder '{path.parent}'; create it first.",
-            path=path,
-        )
+        raise _refuse(path, f"there is no folder '{path.parent}'; create it first")
 
 
 def _name_beside(target: Path, suffix: str = "") -> Path:
@@ -225,9 +216,7 @@ def make_folder(path: Path) -> None:
         target = _find_target(path)
         _require_parent(path, target)
         if target.exists() and not target.is_dir():
-            raise WriteError(
-                f"Cannot write '{path}': a file is there, and a folder is written.", path=path
-            )
+            raise _refuse(path, "a file is there, and a folder is written")
         target.mkdir(exist_ok=True)
 
 
@@ -293,10 +282,7 @@ def require_writable_folder(path: Path, *, marker: str) -> None:
     with _translate_faults(path):
         target = _find_folder(path, marker)
         if not os.access(target.parent, os.W_OK | os.X_OK):
-            raise WriteError(
-                f"Cannot write '{path}': the folder '{path.parent}' may not be written to.",
-                path=path,
-            )
+            raise _refuse(path, f"the folder '{path.parent}' may not be written to")
 
 
 def _find_folder(path: Path, marker: str) -> Path:
@@ -304,13 +290,8 @@ def _find_folder(path: Path, marker: str) -> Path:
     target = _find_target(path)
     _require_parent(path, target)
     if target.exists() and not target.is_dir():
-        raise WriteError(
-            f"Cannot write '{path}': a file is there, and a folder is written.", path=path
-        )
+        raise _refuse(path, "a file is there, and a folder is written")
     if target.is_dir() and any(target.iterdir()) and not (target / marker).is_file():
-        raise WriteError(
-            f"Cannot write '{path}': the folder is not empty, and holds no {marker} of an "
-            "earlier one; name a new folder.",
-            path=path,
-        )
+        found = f"the folder is not empty, and holds no {marker} of an earlier one"
+        raise _refuse(path, f"{found}; name a new folder")
     return target

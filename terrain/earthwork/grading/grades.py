@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ....base.checks import as_number
-from ....base.crs import scale_elevations
 from ....base.errors import LinesError, OptionError, PointsError
-from ....base.georeference import Agreement
 from ....base.products import product
 from ....base.progress import Progress
 from ....base.sentences import coordinate, height
@@ -102,9 +100,8 @@ def grade(
     """
     done = Progress(progress)
     reference = find_reference(tin, "Slopes")
-    up = scale_elevations(reference.crs, reference.elevation_unit)
-    cut = 1.0 / (_require_ratio("cut_slope", cut_slope) * up)
-    fill = -1.0 / (_require_ratio("fill_slope", fill_slope) * up)
+    cut = 1.0 / (_require_ratio("cut_slope", cut_slope) * reference.up)
+    fill = -1.0 / (_require_ratio("fill_slope", fill_slope) * reference.up)
     polygon, level = _read_pad(pad, elevation)
     area = find_area(tin)
     _require_on_ground(area, polygon, "The pad lies off")
@@ -123,8 +120,7 @@ def grade(
     most = _SHARE * patch.area
     _require_on_ground(area, find_area(patch), "A slope reaches beyond", most)
     done(0.5)
-    agreed = Agreement(tin.crs, tin.elevation_unit, (1.0, 1.0), reference.notes)
-    graded = join_surfaces(tin, patch, agreed, area, "daylight", progress=done.stage(0.5, 1.0))
+    graded = join_surfaces(tin, patch, reference, area, "daylight", progress=done.stage(0.5, 1.0))
     done.end()
     return graded
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ....base.checks import require_tin
 from ....base.errors import PointsError
-from ....base.georeference import agree, find_plane_units
+from ....base.georeference import agree
 from ....base.products import product
 from ....base.progress import Progress
 from ....base.sentences import coordinate
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from ....base.arrays import AnyArray, BoolArray, Float64Array
-    from ....base.georeference import Agreement
+    from ....base.georeference import Reference
     from ....base.progress import Tell
     from ....tin import TIN
 
@@ -100,7 +100,7 @@ def paste(base: TIN, patch: TIN, *, progress: Callable[[float], None] | None = N
 def join_surfaces(
     base: TIN,
     patch: TIN,
-    agreed: Agreement,
+    agreed: Reference,
     area: Any,
     name: str = "seam",
     *,
@@ -192,14 +192,14 @@ def _split(ring: Float64Array) -> Float64Array:
     return np.stack([ring[:-1], ring[1:]], axis=1)
 
 
-def _describe_beyond(beyond: float, patch: TIN, agreed: Agreement) -> list[str]:
+def _describe_beyond(beyond: float, patch: TIN, agreed: Reference) -> list[str]:
     """Say how much of the patch lies beyond the base."""
-    unit = find_plane_units(agreed.crs).area or "square units"
+    unit = agreed.units.area or "square units"
     where = "lies beside" if beyond >= (1 - _SHARE) * patch.area else "reaches beyond"
     return [f"The patch {where} the base, which becomes larger by {beyond:.6g} {unit}."]
 
 
-def _describe_gap(base: TIN, area: Any, agreed: Agreement, cut: Seam) -> list[str]:
+def _describe_gap(base: TIN, area: Any, agreed: Reference, cut: Seam) -> list[str]:
     """Say how far the surfaces are apart along the seam, if they are."""
     seam = np.concatenate(cut.rings)
     own = base.interpolate(seam[:, :2])

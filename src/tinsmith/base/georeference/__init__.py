@@ -1,8 +1,8 @@
 """Georeference: CRS and units of surfaces, scales on the ground, and where a CRS applies."""
 
 from .agreement import (
-    Agreement,
     PlaneUnits,
+    Reference,
     Referenced,
     agree,
     describe_unknown,
@@ -11,8 +11,8 @@ from .agreement import (
 )
 
 __all__ = [
-    "Agreement",
     "PlaneUnits",
+    "Reference",
     "Referenced",
     "agree",
     "describe_unknown",

@@ -7,9 +7,11 @@ unit that is not known is taken to be the usual one of the CRS, and never anothe
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-from ..crs import CRS, METRE, Unit, assume_elevation_unit
+from ..crs import CRS, METRE, Unit, assume_elevation_unit, scale_elevations
 from ..errors import CrsError
 
 if TYPE_CHECKING:
@@ -36,16 +38,32 @@ class PlaneUnits(NamedTuple):
     volume: str | None
 
 
-class Agreement(NamedTuple):
-    """The one CRS and the one unit of several surfaces."""
+@dataclass(frozen=True)
+class Reference:
+    """The CRS and the units of a surface, or the one of several that agree."""
 
     crs: CRS | None
     elevation_unit: Unit | None
     """The one that is known; None if none is."""
-    factors: tuple[float, ...]
-    """From the elevations of each to that unit."""
-    notes: tuple[str, ...]
+    notes: tuple[str, ...] = ()
     """What is not known, was assumed or converted."""
+    factors: tuple[float, ...] = (1.0, 1.0)
+    """From the elevations of each surface, or of one and of what is made of it, to that unit."""
+
+    @classmethod
+    def of(cls, crs: CRS | None, elevation_unit: Unit | None) -> Reference:
+        """Return what is known of a surface, with notes on what is not."""
+        return cls(crs, elevation_unit, describe_unknown(crs, elevation_unit))
+
+    @cached_property
+    def up(self) -> float:
+        """Factor from elevations to the unit of eastings; CrsError where these are angles."""
+        return scale_elevations(self.crs, self.elevation_unit)
+
+    @property
+    def units(self) -> PlaneUnits:
+        """Units of lengths, areas and volumes."""
+        return find_plane_units(self.crs)
 
 
 def find_plane_units(crs: CRS | None) -> PlaneUnits:
@@ -82,7 +100,7 @@ def describe_unknown(crs: CRS | None, elevation_unit: Unit | None) -> tuple[str,
 # ---------------------------------------------------------------- several surfaces
 
 
-def agree(surfaces: Sequence[Referenced], names: Sequence[str]) -> Agreement:
+def agree(surfaces: Sequence[Referenced], names: Sequence[str]) -> Reference:
     """Find the one CRS and the one unit of surfaces, which are those of the first.
 
     ``names`` are what each is called in a sentence: "the ground". Raises CrsError if CRSs differ,
@@ -109,7 +127,7 @@ def agree(surfaces: Sequence[Referenced], names: Sequence[str]) -> Agreement:
         if factor != 1.0:
             notes.append(f"The elevations of {name} were converted from {own} to {unit}.")
         factors.append(factor)
-    return Agreement(crs, unit, tuple(factors), tuple(notes))
+    return Reference(crs, unit, tuple(notes), tuple(factors))
 
 
 def _require_one_crs(first: Referenced, its_name: str, other: Referenced, name: str) -> None:

@@ -101,7 +101,6 @@ def settle_options(
 ) -> dict[str, Any]:
     """Add the units of all points, and where those of the other surface are."""
     more: dict[str, Any] = {}
-    factors: tuple[float, ...] = (1.0, 1.0)
     if options["base"] is not None:
         reference = make_reference(points.crs, points.elevation_unit, _PURPOSE)
     else:
@@ -109,7 +108,7 @@ def settle_options(
         if other is None:
             own = Unit.of(options["other_unit"] or None)
             second = _Referenced(CRS.of(options["other_crs"]), own)
-        reference, factors = agree_on_reference(points, second, _PURPOSE)
+        reference = agree_on_reference(points, second, _PURPOSE)
     if other is not None:
         box = other.bounds
         more = {
@@ -123,9 +122,8 @@ def settle_options(
         **more,
         "crs": None if reference.crs is None else str(reference.crs),
         "elevation_unit": None if unit is None else unit.text,
-        "up": reference.up,
         "reference_notes": list(reference.notes),
-        "scales": list(factors),
+        "scales": list(reference.factors),
     }
 
 
@@ -138,7 +136,7 @@ def _make_options(options: Mapping[str, Any]) -> volumes.VolumeOptions:
         )
         names, pieces = tuple(given["names"]), Pieces(surface, np.array(given["groups"], np.int32))
     plane = None if options["base"] is None else as_plane(options["base"])
-    reference = Reference(crs, unit, options["up"], tuple(options["reference_notes"]))
+    reference = Reference(crs, unit, tuple(options["reference_notes"]))
     first, second = options["scales"]
     return volumes.VolumeOptions(reference, plane, names, pieces, (first, second))
 
