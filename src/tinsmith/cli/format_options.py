@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, get_args
 import click
 
 from ..base import policies
-from .parameters import LibraryOption, Words, parse_columns, parse_crs
+from .parameters import LibraryOption, Words, parse_columns, parse_crs, parsed
 from .paths import INPUT
 
 if TYPE_CHECKING:
@@ -190,7 +190,7 @@ def find_parameters(one: FormatOption) -> dict[str, Any]:
     number = float if "float" in annotation else int
     metavar = "NUMBER" if number is float else "N"
     if "Sequence" in annotation:
-        return {"type": number, "metavar": metavar, "multiple": True, "callback": _parse_several}
+        return {"type": number, "metavar": metavar, "multiple": True, "callback": _none_if_empty}
     return {"type": number, "metavar": metavar}
 
 
@@ -212,10 +212,4 @@ def _word_help(one: FormatOption) -> str:
     return text + (f"  [default: {one.default}]" if is_stated else "")
 
 
-def _parse_several(
-    ctx: click.Context,  # noqa: ARG001 - click's signature
-    param: click.Parameter,  # noqa: ARG001 - click's signature
-    value: tuple[float, ...],
-) -> tuple[float, ...] | None:
-    """Return None for none."""
-    return value or None
+_none_if_empty = parsed(lambda _, value: value or None)

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from .options import Coding, Group
     from .output.console import Console
     from .output.facts import Facts
-    from .outputs import Output, Products
+    from .outputs import Products
     from .parameters import Decorator
 
 
@@ -83,23 +83,7 @@ class Job:
                 inputs += name_features(path, f"the file of {flag}")
         return [*inputs, *more]
 
-    def plan(
-        self,
-        inputs: Sequence[Named],
-        *kinds: str,
-        report: Path | None = None,
-        choose: Callable[[Output], str] | None = None,
-    ) -> Products:
-        """Choose what each output holds, and its format, before any work is done."""
-        return plan_products(
-            self.outputs,
-            self.writing,
-            self.console,
-            inputs=inputs,
-            kinds=kinds,
-            report=report,
-            choose=choose,
-        )
+    plan = plan_products
 
     def finish(self, planned: Products, facts: Facts) -> None:
         """Tell what was done: a summary for people, and a record as JSON if it was asked for."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import wraps
 from typing import TYPE_CHECKING, Any, get_args
 
 import click
@@ -109,19 +110,28 @@ def numbers_option(flag: str, metavar: str, help: str) -> Decorator:  # noqa: A0
     return click.option(flag, metavar=metavar, callback=parse_numbers, help=help)
 
 
-def parse_numbers(
-    ctx: click.Context,  # noqa: ARG001 - click's signature
-    param: click.Parameter,
-    value: str | None,
-) -> list[float] | None:
+def parsed(parse: Callable[[str, Any], Any]) -> Callable[..., Any]:
+    """Make a callback of click of what takes a flag and its value; None, if none is given, stays.
+
+    Values of options that may be given several times are tuples.
+    """
+
+    @wraps(parse)
+    def callback(ctx: click.Context, param: click.Parameter, value: Any) -> Any:
+        del ctx
+        return None if value is None else parse(param.opts[0], value)
+
+    return callback
+
+
+@parsed
+def parse_numbers(flag: str, value: str) -> list[float]:
     """Return numbers that are given with commas between them."""
-    if value is None:
-        return None
     try:
         return [float(part) for part in value.split(",")]
     except ValueError:
         raise click.UsageError(
-            f"Invalid {param.opts[0]} '{value}': it must be numbers with commas between them."
+            f"Invalid {flag} '{value}': it must be numbers with commas between them."
         ) from None
 
 
@@ -149,11 +159,8 @@ def crs_option(flag: str, help: str) -> Decorator:  # noqa: A002 - click's name
     return click.option(flag, metavar="CRS", callback=parse_crs, help=help)
 
 
-def parse_crs(
-    ctx: click.Context,  # noqa: ARG001 - click's signature
-    param: click.Parameter,
-    value: str | None,
-) -> str | None:
+@parsed
+def parse_crs(flag: str, value: str) -> str:
     """Return the value, which must be a CRS that exists."""
     from ..base.crs import CRS
     from ..base.errors import CrsError
@@ -161,17 +168,14 @@ def parse_crs(
     try:
         CRS.of(value)
     except CrsError as error:
-        raise refuse_value(param.opts[0], error) from error
+        raise refuse_value(flag, error) from error
     return value
 
 
-def parse_columns(
-    ctx: click.Context,  # noqa: ARG001 - click's signature
-    param: click.Parameter,  # noqa: ARG001 - click's signature
-    value: str | None,
-) -> str | dict[str, str | int] | None:
+@parsed
+def parse_columns(_: str, value: str) -> str | dict[str, str | int]:
     """Return roles with the name or number of their columns if there are equals signs."""
-    if value is None or "=" not in value:
+    if "=" not in value:
         return value
     pairs = [pair.partition("=") for pair in value.split(",")]
     if not all(role.strip() and which.strip() for role, _, which in pairs):
@@ -244,14 +248,11 @@ def report_option(help: str) -> Decorator:  # noqa: A002 - click's name
     return click.option("--report", metavar="FILE", type=OUTPUT, callback=_require_json, help=help)
 
 
-def _require_json(
-    context: click.Context, parameter: click.Parameter, value: Path | None
-) -> Path | None:
+@parsed
+def _require_json(_: str, value: Path) -> Path:
     """Refuse a report whose name says that it is something else."""
-    if value is not None and value != STANDARD and value.suffix.lower() != ".json":
-        raise click.BadParameter(
-            f"a report is JSON, and the name '{value}' does not end in .json.", context, parameter
-        )
+    if value != STANDARD and value.suffix.lower() != ".json":
+        raise click.BadParameter(f"a report is JSON, and the name '{value}' does not end in .json.")
     return value
 
 

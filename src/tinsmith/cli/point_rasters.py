@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .parameters import under
+from .parameters import parsed, under
 from .paths import INPUT
 from .tiling import take_points
 
@@ -22,6 +22,17 @@ _NOISE = (7, 18)
 """Classes of low and of high noise."""
 _ALL_BUT_NOISE = [number for number in range(256) if number not in _NOISE]
 _OF_SURFACES = {"method": "linear", "at": "center", "azimuth": 315.0, "altitude": 45.0}
+
+
+@parsed
+def _parse_classes(flag: str, value: str) -> list[int]:
+    words = [word.strip() for word in value.split(",")]
+    if not all(word.isascii() and word.isdigit() and int(word) < 256 for word in words):
+        raise click.UsageError(
+            f"Invalid {flag} '{value}': it must be numbers of classes from 0 to 255 with commas "
+            "between them."
+        )
+    return [int(word) for word in words]
 
 
 def point_options(command: Any) -> Any:
@@ -45,22 +56,6 @@ def point_options(command: Any) -> Any:
     for option in reversed(options):
         command = option(command)
     return command
-
-
-def _parse_classes(
-    ctx: click.Context,  # noqa: ARG001 - click's signature
-    param: click.Parameter,
-    value: str | None,
-) -> list[int] | None:
-    if value is None:
-        return None
-    words = [word.strip() for word in value.split(",")]
-    if not all(word.isascii() and word.isdigit() and int(word) < 256 for word in words):
-        raise click.UsageError(
-            f"Invalid {param.opts[0]} '{value}': it must be numbers of classes from 0 to 255 with "
-            "commas between them."
-        )
-    return [int(word) for word in words]
 
 
 @dataclass(frozen=True)

@@ -113,7 +113,7 @@ def choose_tiles(
     """Return the points of a file or folder, if they are to be taken in tiles; else None.
 
     That is where an option of tiles was given, or the headers tell of more points than there is
-    memory for, which is noted.
+    memory for, which is noted. With --plan the command ends here, and tells what it would do.
 
     Parameters
     ----------
@@ -160,7 +160,11 @@ def choose_tiles(
                 "are free: it was computed in tiles, with the same result."
             ]
         )
-    return _add_lines(cloud, job)
+    cloud = _add_lines(cloud, job)
+    if tiling.plan:
+        _tell_plan(cloud, job, files[0])
+        click.get_current_context().exit()
+    return cloud
 
 
 def take_points(job: Job, *files: Path) -> TiledPoints:
@@ -197,7 +201,7 @@ def _may_be_large(file: Path) -> bool:
         return False  # the reader tells better
 
 
-def tell_plan(cloud: TiledPoints, job: Job, file: Path) -> None:
+def _tell_plan(cloud: TiledPoints, job: Job, file: Path) -> None:
     """Tell what a run would do."""
     plan = cloud.plan(**job.tiling.way)
     facts = Facts(file)

@@ -11,8 +11,7 @@ import click
 from ...base.sentences import counted
 from ..command import command
 from ..job import Job
-from ..output.counts import describe_counts
-from ..output.facts import Facts
+from ..output.facts import Facts, describe_counts
 from ..output.failures import Failure
 from ..parameters import input_files, number_option, output_files, report_option
 from ..paths import describe_inputs, name_files
@@ -20,7 +19,6 @@ from ..tiling import (
     choose_tiles,
     describe_lost,
     describe_points,
-    tell_plan,
     tiled_options,
     write_surface,
 )
@@ -143,9 +141,6 @@ def _is_built_in_tiles(
     cloud = choose_tiles(job, *points, whole=asked)
     if cloud is None:
         return False
-    if job.tiling.plan:
-        tell_plan(cloud, job, points[0])
-        return True
     output = write_surface(cloud, job, scales)
     facts = Facts(points[0])
     facts.add("Points", describe_points(cloud))

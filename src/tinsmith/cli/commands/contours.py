@@ -14,7 +14,7 @@ from ..output.facts import Facts, list_rows, name_unit, name_units
 from ..parameters import LibraryOption, number_option
 from ..paths import make_title
 from ..product_options import product_options
-from ..tiling import choose_tiles, compute_tiles, tell_plan, tiled_options
+from ..tiling import choose_tiles, compute_tiles, tiled_options
 
 if TYPE_CHECKING:
     from ...base.progress import Tell
@@ -83,10 +83,7 @@ def contours(file: Path, job: Job, **options: Any) -> None:
 def _contour_tiles(
     cloud: TiledPoints, planned: Products, options: dict[str, Any], file: Path, job: Job
 ) -> None:
-    """Write the contours or bands of tiles, or tell what would be done."""
-    if job.tiling.plan:
-        tell_plan(cloud, job, file)
-        return
+    """Write the contours or bands of tiles."""
     given = {name: options[name] for name in ("interval", "levels", "base")}
     if not options["bands"]:
         given["index"] = options["index"] or None

@@ -8,12 +8,11 @@ from typing import Any
 from ...base.sentences import counted
 from ..command import command
 from ..job import Job, name_features
-from ..output.counts import mesh_counts
-from ..output.facts import Facts
+from ..output.facts import Facts, mesh_counts
 from ..parameters import input_file, output_files
 from ..paths import LINES
 from ..product_options import product_options
-from ..tiling import choose_tiles, compute_tiles, describe_points, tell_plan, tiled_options
+from ..tiling import choose_tiles, compute_tiles, describe_points, tiled_options
 
 
 @command
@@ -36,9 +35,6 @@ def drape(file: Path, features: Path, outside: Any, job: Job) -> None:
     inputs = job.list_inputs(file, more=name_features(features, "the file of features"))
     planned = job.plan(inputs, "Features")
     cloud = choose_tiles(job, file)
-    if cloud is not None and job.tiling.plan:
-        tell_plan(cloud, job, file)
-        return
     if cloud is not None:
         given = job.read_features(features, cloud)
         asked = {"features": given, "outside": outside}

@@ -10,8 +10,7 @@ from typing import Any
 from ...base.sentences import counted
 from ..command import command
 from ..job import Job, open_standard_input, surface_options
-from ..output.counts import mesh_counts
-from ..output.facts import Facts
+from ..output.facts import Facts, mesh_counts
 from ..output.failures import Failure
 from ..parameters import input_file, output_files, report_option
 from ..paths import STANDARD, Named, name_file

@@ -14,7 +14,7 @@ from ..output.facts import Facts
 from ..parameters import input_files, number_option, output_files
 from ..paths import describe_inputs, name_file, name_files
 from ..product_options import product_options
-from ..tiling import choose_tiles, describe_points, showing_tiles, tell_plan, tiled_options
+from ..tiling import choose_tiles, describe_points, showing_tiles, tiled_options
 
 if TYPE_CHECKING:
     from ...tiled.cloud import TiledPoints
@@ -108,9 +108,6 @@ def _label_tiles(
     """Write all files again with their classes, in a folder."""
     from ...tiled.computing import labelling
 
-    if job.tiling.plan:
-        tell_plan(cloud, job, points[0])
-        return
     if len(job.outputs) != 1:
         raise click.UsageError("Tiles are written to a folder: name one by -o.")
     (folder,) = job.outputs

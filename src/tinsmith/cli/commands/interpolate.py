@@ -12,12 +12,11 @@ from ...base.policies import Extrapolation, InterpolationMethod
 from ...base.sentences import counted
 from ..command import command
 from ..job import Job
-from ..output.counts import mesh_counts
-from ..output.facts import Facts
+from ..output.facts import Facts, mesh_counts
 from ..output.failures import Failure
 from ..parameters import choice_option, crs_option, file_option, input_file, output_files
 from ..paths import Named
-from ..tiling import choose_tiles, compute_tiles, describe_points, tell_plan, tiled_options
+from ..tiling import choose_tiles, compute_tiles, describe_points, tiled_options
 
 if TYPE_CHECKING:
     from ...base.crs import CRS
@@ -69,9 +68,6 @@ def interpolate(file: Path, points_file: Path, job: Job, **asked: Any) -> None:
     inputs = job.list_inputs(file, more=[Named(points_file, "the file of --at")])
     planned = job.plan(inputs, "Table")
     cloud = choose_tiles(job, file, whole=_name_whole(asked))
-    if cloud is not None and job.tiling.plan:
-        tell_plan(cloud, job, file)
-        return
     if cloud is not None:
         points = _read_places(points_file, cloud.crs, asked)
         with compute_tiles(cloud, "places", planned, job, places=points.xy) as made:

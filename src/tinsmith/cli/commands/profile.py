@@ -10,12 +10,11 @@ import click
 from ...base.sentences import counted
 from ..command import command
 from ..job import Job, name_features
-from ..output.counts import mesh_counts
-from ..output.facts import Facts
+from ..output.facts import Facts, mesh_counts
 from ..parameters import LibraryOption, file_option, number_option, output_files, position_option
 from ..paths import INPUT, make_title
 from ..product_options import product_options
-from ..tiling import choose_tiles, compute_tiles, describe_points, tell_plan, tiled_options
+from ..tiling import choose_tiles, compute_tiles, describe_points, tiled_options
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -106,10 +105,7 @@ def profile(
 def _cut_tiles(
     cloud: TiledPoints, planned: Products, line: Any, asked: dict[str, Any], job: Job
 ) -> None:
-    """Write the profile of tiles, or tell what would be done."""
-    if job.tiling.plan:
-        tell_plan(cloud, job, cloud.files[0])
-        return
+    """Write the profile of tiles."""
     if isinstance(line, Path):
         line = job.read_features(line, cloud, "lines", "a profile runs along lines")
     given = {"line": line, "interval": asked["interval"], "start": asked["start"]}

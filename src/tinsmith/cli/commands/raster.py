@@ -17,7 +17,7 @@ from ..parameters import choice_option, file_option
 from ..paths import Named
 from ..point_rasters import PointChoice, point_options
 from ..product_options import product_options
-from ..tiling import choose_tiles, compute_tiles, describe_points, tell_plan, tiled_options
+from ..tiling import choose_tiles, compute_tiles, describe_points, tiled_options
 
 if TYPE_CHECKING:
     from ...terrain import Raster
@@ -64,9 +64,6 @@ def raster(file: Path, spacing: float | None, like: Path | None, job: Job, **ask
     planned = job.plan(job.list_inputs(*chosen.files, more=more), "Raster")
     asked |= {"spacing": spacing, "like": None if like is None else read_cells(like)}
     cloud = choose_tiles(job, file, others=chosen.others)
-    if cloud is not None and job.tiling.plan:
-        tell_plan(cloud, job, file)
-        return
     facts = Facts(file)
     if cloud is not None:
         asked |= chosen.in_tiles()

@@ -10,8 +10,7 @@ import click
 from ...base.sentences import coordinate, counted
 from ..command import file_command
 from ..job import Job
-from ..output.counts import mesh_counts
-from ..output.facts import Facts
+from ..output.facts import Facts, mesh_counts
 from ..output.failures import Failure, note_written
 from ..parameters import file_option
 from ..paths import INPUT, Named
@@ -21,7 +20,6 @@ from ..tiling import (
     describe_lost,
     describe_points,
     showing_progress,
-    tell_plan,
     tiled_options,
 )
 
@@ -110,14 +108,11 @@ def simplify(
 
 
 def _simplify_tiles(file: Path, tolerance: float | None, job: Job, whole: str) -> None:
-    """Write the surface in tiles, or tell what would be done."""
+    """Write the surface in tiles."""
     planned = job.plan(job.list_inputs(file), "TIN")
     cloud = choose_tiles(job, file, whole=whole)
     if cloud is None:
         raise AssertionError("tiles were asked for")
-    if job.tiling.plan:
-        tell_plan(cloud, job, file)
-        return
     if len(planned.paths) != 1 or job.writing.options:
         raise Failure("The surface of tiles is written as one file: name it by -o.")
     output, name = planned.paths[0], job.writing.output_format

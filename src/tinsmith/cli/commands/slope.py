@@ -11,10 +11,9 @@ from ...base.policies import SlopeUnit
 from ..command import file_command
 from ..job import Job, surface_options
 from ..options import CONSOLE, TRIANGULATING, WRITING, make_reading
-from ..output.counts import describe_counts
-from ..output.facts import Facts, list_rows, name_units
+from ..output.facts import Facts, describe_counts, list_rows, name_units
 from ..parameters import choice_option, numbers_option
-from ..tiling import TILING, choose_tiles, compute_tiles, describe_points, tell_plan
+from ..tiling import TILING, choose_tiles, compute_tiles, describe_points
 
 if TYPE_CHECKING:
     from ...terrain import Table
@@ -82,9 +81,6 @@ def _summarise(file: Path, unit: SlopeUnit, job: Job) -> None:
 
     planned = job.plan(job.list_inputs(file), "Table")
     cloud = choose_tiles(job, file)
-    if cloud is not None and job.tiling.plan:
-        tell_plan(cloud, job, file)
-        return
     facts = Facts(file)
     if cloud is not None:
         with compute_tiles(cloud, "slopes", planned, job, unit=unit) as made:

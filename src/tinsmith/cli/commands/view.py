@@ -20,6 +20,7 @@ from ..parameters import (
     input_files,
     number_option,
     numbers_option,
+    parsed,
     picture_option,
 )
 from ..paths import INPUT, Named, describe_inputs, make_title
@@ -31,18 +32,13 @@ _MOST_CELLS = 1_000_000
 _UNNAMED = "Terrain surface"
 
 
-def _parse_size(
-    ctx: click.Context,  # noqa: ARG001 - click's signature
-    param: click.Parameter,
-    value: str | None,
-) -> tuple[int, int] | None:
+@parsed
+def _parse_size(flag: str, value: str) -> tuple[int, int]:
     """Return width and height, given as 1600x1000 or 1600,1000."""
-    if value is None:
-        return None
     found = re.fullmatch(r"\s*(\d{1,9})\s*[xX,\N{MULTIPLICATION SIGN}]\s*(\d{1,9})\s*", value)
     if found is None:
         raise click.UsageError(
-            f"Invalid {param.opts[0]} '{value}': it must be width and height, such as 1600x1000."
+            f"Invalid {flag} '{value}': it must be width and height, such as 1600x1000."
         )
     return int(found[1]), int(found[2])
 

@@ -9,8 +9,7 @@ import click
 
 from ..command import command
 from ..job import Job, name_features
-from ..output.counts import mesh_counts
-from ..output.facts import Facts, list_rows, name_units
+from ..output.facts import Facts, list_rows, mesh_counts, name_units
 from ..parameters import file_option, number_option, output_option
 from ..paths import INPUT, make_title
 from ..tiling import (
@@ -18,7 +17,6 @@ from ..tiling import (
     choose_tiles,
     compute_tiles,
     describe_points,
-    tell_plan,
     tiled_options,
 )
 
@@ -107,10 +105,7 @@ def volume(files: tuple[Path, ...], regions: Path | None, job: Job, **asked: Any
 def _measure_tiles(
     cloud: TiledPoints, planned: Products, files: Sequence[Path], asked: dict[str, Any], job: Job
 ) -> None:
-    """Write the volumes of tiles to a level or a design, or tell what would be done."""
-    if job.tiling.plan:
-        tell_plan(cloud, job, files[0])
-        return
+    """Write the volumes of tiles to a level or a design."""
     chosen = None if asked["regions"] is None else job.read_features(asked["regions"], cloud)
     rows: list[Row] = [("Ground", describe_points(cloud))]
     other: Any = None
