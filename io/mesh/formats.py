@@ -138,8 +138,8 @@ FORMATS = (
         write="tinsmith.io.mesh.quantized_mesh.writing:write",
         sniff_folder=is_tile_folder,
         writes=("TIN",),
-        precision="Horizontally 1/1000 of the median edge; vertically a millimetre or 1/32,767 "
-        "of the range of elevations in a tile.",
+        precision="Horizontally 1/1000 of an edge of usual length; vertically a millimetre or "
+        "1/32,767 of the range of elevations in a tile.",
         losses="The surface is cut into tiles in longitude and latitude, without lines and "
         "attributes; one tile is read at a time.",
         loses=("crs", "elevation unit", "triangles", *_LOSES),

@@ -343,7 +343,12 @@ def test_volumes_to_a_design_are_those_in_memory(is_folder, lidar, here, tmp_pat
 
 @pytest.mark.filterwarnings("ignore:The elevations are not known above")
 @pytest.mark.parametrize(
-    ("words", "index"), [([], "surface.json"), (["--output-format", "3dtiles"], "tileset.json")]
+    ("words", "index"),
+    [
+        ([], "surface.json"),
+        (["--output-format", "3dtiles"], "tileset.json"),
+        (["--output-format", "quantized-mesh", "--max-level", "15"], "layer.json"),
+    ],
 )
 def test_surfaces_become_folders(words, index, lidar, here):
     options = [lidar, "--classes", "2", "-o", "made", "--tiles", "3", "--workers", "2"]
@@ -412,6 +417,10 @@ def test_3d_tiles_have_a_tolerance_and_squares_of_a_size(lidar, here):
         (["--tolerance", "0.5", "-o", "a.ply"], "--tolerance is for 3D Tiles, which need --tiles"),
         (["--node-points", "9", "--tiles", "2", "-o", "a"], "--node-points is for --output-format"),
         (["--node-points", "0", "--tiles", "2", "-o", "a"], "--node-points"),
+        (
+            ["--output-format", "quantized-mesh", "--node-points", "99", "--tiles", "2", "-o", "a"],
+            "--node-points is for --output-format 3dtiles",
+        ),
     ],
 )
 def test_options_of_3d_tiles_are_of_nothing_else(words, sentence, lidar, here):

@@ -258,10 +258,15 @@ def write_surface(cloud: TiledPoints, job: Job, scales: Mapping[str, Any]) -> Pa
     """Write the surface of tiles as a folder or as one file; ``scales`` are of 3D Tiles."""
     from ..io import find_format
     from ..io.registry import list_writers
-    from ..tiled.products.pyramid import FORMATS
+    from ..tiled.cloud import OPTIONS_OF_SCALES
 
     name = (job.writing.output_format or "").strip().lower()
-    if len(job.outputs) != 1 or job.outputs[0] == STANDARD or job.writing.options:
+    able = OPTIONS_OF_SCALES.get(name, set())
+    if (
+        len(job.outputs) != 1
+        or job.outputs[0] == STANDARD
+        or not job.writing.options.keys() <= able
+    ):
         raise Failure(
             "The surface of tiles is written as one file (.ply) or one folder of files: name it by "
             "-o, and its format by --output-format."
@@ -272,12 +277,12 @@ def write_surface(cloud: TiledPoints, job: Job, scales: Mapping[str, Any]) -> Pa
             f"The surface of tiles is written as one file (.ply) or as a folder of files, and "
             f"'{output}' is named like another file."
         )
-    if scales and name not in FORMATS:
+    if not scales.keys() <= able:
         flag = next(iter(scales)).replace("_", "-")
         raise click.UsageError(f"--{flag} is for --output-format 3dtiles.")
     with showing_progress(job) as way:
-        if name in FORMATS:
-            cloud.write(output, format=name, **scales, **way)
+        if able:
+            cloud.write(output, format=name, **scales, **job.writing.options, **way)
         else:
             chosen: dict[str, Any] = {"format": find_format(name, "write").name} if name else {}
             cloud.build(output, **chosen, **way)

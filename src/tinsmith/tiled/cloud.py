@@ -54,6 +54,12 @@ _BYTES_OF_A_POINT = 30
 _POINTS_PER_SECOND = 500_000.0
 """That a worker reads, triangulates and writes, about."""
 _CLASSES = "classification"
+SCALES = {"3dtiles": "pyramid", "quantized-mesh": "globe_tiles"}
+"""Products of squares at several scales, by format."""
+OPTIONS_OF_SCALES = {
+    "3dtiles": {"tolerance", "node_points"},
+    "quantized-mesh": {"max_level", "gzipped"},
+}
 _NOT_OF_TILES = {
     "erase": "points are left out by their attributes only (`where`)",
     "water": "points within it go, and lines around it change, which no tile can tell",
@@ -982,28 +988,38 @@ class TiledPoints:
         path: str | os.PathLike[str],
         *,
         format: str = "3dtiles",  # noqa: A002 - as in write
-        tolerance: float = 0.0,
-        node_points: int = 8_192,
+        tolerance: float | None = None,
+        node_points: int | None = None,
+        max_level: int | None = None,
+        gzipped: bool | None = None,
         **way: Unpack[Way],
     ) -> Path:
-        """Write the surface at several scales for globes: 3D Tiles 1.1 with GLB contents.
+        """Write the surface at several scales for globes: 3D Tiles 1.1, or quantized-mesh tiles.
 
         The finest squares are the surface, cut along their sides; each other one is simplified
         from the four below it. What is on a side of two squares of a level is the same in both:
-        there are no cracks within a level. The geometric error of a square is measured: its
-        largest vertical distance from the surface anywhere, and by how much the globe is curved
-        under its longest edge.
+        there are no cracks within a level.
+
+        The geometric error of a square of 3D Tiles is measured: its largest vertical distance from
+        the surface anywhere, and by how much the globe is curved under its longest edge.
+
+        Of quantized-mesh tiles ``layer.json`` and the finest level have the bytes of those of the
+        surface in memory (:func:`tinsmith.write`). Coarser tiles have other vertices than there:
+        each holds those of the four below it within an eighth of the error that Cesium expects of
+        the level.
 
         Parameters
         ----------
         path : path-like
             A new or empty folder, or one that this wrote, which is replaced.
-        format : {"3dtiles"}
-        tolerance : float
-            Within which vertices of the surface are left out on the finest level already, in the
-            unit of elevations. Default none are.
-        node_points : int
-            Points of a square of the finest level, about.
+        format : {"3dtiles", "quantized-mesh"}
+        tolerance : float, optional
+            Of 3D Tiles: within which vertices of the surface are left out on the finest level
+            already, in the unit of elevations. Default none are.
+        node_points : int, optional
+            Of 3D Tiles: points of a square of the finest level, about. Default 8192.
+        max_level, gzipped : optional
+            Of quantized-mesh tiles: as of their writer.
         **way
             As of :meth:`rasterize`; the files have the same bytes for any of it.
 
@@ -1018,7 +1034,7 @@ class TiledPoints:
         ReadError, WriteError
             As :meth:`rasterize`.
         OptionError
-            If an option has a value that it cannot have.
+            If an option has a value that it cannot have, or is of the other format.
 
         Warns
         -----
@@ -1027,11 +1043,13 @@ class TiledPoints:
 
         Notes
         -----
-        Positions are float32 from the middle of each content, in steps of about 2^-22 of its width.
+        Positions of 3D Tiles are float32 from the middle of each content, in steps of about 2^-22
+        of its width.
 
         References
         ----------
-        Open Geospatial Consortium, 3D Tiles Specification 1.1, OGC 22-025r4 (2023).
+        Open Geospatial Consortium, 3D Tiles Specification 1.1, OGC 22-025r4 (2023);
+        https://github.com/CesiumGS/quantized-mesh
 
         Examples
         --------
@@ -1047,10 +1065,19 @@ class TiledPoints:
         ...     sorted(file.name for file in made.iterdir())
         ['0', 'tileset.json']
         """
+        product = SCALES[choice("format", format, tuple(SCALES))]
         if self.lines is not None:
-            raise OptionError("lines", self.lines, "none for 3D Tiles, which are of points alone")
-        asked = {"format": format, "tolerance": tolerance, "node_points": node_points}
-        return self._write_folder("pyramid", asked, path, way)
+            raise OptionError("lines", self.lines, "none for squares at several scales")
+        given = {
+            "tolerance": tolerance,
+            "node_points": node_points,
+            "max_level": max_level,
+            "gzipped": gzipped,
+        }
+        asked = {name: value for name, value in given.items() if value is not None}
+        for name in asked.keys() - OPTIONS_OF_SCALES[format]:
+            raise OptionError(name, asked[name], f"left out for {format}", or_none=True)
+        return self._write_folder(product, asked, path, way)
 
     def map(
         self, function: Callable[[TIN, Bounds], Any], *, run: str | os.PathLike[str], **way: Any

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from time import perf_counter
@@ -20,7 +21,6 @@ from .reading import name_rows, open_store
 from .running import Record, Run, hash_file
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
     from pathlib import Path
 
     from ..base.arrays import AnyArray, Float64Array
@@ -211,43 +211,79 @@ class TileProduct(Protocol):
         """Return the product of all tiles."""
 
 
-def compute_tile(job: TileJob) -> Record:
-    """Compute what is asked of a tile; what is wrong becomes the record's sentence.
+Made = tuple[int, Mapping[str, Any], list[str]]
+"""What a task made: points, plain values, and the names of files in the folder of its step."""
+
+
+def do_task(
+    folder: Path,
+    phase: str,
+    key: str,
+    compute: Callable[[], Made],
+    explain: Callable[[TinsmithError], str] = str,
+) -> Record:
+    """Do a task, and write its record; what is wrong becomes the record's sentence.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the run.
+    phase : str
+        Step, and folder of its files.
+    key : str
+        Name of the task.
+    compute : callable
+    explain : callable
+        Returns the sentence of an error.
 
     Raises
     ------
     WriteError
-        If the folder cannot be written, which is no fault of the tile.
+        If the folder cannot be written, which is no fault of the task.
     """
     started = perf_counter()
-    run = Run(job.folder)
-    (job.folder / PHASE).mkdir(exist_ok=True)
+    what = "Tile" if phase == PHASE else "Square"
+    (folder / phase).mkdir(exist_ok=True)
     try:
-        product = cast("TileProduct", import_module(f"{__package__}.products.{job.product}"))
-        part = Part(job, open_store(job.points), {})
-        is_wanted = part.may_have_surface or getattr(product, "HAS_ALL_TILES", False)
-        points, values, names = product.compute(part) if is_wanted else (0, {}, [])
-        told = {}
-        if job.is_told and getattr(product, "IS_OF_SURFACE", True):
-            told["differing"] = measure_differing(part.store, job.tile.box, part.differing)
+        points, values, names = compute()
         record = Record(
-            job.key,
+            key,
             "done" if points else "empty",
             seconds=perf_counter() - started,
             points=points,
-            values={**values, **told},
-            files={f"{PHASE}/{name}": hash_file(job.folder / PHASE / name) for name in names},
+            values=values,
+            files={f"{phase}/{name}": hash_file(folder / phase / name) for name in names},
         )
     except WriteError:
         raise
     except MemoryError:
-        return Record(job.key, "no memory", f"Tile {job.key} needs more memory than there is.")
+        return Record(key, "no memory", f"{what} {key} needs more memory than there is.")
     except TinsmithError as error:
-        rows = getattr(error, "rows", ())
-        what = f"points lie at one place: {name_rows(job.points, rows)}." if rows else str(error)
-        record = Record(job.key, "failed", f"Tile {job.key}: {what}", perf_counter() - started)
-    run.add(PHASE, record)
+        sentence = f"{what} {key}: {explain(error)}"
+        record = Record(key, "failed", sentence, perf_counter() - started)
+    Run(folder).add(phase, record)
     return record
+
+
+def compute_tile(job: TileJob) -> Record:
+    """Compute what is asked of a tile, see :func:`do_task`."""
+
+    def explain(error: TinsmithError) -> str:
+        rows = getattr(error, "rows", ())
+        return f"points lie at one place: {name_rows(job.points, rows)}." if rows else str(error)
+
+    return do_task(job.folder, PHASE, job.key, lambda: _compute_tile(job), explain)
+
+
+def _compute_tile(job: TileJob) -> Made:
+    product = cast("TileProduct", import_module(f"{__package__}.products.{job.product}"))
+    part = Part(job, open_store(job.points), {})
+    is_wanted = part.may_have_surface or getattr(product, "HAS_ALL_TILES", False)
+    points, values, names = product.compute(part) if is_wanted else (0, {}, [])
+    told = {}
+    if job.is_told and getattr(product, "IS_OF_SURFACE", True):
+        told["differing"] = measure_differing(part.store, job.tile.box, part.differing)
+    return points, {**values, **told}, names
 
 
 def divide_job(job: TileJob) -> list[TileJob]:

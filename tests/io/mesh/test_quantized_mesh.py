@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.quantized_mesh import load_folder
 from support.surfaces import hills, punched
 
 import tinsmith as ts
@@ -21,77 +22,9 @@ pytestmark = pytest.mark.filterwarnings("ignore::tinsmith.LossWarning")
 A, B = 6_378_137.0, 6_356_752.314245179
 
 
-def decode(content, name):
-    """Decode a tile value by value, as the specification tells; a plain second opinion."""
-    level, x, y = name
-    header = struct.unpack_from("<3d2f3dd3d", content)
-    at = 88
-    (count,) = struct.unpack_from("<I", content, at)
-    at += 4
-    axes = [
-        _sum_zigzag(struct.unpack_from(f"<{count}H", content, at + 2 * count * k)) for k in range(3)
-    ]
-    at += 6 * count
-    form = "H" if count <= 65536 else "I"
-    at += -at % struct.calcsize(form)
-    (n_triangles,) = struct.unpack_from("<I", content, at)
-    at += 4
-    highest, indices = 0, []
-    for code in struct.unpack_from(f"<{3 * n_triangles}{form}", content, at):
-        indices.append(highest - code)
-        highest += code == 0
-    at += 3 * n_triangles * struct.calcsize(form)
-    edges = []
-    for _ in range(4):
-        (size,) = struct.unpack_from("<I", content, at)
-        edges.append(list(struct.unpack_from(f"<{size}{form}", content, at + 4)))
-        at += 4 + size * struct.calcsize(form)
-    kind, size = struct.unpack_from("<BI", content, at)
-    codes = np.frombuffer(content, np.uint8, size, at + 5).reshape(-1, 2)
-    assert (kind, size, len(content)) == (1, 2 * count, at + 5 + size)
-    width = 180 / 2**level
-    steps = np.array(axes).T
-    plane = (x * width - 180 + steps[:, 0] / 32767 * width, y * width - 90
-             + steps[:, 1] / 32767 * width)  # fmt: skip
-    heights = header[3] + steps[:, 2] / 32767 * (header[4] - header[3])
-    return {
-        "header": header,
-        "steps": steps,
-        "places": np.column_stack([*plane, heights]),
-        "triangles": np.array(indices).reshape(-1, 3),
-        "edges": edges,
-        "normals": _unfold(codes),
-    }
-
-
-def _sum_zigzag(codes):
-    value, sums = 0, []
-    for code in codes:
-        value += (code >> 1) ^ -(code & 1)
-        sums.append(value)
-    return sums
-
-
-def _unfold(codes):
-    plane = codes / 255 * 2 - 1
-    up = 1 - np.abs(plane).sum(axis=1)
-    sign = np.where(plane < 0, -1.0, 1.0)
-    folded = (1 - np.abs(plane[:, ::-1])) * sign
-    vectors = np.column_stack([np.where(up[:, None] < 0, folded, plane), up])
-    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
-
-
 def cross(u, v):
     """Return the areas that pairs of vectors in the plane span."""
     return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
-
-
-def load(folder):
-    """Return all tiles by level, column and row."""
-    names = [tuple(int(part) for part in one.relative_to(folder).with_suffix("").parts)
-             for one in folder.rglob("*.terrain")]  # fmt: skip
-    return {name: decode((folder / f"{name[0]}/{name[1]}/{name[2]}.terrain").read_bytes(), name)
-            for name in names}  # fmt: skip
 
 
 def ground(n=400, size=3000.0, **how):
@@ -104,7 +37,7 @@ def pyramid(tmp_path_factory):
     folder = tmp_path_factory.mktemp("tiles") / "ground"
     with pytest.warns(ts.LossWarning, match="above the ellipsoid"):
         ts.write(tin, folder, format="quantized-mesh")
-    return tin, folder, load(folder)
+    return tin, folder, load_folder(folder)
 
 
 def in_degrees(tin):
@@ -331,7 +264,7 @@ def test_holes_and_parts_stay_open(tmp_path, seed):
     small = punched(seed)
     tin = ts.TIN.from_triangles(small.points * (100, 100, 1) + (745_000, 4_033_000, 0),
                                 small.triangles, crs="EPSG:32616")  # fmt: skip
-    tiles = load(ts.write(tin, tmp_path / "a", format="quantized-mesh", max_level=17))
+    tiles = load_folder(ts.write(tin, tmp_path / "a", format="quantized-mesh", max_level=17))
     surface = in_degrees(tin)
     for level in (15, 16, 17):
         area = 0.0
@@ -357,7 +290,7 @@ def test_heights_above_the_ellipsoid(tmp_path, crs, metres, is_stated):
     tin = ts.triangulate(points, crs=system)
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
-        tiles = load(ts.write(tin, tmp_path / "a", format="quantized-mesh", max_level=15))
+        tiles = load_folder(ts.write(tin, tmp_path / "a", format="quantized-mesh", max_level=15))
     assert [one.category for one in told] == [ts.LossWarning] * is_stated
     finest = [tile["places"][:, 2] for (level, _, _), tile in tiles.items() if level == 15]
     z = np.concatenate(finest)

@@ -78,7 +78,8 @@ def build(
     made from the field codes of the points.
 
     In tiles (--tiles N, or where memory is short) the surface is written as one file (.ply), or as
-    a folder: a file for each tile, or 3D Tiles for globes with --output-format 3dtiles.
+    a folder: a file for each tile, or squares at several scales for globes with --output-format
+    3dtiles or quantized-mesh.
 
     Example:
       tinsmith build sample_data/site_survey.csv --crs EPSG:32616 --codes -o site.geojson

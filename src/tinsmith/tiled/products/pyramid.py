@@ -10,16 +10,12 @@ from __future__ import annotations
 import json
 import shutil
 from dataclasses import asdict, dataclass
-from pathlib import Path
-from time import perf_counter
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from ...base.atomic import replacing
 from ...base.checks import as_number, require_count
 from ...base.crs import CRS, Unit
-from ...base.errors import CrsError, PointsError, TinsmithError, WriteError, choice
+from ...base.errors import CrsError, PointsError
 from ...base.notes import warn
 from ...base.types import Bounds
 from ...io.mesh.tiles_3d import Content, Scene, encode_content, format_tileset
@@ -31,16 +27,26 @@ from ...terrain.simplification.pyramid import (
     join_nodes,
 )
 from ...terrain.simplification.pyramid import simplify as simplify_node
-from ..running import Record, Run, hash_file
-from .squares import as_node, list_finest, settle_quadtree
+from ..tasks import do_task
+from .squares import (
+    NodeJob,
+    as_node,
+    find_meshes,
+    list_finest,
+    make_levels,
+    raise_levels,
+    save_mesh,
+    settle_quadtree,
+)
 from .squares import divide_job as divide_job
 from .squares import divide_points as divide_points
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+    from pathlib import Path
 
     from ..reading import StoredPoints
-    from ..running import Phase
+    from ..running import Phase, Record, Run
     from ..tasks import Part
 
 INDEX = "tileset.json"
@@ -48,20 +54,12 @@ HAS_LINES = False
 """Squares are those of points alone."""
 """What the folder holds, by which such a folder is known."""
 
-FORMATS = ("3dtiles",)
 
-
-def check_options(
-    *,
-    format: str = "3dtiles",  # noqa: A002 - as in write
-    tolerance: float = 0.0,
-    node_points: int = 8_192,
-) -> dict[str, Any]:
+def check_options(*, tolerance: float = 0.0, node_points: int = 8_192) -> dict[str, Any]:
     """Return plain options, or refuse what is none."""
-    choice("format", format, FORMATS)
     within = as_number("tolerance", tolerance, "an elevation", least=0)
     require_count("node_points", node_points, least=16)
-    return {"format": format, "tolerance": float(within), "node_points": int(node_points)}
+    return {"tolerance": float(within), "node_points": int(node_points)}
 
 
 def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
@@ -134,136 +132,41 @@ class _Plan:
         return name, [*node, *content, len(mesh.points), len(mesh.triangles)]
 
 
-def _save_mesh(folder: Path, node: Node, mesh: Mesh) -> str:
-    name = f"{node.key}.npz"
-    with replacing(folder / name) as file:
-        np.savez(file, **mesh._asdict())
-    return name
-
-
-def _load_mesh(path: Path) -> Mesh:
-    with np.load(path) as found:
-        return Mesh(found["points"], found["triangles"], float(found["error"]))
-
-
 def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     """Make a square and all squares in it."""
     plan, root = _Plan.of(part.job.options), as_node(part.job.tile)
     local = part.triangulate(part.job.tile.box)
-    meshes = dict(list_finest(local, root, plan.quadtree, plan.tolerance))
+    finest = list_finest(local.points, local.triangles, root, plan.quadtree, plan.tolerance)
     names, told = [], []
-    while meshes:
-        for node, mesh in meshes.items():
-            name, entry = plan.save(part.folder, node, mesh)
-            names.append(name)
-            told.append(entry)
-        if root in meshes:
-            names.append(_save_mesh(part.folder, root, meshes[root]))
-            break
-        meshes = {
-            parent: plan.simplify([meshes[one] for one in parent.children if one in meshes], parent)
-            for parent in sorted({node.parent for node in meshes})
-        }
+    for node, mesh in raise_levels(dict(finest), root.level, plan.simplify):
+        name, entry = plan.save(part.folder, node, mesh)
+        names.append(name)
+        told.append(entry)
+        if node == root:
+            names.append(save_mesh(part.folder, root, mesh))
     return (len(local.points) if told else 0), {"nodes": told}, names
 
 
-# ------------------------------------------------------------------------- levels above them
-
-
-@dataclass(frozen=True)
-class NodeJob:
-    """A square that is to be made of those below it.
-
-    Attributes
-    ----------
-    folder : Path
-        Of the run.
-    node : Node
-    children : tuple of str
-        Files of their meshes, in the folder.
-    options : mapping
-    """
-
-    folder: Path
-    node: Node
-    children: tuple[str, ...]
-    options: Mapping[str, Any]
-
-    @property
-    def key(self) -> str:
-        """Name of the task."""
-        return self.node.key
-
-
 def compute_node(job: NodeJob) -> Record:
-    """Make a square of those below it; what is wrong becomes the record's sentence.
+    """Make a square of those below it, see :func:`tinsmith.tiled.tasks.do_task`."""
 
-    Raises
-    ------
-    WriteError
-        If the folder cannot be written, which is no fault of the square.
-    """
-    started = perf_counter()
-    node, plan = job.node, _Plan.of(job.options)
-    phase = _name_phase(node.level)
-    folder = job.folder / phase
-    folder.mkdir(exist_ok=True)
-    try:
-        mesh = plan.simplify([_load_mesh(job.folder / name) for name in job.children], node)
-        name, told = plan.save(folder, node, mesh)
-        names = [name, _save_mesh(folder, node, mesh)]
-        record = Record(
-            job.key,
-            "done",
-            seconds=perf_counter() - started,
-            points=len(mesh.points),
-            values={"nodes": [told]},
-            files={f"{phase}/{one}": hash_file(folder / one) for one in names},
-        )
-    except WriteError:
-        raise
-    except MemoryError:
-        return Record(job.key, "no memory", f"Square {job.key} needs more memory than there is.")
-    except TinsmithError as error:
-        record = Record(job.key, "failed", f"Square {job.key}: {error}", perf_counter() - started)
-    Run(job.folder).add(phase, record)
-    return record
+    def compute_square() -> tuple[int, dict[str, Any], list[str]]:
+        plan, folder = _Plan.of(job.options), job.folder / job.phase
+        mesh = plan.simplify(job.load(), job.node)
+        name, told = plan.save(folder, job.node, mesh)
+        return len(mesh.points), {"nodes": [told]}, [name, save_mesh(folder, job.node, mesh)]
 
-
-def _name_phase(level: int) -> str:
-    return f"level{level}"
+    return do_task(job.folder, job.phase, job.key, compute_square)
 
 
 def combine(
     run: Run, options: Mapping[str, Any], records: Mapping[str, Record], phase: Phase
 ) -> dict[str, Record]:
     """Make the levels above the squares of tasks, from the finest up to the root."""
-    every = dict(records)
-    meshes = {
-        Node(*map(int, key.split("."))): name
-        for key, record in records.items()
-        for name in record.files
-        if name.endswith(".npz")
-    }
+    meshes = find_meshes(records.values())
     if not meshes:
         raise PointsError("The points have no surface.")
-    for level in range(max(node.level for node in meshes) - 1, -1, -1):
-        parents = sorted({node.parent for node in meshes if node.level == level + 1})
-        jobs = [
-            NodeJob(
-                run.folder,
-                parent,
-                tuple(meshes[one] for one in parent.children if one in meshes),
-                options,
-            )
-            for parent in parents
-        ]
-        made = phase.run(run, _name_phase(level), compute_node, jobs)
-        for key, record in made.items():
-            every[f"{_name_phase(level)} {key}"] = record
-            (name,) = (name for name in record.files if name.endswith(".npz"))
-            meshes[Node(*map(int, key.split(".")))] = name
-    return every
+    return {**records, **make_levels(run, phase, meshes, compute_node, options)}
 
 
 # ------------------------------------------------------------------------- the folder

@@ -76,7 +76,7 @@ def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
     tree, root = Quadtree(**options["quadtree"]), as_node(part.job.tile)
     local = part.triangulate(part.job.tile.box)
     names, told = [], []
-    for node, mesh in list_finest(local, root, tree, options["tolerance"]):
+    for node, mesh in list_finest(local.points, local.triangles, root, tree, options["tolerance"]):
         names.append(f"{node.key}.npz")
         with replacing(part.folder / names[-1]) as file:
             np.savez(file, points=mesh.points, triangles=mesh.triangles)

@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.atomic import replacing
 from ...base.errors import PointsError
-from ...terrain.simplification.pyramid import Node, Quadtree, make_finest
+from ...terrain.simplification.pyramid import Mesh, Node, Quadtree, make_finest
 from ..division import Tile
 from ..tasks import TileJob
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-    from ...base.arrays import Int64Array
+    from ...base.arrays import Float64Array, Int32Array, Int64Array
     from ...base.types import Bounds
-    from ...terrain.simplification.pyramid import Mesh
-    from ...tin.tiling import LocalTriangulation
     from ..reading import StoredPoints
+    from ..running import Phase, Record, Run
 
 
 def settle_quadtree(points: StoredPoints, node_points: int) -> dict[str, Any]:
@@ -108,15 +109,125 @@ def divide_job(job: TileJob) -> list[TileJob]:
 
 
 def list_finest(
-    local: LocalTriangulation, root: Node, tree: Quadtree, tolerance: float
+    points: Float64Array, triangles: Int32Array, root: Node, tree: Quadtree, tolerance: float
 ) -> Iterator[tuple[Node, Mesh]]:
     """Yield the finest squares in a square, with the surface in them within a tolerance."""
-    corners = local.points[local.triangles, :2]
+    corners = points[triangles, :2]
     (west, south), (east, north) = corners.min(axis=1).T, corners.max(axis=1).T
-    for node in root.list_descendants(tree.levels):
+    waiting = [(root, np.arange(len(triangles)))]
+    while waiting:
+        node, rows = waiting.pop()
         box = tree.find_box(node)
-        across = (west <= box.xmax) & (east >= box.xmin)
-        rows = np.flatnonzero(across & (south <= box.ymax) & (north >= box.ymin))
-        mesh = make_finest(local.points, local.triangles[rows], box, tolerance)
+        is_met = (west[rows] <= box.xmax) & (east[rows] >= box.xmin)
+        is_met &= (south[rows] <= box.ymax) & (north[rows] >= box.ymin)
+        rows = rows[is_met]
+        if not len(rows):
+            continue
+        if node.level < tree.levels:
+            waiting += [(child, rows) for child in reversed(node.children)]
+            continue
+        mesh = make_finest(points, triangles[rows], box, tolerance)
         if mesh is not None:
             yield node, mesh
+
+
+def raise_levels(
+    meshes: dict[Node, Mesh], last: int, simplify: Callable[[Sequence[Mesh], Node], Mesh]
+) -> Iterator[tuple[Node, Mesh]]:
+    """Yield squares, and those made of them up to a level, each of the four below it."""
+    while meshes:
+        yield from meshes.items()
+        if next(iter(meshes)).level == last:
+            return
+        meshes = {
+            parent: simplify([meshes[one] for one in parent.children if one in meshes], parent)
+            for parent in sorted({node.parent for node in meshes})
+        }
+
+
+def save_mesh(folder: Path, node: Node, mesh: Mesh) -> str:
+    """Write the mesh of a square to a file, and return its name."""
+    name = f"{node.key}.npz"
+    with replacing(folder / name) as file:
+        np.savez(file, **mesh._asdict())
+    return name
+
+
+def load_mesh(path: Path) -> Mesh:
+    """Read what :func:`save_mesh` wrote."""
+    with np.load(path) as found:
+        return Mesh(found["points"], found["triangles"], float(found["error"]))
+
+
+@dataclass(frozen=True)
+class NodeJob:
+    """A square that is to be made of those below it.
+
+    Attributes
+    ----------
+    folder : Path
+        Of the run.
+    node : Node
+    children : tuple of str
+        Files of their meshes, in the folder.
+    options : mapping
+    """
+
+    folder: Path
+    node: Node
+    children: tuple[str, ...]
+    options: Mapping[str, Any]
+
+    @property
+    def key(self) -> str:
+        """Name of the task."""
+        return self.node.key
+
+    @property
+    def phase(self) -> str:
+        """Step of the run: a level."""
+        return f"level{self.node.level}"
+
+    def load(self) -> list[Mesh]:
+        """Return the meshes of the children."""
+        return [load_mesh(self.folder / name) for name in self.children]
+
+
+def find_meshes(records: Iterable[Record]) -> dict[Node, str]:
+    """Return the files of :func:`save_mesh` among those of tasks."""
+    return {
+        Node(*map(int, Path(name).stem.split("."))): name
+        for record in records
+        for name in record.files
+        if name.endswith(".npz")
+    }
+
+
+def make_levels(
+    run: Run,
+    phase: Phase,
+    meshes: dict[Node, str],
+    compute: Callable[[NodeJob], Record],
+    options: Mapping[str, Any],
+    *,
+    last: int = 0,
+) -> dict[str, Record]:
+    """Make the levels above squares, up to one; ``meshes`` get the files of those made."""
+    every = {}
+    for level in range(max(node.level for node in meshes) - 1, last - 1, -1):
+        parents = {node.parent for node in meshes if node.level == level + 1} - meshes.keys()
+        jobs = [
+            NodeJob(
+                run.folder,
+                parent,
+                tuple(meshes[one] for one in parent.children if one in meshes),
+                options,
+            )
+            for parent in sorted(parents)
+        ]
+        if not jobs:
+            continue
+        made = phase.run(run, jobs[0].phase, compute, jobs)
+        every.update({f"{jobs[0].phase} {key}": record for key, record in made.items()})
+        meshes.update(find_meshes(made.values()))
+    return every
