@@ -1,7 +1,4 @@
-"""Statistics of the slope, tile by tile, in exact sums.
-
-Percentiles need the slopes of all triangles in order, and are no part of it.
-"""
+"""Statistics of the slope, tile by tile: exact sums, and the slopes of which some are selected."""
 
 from __future__ import annotations
 
@@ -9,12 +6,21 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..relief.statistics import list_terms, merge_terms, summarise
+from ..relief.statistics import (
+    PERCENTILES,
+    list_terms,
+    merge_terms,
+    name_percentiles,
+    select_weighted_percentiles,
+    summarise,
+)
 from ..surface import compute_normals, measure_slopes
 from .surfaces import are_owned_triangles, as_surface
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
+
+    from numpy.typing import ArrayLike
 
     from ...base.arrays import Float64Array
     from ...base.crs import CRS, Unit
@@ -32,11 +38,11 @@ class StatisticsOptions(NamedTuple):
 
 
 class StatisticsPart(NamedTuple):
-    """Exact sums (3, t), and the least and the greatest slope."""
+    """Exact sums (3, t), and the slopes and areas (m,) of triangles."""
 
     terms: Float64Array
-    minimum: float
-    maximum: float
+    slopes: Float64Array
+    areas: Float64Array
 
 
 def compute_part(
@@ -46,28 +52,44 @@ def compute_part(
     is_owned = are_owned_triangles(part, box)
     if not is_owned.any():
         nothing = np.zeros(0)
-        return StatisticsPart(list_terms(nothing, nothing), np.inf, -np.inf)
+        return StatisticsPart(list_terms(nothing, nothing), nothing, nothing)
     normals = compute_normals(as_surface(part, options.crs, options.elevation_unit))[is_owned]
-    values = measure_slopes(normals, options.unit)
-    terms = list_terms(values, 0.5 * normals[:, 2])
-    return StatisticsPart(terms, float(values.min()), float(values.max()))
+    slopes, areas = measure_slopes(normals, options.unit), 0.5 * normals[:, 2]
+    return StatisticsPart(list_terms(slopes, areas), slopes, areas)
 
 
-def join(parts: Iterable[StatisticsPart]) -> dict[str, float]:
-    """Return area, minimum, mean, standard deviation and maximum of the whole surface."""
+def join(
+    load: Callable[[], Iterable[StatisticsPart]], percentiles: ArrayLike = PERCENTILES
+) -> dict[str, float]:
+    """Return area, minimum, mean, standard deviation, maximum and percentiles of the whole.
+
+    Parameters
+    ----------
+    load : callable
+        Yields the parts of all tiles, as often as it is called.
+    percentiles : sequence of float
+        As of :func:`tinsmith.slope_statistics`.
+    """
     nothing = np.zeros(0)
-    found = StatisticsPart(list_terms(nothing, nothing), np.inf, -np.inf)
-    for part in parts:
-        found = StatisticsPart(
-            merge_terms(found.terms, part.terms),
-            min(found.minimum, part.minimum),
-            max(found.maximum, part.maximum),
+    terms, low, high = list_terms(nothing, nothing), np.inf, -np.inf
+    for part in load():
+        terms = merge_terms(terms, part.terms)
+        low = min(low, float(part.slopes.min(initial=np.inf)))
+        high = max(high, float(part.slopes.max(initial=-np.inf)))
+    area, mean, deviation = summarise(terms)
+    shares = np.asarray(percentiles, np.float64)
+    slopes = (
+        select_weighted_percentiles(
+            lambda: ((part.slopes, part.areas) for part in load()), shares, area
         )
-    area, mean, deviation = summarise(found.terms)
+        if len(shares)
+        else shares
+    )
     return {
         "area": area,
-        "minimum": found.minimum,
+        "minimum": low,
         "mean": mean,
         "standard deviation": deviation,
-        "maximum": found.maximum,
+        "maximum": high,
+        **name_percentiles(shares, slopes),
     }

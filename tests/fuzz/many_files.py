@@ -101,7 +101,7 @@ def _compare(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path) -> st
         "contours": ((), {"levels": [level]}, ts.contours, ".shp"),
         "volume": ((), {"base": level}, ts.volume, ".csv"),
         "profile": ((line,), {}, ts.profile, ".csv"),
-        "slope_statistics": ((), {"unit": "percent"}, _summarise_slopes, ".csv"),
+        "slope_statistics": ((), {"unit": "percent"}, ts.slope_statistics, ".csv"),
         "rasterize": ((), {"spacing": spacing}, ts.rasterize, ".tif"),
     }
     found = []
@@ -220,10 +220,6 @@ def _compare_draped(case: Case, tin: ts.TIN, cloud: ts.TiledPoints, folder: Path
     asked = {"features": line, "outside": "nan"}
     with computing(cloud, "drape", folder / "lines.gpkg", how, **asked) as made:
         require_same_features(made, ts.drape(tin, line, outside="nan"))
-
-
-def _summarise_slopes(tin: ts.TIN, **options: str) -> ts.Table:
-    return ts.slope_statistics(tin, percentiles=[], **options)
 
 
 def _require_same_cells(path: Path, whole: ts.Raster) -> None:

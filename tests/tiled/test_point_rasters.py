@@ -133,3 +133,11 @@ def test_files_without_a_point_that_is_taken_are_told_and_left_out(lidar, tmp_pa
             assert dataset.tags()["notes"].split() == " ".join(whole.notes).split()
     with pytest.raises(ts.ReadError, match="There are no points in the inputs"):
         ts.tiles(folder, classes=3).rasterize_counts(tmp_path / "e.tif", spacing=10.0)
+
+
+def test_one_store_for_both_clouds_is_refused(lidar, tmp_path):
+    cloud = ts.tiles(lidar, classes=2, store=tmp_path / "store")
+    above = ts.tiles(lidar, store=tmp_path / "store")
+    with pytest.raises(ts.OptionError, match="a folder of its own for each of both"):
+        cloud.rasterize_heights(tmp_path / "a.tif", above, spacing=5.0, executor=Shuffled())
+    assert list(tmp_path.iterdir()) == []

@@ -181,8 +181,16 @@ def test_points_at_one_place_are_named_by_file_and_row(tmp_path):
         for name, one in (("a.laz", points), ("b.laz", others))
     ]
     cloud = ts.tiles(files, duplicates="error", check_crs=False)
-    with pytest.raises(ts.ReadError, match=r"row 4 of 'a\.laz', row 1 of 'b\.laz'"):
-        cloud.rasterize(tmp_path / "a.tif", spacing=1.0, executor=Shuffled())
+    for _ in range(2):
+        with pytest.raises(ts.ReadError, match=r"row 4 of 'a\.laz', row 1 of 'b\.laz'") as caught:
+            cloud.rasterize(tmp_path / "a.tif", spacing=1.0, executor=Shuffled())
+        assert str(caught.value).endswith(
+            "The same call refuses it again: change the points or the options, and begin anew "
+            "(`restart`)."
+        )
+    again = ts.tiles(files, duplicates="mean", check_crs=False)
+    path = again.rasterize(tmp_path / "a.tif", spacing=1.0, executor=Shuffled(), restart=True)
+    assert path.is_file()
 
 
 def write_raster(path, voids=()):

@@ -29,6 +29,7 @@ from ..io.registry import SourceHeader, find_writer, list_writers
 from ..io.streaming import describe_source, stream_points
 from ..io.writing import write as write_file
 from ..terrain.gridding import describe_extent
+from ..terrain.relief.statistics import PERCENTILES
 from ..tin import Survey
 from ..tin.validation import as_xy
 from .assembling import WRITERS, find_writable
@@ -713,25 +714,24 @@ class TiledPoints:
         path: str | os.PathLike[str],
         *,
         unit: SlopeUnit = "degrees",
+        percentiles: ArrayLike = PERCENTILES,
         format: str | None = None,  # noqa: A002 - as in write
         write: Mapping[str, Any] | None = None,
         **way: Unpack[Way],
     ) -> Path:
         """Write the mean slope and its like, as :func:`tinsmith.slope_statistics`.
 
-        There are no percentiles, for which the slopes of all triangles are needed in order.
-
         Parameters
         ----------
         path, format, write, **way
             As of :meth:`rasterize`.
-        unit
+        unit, percentiles
             As of :func:`tinsmith.slope_statistics`.
 
         Returns
         -------
         Path
-            A table of ``area``, ``minimum``, ``mean``, ``standard deviation`` and ``maximum``.
+            That table.
 
         Raises
         ------
@@ -749,7 +749,8 @@ class TiledPoints:
         ...     cloud.slope_statistics(Path(folder, "slopes.csv"), workers=1).name
         'slopes.csv'
         """
-        return self._write("slopes", {"unit": unit}, path, (format, write), way)
+        asked = {"unit": unit, "percentiles": percentiles}
+        return self._write("slopes", asked, path, (format, write), way)
 
     def drape(
         self,

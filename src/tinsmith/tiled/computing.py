@@ -78,6 +78,7 @@ def computing(
     clouds = {_POINTS: cloud}
     if hasattr(asked.get("other"), "headers"):
         clouds[_OTHERS] = asked["other"]
+        _require_own_store(cloud, asked["other"])
     with ExitStack() as stack:
         told, line_files = ({}, ()) if lines is None else (lines.told, lines.given.files)
         manifest = _describe(cloud, product, {**options, **told}, [*sources, *line_files])
@@ -175,6 +176,16 @@ def labelling(cloud: TiledPoints, folder: Path, how: How, **asked: Any) -> Itera
         if is_new:
             with suppress(OSError):  # files are in it
                 folder.rmdir()
+
+
+def _require_own_store(cloud: TiledPoints, other: TiledPoints) -> None:
+    """Refuse one folder for the points of two surfaces, or of one and those above it."""
+    if other.store is None or cloud.store is None:
+        return
+    if other.store.resolve() == cloud.store.resolve():
+        raise OptionError(
+            "store", str(other.store), "a folder of its own for each of both: it holds one's points"
+        )
 
 
 def _require_no_voids(stored: Sequence[StoredPoints], where: str) -> None:

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, cast
 import numpy as np
 
 from ..base.atomic import replacing
-from ..base.errors import TinsmithError, WriteError
+from ..base.errors import MissingExtraError, ReadError, TinsmithError, WriteError
 from ..terrain.parts import are_owned, are_owned_triangles
 from ..tin.tiling import LocalTriangulation, find_differing, intersect, triangulate_box, widen
 from .division import Tile, quarter
 from .lines import open_lines
 from .reading import name_rows, open_store
-from .running import Record, Run, hash_file
+from .running import FINAL, Record, Run, hash_file
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -260,7 +260,9 @@ def do_task(
         return Record(key, "no memory", f"{what} {key} needs more memory than there is.")
     except TinsmithError as error:
         sentence = f"{what} {key}: {explain(error)}"
-        record = Record(key, "failed", sentence, perf_counter() - started)
+        is_final = not isinstance(error, ReadError | MissingExtraError)
+        seconds, values = perf_counter() - started, {FINAL: True} if is_final else {}
+        record = Record(key, "failed", sentence, seconds, values=values)
     Run(folder).add(phase, record)
     return record
 

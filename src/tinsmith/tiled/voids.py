@@ -17,7 +17,7 @@ from .reading import ROWS_OF_A_FILE
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ..base.arrays import Float64Array, Int64Array
+    from ..base.arrays import BoolArray, Float64Array, Int64Array
     from .reading import StoredPoints
 
 
@@ -38,7 +38,8 @@ def add_void_rings(points: StoredPoints, lines: GivenLines | None) -> GivenLines
 
     Notes
     -----
-    Of all cells a byte each is held, and some 60 while rings are traced.
+    Points are read twice: for which cells there are, and for those on rings. Of all cells up to
+    four bytes each are held, and some 60 while rings are traced.
     """
     if lines is None:
         survey = Survey(
@@ -50,11 +51,7 @@ def add_void_rings(points: StoredPoints, lines: GivenLines | None) -> GivenLines
 
 def _find_rings(points: StoredPoints) -> list[Float64Array]:
     """Return the cells of each ring, (k, 3)."""
-    limits = [(part.min(axis=1), part.max(axis=1)) for part, _ in _list_cells(points)]
-    low, high = np.min([one for one, _ in limits], axis=0), np.max([one for _, one in limits], 0)
-    is_valid = np.zeros(tuple((high - low + 1).tolist()), np.bool_)
-    for part, _ in _list_cells(points):
-        is_valid[tuple(part - low[:, None])] = True
+    is_valid, low = _mark_cells(points)
     rings = trace_rings(is_valid)
     if not rings:
         raise ReadError("Nowhere in the raster do three cells side by side have elevations.")
@@ -67,6 +64,20 @@ def _find_rings(points: StoredPoints) -> list[Float64Array]:
         is_there = np.append(cells, -1)[at] == numbers
         found[at[is_there]] = some.points[is_there]
     return [found[np.searchsorted(on_rings, ring)] for ring in rings]
+
+
+def _mark_cells(points: StoredPoints) -> tuple[BoolArray, Int64Array]:
+    """Tell which cells have elevations, within their bounds, whose first row and column follow."""
+    is_valid = np.zeros((0, 0), np.bool_)
+    for part, _ in _list_cells(points):
+        more = np.maximum(part.max(axis=1) + 1 - is_valid.shape, 0)
+        if more.any():  # doubled, so that few of many parts enlarge it
+            more = np.where(more > 0, np.maximum(more, is_valid.shape), 0)
+            is_valid = np.pad(is_valid, [(0, int(count)) for count in more])
+        is_valid[tuple(part)] = True
+    rows, columns = (np.flatnonzero(is_valid.any(axis=axis)) for axis in (1, 0))
+    inside = is_valid[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    return np.ascontiguousarray(inside), np.array([rows[0], columns[0]])
 
 
 def _list_cells(points: StoredPoints) -> Iterator[tuple[Int64Array, NumberedPoints]]:

@@ -47,7 +47,7 @@ def test_extreme_percentiles_are_the_extremes():
 def test_equal_weights_are_those_of_numpy():
     values = np.random.default_rng(1).normal(size=101)
     shares = np.array([1.0, 33.0, 50.0, 99.5])
-    found = find_weighted_percentiles(values, np.ones(101), shares)
+    found = find_weighted_percentiles(values, np.ones(101), shares, 101.0)
     np.testing.assert_array_equal(found, np.percentile(values, shares, method="inverted_cdf"))
 
 

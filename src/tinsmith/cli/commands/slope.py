@@ -88,7 +88,7 @@ def _summarise(file: Path, unit: SlopeUnit, job: Job) -> None:
         facts.add("Points", describe_points(cloud))
     else:
         tin = job.read_tin(file)
-        made = slope_statistics(tin, unit=unit, percentiles=())
+        made = slope_statistics(tin, unit=unit)
         planned.write("Table", made)
         facts.add("TIN", describe_counts(tin))
     _add_statistics(facts, made)

@@ -1,22 +1,23 @@
-"""Statistics of the slope: each tile sums its triangles exactly, and sums are added exactly."""
+"""Statistics of the slope: each tile sums its triangles exactly, and keeps their slopes."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from ...base.checks import as_percentages
 from ...base.crs import CRS, Unit
 from ...base.errors import choice
 from ...base.policies import SlopeUnit
 from ...terrain.parts import statistics
-from ...terrain.relief.statistics import as_table
+from ...terrain.relief.statistics import PERCENTILES, as_table
 from ..tasks import load_arrays, save_arrays
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
+
+    from numpy.typing import ArrayLike
 
     from ...base.results import Table
     from ..reading import StoredPoints
@@ -24,9 +25,12 @@ if TYPE_CHECKING:
     from ..tasks import Part
 
 
-def check_options(*, unit: SlopeUnit = "degrees") -> dict[str, Any]:
+def check_options(
+    *, unit: SlopeUnit = "degrees", percentiles: ArrayLike = PERCENTILES
+) -> dict[str, Any]:
     """Return plain options, or refuse what is none."""
-    return {"unit": choice("unit", unit, SlopeUnit)}
+    shares = as_percentages("percentiles", percentiles).tolist()
+    return {"unit": choice("unit", unit, SlopeUnit), "percentiles": shares}
 
 
 def settle_options(points: StoredPoints, options: Mapping[str, Any]) -> dict[str, Any]:
@@ -49,21 +53,19 @@ def compute(part: Part) -> tuple[int, dict[str, Any], list[str]]:
         options["unit"], CRS.of(options["crs"]), Unit.of(options["elevation_unit"] or None)
     )
     found = statistics.compute_part(local, box, asked)
-    extremes = np.array([found.minimum, found.maximum])
-    return len(local.points), {}, save_arrays(part, terms=found.terms, extremes=extremes)
+    return len(local.points), {}, save_arrays(part, **found._asdict())
 
 
 def join(
     points: StoredPoints, options: Mapping[str, Any], records: Mapping[str, Record], folder: Path
 ) -> Table:
     """Return the statistics of all triangles."""
-    made = as_table(statistics.join(_load(records, folder)), options["unit"], points)
+    found = statistics.join(lambda: _load(records, folder), options["percentiles"])
+    made = as_table(found, options["unit"], points)
     return replace(made, notes=[*points.notes, *made.notes])
 
 
 def _load(records: Mapping[str, Record], folder: Path) -> Iterator[statistics.StatisticsPart]:
     for record in records.values():
         if record.files:
-            arrays = load_arrays(folder, record)
-            low, high = arrays["extremes"].tolist()
-            yield statistics.StatisticsPart(arrays["terms"], low, high)
+            yield statistics.StatisticsPart(**load_arrays(folder, record))

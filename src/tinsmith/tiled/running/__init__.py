@@ -2,10 +2,11 @@
 
 from .executors import Processes, connect_to_dask, run_tasks
 from .how import How, Way, estimate_memory
-from .runs import Fingerprint, Record, Run, UnfinishedError, hash_file
+from .runs import FINAL, Fingerprint, Record, Run, UnfinishedError, hash_file
 from .workers import Phase, Status
 
 __all__ = [
+    "FINAL",
     "Fingerprint",
     "How",
     "Phase",

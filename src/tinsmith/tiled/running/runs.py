@@ -32,7 +32,7 @@ _SHOWN = 3
 
 
 class UnfinishedError(ReadError):
-    """Tasks failed; what is done is kept, and the same call tries these again."""
+    """Tasks failed; what is done is kept. The same call tries these again, if that may help."""
 
 
 @dataclass(frozen=True)
@@ -90,6 +90,10 @@ class Fingerprint:
                 f"'{path}' was changed while it was read: run it again with the option `restart`.",
                 path=path,
             )
+
+
+FINAL = "is_final"
+"""Value of a task that failed: whether it will each time, by the points and the options alone."""
 
 
 @dataclass(frozen=True)

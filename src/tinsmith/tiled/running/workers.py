@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from ...base.notes import collecting_warnings, join_alike, warn
 from ...base.sentences import counted
 from .executors import Processes, run_tasks
-from .runs import Record, UnfinishedError
+from .runs import FINAL, Record, UnfinishedError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -214,8 +214,20 @@ class _Accounts:
         more = f" and {len(failed) - _SHOWN} more" if len(failed) > _SHOWN else ""
         raise UnfinishedError(
             f"{self._phase.step}: {counted(len(failed), 'task')} of {len(self.done):,} "
-            f"failed{more}. {shown} What is done is kept: the same call tries these again."
+            f"failed{more}. {shown} {_describe_cure(failed)}"
         )
+
+
+def _describe_cure(failed: Sequence[Record]) -> str:
+    """Tell what a further call can do for tasks that failed."""
+    final = sum(bool(one.values.get(FINAL)) for one in failed)
+    if not final:
+        return "What is done is kept: the same call tries these again."
+    which = "it" if final == len(failed) == 1 else "them" if final == len(failed) else "some"
+    return (
+        f"The same call refuses {which} again: change the points or the options, and begin anew "
+        "(`restart`)."
+    )
 
 
 def _as_order(key: str) -> tuple[int, ...]:
