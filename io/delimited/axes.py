@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.errors import ReadError
-from .columns import COORDINATES, shorten
-from .names import find_languages, parse_name
+from .columns import COORDINATES
+from .names import find_languages, parse_name, shorten
 from .vocabulary import read_languages
 
 if TYPE_CHECKING:

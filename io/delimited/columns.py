@@ -10,7 +10,7 @@ from ...base.crs import Unit
 from ...base.errors import OptionError, ReadError
 from ...base.sentences import counted
 from .grouping import find_group
-from .names import parse_name
+from .names import parse_name, shorten
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -30,7 +30,7 @@ _LETTERS = {
     "Y": "northing",
     "-": "",
 }
-_SHOWN_LETTERS, _SHOWN_NAMES, _SHOWN_DOUBTS = 40, 12, 3
+_SHOWN_NAMES, _SHOWN_DOUBTS = 12, 3
 _ROLE_LETTERS = {
     "number": "P",
     "northing": "N",
@@ -91,11 +91,6 @@ class Columns:
         """The meaning of the columns in order, in words."""
         meaning = {column: role for role, column in self.roles.items()}
         return list_names([meaning.get(i, self.names[i]) for i in range(len(self.names))])
-
-
-def shorten(name: str) -> str:
-    """Cut a name that no sentence should hold whole."""
-    return name if len(name) <= _SHOWN_LETTERS else f"{name[:_SHOWN_LETTERS]}..."
 
 
 def list_names(names: Sequence[str]) -> str:

@@ -302,7 +302,7 @@ def require_unit_of_crs(columns: Columns, crs: CRS | None, *, is_stated: bool) -
         return []
     wanted = crs.horizontal_unit
     for role in ("easting", "northing"):
-        unit = _find_unit(columns.units.get(role))
+        unit = find_known_unit(columns.units.get(role))
         if unit is None or unit.metres is None or wanted.metres is None or unit == wanted:
             continue
         is_far = abs(unit.metres / wanted.metres - 1.0) > _SAME_UNIT
@@ -322,7 +322,7 @@ def require_unit_of_crs(columns: Columns, crs: CRS | None, *, is_stated: bool) -
 
 def _require_units_of_a_kind(columns: Columns, *, is_stated: bool) -> list[str]:
     """Say where the header gives eastings another unit than elevations, or refuse it."""
-    across, up = (_find_unit(columns.units.get(role)) for role in ("easting", "elevation"))
+    across, up = (find_known_unit(columns.units.get(role)) for role in ("easting", "elevation"))
     if across is None or across == (up or METRE):
         return []
     if up is not None and not is_stated:
@@ -342,8 +342,8 @@ def _require_units_of_a_kind(columns: Columns, *, is_stated: bool) -> list[str]:
     ]
 
 
-def _find_unit(word: str | None) -> Unit | None:
-    """Return the unit that the header names; None if the word is no length."""
+def find_known_unit(word: str | None) -> Unit | None:
+    """Return the unit of length that a word names; None if it names none."""
     try:
         return Unit.of(word)
     except OptionError:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from .names import ColumnName, parse_name
+from .names import ColumnName, parse_name, shorten
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -19,7 +19,6 @@ _FAMILIES = {"word": 0, "letter": 0, "axis": 1, "angle": 2}
 """Of several pairs those are preferred that say where they point, longitudes and latitudes last."""
 _COORDINATES = {"easting", "northing", "elevation"}
 _PLANE = {"easting", "northing"}
-_SHOWN_LETTERS = 40
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,7 +142,7 @@ def _choose_pair(
         return (whole or best)[0], ""
     pair = (whole or best)[0]
     shown = "; ".join(
-        ", ".join(f"'{_shorten(header[i])}'" for i in sorted((one.east, one.north, *one.own)))
+        ", ".join(f"'{shorten(header[i])}'" for i in sorted((one.east, one.north, *one.own)))
         for one in pairs
     )
     return pair, (
@@ -154,9 +153,9 @@ def _choose_pair(
 
 def _note_pairs(header: Sequence[str], pair: _Pair, pairs: Sequence[_Pair]) -> list[str]:
     return [
-        f"The header names two pairs of coordinates: '{_shorten(header[pair.east])}' and "
-        f"'{_shorten(header[pair.north])}' are taken, '{_shorten(header[other.east])}' and "
-        f"'{_shorten(header[other.north])}' are not."
+        f"The header names two pairs of coordinates: '{shorten(header[pair.east])}' and "
+        f"'{shorten(header[pair.north])}' are taken, '{shorten(header[other.east])}' and "
+        f"'{shorten(header[other.north])}' are not."
         for other in pairs
         if other is not pair
     ][:1]
@@ -179,8 +178,8 @@ def _choose_elevation(
         return left[0], _describe_several(header, "elevation", left)
     if not _are_of_one_system(names[left[0]], pair.name):
         return left[0], (
-            f"the header gives the elevation ('{_shorten(header[left[0]])}') another system than "
-            f"the easting ('{_shorten(header[pair.east])}'): say with the option `columns` what "
+            f"the header gives the elevation ('{shorten(header[left[0]])}') another system than "
+            f"the easting ('{shorten(header[pair.east])}'): say with the option `columns` what "
             "the columns are."
         )
     return left[0], ""
@@ -194,11 +193,11 @@ def _are_of_one_system(height: ColumnName, pair: ColumnName) -> bool:
 def _note_elevations(
     header: Sequence[str], names: Sequence[ColumnName], z: int, heights: Iterable[int]
 ) -> list[str]:
-    others = [f"'{_shorten(header[i])}'" for i in heights if names[i] != names[z]]
+    others = [f"'{shorten(header[i])}'" for i in heights if names[i] != names[z]]
     if not others:
         return []
     return [
-        f"The header's '{_shorten(header[z])}' is taken as the elevation, not {', '.join(others)}."
+        f"The header's '{shorten(header[z])}' is taken as the elevation, not {', '.join(others)}."
     ]
 
 
@@ -213,7 +212,7 @@ def _find_repeated(
         same = [one for one in names if not one.doubt and _key(one) == _key(names[column])]
         if len(same) > 1:
             return (
-                f"the header has {len(same)} columns named '{_shorten(header[column])}' for the "
+                f"the header has {len(same)} columns named '{shorten(header[column])}' for the "
                 f"{role}: say with the option `columns` which is meant."
             )
     return ""
@@ -257,12 +256,8 @@ def _has_partner(names: Sequence[ColumnName], column: int) -> bool:
 
 
 def _describe_several(header: Sequence[str], role: str, columns: Iterable[int]) -> str:
-    shown = ", ".join(f"'{_shorten(header[i])}'" for i in columns)
+    shown = ", ".join(f"'{shorten(header[i])}'" for i in columns)
     return (
         f"the header has several columns for the {role} ({shown}): say with the option `columns` "
         "which is meant."
     )
-
-
-def _shorten(name: str) -> str:
-    return name if len(name) <= _SHOWN_LETTERS else f"{name[:_SHOWN_LETTERS]}..."

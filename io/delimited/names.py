@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 _LONGEST_NAME = 200
 """Letters of a header cell that may be a name; a longer one is some other text."""
 _LONGEST_PHRASE = 6
+_SHOWN_LETTERS = 40
 _NUMBER_SIGN = re.compile(r"(?<![^\W_])n\s?[°º#]|№|#", re.IGNORECASE)
 _NO_NAME = re.compile(r"\s*([-+.,]*[0-9]|[^\w#№]*$)")
 """Numbers, among them 1e5, and texts without a letter."""
@@ -86,6 +87,11 @@ class _Found:
     has_degrees: bool = False
     has_datum: bool = False
     unknown: list[str] = field(default_factory=list)
+
+
+def shorten(name: str) -> str:
+    """Cut a name that no sentence should hold whole."""
+    return name if len(name) <= _SHOWN_LETTERS else f"{name[:_SHOWN_LETTERS]}..."
 
 
 def parse_name(name: str) -> ColumnName:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...base.crs import CRS, Unit
-from ...base.errors import OptionError, ReadError
+from ...base.errors import ReadError
 from ...base.sentences import counted
 from ...tin.screening.area_of_use import AreaOfUse
 from ...tin.screening.nodata import parse_nodata
@@ -27,6 +27,7 @@ from .findings import (
     describe_outside,
     describe_sum_row,
     find_commented_points,
+    find_known_unit,
     find_odd_elevations,
     find_repeated_numbers,
     find_rounded_coordinates,
@@ -483,25 +484,17 @@ def _find_unit(
     layout: Layout, lines: TextLines, declared: Unit | None
 ) -> tuple[Unit | None, list[str]]:
     """Return the unit of elevations by the header, a line near the table or the caller."""
-    named = _find_known_unit(layout.elevation_unit)
+    named = find_known_unit(layout.elevation_unit)
     line = find_unit_line(lines, layout.rows)
     if line is None or not line.unit:
         return settle_unit(declared, named), [line.note] if line else []
-    own = _find_known_unit(line.unit)
+    own = find_known_unit(line.unit)
     if named not in (None, own) or declared not in (None, own):
         raise ReadError(
             f"{line.label} tells {line.unit} as the unit of the elevations, and the "
             f"{'header' if named else 'option `elevation_unit`'} another: make them agree.",
         )
     return own, [line.note]
-
-
-def _find_known_unit(word: str | None) -> Unit | None:
-    """Return a unit of length; a word that is none tells none."""
-    try:
-        return Unit.of(word)
-    except OptionError:
-        return None
 
 
 def _find_source_crs(layout: Layout, source_crs: CRS | None, crs: CRS | None) -> CRS | None:

@@ -110,9 +110,9 @@ def _require_free(
             continue
         if not _is_ours(old, found):
             raise _refuse(path, found, "was not written by tinsmith")
-        row = old.execute(
-            "SELECT last_change FROM gpkg_contents WHERE lower(table_name) = lower(?)", (found,)
-        ).fetchone()
+        row = _ask(
+            old, "SELECT last_change FROM gpkg_contents WHERE lower(table_name) = lower(?)", found
+        )
         if row is not None and row[0] != NO_CLOCK:
             raise _refuse(path, found, "was changed by another program since tinsmith wrote it")
 
@@ -127,17 +127,15 @@ def _refuse(path: Path, layer: str, why: str) -> WriteError:
 def _is_ours(file: sqlite3.Connection, layer: str) -> bool:
     if layer in _OF_TIN:
         return RECORD in _list_tables(file)
-    found = file.execute(
-        "SELECT 1 FROM sqlite_master WHERE name = ?", ("gpkg_metadata_reference",)
-    ).fetchone()
-    if found is None:
+    if not _has_table_in(file, "main", "gpkg_metadata_reference"):
         return False
-    (count,) = file.execute(
-        "SELECT count(*) FROM gpkg_metadata JOIN gpkg_metadata_reference ON id = md_file_id "
+    found = _ask(
+        file,
+        "SELECT 1 FROM gpkg_metadata JOIN gpkg_metadata_reference ON id = md_file_id "
         "WHERE lower(table_name) = lower(?) AND metadata LIKE ?",
-        (layer, _MARKED),
-    ).fetchone()
-    return bool(count)
+        *(layer, _MARKED),
+    )
+    return found is not None
 
 
 # ------------------------------------------------------------------- putting layers in
@@ -157,17 +155,17 @@ def _merge(path: Path, made: Path, beside: Path, placing: Placing) -> None:
         if RECORD in layers:
             layers = [*(name for name in layers if name != RECORD), RECORD]
         for layer in layers:
-            row = file.execute(
+            there = _ask(
+                file,
                 "SELECT name FROM main.sqlite_master WHERE type IN ('table', 'view') "
                 "AND lower(name) = lower(?)",
-                (layer,),
-            ).fetchone()
-            there = None if row is None else str(row[0])
+                layer,
+            )
             if there is not None and placing.append:
-                _append(file, layer, there, numbers)
+                _append(file, layer, there[0], numbers)
                 continue
             if there is not None:
-                _remove(file, there)
+                _remove(file, there[0])
             _add(file, layer, numbers)
         if RECORD in layers:
             _renew_digest(file)
@@ -177,7 +175,7 @@ def _merge(path: Path, made: Path, beside: Path, placing: Placing) -> None:
 
 def _renew_digest(file: sqlite3.Connection) -> None:
     """Let the record of a TIN tell of its lines as they are, whose CRS may have another number."""
-    (text,) = file.execute(f"SELECT data FROM main.{RECORD} WHERE name = 'digests'").fetchone()
+    (text,) = _ask(file, f"SELECT data FROM main.{RECORD} WHERE name = 'digests'")
     rows = file.execute("SELECT geom, kind, name FROM main.lines ORDER BY fid")
     digests = json.loads(text) | {"lines": digest_lines(rows)}
     file.execute(
@@ -187,15 +185,8 @@ def _renew_digest(file: sqlite3.Connection) -> None:
 
 def _add_references(file: sqlite3.Connection) -> dict[int, int]:
     """Add the CRS that the file lacks; return its number of each CRS of the new file."""
-    columns = [
-        name
-        for name in _list_columns(file, "made", "gpkg_spatial_ref_sys")
-        if name in _list_columns(file, "main", "gpkg_spatial_ref_sys")
-    ]
-    listed = ", ".join(map(_quote, columns))
     numbers = {}
-    for row in file.execute(f"SELECT {listed} FROM made.gpkg_spatial_ref_sys").fetchall():
-        values = dict(zip(columns, row, strict=True))
+    for values in _list_rows(file, "gpkg_spatial_ref_sys"):
         number = int(values["srs_id"])
         numbers[number] = _find_reference(file, values)
         if numbers[number] is None:
@@ -203,29 +194,17 @@ def _add_references(file: sqlite3.Connection) -> dict[int, int]:
             numbers[number] = values["srs_id"] = (
                 number if number not in taken else max(*taken, 100_000) + 1
             )
-            marks = ", ".join("?" * len(columns))
-            file.execute(
-                f"INSERT INTO main.gpkg_spatial_ref_sys ({listed}) VALUES ({marks})",
-                list(values.values()),
-            )
+            _insert(file, "gpkg_spatial_ref_sys", values)
     return numbers
 
 
 def _find_reference(file: sqlite3.Connection, values: dict[str, Any]) -> Any:
     """Return the number of the same CRS in the file: of the same code, or the same words."""
-    code = (values["organization"], values["organization_coordsys_id"])
-    if str(code[0]).upper() != "NONE" or values["srs_id"] in (0, -1):
-        row = file.execute(
-            "SELECT srs_id FROM main.gpkg_spatial_ref_sys WHERE lower(organization) = lower(?) "
-            "AND organization_coordsys_id = ?",
-            code,
-        ).fetchone()
-    else:
-        row = file.execute(
-            "SELECT srs_id FROM main.gpkg_spatial_ref_sys WHERE definition = ? "
-            "AND definition <> 'undefined'",
-            (values["definition"],),
-        ).fetchone()
+    code: tuple[Any, ...] = (values["organization"], values["organization_coordsys_id"])
+    same = "lower(organization) = lower(?) AND organization_coordsys_id = ?"
+    if str(code[0]).upper() == "NONE" and values["srs_id"] not in (0, -1):
+        code, same = (values["definition"],), "definition = ? AND definition <> 'undefined'"
+    row = _ask(file, f"SELECT srs_id FROM main.gpkg_spatial_ref_sys WHERE {same}", *code)
     return None if row is None else row[0]
 
 
@@ -241,9 +220,9 @@ def _add(file: sqlite3.Connection, layer: str, numbers: dict[int, int]) -> None:
     tables = [sql for kind, table, sql in own if kind == "table" and table == layer]
     indexed = [(table, sql) for kind, table, sql in own if "USING rtree" in sql and kind == "table"]
     file.execute(tables[0])
-    geometry = file.execute(
-        "SELECT column_name FROM made.gpkg_geometry_columns WHERE table_name = ?", (layer,)
-    ).fetchone()
+    geometry = _ask(
+        file, "SELECT column_name FROM made.gpkg_geometry_columns WHERE table_name = ?", layer
+    )
     file.execute(f"INSERT INTO main.{name} SELECT * FROM made.{name}")
     if geometry is not None:
         _renumber(file, name, _quote(geometry[0]), numbers)
@@ -286,35 +265,22 @@ def _register(file: sqlite3.Connection, layer: str, numbers: dict[int, int]) -> 
         if not _has_table_in(file, "made", register):
             continue
         _make_register(file, register)
-        columns = [
-            column
-            for column in _list_columns(file, "made", register)
-            if column in _list_columns(file, "main", register)
-        ]
-        listed, marks = ", ".join(map(_quote, columns)), ", ".join("?" * len(columns))
-        rows = file.execute(
-            f"SELECT {listed} FROM made.{register} WHERE lower(table_name) = lower(?)", (layer,)
-        ).fetchall()
-        for row in rows:
-            values = dict(zip(columns, row, strict=True))
+        for values in _list_rows(file, register, layer):
             if values.get("srs_id") is not None:
                 values["srs_id"] = numbers.get(values["srs_id"], values["srs_id"])
-            file.execute(
-                f"INSERT OR REPLACE INTO main.{register} ({listed}) VALUES ({marks})",
-                list(values.values()),
-            )
+            _insert(file, register, values)
     # Copy the extensions of the system tables that are there now.
-    for row in file.execute(
-        "SELECT * FROM made.gpkg_extensions WHERE table_name LIKE 'gpkg_%'"
-        if _has_table_in(file, "made", "gpkg_extensions")
-        else "SELECT 1 WHERE 0"
-    ).fetchall():
-        known = file.execute(
-            "SELECT 1 FROM main.gpkg_extensions WHERE table_name = ? AND extension_name = ?",
-            (row[0], row[2]),
-        ).fetchone()
-        if known is None and row[0] != "gpkg_spatial_ref_sys":
-            file.execute("INSERT INTO main.gpkg_extensions VALUES (?, ?, ?, ?, ?)", row)
+    if _has_table_in(file, "made", "gpkg_extensions"):
+        for row in file.execute(
+            "SELECT * FROM made.gpkg_extensions WHERE table_name LIKE 'gpkg_%'"
+        ).fetchall():
+            known = _ask(
+                file,
+                "SELECT 1 FROM main.gpkg_extensions WHERE table_name = ? AND extension_name = ?",
+                *(row[0], row[2]),
+            )
+            if known is None and row[0] != "gpkg_spatial_ref_sys":
+                file.execute("INSERT INTO main.gpkg_extensions VALUES (?, ?, ?, ?, ?)", row)
     _copy_metadata(file, layer)
 
 
@@ -356,11 +322,12 @@ def _make_register(file: sqlite3.Connection, register: str) -> None:
 
 def _append(file: sqlite3.Connection, layer: str, there: str, numbers: dict[int, int]) -> None:
     kinds = [
-        file.execute(
+        _ask(
+            file,
             f"SELECT geometry_type_name, z, srs_id, column_name FROM {schema}.gpkg_geometry_columns"
             " WHERE lower(table_name) = lower(?)",
-            (layer,),
-        ).fetchone()
+            layer,
+        )
         for schema in ("made", "main")
     ]
     columns = [_list_columns(file, "made", layer), _list_columns(file, "main", there)]
@@ -377,7 +344,7 @@ def _append(file: sqlite3.Connection, layer: str, there: str, numbers: dict[int,
     ).fetchall()
     for name, _ in triggers:  # they call functions that SQLite alone has not
         file.execute(f"DROP TRIGGER main.{_quote(name)}")
-    (last,) = file.execute(f"SELECT coalesce(max(rowid), 0) FROM main.{_quote(there)}").fetchone()
+    (last,) = _ask(file, f"SELECT coalesce(max(rowid), 0) FROM main.{_quote(there)}")
     geometry = _quote(new[3])
     file.execute(
         f"INSERT INTO main.{_quote(there)} ({listed}) SELECT {listed} FROM made.{_quote(layer)} "
@@ -411,10 +378,8 @@ def _append_to_index(
 def _update_counts(file: sqlite3.Connection, layer: str, there: str) -> None:
     """Let extent and count of a layer hold what was appended."""
     box = ("min_x", "min_y", "max_x", "max_y")
-    new = file.execute(
-        f"SELECT {', '.join(box)} FROM made.gpkg_contents WHERE lower(table_name) = lower(?)",
-        (layer,),
-    ).fetchone()
+    of_layer = "WHERE lower(table_name) = lower(?)"
+    new = _ask(file, f"SELECT {', '.join(box)} FROM made.gpkg_contents {of_layer}", layer)
     for name, value, choose in zip(box, new, ("min", "min", "max", "max"), strict=True):
         file.execute(
             f"UPDATE main.gpkg_contents SET {name} = coalesce({choose}({name}, ?1), {name}, ?1) "
@@ -430,10 +395,8 @@ def _update_counts(file: sqlite3.Connection, layer: str, there: str) -> None:
 
 
 def _remove(file: sqlite3.Connection, layer: str) -> None:
-    row = file.execute(
-        "SELECT column_name FROM main.gpkg_geometry_columns WHERE lower(table_name) = lower(?)",
-        (layer,),
-    ).fetchone()
+    of_layer = "WHERE lower(table_name) = lower(?)"
+    row = _ask(file, f"SELECT column_name FROM main.gpkg_geometry_columns {of_layer}", layer)
     triggers = file.execute(
         "SELECT name FROM main.sqlite_master WHERE type = 'trigger' AND lower(tbl_name) = lower(?)",
         (layer,),
@@ -442,40 +405,55 @@ def _remove(file: sqlite3.Connection, layer: str) -> None:
         file.execute(f"DROP TRIGGER main.{_quote(name)}")
     if row is not None:
         file.execute(f"DROP TABLE IF EXISTS main.{_quote(f'rtree_{layer}_{row[0]}')}")
-    (kind,) = file.execute(
-        "SELECT type FROM main.sqlite_master WHERE name = ? AND type IN ('table', 'view')", (layer,)
-    ).fetchone()
+    (kind,) = _ask(
+        file,
+        "SELECT type FROM main.sqlite_master WHERE name = ? AND type IN ('table', 'view')",
+        layer,
+    )
     file.execute(f"DROP {kind} main.{_quote(layer)}")
     if _has_table_in(file, "main", "gpkg_metadata_reference"):
-        _remove_metadata(file, layer)
+        numbers = file.execute(
+            f"SELECT md_file_id FROM main.gpkg_metadata_reference {of_layer}", (layer,)
+        ).fetchall()
+        file.execute(f"DELETE FROM main.gpkg_metadata_reference {of_layer}", (layer,))
+        for (number,) in numbers:
+            file.execute(
+                "DELETE FROM main.gpkg_metadata WHERE id = ? AND NOT EXISTS (SELECT 1 FROM "
+                "main.gpkg_metadata_reference WHERE md_file_id = ? OR md_parent_id = ?)",
+                (number, number, number),
+            )
     for register in (*_OF_TILES, *reversed(_REGISTERS)):
         if _has_table_in(file, "main", register):
-            file.execute(
-                f"DELETE FROM main.{register} WHERE lower(table_name) = lower(?)", (layer,)
-            )
+            file.execute(f"DELETE FROM main.{register} {of_layer}", (layer,))
 
 
-def _remove_metadata(file: sqlite3.Connection, layer: str) -> None:
-    numbers = file.execute(
-        "SELECT md_file_id FROM main.gpkg_metadata_reference WHERE lower(table_name) = lower(?)",
-        (layer,),
+def _ask(file: sqlite3.Connection, question: str, *values: Any) -> Any:
+    """Return the first row of an answer; None if there is none."""
+    return file.execute(question, values).fetchone()
+
+
+def _list_rows(file: sqlite3.Connection, table: str, layer: str = "") -> list[dict[str, Any]]:
+    """Return the rows of the new file's table, of a layer or all, in columns that both have."""
+    theirs = _list_columns(file, "main", table)
+    columns = [name for name in _list_columns(file, "made", table) if name in theirs]
+    condition = " WHERE lower(table_name) = lower(?)" if layer else ""
+    rows = file.execute(
+        f"SELECT {', '.join(map(_quote, columns))} FROM made.{table}{condition}",
+        (layer,) if layer else (),
     ).fetchall()
+    return [dict(zip(columns, row, strict=True)) for row in rows]
+
+
+def _insert(file: sqlite3.Connection, table: str, values: dict[str, Any]) -> None:
+    listed, marks = ", ".join(map(_quote, values)), ", ".join("?" * len(values))
     file.execute(
-        "DELETE FROM main.gpkg_metadata_reference WHERE lower(table_name) = lower(?)", (layer,)
+        f"INSERT OR REPLACE INTO main.{table} ({listed}) VALUES ({marks})", list(values.values())
     )
-    for (number,) in numbers:
-        file.execute(
-            "DELETE FROM main.gpkg_metadata WHERE id = ? AND NOT EXISTS (SELECT 1 FROM "
-            "main.gpkg_metadata_reference WHERE md_file_id = ? OR md_parent_id = ?)",
-            (number, number, number),
-        )
 
 
 def _has_table_in(file: sqlite3.Connection, schema: str, name: str) -> bool:
-    found = file.execute(
-        f"SELECT 1 FROM {schema}.sqlite_master WHERE lower(name) = lower(?)", (name,)
-    ).fetchone()
-    return found is not None
+    question = f"SELECT 1 FROM {schema}.sqlite_master WHERE lower(name) = lower(?)"
+    return _ask(file, question, name) is not None
 
 
 def _list_columns(file: sqlite3.Connection, schema: str, table: str) -> list[str]:
