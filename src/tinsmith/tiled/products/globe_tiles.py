@@ -472,7 +472,7 @@ def encode_tiles(job: SquareJob) -> Record:
 # ------------------------------------------------------------------------- the folder
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class GlobeTiles:
     """All tiles, in the folder of the run.
 
