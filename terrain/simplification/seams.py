@@ -128,7 +128,7 @@ def choose_vertices(z: Float64Array, limit: float) -> Int64Array:
 
     def measure(start: int, end: int) -> Float64Array:
         line = z[start] + (z[end] - z[start]) / (end - start) * np.arange(1, end - start)
-        return np.abs(z[start + 1 : end] - line)
+        return np.asarray(np.abs(z[start + 1 : end] - line), np.float64)
 
     return halve_at_farthest(len(z), measure, limit)
 

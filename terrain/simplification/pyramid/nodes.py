@@ -142,6 +142,6 @@ def choose_on_line(along: Float64Array, z: Float64Array, limit: float) -> Int64A
     def measure(start: int, end: int) -> Float64Array:
         inner = slice(start + 1, end)
         share = (along[inner] - along[start]) / (along[end] - along[start])
-        return np.abs(z[start] + share * (z[end] - z[start]) - z[inner])
+        return np.asarray(np.abs(z[start] + share * (z[end] - z[start]) - z[inner]), np.float64)
 
     return np.unique([0, *halve_at_farthest(len(z), measure, limit), len(z) - 1])
