@@ -109,22 +109,11 @@ def falls_across(
 ) -> tuple[Int8Array, Float64Array, Float64Array]:
     """Tell whether the plane through ``a``, ``b``, ``c`` falls across the edge from ``a`` to ``b``.
 
-    Parameters
-    ----------
-    points : (n, 3) float64 array
-        Elevations, too, of a magnitude in ``EXACT_RANGE``, or 0.
-    a, b, c : (k,) int arrays
-        Vertex numbers, counter-clockwise.
-
-    Returns
-    -------
-    signs : (k,) int8 array
-        +1 if its steepest descent leaves the triangle across the edge, -1 if it enters there, 0 if
-        it runs along the edge, or the plane is level. Exact.
-    values : (k,) float64 array
-        Descent times the length of the edge, times twice the area, rounded.
-    bounds : (k,) float64 array
-        Of the error of each value.
+    These are vertex numbers, (k,), counter-clockwise, of (n, 3) points whose elevations are of a
+    magnitude in ``EXACT_RANGE``, too, or 0. Returns exact signs, (k,): +1 if the steepest descent
+    leaves the triangle across the edge, -1 if it enters there, 0 if it runs along the edge, or the
+    plane is level; then descent times the length of the edge, times twice the area, rounded, and
+    bounds of the error of these.
     """
     signs = np.empty(len(a), np.int8)
     values, bounds = np.empty(len(a)), np.empty(len(a))

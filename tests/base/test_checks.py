@@ -20,7 +20,7 @@ from tinsmith.base.checks import (
 )
 from tinsmith.base.errors import TinsmithError, choice
 from tinsmith.base.sentences import shown
-from tinsmith.tin.editing.operations import apply_edits
+from tinsmith.tin.editing.history import apply_edits
 from tinsmith.tin.paper.comparison import compare
 from tinsmith.tin.paper.growth import improved
 from tinsmith.tin.validation.points import as_elevations

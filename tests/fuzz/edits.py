@@ -16,7 +16,7 @@ import numpy as np
 from support.point_sets import KINDS, coordinates
 
 import tinsmith as ts
-from tinsmith.tin.editing.operations import apply_edits
+from tinsmith.tin.editing.history import apply_edits
 
 from .campaign import Campaign, Case
 

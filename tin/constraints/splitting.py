@@ -113,17 +113,9 @@ def _is_in(keys: Int64Array, known: Int64Array) -> BoolArray:
 class Splitting:
     """Polylines that are being split, and what is known about them.
 
-    Attributes
-    ----------
-    xy : (n, 2) float64 array
-        Coordinates of the vertices: of the given ones, then of those made where lines cross.
-    polylines : Polylines
-    elevations : (k,) float64 array
-        The line's own at each position; NaN if it has none.
-    is_given : (k,) bool array
-        Whether the line names the vertex itself.
-    segments : Segments
-    crossing_vertices : (c,) int32 array
+    ``xy`` are the vertices, (n, 2), first the given ones, then those made where lines cross, which
+    are ``crossing_vertices``. Of each position ``elevations`` has the line's own, NaN if it has
+    none, and ``is_given`` tells whether the line names the vertex itself.
     """
 
     def __init__(

@@ -79,17 +79,9 @@ class Editor:
     of its rows, then of its lines; those that are inserted follow. A TIN's own numbers put the
     inserted ones between the two, and close the gaps that removed ones leave.
 
-    Parameters
-    ----------
-    version : Version
-        Neither clipped nor with vertices that have been left out.
-    inputs : NumberedInputs
-        Of the version.
-
-    Attributes
-    ----------
-    edited : EditedMesh
-        The vertices as they are; it has no mesh of the triangles until these change.
+    The version is neither clipped nor has it vertices that have been left out; ``inputs`` are its
+    own. ``edited`` are the vertices as they are; there is no mesh of the triangles until these
+    change.
     """
 
     def __init__(self, version: Version, inputs: NumberedInputs) -> None:

@@ -6,16 +6,13 @@ NotLocal if a mesh cannot do it; nothing has changed then. A mesh does no other 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from copy import copy
 from typing import TYPE_CHECKING, Any
 
 from ...base.checks import is_whole_number
-from ...base.errors import LinesError, PointsError, TinsmithError, choice
+from ...base.errors import LinesError, choice
 from ...base.policies import CrossingPolicy, DuplicatePolicy
 from ...base.sentences import shown
 from ..constraints.breaklines import Breakline
-from ..report import Edit
 from .arguments import (
     as_ends,
     as_new_points,
@@ -31,7 +28,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from .changes import Done
-    from .editable import Editable
     from .mesh_editor import Editor
     from .rebuilding import Rebuild
 
@@ -86,40 +82,3 @@ OPERATIONS: dict[str, Callable[..., Done]] = {
     "remove_breakline": _remove_breakline,
 }
 """The operations by the names of the methods of a TIN that do them."""
-
-
-# ---------------------------------------------------------------- one after the other
-
-
-def apply_edits(tin: Editable, edits: Iterable[Edit | Mapping[str, Any]]) -> None:
-    """Do edits on a TIN, in their order.
-
-    Dicts are as :meth:`Edit.to_dict` gives them: ``{"op": "remove", "vertices": [3]}``. Raises
-    PointsError, LinesError or OptionError at the first edit that fails, with its number; those
-    before it stay done.
-    """
-    for number, edit in enumerate(edits):
-        operation, arguments = _take_apart(edit, number)
-        try:
-            getattr(tin, operation)(**arguments)
-        except TypeError:
-            raise PointsError(
-                f"Edit {number} ({operation}) has the wrong arguments: {', '.join(arguments)}."
-            ) from None
-        except TinsmithError as error:
-            numbered = copy(error)
-            numbered.args = (f"Edit {number} ({operation}): {error}",)
-            raise numbered from error
-
-
-def _take_apart(edit: Edit | Mapping[str, Any], number: int) -> tuple[str, dict[str, Any]]:
-    if isinstance(edit, Edit):
-        return edit.operation, edit.arguments
-    arguments = {name: value for name, value in edit.items() if name not in ("op", "notes")}
-    name = edit.get("op")
-    operation = name if isinstance(name, str) else ""
-    if operation not in OPERATIONS:
-        raise PointsError(
-            f"Edit {number} has op {shown(name)}: one of {', '.join(OPERATIONS)} is needed."
-        )
-    return operation, arguments

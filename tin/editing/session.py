@@ -51,17 +51,8 @@ class Session:
     which :class:`.Editor` is kept; for all others everything is built anew beside what is there,
     and takes its place when it is complete. So an edit that fails changes nothing.
 
-    Parameters
-    ----------
-    version : Version
-        The TIN before its first edit.
-    build_inputs : BuildInputs or None
-        What it was built from; None for one of existing triangles.
-
-    Raises
-    ------
-    PointsError
-        If existing triangles are no Delaunay triangulation.
+    It begins with a version and what that was built from, None for one of existing triangles:
+    PointsError if these are no Delaunay triangulation.
     """
 
     def __init__(self, version: Version, build_inputs: BuildInputs | None) -> None:

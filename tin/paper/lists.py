@@ -22,20 +22,10 @@ _MOST_USES = 2
 class Lists:
     """Point set M, the Count of every edge, list N of triangles; and how much was searched.
 
-    Parameters
-    ----------
-    xy : Columns
-    removal : bool
-        Whether points are deleted from M once all their edges are used twice.
-
-    Attributes
-    ----------
-    searched : (k,) int64 array
-        The points still in M, in the order of their rows.
-    triangles : list of Triangle
-        In the order of growth, counter-clockwise.
-    searches, candidates, tests : int
-        Edges extended or tried; points looked at for them; comparisons of a point with a circle.
+    With ``removal`` points are deleted from M, which is ``searched`` in the order of the rows, once
+    all their edges are used twice. ``triangles`` stand in the order of growth, counter-clockwise.
+    Counted are ``searches``, edges extended or tried, ``candidates``, points looked at for them,
+    and ``tests``, comparisons of a point with a circle.
     """
 
     def __init__(self, xy: Columns, *, removal: bool) -> None:

@@ -25,19 +25,10 @@ _SHOWN = 3
 def describe_findings(tin: TIN, *, gaps: bool = True) -> tuple[str, ...]:
     """Tell in a few sentences what looks wrong with a TIN.
 
-    A sentence for each kind of finding of high or medium certainty: points that look like
-    blunders, lines that the points do not bear out, voids that are filled with an elevation; and
-    for gaps that the surface spans.
+    A sentence for each kind of finding of high or medium certainty: points that look like blunders,
+    lines that the points do not bear out, voids that are filled with an elevation; and for ``gaps``
+    that the surface spans, needless where the caller has said how long edges may be.
 
-    Parameters
-    ----------
-    tin : TIN
-        Any, built of a survey or read from a file; it is not changed.
-    gaps : bool, optional
-        Whether to tell of gaps; needless where the caller has said how long edges may be.
-
-    Notes
-    -----
     Linear in the points; the same for the same TIN. It is a screening: of many points only those
     are judged that stand out most, as :func:`.screen_points` does.
 

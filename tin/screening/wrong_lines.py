@@ -101,19 +101,9 @@ def find_wrong_lines(
     have an elevation that stands for none. Breaklines, holes and water, which may stand upright in
     the ground, are told with low certainty unless they do so by more than 45 degrees.
 
-    Parameters
-    ----------
-    surface : Triangulation
-    lines : Lines
-        Of it.
-    is_point : (n,) bool array
-        Whether a vertex is a point that may bear witness.
-    has_row : (n,) bool array
-        Whether it is one, right or wrong, on a line or not.
-    known : mapping of int to float
-        Vertices of lines where a point is, and its elevation.
-    metre : float, optional
-        In the unit of elevations.
+    Vertices are flagged, (n,), that are points which may bear witness (``is_point``), and that are
+    points at all, on a line or not (``has_row``); ``known`` has the elevations of points at
+    vertices of lines. ``metre`` is in the unit of elevations.
     """
     if len(lines) == 0 or not is_point.any():
         return []

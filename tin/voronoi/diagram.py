@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...base import optional
-from ...base.checks import require_distance, require_tin
+from ...base.checks import require_distance
 from ...base.crs import require_lengths
 from ...base.errors import LinesError, OptionError
-from ...base.products import product
 from ...base.sentences import counted
 from ...base.types import Bounds
 from .. import _kernel
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
 
     from ...base.arrays import AnyArray, Float64Array, Int64Array, ObjectArray
     from ...base.crs import CRS
-    from ..surface import TIN
 
 _PAD_SHARE = 0.1
 """How far the default boundary lies beyond the vertices, of the longer side of their bounds."""
@@ -131,63 +129,6 @@ class Voronoi:
         is_in_degrees = self.crs is not None and self.crs.is_geographic
         measured = "in degrees" if is_in_degrees else f"area {self.areas.sum():g}"
         return f"<Voronoi: {cells}, {corners}, {measured}>"
-
-
-@product
-def voronoi(
-    tin: TIN, *, boundary: Bounds | ArrayLike | None = None, pad: float | None = None
-) -> Voronoi:
-    """Build the Voronoi diagram of the vertices of a TIN: for each the places nearest to it.
-
-    Two vertices are joined by an edge of the Delaunay triangulation where their cells share
-    a side [1]_.
-
-    Parameters
-    ----------
-    tin : TIN
-    boundary : Bounds or (k, 2) array, optional
-        What the cells are clipped to: a rectangle, or the corners of a ring, convex or not,
-        CRS units.
-    pad : float, optional
-        Without a boundary, the bounds of the vertices are taken, this far outwards on every
-        side, CRS units. Default: a tenth of their longer side.
-
-    Returns
-    -------
-    Voronoi
-        One cell for each vertex, in their order; of vertices at one place the first has it.
-
-    Raises
-    ------
-    OptionError
-        If ``pad`` is no distance, or given together with a boundary.
-    LinesError
-        If the boundary has fewer than three corners, coordinates that are not finite, no
-        area, or touches itself.
-
-    Notes
-    -----
-    The diagram is that of the vertices alone, the dual of their Delaunay triangulation, which
-    is built anew: constraints, clipping and other triangles of the TIN have no part in it.
-    Where more than three cells meet (as in every raster), exact predicates tell, and the
-    corner is the same in all of them; there are no sides of length zero. Corners are rounded
-    to coordinates, circumcentres far outside the boundary never enter. Time and memory grow
-    as n log n; a ring, other than bounds that hold all vertices, takes shapely.
-
-    References
-    ----------
-    .. [1] R. Sibson, "Locally equiangular triangulations", The Computer Journal 21 (1978),
-       243-245. https://doi.org/10.1093/comjnl/21.3.243
-
-    Examples
-    --------
-    >>> from tinsmith import TIN
-    >>> tin = TIN.from_triangles([[0, 0, 1], [4, 0, 2], [0, 4, 3]], [[0, 1, 2]])
-    >>> voronoi(tin, pad=0).areas
-    array([4., 6., 6.])
-    """
-    require_tin(tin)
-    return replace(divide_plane(tin.points, boundary=boundary, pad=pad), crs=tin.crs)
 
 
 def divide_plane(

@@ -225,15 +225,9 @@ def replacing_files(path: Path, *, parts: Sequence[str] = ()) -> Iterator[Path]:
     """Yield a path of the same name in a new folder, for libraries that write several files.
 
     All files in that folder, which is beside ``path``, take their places when the block ends
-    without an error, that of ``path`` last; raises as :func:`replacing`.
-
-    Parameters
-    ----------
-    path : Path
-    parts : sequence of str
-        What the names of files that belong to it end with instead of its suffix (``".shx"``), or
-        after it (``".tif.ovr"``). Those of an earlier file, which do not belong to the new one,
-        are removed.
+    without an error, that of ``path`` last; raises as :func:`replacing`. ``parts`` are what the
+    names of files that belong to it end with instead of its suffix (``".shx"``), or after it
+    (``".tif.ovr"``): those of an earlier file, which do not belong to the new one, are removed.
     """
     with (
         _finding_target(path) as target,

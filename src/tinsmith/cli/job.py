@@ -83,7 +83,11 @@ class Job:
                 inputs += name_features(path, f"the file of {flag}")
         return [*inputs, *more]
 
-    plan = plan_products
+    def plan(self, inputs: Sequence[Named], *kinds: str, **how: Any) -> Products:
+        """Choose what each output holds, as :func:`.plan_products`, before any work is done."""
+        return plan_products(
+            self.outputs, self.writing, self.console, inputs=inputs, kinds=kinds, **how
+        )
 
     def finish(self, planned: Products, facts: Facts) -> None:
         """Tell what was done: a summary for people, and a record as JSON if it was asked for."""

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from ..io import Format
     from ..terrain import Features, Raster, Table
     from ..tin import TIN, Survey
-    from .job import Job
     from .options import Writing
     from .output.console import Console
 
@@ -110,9 +109,12 @@ def describe_file(path: Path) -> str:
 
 
 def plan_products(
-    job: Job,
+    paths: Sequence[Path],
+    writing: Writing,
+    console: Console,
+    *,
     inputs: Sequence[Named],
-    *kinds: str,
+    kinds: Sequence[str],
     report: Path | None = None,
     choose: Callable[[Output], str] | None = None,
 ) -> Products:
@@ -122,8 +124,7 @@ def plan_products(
     "picture". Features that have no table of their own are written to tables too. With ``choose``
     an output may be any of them until that function has seen its formats.
     """
-    writing, console = job.writing, job.console
-    placed = [split_output(path) for path in job.outputs]
+    placed = [split_output(path) for path in paths]
     _compare_paths(placed, inputs, report, writing.options)
     console.note(describe_leftovers(path for path, _ in placed))
     tabulates = "Features" in kinds and "Table" not in kinds

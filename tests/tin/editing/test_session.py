@@ -10,7 +10,8 @@ import pytest
 from support.point_sets import small_integers, tenths, utm_floats
 
 import tinsmith as ts
-from tinsmith.tin.editing.operations import OPERATIONS, apply_edits
+from tinsmith.tin.editing.history import apply_edits
+from tinsmith.tin.editing.operations import OPERATIONS
 
 
 def with_elevations(kind):

@@ -11,7 +11,8 @@ import click
 from ...base.sentences import counted
 from ..command import command
 from ..job import Job
-from ..output.facts import Facts, describe_counts
+from ..output.counts import describe_counts
+from ..output.facts import Facts
 from ..output.failures import Failure
 from ..parameters import input_files, number_option, output_files, report_option
 from ..paths import describe_inputs, name_files

@@ -9,7 +9,8 @@ import click
 
 from ..command import command
 from ..job import Job, surface_options
-from ..output.facts import Facts, mesh_counts, name_units
+from ..output.counts import mesh_counts
+from ..output.facts import Facts, name_units
 from ..parameters import input_file, output_files
 from ..paths import make_title
 

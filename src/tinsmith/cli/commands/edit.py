@@ -10,7 +10,8 @@ from typing import Any
 from ...base.sentences import counted
 from ..command import command
 from ..job import Job, open_standard_input, surface_options
-from ..output.facts import Facts, mesh_counts
+from ..output.counts import mesh_counts
+from ..output.facts import Facts
 from ..output.failures import Failure
 from ..parameters import input_file, output_files, report_option
 from ..paths import STANDARD, Named, name_file
@@ -40,7 +41,7 @@ def edit(file: Path, script: Path, report: Path | None, job: Job) -> None:
        {"op": "set_elevation", "vertices": [4, 5], "z": [320.0, 320.5]},
        {"op": "add_breakline", "coords": [[752650, 4024200, 321], [752700, 4024300, 323]]}]
     """
-    from ...tin.editing.operations import apply_edits
+    from ...tin.editing.history import apply_edits
     from ..output.console import format_json
     from ..outputs import write_text
 

@@ -8,7 +8,8 @@ from typing import Any
 from ...base.sentences import counted
 from ..command import file_command
 from ..job import Job, name_features, surface_options
-from ..output.facts import Facts, mesh_counts
+from ..output.counts import mesh_counts
+from ..output.facts import Facts
 from ..output.failures import Failure
 from ..parameters import file_option
 from ..product_options import product_options

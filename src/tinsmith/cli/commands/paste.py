@@ -6,7 +6,8 @@ from pathlib import Path
 
 from ..command import command
 from ..job import Job, surface_options
-from ..output.facts import Facts, mesh_counts
+from ..output.counts import mesh_counts
+from ..output.facts import Facts
 from ..parameters import input_file, output_files
 
 

@@ -10,7 +10,8 @@ import click
 from ...base.sentences import counted
 from ..command import command
 from ..job import Job, name_features
-from ..output.facts import Facts, mesh_counts
+from ..output.counts import mesh_counts
+from ..output.facts import Facts
 from ..parameters import LibraryOption, file_option, number_option, output_files, position_option
 from ..paths import INPUT, make_title
 from ..product_options import product_options

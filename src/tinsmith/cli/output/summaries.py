@@ -15,7 +15,7 @@ from ...terrain import slope
 from ...terrain.surface import measure_areas
 from ...tin import TIN, Bounds, Survey, quality
 from ...tin.report import describe_skipped
-from .facts import count_constrained_edges, describe_counts
+from .counts import count_constrained_edges, describe_counts
 from .line_summaries import count_given_lines, describe_given_lines, find_elevation_symbol
 
 if TYPE_CHECKING:
